@@ -1,0 +1,127 @@
+//! One error type for the library: what went wrong, where in which input, and the exit code it means.
+
+use std::fmt;
+use std::io;
+
+/// Result of every fallible operation of the library.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What went wrong, as far as a caller must tell cases apart: each kind is one exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// Reading, writing or running failed (exit 1).
+    Io,
+    /// The request makes no sense: flags, or inputs that do not go together (exit 2).
+    Usage,
+    /// The input is malformed, truncated, or breaks its own promises (exit 3).
+    Malformed,
+    /// An audit found a violation (exit 4).
+    Audit,
+    /// The memory budget cannot be kept (exit 5).
+    Memory,
+    /// The reader of our output went away (exit 141, silent).
+    ClosedPipe,
+}
+
+impl ErrorKind {
+    /// Process exit code of this kind of failure.
+    #[must_use]
+    pub fn exit_code(self) -> u8 {
+        match self {
+            ErrorKind::Io => 1,
+            ErrorKind::Usage => 2,
+            ErrorKind::Malformed => 3,
+            ErrorKind::Audit => 4,
+            ErrorKind::Memory => 5,
+            ErrorKind::ClosedPipe => 141,
+        }
+    }
+}
+
+/// A failure with its kind, the input it concerns (with a position where there is one) and a message
+/// that says what was found and what was expected.
+#[derive(Debug)]
+pub struct Error {
+    kind: ErrorKind,
+    input: Option<String>,
+    position: Option<String>,
+    message: String,
+    cause: Option<io::Error>,
+}
+
+impl Error {
+    /// An error of `kind`; add where it happened with [`Error::at`] and [`Error::of_input`].
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Error { kind, input: None, position: None, message: message.into(), cause: None }
+    }
+
+    /// A request that makes no sense.
+    pub fn usage(message: impl Into<String>) -> Self {
+        Error::new(ErrorKind::Usage, message)
+    }
+
+    /// Input that is malformed, truncated, or breaks its own promises.
+    pub fn malformed(message: impl Into<String>) -> Self {
+        Error::new(ErrorKind::Malformed, message)
+    }
+
+    /// An operating-system failure while doing `what` ("reading", "creating the temporary file").
+    ///
+    /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file, [`ErrorKind::Malformed`].
+    pub fn io(what: impl Into<String>, cause: io::Error) -> Self {
+        let kind = match cause.kind() {
+            io::ErrorKind::BrokenPipe => ErrorKind::ClosedPipe,
+            io::ErrorKind::UnexpectedEof => ErrorKind::Malformed,
+            _ => ErrorKind::Io,
+        };
+        Error { kind, input: None, position: None, message: what.into(), cause: Some(cause) }
+    }
+
+    /// Names the input (or output) that the error concerns, unless it has a name already.
+    #[must_use]
+    pub fn of_input(mut self, input: impl Into<String>) -> Self {
+        self.input.get_or_insert_with(|| input.into());
+        self
+    }
+
+    /// Says where in the input ("block 812 at byte 40960", "line 7"), unless that is known already.
+    #[must_use]
+    pub fn at(mut self, position: impl Into<String>) -> Self {
+        self.position.get_or_insert_with(|| position.into());
+        self
+    }
+
+    /// Kind of the failure.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        self.kind
+    }
+
+    /// Process exit code of this failure.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        self.kind.exit_code()
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(input) = &self.input {
+            write!(f, "{input}: ")?;
+        }
+        if let Some(position) = &self.position {
+            write!(f, "{position}: ")?;
+        }
+        f.write_str(&self.message)?;
+        match &self.cause {
+            Some(cause) => write!(f, ": {cause}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.cause.as_ref().map(|cause| cause as _)
+    }
+}
