@@ -2,5 +2,10 @@
 //!
 //! The tools in `bin/` are thin; everything they do is here. `ARCHITECTURE.md` has the module map.
 
+pub mod bounds;
+pub mod cells;
 pub mod error;
+pub mod limits;
 pub mod predicates;
+pub mod source;
+pub mod stream;

@@ -1,0 +1,82 @@
+//! Axis-parallel boxes: the closed bounding box of points, and the half-open region of a tile.
+
+/// A point in stored coordinates: x, y and z. Two-dimensional points without an elevation have z = 0.
+///
+/// Streams of integer coordinates carry integer values; [`crate::stream::Coordinates`] tells how they map
+/// to the world.
+pub type Point = [f64; 3];
+
+/// Closed bounding box of at least one point, in stored coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinate per axis.
+    pub min: Point,
+    /// Largest coordinate per axis.
+    pub max: Point,
+}
+
+impl Bounds {
+    /// The bounding box of a single point.
+    #[must_use]
+    pub fn of_point(point: Point) -> Self {
+        Bounds { min: point, max: point }
+    }
+
+    /// The bounding box of `points`, or `None` if there are none.
+    #[must_use]
+    pub fn of_points(points: &[Point]) -> Option<Self> {
+        let (&first, rest) = points.split_first()?;
+        let mut bounds = Bounds::of_point(first);
+        rest.iter().for_each(|&point| bounds.extend(point));
+        Some(bounds)
+    }
+
+    /// Grows the box so that it contains `point`.
+    pub fn extend(&mut self, point: Point) {
+        for axis in 0..3 {
+            self.min[axis] = self.min[axis].min(point[axis]);
+            self.max[axis] = self.max[axis].max(point[axis]);
+        }
+    }
+
+    /// The smallest box that contains both.
+    #[must_use]
+    pub fn union(mut self, other: Bounds) -> Self {
+        self.extend(other.min);
+        self.extend(other.max);
+        self
+    }
+
+    /// Whether `point` lies in the closed box.
+    #[must_use]
+    pub fn contains(&self, point: Point) -> bool {
+        (0..3).all(|axis| self.min[axis] <= point[axis] && point[axis] <= self.max[axis])
+    }
+}
+
+/// A half-open box `[min, max)` in the plane, so that a point on a common border belongs to one tile only.
+/// Sides may be infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Region {
+    /// Included lower sides.
+    pub min: [f64; 2],
+    /// Excluded upper sides.
+    pub max: [f64; 2],
+}
+
+impl Region {
+    /// The whole plane.
+    pub const PLANE: Region = Region { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
+
+    /// Whether the x and y of `point` lie in the half-open box.
+    #[must_use]
+    pub fn contains(&self, point: Point) -> bool {
+        (0..2).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
+    }
+
+    /// Whether the two half-open boxes have a point in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Region) -> bool {
+        (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
+    }
+}

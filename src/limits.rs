@@ -1,0 +1,19 @@
+//! Every stated maximum in one place, so that no input can make a reader allocate without bound.
+
+/// Longest header body of a stream, in bytes.
+pub const HEADER_BODY_MAX: usize = 1 << 20;
+
+/// Longest payload of a stream block, in bytes.
+pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
+
+/// Longest line of a text input, in bytes.
+pub const TEXT_LINE_MAX: usize = 1 << 16;
+
+/// Deepest level of a quadtree; with it a location code has 2 * 31 + 1 = 63 bits.
+pub const QUADTREE_DEPTH_MAX: u8 = 31;
+
+/// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
+pub const OCTREE_DEPTH_MAX: u8 = 20;
+
+/// Most points that one node of the reduction can triangulate: half-edges are numbered in 32 bits.
+pub const NODE_POINTS_MAX: usize = (u32::MAX / 8) as usize;

@@ -1,0 +1,60 @@
+//! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams, SPA and SPB.
+
+use std::path::PathBuf;
+
+use crate::bounds::{Bounds, Point};
+use crate::error::Result;
+use crate::stream::{Coordinates, Crs};
+
+/// What to read of the files, and how.
+#[derive(Debug, Clone, Default)]
+pub struct SourceOptions {
+    /// Keep only points of these classes, if any are given.
+    pub keep_class: Vec<u8>,
+    /// Drop points of these classes.
+    pub drop_class: Vec<u8>,
+    /// Keep only first returns.
+    pub first_only: bool,
+    /// Keep only last returns.
+    pub last_only: bool,
+    /// Keep only points whose world x and y lie in this closed box: min x, min y, max x, max y.
+    pub bounds: Option<[f64; 4]>,
+    /// Drop and count points with a coordinate that is not finite, instead of failing.
+    pub skip_invalid: bool,
+    /// Dimensions of the geometry: 2 (z is an elevation) or 3.
+    pub dims: u8,
+    /// Grid to put integer coordinates on: scale and offset per axis, instead of those of the files.
+    pub grid: Option<([f64; 3], [f64; 3])>,
+    /// Where spools go; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+}
+
+/// What is known of an input before its points are read.
+#[derive(Debug, Clone)]
+pub struct Description {
+    /// Encoding that all points of the input share.
+    pub coordinates: Coordinates,
+    /// Dimensions of the geometry: 2 or 3.
+    pub dims: u8,
+    /// Whether two-dimensional points carry an elevation.
+    pub has_elevation: bool,
+    /// Coordinate reference system that all files share.
+    pub crs: Crs,
+    /// Bounding box that the headers state, in stored coordinates: to be verified.
+    pub stated_bounds: Option<Bounds>,
+    /// Number of points that the headers state, before filters.
+    pub stated_points: Option<u64>,
+}
+
+/// One pass over an input.
+pub trait PointReader: Send {
+    /// Replaces the content of `batch` with the next points, in stored coordinates of the description;
+    /// an empty batch after the call means the end of the input.
+    ///
+    /// # Errors
+    /// If the input cannot be read, is malformed, or has an invalid point (file and record are named).
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()>;
+
+    /// Points dropped so far because a coordinate is not finite.
+    fn invalid(&self) -> u64;
+}

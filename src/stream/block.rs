@@ -1,0 +1,86 @@
+//! The frame around every block: tag, sequence number, length and checksum.
+
+use byteorder::{ByteOrder, LittleEndian as LE};
+
+/// Length of the frame before the payload, in bytes.
+pub(super) const FRAME_LEN: usize = 16;
+
+/// What a block holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Tag {
+    Points,
+    Cells,
+    Patch,
+    ResidualPoints,
+    Walls,
+    End,
+}
+
+const NAMES: [(Tag, [u8; 4]); 6] = [
+    (Tag::Points, *b"PNTS"),
+    (Tag::Cells, *b"CELL"),
+    (Tag::Patch, *b"PTCH"),
+    (Tag::ResidualPoints, *b"RPNT"),
+    (Tag::Walls, *b"WALL"),
+    (Tag::End, *b"END "),
+];
+
+impl Tag {
+    pub(super) fn bytes(self) -> [u8; 4] {
+        NAMES.iter().find(|(tag, _)| *tag == self).expect("every tag has its name").1
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Option<Tag> {
+        NAMES.iter().find(|(_, name)| name == bytes).map(|(tag, _)| *tag)
+    }
+}
+
+/// Frame of one block.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) tag: Option<Tag>,
+    pub(super) sequence: u32,
+    pub(super) len: u32,
+    checksum: u32,
+    head: [u8; 12],
+}
+
+impl Frame {
+    pub(super) fn of(tag: Tag, sequence: u32, payload: &[u8]) -> Frame {
+        let mut head = [0; 12];
+        head[0..4].copy_from_slice(&tag.bytes());
+        LE::write_u32(&mut head[4..], sequence);
+        LE::write_u32(&mut head[8..], payload.len() as u32);
+        let mut frame = Frame { tag: Some(tag), sequence, len: payload.len() as u32, checksum: 0, head };
+        frame.checksum = frame.checksum_with(payload);
+        frame
+    }
+
+    pub(super) fn decode(bytes: &[u8; FRAME_LEN]) -> Frame {
+        let mut head = [0; 12];
+        head.copy_from_slice(&bytes[..12]);
+        Frame {
+            tag: Tag::from_bytes(&bytes[0..4]),
+            sequence: LE::read_u32(&bytes[4..]),
+            len: LE::read_u32(&bytes[8..]),
+            checksum: LE::read_u32(&bytes[12..]),
+            head,
+        }
+    }
+
+    pub(super) fn encode(&self) -> [u8; FRAME_LEN] {
+        let mut bytes = [0; FRAME_LEN];
+        bytes[..12].copy_from_slice(&self.head);
+        LE::write_u32(&mut bytes[12..], self.checksum);
+        bytes
+    }
+
+    /// Whether the checksum fits frame and payload.
+    pub(super) fn verifies(&self, payload: &[u8]) -> bool {
+        self.checksum == self.checksum_with(payload)
+    }
+
+    fn checksum_with(&self, payload: &[u8]) -> u32 {
+        crc32c::crc32c_append(crc32c::crc32c(&self.head), payload)
+    }
+}

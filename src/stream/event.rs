@@ -1,0 +1,99 @@
+//! What a stream says, block by block.
+
+use crate::bounds::Point;
+use crate::cells::CellCode;
+
+/// One block of a stream, decoded and checked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// Points, in stored coordinates.
+    Points(Vec<Point>),
+    /// Cells that no later point of the stream lies in.
+    Cells(Vec<CellCode>),
+    /// A piece of the mesh.
+    Patch(Patch),
+    /// Points of a residual, each with its vertex id if it was written in an earlier patch.
+    ResidualPoints(Vec<(Option<u64>, Point)>),
+    /// Directed edges between residual points (counted over all their blocks): left of each lies a final
+    /// simplex, right of it one that is not final.
+    Walls(Vec<[u32; 2]>),
+    /// The end: nothing follows.
+    End(Totals),
+}
+
+/// A piece of a mesh. Local indices count the new vertices first, then the imported ones.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Patch {
+    /// Id of the first new vertex; ids count up from 0 in stream order.
+    pub first_id: u64,
+    /// New vertices, in stored coordinates.
+    pub new: Vec<Point>,
+    /// Ids of vertices of earlier patches, increasing.
+    pub imported: Vec<u64>,
+    /// Simplices as local indices, positively oriented (counterclockwise), `vertices_per_simplex` each.
+    pub simplices: Vec<u32>,
+    /// Local indices, increasing, of vertices that no later patch uses.
+    pub finalized: Vec<u32>,
+}
+
+impl Patch {
+    /// Id of the vertex at local index `local`.
+    #[must_use]
+    pub fn id(&self, local: u32) -> u64 {
+        match (local as usize).checked_sub(self.new.len()) {
+            None => self.first_id + u64::from(local),
+            Some(i) => self.imported[i],
+        }
+    }
+
+    /// Number of vertices that local indices refer to.
+    #[must_use]
+    pub fn vertices(&self) -> usize {
+        self.new.len() + self.imported.len()
+    }
+
+    /// The simplices of a triangle mesh.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.simplices.chunks_exact(3).map(|t| [t[0], t[1], t[2]])
+    }
+}
+
+/// What the END block states of the whole stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Totals {
+    /// Points: of a points stream, those in it; of a mesh, those of the input it was made from.
+    pub points: u64,
+    /// Cell tags.
+    pub cells: u64,
+    /// Vertices.
+    pub vertices: u64,
+    /// Simplices.
+    pub simplices: u64,
+    /// Points of the input that coincide with another and are not vertices of their own.
+    pub merged: u64,
+    /// Residual points.
+    pub residual_points: u64,
+    /// Walls.
+    pub walls: u64,
+}
+
+impl Totals {
+    /// The totals in the order of the END block.
+    pub(super) fn fields(&self) -> [u64; 7] {
+        [
+            self.points,
+            self.cells,
+            self.vertices,
+            self.simplices,
+            self.merged,
+            self.residual_points,
+            self.walls,
+        ]
+    }
+
+    /// Totals from their order in the END block.
+    pub(super) fn from_fields(fields: [u64; 7]) -> Self {
+        let [points, cells, vertices, simplices, merged, residual_points, walls] = fields;
+        Totals { points, cells, vertices, simplices, merged, residual_points, walls }
+    }
+}

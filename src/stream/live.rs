@@ -1,0 +1,71 @@
+//! The vertices of a mesh stream that a later patch may still use.
+
+use std::collections::HashMap;
+
+use super::event::Patch;
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+
+/// Vertices between their patch and their finalization, with a value `T` that the consumer keeps for each.
+///
+/// Memory grows with the width of the stream, not with its length.
+#[derive(Debug, Default)]
+pub struct LiveVertices<T> {
+    live: HashMap<u64, T>,
+    local: Vec<(u64, T)>,
+    live_max: usize,
+}
+
+impl<T: Copy> LiveVertices<T> {
+    /// No vertices.
+    #[must_use]
+    pub fn new() -> Self {
+        LiveVertices { live: HashMap::new(), local: Vec::new(), live_max: 0 }
+    }
+
+    /// Id and value of every local vertex of `patch`, the new ones with the value that `value_of` gives them;
+    /// then forgets the vertices that the patch finalizes.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
+    pub fn enter(&mut self, patch: &Patch, mut value_of: impl FnMut(u64, Point) -> T) -> Result<&[(u64, T)]> {
+        self.local.clear();
+        for (&point, id) in patch.new.iter().zip(patch.first_id..) {
+            self.local.push((id, value_of(id, point)));
+        }
+        for &id in &patch.imported {
+            let Some(&value) = self.live.get(&id) else {
+                return Err(Error::malformed(if id < patch.first_id {
+                    format!("vertex {id} referenced after finalization")
+                } else {
+                    format!("vertex {id} referenced before it was written")
+                }));
+            };
+            self.local.push((id, value));
+        }
+        self.live.extend(self.local[..patch.new.len()].iter().copied());
+        self.live_max = self.live_max.max(self.live.len());
+        for &local in &patch.finalized {
+            self.live.remove(&patch.id(local));
+        }
+        Ok(&self.local)
+    }
+
+    /// Number of vertices that are live now.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.live.len()
+    }
+
+    /// Whether no vertex is live.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.live.is_empty()
+    }
+
+    /// Most vertices that were live at once: the width of the stream.
+    #[must_use]
+    pub fn live_max(&self) -> usize {
+        self.live_max
+    }
+}

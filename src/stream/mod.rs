@@ -1,0 +1,18 @@
+//! The spmesh stream: one container for finalized points, meshes and residuals.
+//!
+//! `formats/spmesh.md` is the specification; this module is its reader and its writer. Tools meet only here.
+
+mod block;
+mod event;
+mod header;
+mod kind;
+mod live;
+mod reader;
+mod writer;
+
+pub use event::{Event, Patch, Totals};
+pub use header::{Coordinates, Crs, Header};
+pub use kind::Kind;
+pub use live::LiveVertices;
+pub use reader::StreamReader;
+pub use writer::StreamWriter;

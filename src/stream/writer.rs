@@ -1,0 +1,210 @@
+//! Writes a stream block by block. Only [`StreamWriter::end`] makes it whole.
+
+use std::io::Write;
+
+use super::block::{Frame, Tag};
+use super::event::{Patch, Totals};
+use super::header::{Coordinates, Header};
+use crate::bounds::Point;
+use crate::cells::CellCode;
+use crate::error::{Error, Result};
+use crate::limits::BLOCK_PAYLOAD_MAX;
+
+/// Payload from which a block of points is closed, in bytes: far below the maximum, so that a consumer can
+/// start early, and large enough that the frame does not count.
+const POINTS_PAYLOAD: usize = 1 << 16;
+
+/// Writes one stream.
+///
+/// Invariant: a stream without END is incomplete to every reader. `end` writes END; `Drop` never does, so a
+/// producer that fails half way is not mistaken for a short input.
+pub struct StreamWriter<W: Write> {
+    output: W,
+    header: Header,
+    sequence: u32,
+    /// Points that wait for their block to fill.
+    points: Vec<u8>,
+    payload: Vec<u8>,
+    totals: Totals,
+}
+
+impl<W: Write> StreamWriter<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// If the header breaks a rule of the format, or writing fails.
+    pub fn new(mut output: W, header: Header) -> Result<Self> {
+        output.write_all(&header.encode()?).map_err(write_error)?;
+        Ok(StreamWriter {
+            output,
+            header,
+            sequence: 0,
+            points: Vec::with_capacity(POINTS_PAYLOAD),
+            payload: Vec::new(),
+            totals: Totals::default(),
+        })
+    }
+
+    /// The header that was written.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// Points, cells, vertices, simplices, residual points and walls written so far.
+    pub fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    /// Appends points to a points stream.
+    ///
+    /// # Errors
+    /// If a coordinate does not fit the encoding of the header, or writing fails.
+    pub fn points(&mut self, points: &[Point]) -> Result<()> {
+        for &point in points {
+            encode_point(&self.header, point, &mut self.points)?;
+            if self.points.len() + self.header.point_len() > POINTS_PAYLOAD {
+                self.flush_points()?;
+            }
+        }
+        self.totals.points += points.len() as u64;
+        Ok(())
+    }
+
+    /// Tags cells as final: no later point lies in them. Writes what points are still waiting first.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn cells(&mut self, cells: &[CellCode]) -> Result<()> {
+        self.flush_points()?;
+        for cells in cells.chunks(BLOCK_PAYLOAD_MAX / 8) {
+            let payload = &mut self.payload;
+            payload.clear();
+            cells.iter().for_each(|cell| payload.extend_from_slice(&cell.0.to_le_bytes()));
+            self.flush_block(Tag::Cells)?;
+            self.totals.cells += cells.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// Appends a patch to a mesh stream; `first_id` must be the number of vertices written before.
+    ///
+    /// # Errors
+    /// If a coordinate does not fit the encoding, the patch is longer than a block, or writing fails.
+    pub fn patch(&mut self, patch: &Patch) -> Result<()> {
+        assert_eq!(patch.first_id, self.totals.vertices, "vertex ids count up in stream order");
+        let per_simplex = self.header.kind.vertices_per_simplex();
+        let payload = &mut self.payload;
+        payload.clear();
+        payload.extend_from_slice(&patch.first_id.to_le_bytes());
+        let simplices = patch.simplices.len() / per_simplex;
+        for count in [patch.new.len(), patch.imported.len(), simplices, patch.finalized.len()] {
+            payload.extend_from_slice(&(count as u32).to_le_bytes());
+        }
+        for &point in &patch.new {
+            encode_point(&self.header, point, payload)?;
+        }
+        patch.imported.iter().for_each(|id| payload.extend_from_slice(&id.to_le_bytes()));
+        for local in patch.simplices.iter().chain(&patch.finalized) {
+            payload.extend_from_slice(&local.to_le_bytes());
+        }
+        self.flush_block(Tag::Patch)?;
+        self.totals.vertices += patch.new.len() as u64;
+        self.totals.simplices += simplices as u64;
+        Ok(())
+    }
+
+    /// Appends residual points, each with its id if it is a vertex of an earlier patch.
+    ///
+    /// # Errors
+    /// If a coordinate does not fit the encoding, or writing fails.
+    pub fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
+        for points in points.chunks(BLOCK_PAYLOAD_MAX / (8 + self.header.point_len())) {
+            self.payload.clear();
+            for &(id, point) in points {
+                self.payload.extend_from_slice(&id.unwrap_or(u64::MAX).to_le_bytes());
+                encode_point(&self.header, point, &mut self.payload)?;
+            }
+            self.flush_block(Tag::ResidualPoints)?;
+            self.totals.residual_points += points.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// Appends walls between residual points, which must have been written before.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn walls(&mut self, walls: &[[u32; 2]]) -> Result<()> {
+        for walls in walls.chunks(BLOCK_PAYLOAD_MAX / 8) {
+            let payload = &mut self.payload;
+            payload.clear();
+            walls.iter().flatten().for_each(|end| payload.extend_from_slice(&end.to_le_bytes()));
+            self.flush_block(Tag::Walls)?;
+            self.totals.walls += walls.len() as u64;
+        }
+        Ok(())
+    }
+
+    /// Writes END and flushes. For a mesh, `input_points` of the input were triangulated and `merged` of
+    /// them coincide with another one; a points stream counts its own points and ignores both.
+    ///
+    /// # Errors
+    /// If writing or flushing fails.
+    pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
+        self.flush_points()?;
+        if self.header.kind.vertices_per_simplex() > 0 {
+            self.totals.points = input_points;
+            self.totals.merged = merged;
+        }
+        let totals = self.totals;
+        self.payload.clear();
+        for total in totals.fields() {
+            self.payload.extend_from_slice(&total.to_le_bytes());
+        }
+        self.flush_block(Tag::End)?;
+        self.output.flush().map_err(write_error)?;
+        Ok(self.output)
+    }
+
+    fn flush_points(&mut self) -> Result<()> {
+        if self.points.is_empty() {
+            return Ok(());
+        }
+        std::mem::swap(&mut self.points, &mut self.payload);
+        self.flush_block(Tag::Points)?;
+        self.points.clear();
+        Ok(())
+    }
+
+    fn flush_block(&mut self, tag: Tag) -> Result<()> {
+        assert!(self.header.kind.allows(tag), "{tag:?} in a stream of {}", self.header.kind.name());
+        if self.payload.len() > BLOCK_PAYLOAD_MAX {
+            return Err(Error::usage(format!(
+                "cannot write a block of {} bytes, the maximum is {BLOCK_PAYLOAD_MAX}",
+                self.payload.len()
+            )));
+        }
+        let frame = Frame::of(tag, self.sequence, &self.payload);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.output.write_all(&frame.encode()).map_err(write_error)?;
+        self.output.write_all(&self.payload).map_err(write_error)
+    }
+}
+
+fn write_error(cause: std::io::Error) -> Error {
+    Error::io("writing the stream", cause)
+}
+
+/// Appends the stored form of `point`.
+fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
+    for &value in &point[..header.coordinates_per_point()] {
+        if !header.coordinates.can_store(value) {
+            return Err(Error::malformed(format!("coordinate {value} does not fit the stream's encoding")));
+        }
+        match header.coordinates {
+            Coordinates::F64 => bytes.extend_from_slice(&value.to_le_bytes()),
+            Coordinates::I32 { .. } => bytes.extend_from_slice(&(value as i32).to_le_bytes()),
+        }
+    }
+    Ok(())
+}
