@@ -33,9 +33,9 @@ impl Bounds {
 
     /// Grows the box so that it contains `point`.
     pub fn extend(&mut self, point: Point) {
-        for axis in 0..3 {
-            self.min[axis] = self.min[axis].min(point[axis]);
-            self.max[axis] = self.max[axis].max(point[axis]);
+        for (axis, value) in point.into_iter().enumerate() {
+            self.min[axis] = self.min[axis].min(value);
+            self.max[axis] = self.max[axis].max(value);
         }
     }
 

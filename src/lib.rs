@@ -4,8 +4,10 @@
 
 pub mod bounds;
 pub mod cells;
+pub mod cli;
 pub mod error;
 pub mod limits;
+pub mod output;
 pub mod predicates;
 pub mod source;
 pub mod stream;

@@ -1,0 +1,106 @@
+//! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
+
+pub mod progress;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser};
+
+use crate::error::{Error, ErrorKind};
+
+/// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
+///
+/// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
+pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
+    let flags = match Flags::try_parse() {
+        Ok(flags) => flags,
+        Err(message) => {
+            // Help and version go to stdout; a reader that leaves early is not an error worth words.
+            let _ = message.print();
+            return ExitCode::from(message.exit_code() as u8);
+        }
+    };
+    let tool = Flags::command().get_name().to_string();
+    match run(flags) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let code = error.downcast_ref::<Error>().map_or(1, Error::exit_code);
+            if code != ErrorKind::ClosedPipe.exit_code() {
+                eprintln!("{tool}: {error:#}");
+            }
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Flags that every tool has.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Say nothing on stderr but errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+
+    /// Show progress: on a terminal, never, or as JSON lines on stderr
+    #[arg(long, value_enum, default_value_t = progress::When::Auto, global = true)]
+    pub progress: progress::When,
+}
+
+/// Prints a message for the user on stderr, with the tool's name before it.
+pub fn notice(tool: &str, common: &Common, message: &str) {
+    if !common.quiet {
+        eprintln!("{tool}: {message}");
+    }
+}
+
+/// How `--stats` is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people.
+    Text,
+    /// One JSON object.
+    Json,
+}
+
+/// A size with a unit, in bytes: `512M`, `2G`, `65536`. K, M and G are powers of 1024.
+///
+/// # Errors
+/// If it is not a positive number with one of the units.
+pub fn parse_size(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit: u64 = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" | "B" => 1,
+        "K" | "KB" | "KIB" => 1 << 10,
+        "M" | "MB" | "MIB" => 1 << 20,
+        "G" | "GB" | "GIB" => 1 << 30,
+        unit => return Err(format!("unknown unit {unit:?}, expected K, M or G")),
+    };
+    let number: f64 = digits.parse().map_err(|_| format!("{text:?} is not a size like 512M"))?;
+    let bytes = number * unit as f64;
+    if (1.0..9e18).contains(&bytes) { Ok(bytes as u64) } else { Err(format!("{text:?} is out of range")) }
+}
+
+/// Peak resident memory of this process in bytes; 0 where the system does not tell.
+#[must_use]
+pub fn peak_memory() -> u64 {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()).unwrap_or(0) * 1024
+}
+
+/// Opens a stream input: stdin for `-`, a file otherwise; with the name that messages use.
+///
+/// # Errors
+/// If the file cannot be opened, or stdin is a terminal.
+pub fn open_input(path: &PathBuf) -> crate::error::Result<(Box<dyn std::io::Read + Send>, String)> {
+    use std::io::IsTerminal;
+    if path.as_os_str() == "-" {
+        if std::io::stdin().is_terminal() {
+            return Err(Error::usage("stdin is a terminal: give a file or pipe a stream in (see --help)"));
+        }
+        return Ok((Box::new(std::io::stdin()), "stdin".into()));
+    }
+    let name = path.display().to_string();
+    let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
+    Ok((Box::new(file), name))
+}
