@@ -1,5 +1,7 @@
 //! Exact predicates of computational geometry. They know no mesh.
 
+pub mod circle;
+
 /// Sign of an exactly evaluated expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sign {

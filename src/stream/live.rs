@@ -51,6 +51,12 @@ impl<T: Copy> LiveVertices<T> {
         Ok(&self.local)
     }
 
+    /// The value of the vertex `id`, if it is live.
+    #[must_use]
+    pub fn get(&self, id: u64) -> Option<T> {
+        self.live.get(&id).copied()
+    }
+
     /// Number of vertices that are live now.
     #[must_use]
     pub fn len(&self) -> usize {
