@@ -2,5 +2,7 @@
 //!
 //! The tools in `bin/` are thin; everything they do is here. `ARCHITECTURE.md` has the module map.
 
+pub mod delaunay2;
 pub mod error;
+pub mod order;
 pub mod predicates;

@@ -1,0 +1,5 @@
+//! Integration tests: one crate, one module per subject.
+
+mod kernel;
+mod kernel_predicates;
+mod reference;
