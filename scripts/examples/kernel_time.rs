@@ -1,6 +1,7 @@
 //! Times the 2D kernel, in one thread, next to `spade`:
 //! `cargo run --release --example kernel_time -- [points] [rounds]`.
 
+use spade::Triangulation as _;
 use spmesh::delaunay2::{Kernel, Triangulation};
 use std::time::Instant;
 
