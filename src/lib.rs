@@ -5,9 +5,12 @@
 pub mod bounds;
 pub mod cells;
 pub mod cli;
+pub mod delaunay2;
 pub mod error;
 pub mod limits;
+pub mod order;
 pub mod output;
 pub mod predicates;
+pub mod reduce;
 pub mod source;
 pub mod stream;

@@ -14,6 +14,3 @@ pub const QUADTREE_DEPTH_MAX: u8 = 31;
 
 /// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
 pub const OCTREE_DEPTH_MAX: u8 = 20;
-
-/// Most points that one node of the reduction can triangulate: half-edges are numbered in 32 bits.
-pub const NODE_POINTS_MAX: usize = (u32::MAX / 8) as usize;

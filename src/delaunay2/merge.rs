@@ -1,0 +1,189 @@
+//! Two triangulations separated by a line become one.
+
+use super::divide::Cut;
+use super::edges::{Edges, NIL};
+use crate::predicates::{Point2, Predicates2, Sign};
+use std::cmp::Ordering;
+
+/// Handle of a triangulation: two half-edges of its counterclockwise hull, far from each other where possible.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hull {
+    /// A vertex.
+    pub(super) vertex: u32,
+    /// A hull edge with the outer face to its right; [`NIL`] if there is one vertex only.
+    pub(super) start: u32,
+    /// Another.
+    pub(super) end: u32,
+}
+
+impl Hull {
+    pub(super) fn of_point(vertex: u32) -> Hull {
+        Hull { vertex, start: NIL, end: NIL }
+    }
+}
+
+/// What merging works on.
+pub(super) struct Stitch<'a, P> {
+    pub(super) points: &'a [Point2],
+    pub(super) edges: &'a mut Edges,
+    pub(super) predicates: &'a mut P,
+}
+
+/// A vertex of a hull and the hull edge that leaves it; the edge is [`NIL`] if the vertex is all there is.
+#[derive(Clone, Copy)]
+struct Tip {
+    vertex: u32,
+    edge: u32,
+}
+
+impl<P: Predicates2> Stitch<'_, P> {
+    #[inline(always)]
+    fn point(&self, v: u32) -> Point2 {
+        self.points[v as usize]
+    }
+
+    #[inline(always)]
+    fn orientation(&mut self, u: u32, v: u32, w: u32) -> Sign {
+        self.predicates.orient2d(self.points[u as usize], self.points[v as usize], self.points[w as usize])
+    }
+
+    #[inline(always)]
+    fn circle_contains(&mut self, u: u32, v: u32, w: u32, x: u32) -> bool {
+        let [u, v, w, x] = [u, v, w, x].map(|v| self.points[v as usize]);
+        self.predicates.incircle_perturbed(u, v, w, x) == Sign::Positive
+    }
+
+    /// Merges `left` and `right`, which `cut` separates. "Left", "right", "low" and "up" are meant after the quarter
+    /// turn of [`Cut::compare`] if it is horizontal; but for the two starting vertices nothing depends on it.
+    pub(super) fn merge(&mut self, left: Hull, right: Hull, cut: Cut) -> Hull {
+        let left = self.extreme(left, cut, Ordering::Greater);
+        let right = self.extreme(right, cut, Ordering::Less);
+        let low = self.lower_tangent(left, right);
+        let high = self.rise(low);
+        Hull { vertex: left.vertex, start: low, end: high ^ 1 }
+    }
+
+    /// The vertex of a hull that comes last (`Greater`) or first (`Less`) across the cut.
+    ///
+    /// Along a convex polygon the order across the cut has one maximum and one minimum, also where boundary points
+    /// are collinear and where the polygon is a chain passed twice: climbing finds the maximum. The edges of the
+    /// last merge lie near the extremes across the other axis, so the climb is short if cuts alternate.
+    fn extreme(&self, hull: Hull, cut: Cut, wanted: Ordering) -> Tip {
+        if hull.start == NIL {
+            return Tip { vertex: hull.vertex, edge: NIL };
+        }
+        let edges = &*self.edges;
+        let further = |e: u32, than: u32| {
+            cut.compare(self.point(edges.origin(e)), self.point(edges.origin(than))) == wanted
+        };
+        let mut edge = if further(hull.end, hull.start) { hull.end } else { hull.start };
+        let mut next = edges.hull_next(edge);
+        if further(next, edge) {
+            while further(next, edge) {
+                edge = next;
+                next = edges.hull_next(edge);
+            }
+        } else {
+            let mut previous = edges.hull_previous(edge);
+            while further(previous, edge) {
+                edge = previous;
+                previous = edges.hull_previous(edge);
+            }
+        }
+        Tip { vertex: edges.origin(edge), edge }
+    }
+
+    /// Adds the lower common tangent of two hulls and returns it, directed from left to right.
+    ///
+    /// Starts at the extreme vertices and moves down while that is strictly below: among collinear vertices the
+    /// tangent joins the two innermost.
+    fn lower_tangent(&mut self, mut left: Tip, mut right: Tip) -> u32 {
+        // Each step moves one way along one hull; the limit only matters if the points were not separated.
+        for _ in 0..=2 * self.points.len() {
+            if left.edge != NIL {
+                let previous = self.edges.hull_previous(left.edge);
+                let below = self.edges.origin(previous);
+                if self.orientation(left.vertex, below, right.vertex) == Sign::Positive {
+                    left = Tip { vertex: below, edge: previous };
+                    continue;
+                }
+            }
+            if right.edge != NIL {
+                let below = self.edges.destination(right.edge);
+                if self.orientation(right.vertex, below, left.vertex) == Sign::Negative {
+                    right = Tip { vertex: below, edge: self.edges.hull_next(right.edge) };
+                    continue;
+                }
+            }
+            break;
+        }
+        let after = if left.edge == NIL { NIL } else { self.edges.oprev(left.edge) };
+        self.edges.connect(left.vertex, after, right.vertex, right.edge)
+    }
+
+    /// Fills the gap above `base`, an edge from left to right, and returns its last edge, the upper common tangent.
+    ///
+    /// Each round joins the base to the first point that a circle through its ends meets when it grows upwards.
+    /// Edges of either side that this point cuts off are deleted.
+    fn rise(&mut self, mut base: u32) -> u32 {
+        loop {
+            let (u, v) = (self.edges.origin(base), self.edges.destination(base));
+            let left = self.left_candidate(base, u, v);
+            let right = self.right_candidate(base, u, v);
+            let right_wins = match (left, right) {
+                (NIL, NIL) => return base,
+                (_, NIL) => false,
+                (NIL, _) => true,
+                _ => {
+                    let (l, r) = (self.edges.destination(left), self.edges.destination(right));
+                    self.circle_contains(u, v, l, r)
+                }
+            };
+            base = if right_wins {
+                self.edges.connect(u, base, self.edges.destination(right), right ^ 1)
+            } else {
+                self.edges.connect(self.edges.destination(left), left ^ 1, v, base ^ 1)
+            };
+        }
+    }
+
+    /// The edge from `u` to the left side's first point above the base, or [`NIL`].
+    ///
+    /// A point that is not above the base is never in the circle, perturbed or not, so that a second edge needs no
+    /// test of its own; it only must not be the base itself.
+    #[inline(always)]
+    fn left_candidate(&mut self, base: u32, u: u32, v: u32) -> u32 {
+        let mut candidate = self.edges.onext(base);
+        if candidate == base || self.orientation(u, v, self.edges.destination(candidate)) != Sign::Positive {
+            return NIL;
+        }
+        loop {
+            let next = self.edges.onext(candidate);
+            let (w, x) = (self.edges.destination(candidate), self.edges.destination(next));
+            if next == base || !self.circle_contains(u, v, w, x) {
+                return candidate;
+            }
+            self.edges.delete(candidate);
+            candidate = next;
+        }
+    }
+
+    /// The edge from `v` to the right side's first point above the base, or [`NIL`].
+    #[inline(always)]
+    fn right_candidate(&mut self, base: u32, u: u32, v: u32) -> u32 {
+        let twin = base ^ 1;
+        let mut candidate = self.edges.oprev(twin);
+        if candidate == twin || self.orientation(u, v, self.edges.destination(candidate)) != Sign::Positive {
+            return NIL;
+        }
+        loop {
+            let next = self.edges.oprev(candidate);
+            let (w, x) = (self.edges.destination(candidate), self.edges.destination(next));
+            if next == twin || !self.circle_contains(u, v, w, x) {
+                return candidate;
+            }
+            self.edges.delete(candidate);
+            candidate = next;
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Predicates of floating-point coordinates: filter, then expansions, then arbitrary precision.
+//!
+//! The filters are Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust geometric
+//! predicates", 1997, bounds A): with u = 2^-53 the rounded determinant differs from the exact one by at most
+//! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with every
+//! product replaced by its magnitude, provided that nothing over- or underflows.
+
+use super::{Extent, Point2, PredicateCounts, Predicates2, Sign, big};
+use robust::Coord;
+
+const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
+const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
+
+/// A determinant evaluated in `f64`, with the sum of the magnitudes of its products.
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) magnitude: f64,
+    bound: f64,
+}
+
+impl Estimate {
+    /// The sign is that of the exact determinant.
+    #[inline(always)]
+    pub(super) fn is_certain(&self) -> bool {
+        self.value.abs() > self.bound * self.magnitude
+    }
+
+    /// Orientation from the differences to c.
+    #[inline(always)]
+    pub(super) fn orient2d([acx, acy]: Point2, [bcx, bcy]: Point2) -> Estimate {
+        let (left, right) = (acx * bcy, acy * bcx);
+        Estimate { value: left - right, magnitude: left.abs() + right.abs(), bound: ORIENT2D_BOUND }
+    }
+
+    /// In-circle determinant from the differences to d.
+    #[inline(always)]
+    pub(super) fn incircle([adx, ady]: Point2, [bdx, bdy]: Point2, [cdx, cdy]: Point2) -> Estimate {
+        let (bc, cb) = (bdx * cdy, cdx * bdy);
+        let (ca, ac) = (cdx * ady, adx * cdy);
+        let (ab, ba) = (adx * bdy, bdx * ady);
+        let a_lift = adx * adx + ady * ady;
+        let b_lift = bdx * bdx + bdy * bdy;
+        let c_lift = cdx * cdx + cdy * cdy;
+        Estimate {
+            value: a_lift * (bc - cb) + b_lift * (ca - ac) + c_lift * (ab - ba),
+            magnitude: a_lift * (bc.abs() + cb.abs())
+                + b_lift * (ca.abs() + ac.abs())
+                + c_lift * (ab.abs() + ba.abs()),
+            bound: INCIRCLE_BOUND,
+        }
+    }
+}
+
+/// Difference of two points, rounded.
+#[inline(always)]
+pub(super) fn difference(p: Point2, q: Point2) -> Point2 {
+    [p[0] - q[0], p[1] - q[1]]
+}
+
+fn coord([x, y]: Point2) -> Coord<f64> {
+    Coord { x, y }
+}
+
+#[cold]
+fn expansion_orient2d(a: Point2, b: Point2, c: Point2) -> Sign {
+    Sign::of(robust::orient2d(coord(a), coord(b), coord(c)))
+}
+
+#[cold]
+fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
+    Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d)))
+}
+
+/// Filter, then expansions.
+///
+/// Domain: every coordinate is zero or its magnitude lies in [2^-170, 2^240]. Why this suffices:
+///
+/// * Underflow. All coordinates are multiples of g = 2^-222, the unit in the last place of 2^-170; so are their
+///   differences and the rounding errors of these. Every product that is formed has at most four such factors,
+///   so every term of an expansion is a multiple of g^4 = 2^-888 and, being above the least subnormal 2^-1074,
+///   exactly representable. The sum of magnitudes is zero (and with it the exact determinant, as a difference
+///   rounds to zero only if it is zero) or at least 2^-888, so that the smallest error bound formed from it, with
+///   a factor near 2^-101, is a normal number.
+/// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
+///   multiplies it by 2^27 + 1, and the result stays below 2^996.
+#[derive(Debug, Default)]
+pub struct ExpansionPredicates {
+    counts: PredicateCounts,
+}
+
+impl ExpansionPredicates {
+    /// Least magnitude of a coordinate other than zero: 2^-170.
+    pub const LEAST_MAGNITUDE: f64 = f64::from_bits((1023 - 170) << 52);
+    /// Greatest magnitude of a coordinate: 2^240.
+    pub const GREATEST_MAGNITUDE: f64 = f64::from_bits((1023 + 240) << 52);
+
+    /// Whether all points within `extent` are in the domain.
+    #[must_use]
+    pub fn covers(extent: &Extent) -> bool {
+        extent.least_magnitude >= Self::LEAST_MAGNITUDE
+            && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE
+    }
+
+    fn covers_point(point: &Point2) -> bool {
+        point.iter().all(|coordinate| {
+            *coordinate == 0.0
+                || (Self::LEAST_MAGNITUDE..=Self::GREATEST_MAGNITUDE).contains(&coordinate.abs())
+        })
+    }
+}
+
+impl Predicates2 for ExpansionPredicates {
+    #[inline(always)]
+    fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
+        let estimate = Estimate::orient2d(difference(a, c), difference(b, c));
+        if estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else {
+            self.counts.expansion += 1;
+            expansion_orient2d(a, b, c)
+        }
+    }
+
+    #[inline(always)]
+    fn incircle(&mut self, a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
+        let estimate = Estimate::incircle(difference(a, d), difference(b, d), difference(c, d));
+        if estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else {
+            self.counts.expansion += 1;
+            expansion_incircle(a, b, c, d)
+        }
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
+    }
+}
+
+/// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk first.
+///
+/// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two is
+/// then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a lift
+/// at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
+/// [`ExpansionPredicates`], arbitrary precision for the rest.
+#[derive(Debug, Default)]
+pub struct TotalPredicates {
+    counts: PredicateCounts,
+}
+
+impl TotalPredicates {
+    const LEAST_DIFFERENCE: f64 = f64::from_bits((1023 - 200) << 52);
+    const GREATEST_DIFFERENCE: f64 = f64::from_bits((1023 + 240) << 52);
+
+    fn trusts(difference: &Point2) -> bool {
+        difference.iter().all(|value| {
+            *value == 0.0 || (Self::LEAST_DIFFERENCE..=Self::GREATEST_DIFFERENCE).contains(&value.abs())
+        })
+    }
+}
+
+impl Predicates2 for TotalPredicates {
+    fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
+        let differences = [difference(a, c), difference(b, c)];
+        let estimate = Estimate::orient2d(differences[0], differences[1]);
+        if differences.iter().all(Self::trusts) && estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else if [a, b, c].iter().all(ExpansionPredicates::covers_point) {
+            self.counts.expansion += 1;
+            expansion_orient2d(a, b, c)
+        } else {
+            self.counts.bigint += 1;
+            big::orient2d(a, b, c)
+        }
+    }
+
+    fn incircle(&mut self, a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
+        let differences = [difference(a, d), difference(b, d), difference(c, d)];
+        let estimate = Estimate::incircle(differences[0], differences[1], differences[2]);
+        if differences.iter().all(Self::trusts) && estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else if [a, b, c, d].iter().all(ExpansionPredicates::covers_point) {
+            self.counts.expansion += 1;
+            expansion_incircle(a, b, c, d)
+        } else {
+            self.counts.bigint += 1;
+            big::incircle(a, b, c, d)
+        }
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
+    }
+}

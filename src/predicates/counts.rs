@@ -1,0 +1,33 @@
+//! How many decisions each stage of the predicates took: shows that exactness is cheap.
+
+/// Decisions by stage. Every call of `orient2d` or `incircle` is one decision in exactly one of the first four.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct PredicateCounts {
+    /// Decided in `f64` because the value exceeds its error bound.
+    pub filter: u64,
+    /// Decided exactly in integers (of `f64`, `i64`, `i128` or a pair of these).
+    pub integer: u64,
+    /// Decided by floating-point expansions.
+    pub expansion: u64,
+    /// Decided by arbitrary-precision integers.
+    pub bigint: u64,
+    /// Among the decisions above, in-circle tests that were zero and fell to the perturbation.
+    pub perturbed: u64,
+}
+
+impl PredicateCounts {
+    /// Adds the decisions of `other`.
+    pub fn merge(&mut self, other: &PredicateCounts) {
+        self.filter += other.filter;
+        self.integer += other.integer;
+        self.expansion += other.expansion;
+        self.bigint += other.bigint;
+        self.perturbed += other.perturbed;
+    }
+
+    /// Number of decisions, whatever the stage.
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.filter + self.integer + self.expansion + self.bigint
+    }
+}

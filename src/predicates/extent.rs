@@ -1,0 +1,58 @@
+//! What the choice of arithmetic has to know of a chunk of points.
+
+use super::Point2;
+
+/// Bounding box of a chunk, and which numbers its coordinates are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Least x and y; `INFINITY` if there is no point.
+    pub lower: Point2,
+    /// Greatest x and y; `NEG_INFINITY` if there is no point.
+    pub upper: Point2,
+    /// Every coordinate is an integer.
+    pub integral: bool,
+    /// Least magnitude among the coordinates that are not zero; `INFINITY` if all are.
+    pub least_magnitude: f64,
+    /// Every coordinate is finite; where it is not, the other fields mean nothing.
+    pub finite: bool,
+}
+
+impl Extent {
+    /// Extent of `points`. Cost: one pass.
+    #[must_use]
+    pub fn of(points: &[Point2]) -> Extent {
+        let mut extent = Extent {
+            lower: [f64::INFINITY; 2],
+            upper: [f64::NEG_INFINITY; 2],
+            integral: true,
+            least_magnitude: f64::INFINITY,
+            finite: true,
+        };
+        for point in points {
+            for (axis, &coordinate) in point.iter().enumerate() {
+                extent.lower[axis] = extent.lower[axis].min(coordinate);
+                extent.upper[axis] = extent.upper[axis].max(coordinate);
+                let magnitude = if coordinate == 0.0 { f64::INFINITY } else { coordinate.abs() };
+                extent.least_magnitude = extent.least_magnitude.min(magnitude);
+                extent.integral &= coordinate.trunc() == coordinate;
+                extent.finite &= coordinate.is_finite();
+            }
+        }
+        extent
+    }
+
+    /// Greatest difference of two coordinates of the same axis, rounded; may be infinite. Zero if there is no point.
+    #[must_use]
+    pub fn max_difference(&self) -> f64 {
+        (self.upper[0] - self.lower[0]).max(self.upper[1] - self.lower[1]).max(0.0)
+    }
+
+    /// Greatest magnitude of a coordinate. Zero if there is no point.
+    #[must_use]
+    pub fn greatest_magnitude(&self) -> f64 {
+        if self.lower[0] > self.upper[0] {
+            return 0.0;
+        }
+        self.lower.iter().chain(&self.upper).fold(0.0, |greatest, bound| bound.abs().max(greatest))
+    }
+}

@@ -1,0 +1,105 @@
+//! Points with equal x and y are one vertex; a policy says which elevation it gets.
+
+use super::residual::Residual;
+use crate::error::{Error, Result};
+use crate::stream::Coordinates;
+
+/// Which elevation survives where points coincide in x and y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Duplicates {
+    /// That of the point that comes first in the stream.
+    #[default]
+    First,
+    /// The lowest.
+    Lowest,
+    /// The highest.
+    Highest,
+    /// The mean; on integer coordinates rounded to the nearest, halves away from zero.
+    Mean,
+    /// None: coinciding points are an error.
+    Error,
+}
+
+impl Duplicates {
+    /// Gives each vertex its elevation. `duplicates` are pairs of a point and the vertex that it coincides
+    /// with, which is the first of them in the order of the points.
+    pub(super) fn settle(
+        self,
+        points: &mut Residual,
+        duplicates: &mut [[u32; 2]],
+        coordinates: &Coordinates,
+    ) -> Result<()> {
+        if self == Duplicates::Error
+            && let Some(&[_, vertex]) = duplicates.first()
+        {
+            let point = coordinates.to_world(points.point(vertex as usize));
+            return Err(Error::malformed(format!(
+                "several points at x {} y {}: choose --duplicates first, lowest, highest or mean",
+                point[0], point[1]
+            )));
+        }
+        if matches!(self, Duplicates::First | Duplicates::Error) {
+            return Ok(());
+        }
+        duplicates.sort_unstable_by_key(|&[point, vertex]| (vertex, point));
+        let mut group = Vec::new();
+        for same in duplicates.chunk_by(|a, b| a[1] == b[1]) {
+            let vertex = same[0][1] as usize;
+            group.clear();
+            group.push(points.elevation[vertex]);
+            group.extend(same.iter().map(|&[point, _]| points.elevation[point as usize]));
+            points.elevation[vertex] = self.choose(&mut group, coordinates);
+        }
+        Ok(())
+    }
+
+    /// The elevation of a group, independent of the order of its points.
+    fn choose(self, group: &mut [f64], coordinates: &Coordinates) -> f64 {
+        group.sort_unstable_by(f64::total_cmp);
+        match self {
+            Duplicates::First | Duplicates::Error => unreachable!("these need no choice"),
+            Duplicates::Lowest => group[0],
+            Duplicates::Highest => group[group.len() - 1],
+            Duplicates::Mean => mean(group, coordinates),
+        }
+    }
+}
+
+fn mean(group: &[f64], coordinates: &Coordinates) -> f64 {
+    let n = group.len() as f64;
+    match coordinates {
+        // Sums of 32-bit integers are exact; the halves of finite numbers cannot overflow.
+        Coordinates::I32 { .. } => (group.iter().sum::<f64>() / n).round(),
+        Coordinates::F64 => group.iter().map(|z| z / n).sum(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(policy: Duplicates, elevations: &[f64]) -> Result<f64> {
+        let mut points = Residual::default();
+        elevations.iter().for_each(|&z| points.push([3.0, 4.0, z], 0));
+        let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
+        let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+        policy.settle(&mut points, &mut pairs, &grid).map(|()| points.elevation[0])
+    }
+
+    #[test]
+    fn each_policy_chooses_its_elevation() {
+        let elevations = [5.0, 9.0, 2.0, 2.0];
+        assert_eq!(settled(Duplicates::First, &elevations).unwrap(), 5.0);
+        assert_eq!(settled(Duplicates::Lowest, &elevations).unwrap(), 2.0);
+        assert_eq!(settled(Duplicates::Highest, &elevations).unwrap(), 9.0);
+        assert_eq!(settled(Duplicates::Mean, &elevations).unwrap(), 5.0);
+        let message = settled(Duplicates::Error, &elevations).unwrap_err().to_string();
+        assert!(message.contains("several points at x 3 y 4"), "{message}");
+    }
+
+    #[test]
+    fn a_point_alone_keeps_its_elevation() {
+        assert_eq!(settled(Duplicates::Error, &[7.0]).unwrap(), 7.0);
+        assert_eq!(settled(Duplicates::Mean, &[7.0]).unwrap(), 7.0);
+    }
+}

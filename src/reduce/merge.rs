@@ -1,0 +1,198 @@
+//! Finishes what partial runs left: their residuals become one node.
+
+use std::io::{Read, Write};
+
+use super::duplicates::Duplicates;
+use super::node::{Rules, Solver};
+use super::partial::Part;
+use super::patches::PatchWriter;
+use super::residual::{Residual, UNWRITTEN};
+use super::run::write_residual;
+use super::stats::Stats;
+use crate::bounds::{Bounds, Point, Region};
+use crate::error::{Error, Result};
+use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter};
+
+/// Merges the results of partial runs over regions that do not overlap; `progress` is told how many vertices
+/// are read. Without `part`, the regions must cover all points, and the result is the whole mesh: the set of
+/// triangles that one run over all points gives. With it, the result is partial again, for the region `part`,
+/// which must contain the merged ones, and all points in it must lie in one of them.
+///
+/// Cost: final triangles are copied through; memory is the residuals.
+///
+/// # Errors
+/// If the inputs do not go together (kind, coordinates, reference system, overlapping regions), or one is
+/// malformed or ends too early, or writing fails. END is not written then.
+pub fn merge<R: Read, W: Write>(
+    mut readers: Vec<StreamReader<R>>,
+    output: W,
+    part: Option<Part>,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    let header = merged_header(&readers, part)?;
+    let region = header.region.unwrap_or(Region::PLANE);
+    let rules = Rules { coordinates: header.coordinates, duplicates: Duplicates::Error };
+    let mut patches = PatchWriter::new(StreamWriter::new(output, header)?);
+    let mut stats = Stats::default();
+    let mut residual = Residual::default();
+    for reader in &mut readers {
+        copy_through(reader, &mut patches, &mut residual, &mut stats, &mut progress)?;
+    }
+    stats.residual_max = residual.len() as u64;
+    stats.inner_nodes = 1;
+    stats.inner_node_max = residual.len() as u64;
+    let mut solver = Solver::default();
+    let mut solved = solver.solve(residual, &region, &rules)?;
+    patches.write(&mut solved)?;
+    if part.is_some() {
+        let residual = solved.residual();
+        stats.residual = residual.len() as u64;
+        write_residual(patches.stream(), &residual)?;
+    }
+    stats.width = patches.live_max();
+    stats.predicates = *solver.counts();
+    let stream = patches.into_stream();
+    stats.vertices = stream.totals().vertices;
+    stats.triangles = stream.totals().simplices;
+    let output = stream.end(stats.points, stats.merged)?;
+    Ok((output, stats))
+}
+
+/// Header of the result, after checking that the inputs go together.
+fn merged_header<R: Read>(readers: &[StreamReader<R>], part: Option<Part>) -> Result<Header> {
+    let Some(first) = readers.first() else {
+        return Err(Error::usage("nothing to merge: give partial results"));
+    };
+    for (i, reader) in readers.iter().enumerate() {
+        check_pair(first, reader)?;
+        for other in &readers[..i] {
+            check_regions(other, reader)?;
+        }
+    }
+    let one = first.header();
+    let kind = if part.is_some() { Kind::PartialTriangleMesh } else { Kind::TriangleMesh };
+    let mut header = Header::new(kind, one.coordinates, one.dims, one.has_elevation);
+    header.crs = one.crs.clone();
+    header.region = part.map(|part| part.region(one)).transpose()?;
+    let bounds: Option<Vec<Bounds>> = readers.iter().map(|reader| reader.header().bounds).collect();
+    header.bounds = bounds.and_then(|all| all.into_iter().reduce(Bounds::union));
+    if let Some(outer) = &header.region
+        && let Some(reader) = readers.iter().find(|reader| !covers(outer, &region_of(reader)))
+    {
+        return Err(Error::usage(format!("the region of {} is not inside of the given one", reader.name())));
+    }
+    Ok(header)
+}
+
+fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Result<()> {
+    let (a, b) = (first.header(), reader.header());
+    if b.kind != Kind::PartialTriangleMesh {
+        return Err(Error::usage(format!("this is a {}, --merge takes results of --partial", b.kind.name()))
+            .of_input(reader.name()));
+    }
+    let differs = |what: &str, remedy: &str| {
+        Err(Error::usage(format!("{} and {} differ in {what}{remedy}", first.name(), reader.name())))
+    };
+    if a.coordinates != b.coordinates || a.has_elevation != b.has_elevation {
+        return differs("their coordinate grid", ": finalize both with the same --scale and --offset");
+    }
+    if a.crs != b.crs {
+        return differs("their coordinate reference system", "");
+    }
+    Ok(())
+}
+
+fn check_regions<R: Read>(a: &StreamReader<R>, b: &StreamReader<R>) -> Result<()> {
+    if region_of(a).overlaps(&region_of(b)) {
+        return Err(Error::usage(format!("the regions of {} and {} overlap", a.name(), b.name())));
+    }
+    Ok(())
+}
+
+fn region_of<R: Read>(reader: &StreamReader<R>) -> Region {
+    reader.header().region.unwrap_or(Region::PLANE)
+}
+
+fn covers(outer: &Region, inner: &Region) -> bool {
+    (0..2).all(|axis| outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis])
+}
+
+/// Copies the final triangles of one input and adds its residual to that of all.
+fn copy_through<R: Read, W: Write>(
+    reader: &mut StreamReader<R>,
+    patches: &mut PatchWriter<W>,
+    residual: &mut Residual,
+    stats: &mut Stats,
+    progress: &mut impl FnMut(u64),
+) -> Result<()> {
+    let region = region_of(reader);
+    let id_offset = patches.stream().totals().vertices;
+    let mut part = Residual::default();
+    let mut live = LiveVertices::<Point>::new();
+    while let Some(event) = reader.next_event()? {
+        let taken = match event {
+            Event::Patch(patch) => live
+                .enter(&patch, |_, point| point)
+                .map(drop)
+                .and_then(|()| patches.forward(&renumbered(patch, id_offset))),
+            Event::ResidualPoints(points) => points
+                .iter()
+                .try_for_each(|&(id, point)| take_point(&mut part, id, point, &live, &region, id_offset)),
+            Event::Walls(walls) => {
+                part.walls.extend(walls);
+                Ok(())
+            }
+            Event::End(totals) => {
+                stats.points += totals.points;
+                stats.merged += totals.merged;
+                check_end(&part, &live)
+            }
+            Event::Points(_) | Event::Cells(_) => unreachable!("the reader refuses these blocks in a mesh"),
+        };
+        taken.map_err(|e| reader.locate(e))?;
+        progress(patches.stream().totals().vertices);
+    }
+    residual.append(&part);
+    Ok(())
+}
+
+fn renumbered(mut patch: Patch, id_offset: u64) -> Patch {
+    patch.first_id += id_offset;
+    patch.imported.iter_mut().for_each(|id| *id += id_offset);
+    patch
+}
+
+fn take_point(
+    part: &mut Residual,
+    id: Option<u64>,
+    point: Point,
+    live: &LiveVertices<Point>,
+    region: &Region,
+    id_offset: u64,
+) -> Result<()> {
+    if !region.contains(point) {
+        return Err(Error::malformed(format!(
+            "residual point {point:?} lies outside of the stream's region"
+        )));
+    }
+    if let Some(id) = id
+        && live.get(id) != Some(point)
+    {
+        return Err(Error::malformed(format!("residual point {point:?} is not the live vertex {id}")));
+    }
+    part.push(point, id.map_or(UNWRITTEN, |id| id + id_offset));
+    Ok(())
+}
+
+/// Every vertex that is not finalized must be in the residual, or it would be lost.
+fn check_end(part: &Residual, live: &LiveVertices<Point>) -> Result<()> {
+    let written = part.ids.iter().filter(|&&id| id != UNWRITTEN).count();
+    if written == live.len() {
+        Ok(())
+    } else {
+        Err(Error::malformed(format!(
+            "{} vertices are not finalized, the residual has {written}",
+            live.len()
+        )))
+    }
+}

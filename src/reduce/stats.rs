@@ -1,0 +1,40 @@
+//! What a run did, for `--stats`.
+
+use crate::predicates::PredicateCounts;
+
+/// Figures of one run of the reduction.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Points triangulated.
+    pub points: u64,
+    /// Points that coincide with another one in x and y, and are no vertices.
+    pub merged: u64,
+    /// Points left out because they lie outside of the region.
+    pub outside: u64,
+    /// Vertices written.
+    pub vertices: u64,
+    /// Triangles written.
+    pub triangles: u64,
+    /// Cell tags read.
+    pub cells: u64,
+    /// Leaves with points.
+    pub leaves: u64,
+    /// Nodes above the leaves with points.
+    pub inner_nodes: u64,
+    /// Points of the largest leaf.
+    pub leaf_max: u64,
+    /// Points of the largest node above the leaves.
+    pub inner_node_max: u64,
+    /// Most points held at once because their cell was not final.
+    pub held_max: u64,
+    /// Most residual points that waited at once for their parent.
+    pub residual_max: u64,
+    /// Points that were never covered by a tag and were held until the end.
+    pub untagged: u64,
+    /// Points of the residual that a partial run wrote.
+    pub residual: u64,
+    /// Most vertices that were written but not final at once: the width of the mesh.
+    pub width: u64,
+    /// Decisions of the predicates, by stage.
+    pub predicates: PredicateCounts,
+}

@@ -1,0 +1,5 @@
+//! The reduction gives the same triangles whatever the cells, the order, the threads and the tiles.
+
+mod equality;
+mod policies;
+mod streams;

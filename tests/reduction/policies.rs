@@ -1,0 +1,104 @@
+//! Duplicates, and inputs that the reduction must refuse.
+
+use spmesh::bounds::{Bounds, Point, Region};
+use spmesh::cells::{CellCode, CellTree};
+use spmesh::error::ErrorKind;
+use spmesh::reduce::{self, Duplicates, Options, Part};
+use spmesh::stream::{Header, Kind, StreamReader, StreamWriter};
+
+use super::streams::{GRID, Tagging, read_mesh, stream, threads, triangulate};
+use crate::reference::sets::Random;
+
+#[test]
+fn the_policy_chooses_the_elevation() {
+    let corners: [Point; 3] = [[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [0.0, 100.0, 0.0]];
+    let same: [Point; 3] = [[30.0, 30.0, 8.0], [30.0, 30.0, 3.0], [30.0, 30.0, 9.0]];
+    let points = [&corners[..], &same].concat();
+    for (duplicates, elevation) in [
+        (Duplicates::First, 8.0),
+        (Duplicates::Lowest, 3.0),
+        (Duplicates::Highest, 9.0),
+        (Duplicates::Mean, 7.0),
+    ] {
+        for tagging in [Tagging::None, Tagging::Chunked(3), Tagging::Preserved(2)] {
+            let input = stream(&points, GRID, tagging, &mut Random::new(5));
+            let options = Options { duplicates, ..threads(2) };
+            let (bytes, stats) = triangulate(&input, &options).unwrap();
+            assert_eq!(stats.merged, 2);
+            let mesh = read_mesh(&bytes);
+            assert!(mesh.vertices.contains(&[30.0, 30.0, elevation]), "{duplicates:?}: {:?}", mesh.vertices);
+            assert_eq!((mesh.vertices.len(), mesh.triangles.len()), (4, 3));
+        }
+    }
+    let input = stream(&points, GRID, Tagging::None, &mut Random::new(5));
+    let options = Options { duplicates: Duplicates::Error, ..threads(1) };
+    assert_eq!(triangulate(&input, &options).unwrap_err().kind(), ErrorKind::Malformed);
+}
+
+fn tagged_points() -> StreamWriter<Vec<u8>> {
+    let mut header = Header::new(Kind::Points, GRID, 2, false);
+    header.tree = CellTree::covering(&Bounds { min: [0.0; 3], max: [100.0; 3] }, 2, 2);
+    StreamWriter::new(Vec::new(), header).unwrap()
+}
+
+#[test]
+fn a_point_in_a_final_cell_is_refused() {
+    let mut writer = tagged_points();
+    let cell = writer.header().tree.unwrap().cell_of([1.0, 1.0, 0.0], 2);
+    writer.cells(&[cell]).unwrap();
+    writer.points(&[[1.0, 1.0, 0.0]]).unwrap();
+    let error = triangulate(&writer.end(0, 0).unwrap(), &threads(1)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+    assert!(error.to_string().contains("block 1 at byte"), "{error}");
+}
+
+#[test]
+fn a_cell_is_final_once() {
+    let mut writer = tagged_points();
+    writer.cells(&[CellCode::ROOT, CellCode::ROOT]).unwrap();
+    let error = triangulate(&writer.end(0, 0).unwrap(), &threads(1)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+}
+
+#[test]
+fn input_without_end_gives_no_end() {
+    let input = stream(&[[0.0; 3], [1.0, 5.0, 0.0]], GRID, Tagging::None, &mut Random::new(1));
+    let error = triangulate(&input[..input.len() - 1], &threads(2)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+}
+
+#[test]
+fn other_kinds_are_refused_with_a_remedy() {
+    let space = StreamWriter::new(Vec::new(), Header::new(Kind::Points, GRID, 3, false)).unwrap();
+    let mesh = StreamWriter::new(Vec::new(), Header::new(Kind::TriangleMesh, GRID, 2, false)).unwrap();
+    for (bytes, remedy) in
+        [(space.end(0, 0).unwrap(), "--octree"), (mesh.end(0, 0).unwrap(), "expected points")]
+    {
+        let error = triangulate(&bytes, &threads(1)).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Usage);
+        assert!(error.to_string().contains(remedy), "{error}");
+    }
+}
+
+fn tile(points: &[Point], region: Region) -> Vec<u8> {
+    let input = stream(points, GRID, Tagging::None, &mut Random::new(1));
+    let options = Options { part: Some(Part::Region(region)), ..threads(1) };
+    triangulate(&input, &options).unwrap().0
+}
+
+fn merge(parts: &[&[u8]]) -> spmesh::error::Result<Vec<u8>> {
+    let readers = parts.iter().map(|part| StreamReader::new(*part, "part")).collect::<Result<_, _>>()?;
+    reduce::merge(readers, Vec::new(), None, |_| ()).map(|(bytes, _)| bytes)
+}
+
+#[test]
+fn tiles_that_overlap_or_are_damaged_are_refused() {
+    let points: Vec<Point> = (0..100).map(|i| [f64::from(i % 10), f64::from(i * i % 97), 0.0]).collect();
+    let left = tile(&points, Region { min: [-1.0, -1.0], max: [5.0, 100.0] });
+    let right = tile(&points, Region { min: [5.0, -1.0], max: [10.0, 100.0] });
+    let wide = tile(&points, Region { min: [4.0, -1.0], max: [10.0, 100.0] });
+    assert!(merge(&[&left, &right]).is_ok());
+    assert_eq!(merge(&[&left, &wide]).unwrap_err().kind(), ErrorKind::Usage);
+    assert_eq!(merge(&[&left, &right[..right.len() - 3]]).unwrap_err().kind(), ErrorKind::Malformed);
+    assert_eq!(merge(&[]).unwrap_err().kind(), ErrorKind::Usage);
+}

@@ -1,0 +1,81 @@
+//! Incremental insertion (Bowyer and Watson) over integer points, with a ghost vertex at infinity, in `i128`.
+//!
+//! Every triangle is tested against every new point: O(n^2), but too plain to go wrong.
+
+use super::as_set;
+use std::collections::HashMap;
+
+/// The vertex at infinity.
+const GHOST: usize = usize::MAX;
+
+type IntegerPoint = [i64; 2];
+
+/// Canonical Delaunay triangles of distinct integer points with coordinates below 2^30 in magnitude.
+pub fn triangles(points: &[IntegerPoint]) -> Vec<[u32; 3]> {
+    assert!(points.iter().flatten().all(|c| c.abs() < 1 << 30));
+    let Some(third) = (2..points.len()).find(|&k| area(points[0], points[1], points[k]) != 0) else {
+        return Vec::new();
+    };
+    let [a, b, c] = if area(points[0], points[1], points[third]) > 0 { [0, 1, third] } else { [1, 0, third] };
+    // A ghost triangle [v, u, GHOST] lies to the right of the hull edge from u to v.
+    let mut mesh = vec![[a, b, c], [b, a, GHOST], [c, b, GHOST], [a, c, GHOST]];
+    for p in (2..points.len()).filter(|&p| p != third) {
+        insert(points, &mut mesh, p);
+    }
+    as_set(mesh.into_iter().filter(|t| !t.contains(&GHOST)).map(|t| t.map(|v| v as u32)))
+}
+
+fn insert(points: &[IntegerPoint], mesh: &mut Vec<[usize; 3]>, p: usize) {
+    let (cavity, rest): (Vec<_>, Vec<_>) = mesh.drain(..).partition(|t| in_conflict(points, *t, p));
+    assert!(!cavity.is_empty());
+    let mut sides: HashMap<[usize; 2], bool> = HashMap::new();
+    for [a, b, c] in cavity {
+        for [u, v] in [[a, b], [b, c], [c, a]] {
+            if sides.remove(&[v, u]).is_none() {
+                sides.insert([u, v], true);
+            }
+        }
+    }
+    *mesh = rest;
+    for [u, v] in sides.into_keys() {
+        mesh.push(match (u, v) {
+            (GHOST, v) => [v, p, GHOST],
+            (u, GHOST) => [p, u, GHOST],
+            (u, v) => [u, v, p],
+        });
+    }
+}
+
+fn in_conflict(points: &[IntegerPoint], [a, b, c]: [usize; 3], p: usize) -> bool {
+    if c == GHOST {
+        let side = area(points[a], points[b], points[p]);
+        return side > 0 || side == 0 && between(points[a], points[b], points[p]);
+    }
+    perturbed_incircle([points[a], points[b], points[c], points[p]])
+}
+
+fn between(u: IntegerPoint, v: IntegerPoint, p: IntegerPoint) -> bool {
+    (u < p && p < v) || (v < p && p < u)
+}
+
+fn area(p: IntegerPoint, q: IntegerPoint, r: IntegerPoint) -> i128 {
+    let [p, q, r] = [p, q, r].map(|p| p.map(i128::from));
+    (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+}
+
+fn perturbed_incircle(points: [IntegerPoint; 4]) -> bool {
+    let [a, b, c, d] = points;
+    let cofactors = [area(b, c, d), -area(a, c, d), area(a, b, d), -area(a, b, c)];
+    // Lifts around a, so that they fit: the determinant does not change under translation.
+    let lift = |p: IntegerPoint| {
+        let [x, y] = [0, 1].map(|i| i128::from(p[i] - a[i]));
+        x * x + y * y
+    };
+    let value: i128 = cofactors.iter().zip(points).map(|(cofactor, p)| cofactor * lift(p)).sum();
+    if value != 0 {
+        return value > 0;
+    }
+    let mut ranked = [0, 1, 2, 3];
+    ranked.sort_by_key(|&i| std::cmp::Reverse(points[i]));
+    ranked.iter().map(|&i| cofactors[i]).find(|&c| c != 0).expect("not all collinear") > 0
+}
