@@ -4,6 +4,7 @@
 
 mod block;
 mod event;
+mod finalized;
 mod header;
 mod kind;
 mod live;
@@ -11,6 +12,7 @@ mod reader;
 mod writer;
 
 pub use event::{Event, Patch, Totals};
+pub use finalized::FinalizedCells;
 pub use header::{Coordinates, Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;

@@ -1,0 +1,250 @@
+//! The cells of a points stream that are final, and the proof that no later point lies in one.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::bounds::Point;
+use crate::cells::{CellCode, CellTree};
+use crate::error::{Error, Result};
+
+/// The part of a finalization tree that is final.
+///
+/// The cells of the deepest level are consecutive location codes in Morton order, and every cell is a range of
+/// them, so the final part is a set of disjoint ranges. Ranges that touch are one: complete siblings become
+/// their parent, and a stream that tags its cells along the curve needs a handful of ranges.
+///
+/// Cost: `finalize` is amortized O(log ranges). `check_point` is four comparisons while points stay in the
+/// largest open cell around the last one that was looked up, O(depth + log ranges) otherwise.
+#[derive(Debug, Clone)]
+pub struct FinalizedCells {
+    tree: CellTree,
+    /// Codes of the deepest level: start and end of each range.
+    ranges: BTreeMap<u64, u64>,
+    /// An open cell: its codes and its corners, half-open. Empty corners where there is none.
+    open: OpenCell,
+    tags: u64,
+}
+
+#[derive(Debug, Clone)]
+struct OpenCell {
+    codes: Range<u64>,
+    min: Point,
+    max: Point,
+}
+
+impl OpenCell {
+    /// Holds no point.
+    const NONE: OpenCell = OpenCell { codes: 0..0, min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
+
+    fn contains(&self, point: Point, dims: u8) -> bool {
+        let inside = |axis: usize| self.min[axis] <= point[axis] && point[axis] < self.max[axis];
+        inside(0) && inside(1) && (dims == 2 || inside(2))
+    }
+}
+
+impl FinalizedCells {
+    /// A tree of which nothing is final.
+    #[must_use]
+    pub fn new(tree: CellTree) -> Self {
+        FinalizedCells { tree, ranges: BTreeMap::new(), open: OpenCell::NONE, tags: 0 }
+    }
+
+    /// The tree.
+    #[must_use]
+    pub fn tree(&self) -> &CellTree {
+        &self.tree
+    }
+
+    /// Number of cells that were finalized.
+    #[must_use]
+    pub fn tags(&self) -> u64 {
+        self.tags
+    }
+
+    /// Number of ranges that describe the final part: what memory grows with.
+    #[must_use]
+    pub fn ranges(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// Makes `cell` final. Parts of it may be final already, but not all of it.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final already:
+    /// itself, an ancestor, or all of its parts.
+    pub fn finalize(&mut self, cell: CellCode) -> Result<()> {
+        if !self.tree.is_valid(cell) {
+            return Err(Error::malformed(format!("location code {} is not a cell of the tree", cell.0)));
+        }
+        if self.is_final_cell(cell) {
+            return Err(Error::malformed(format!("cell {} is final already", cell.0)));
+        }
+        let Range { mut start, mut end } = self.tree.deepest_range(cell);
+        if self.open.codes.start < end && start < self.open.codes.end {
+            self.open = OpenCell::NONE;
+        }
+        // What starts inside or right behind goes into the new range, and so does what touches its start.
+        while let Some((&inner, &inner_end)) = self.ranges.range(start..=end).next() {
+            end = end.max(inner_end);
+            self.ranges.remove(&inner);
+        }
+        if let Some((&before, &before_end)) = self.ranges.range(..start).next_back()
+            && before_end >= start
+        {
+            start = before;
+            end = end.max(before_end);
+        }
+        self.ranges.insert(start, end);
+        self.tags += 1;
+        Ok(())
+    }
+
+    /// Whether all of `cell`, a cell of the tree, is final.
+    #[must_use]
+    pub fn is_final_cell(&self, cell: CellCode) -> bool {
+        let codes = self.tree.deepest_range(cell);
+        self.ranges.range(..=codes.start).next_back().is_some_and(|(_, &end)| codes.end <= end)
+    }
+
+    /// Whether no part of `cell`, a cell of the tree, is final.
+    #[must_use]
+    pub fn is_open_cell(&self, cell: CellCode) -> bool {
+        let codes = self.tree.deepest_range(cell);
+        self.ranges.range(..codes.end).next_back().is_none_or(|(_, &end)| end <= codes.start)
+    }
+
+    /// Whether `point` lies in the final part. No point outside of the tree's cube does.
+    #[must_use]
+    pub fn is_final(&self, point: Point) -> bool {
+        self.tree.contains(point) && self.is_final_cell(self.tree.cell_of(point, self.tree.depth()))
+    }
+
+    /// Whether the whole tree is final, so that no point can follow.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.is_final_cell(CellCode::ROOT)
+    }
+
+    /// Checks that a point may still come.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's cube.
+    #[inline]
+    pub fn check_point(&mut self, point: Point) -> Result<()> {
+        if self.open.contains(point, self.tree.dims()) { Ok(()) } else { self.look_up(point) }
+    }
+
+    /// Checks that points may still come.
+    ///
+    /// # Errors
+    /// As [`FinalizedCells::check_point`], for the first point that may not.
+    pub fn check_points(&mut self, points: &[Point]) -> Result<()> {
+        points.iter().try_for_each(|&point| self.check_point(point))
+    }
+
+    /// Checks a point by its code, and remembers the largest open cell around it.
+    #[cold]
+    fn look_up(&mut self, point: Point) -> Result<()> {
+        if !self.tree.contains(point) {
+            return Err(Error::malformed(format!("point {point:?} lies outside of the finalization tree")));
+        }
+        let mut cell = self.tree.cell_of(point, self.tree.depth());
+        if self.is_final_cell(cell) {
+            return Err(Error::malformed(format!("point {point:?} lies in a cell that is final")));
+        }
+        while let Some(parent) = self.tree.parent(cell).filter(|&parent| self.is_open_cell(parent)) {
+            cell = parent;
+        }
+        let (min, max) = self.tree.corners(cell);
+        self.open = OpenCell { codes: self.tree.deepest_range(cell), min, max };
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    fn tree(dims: u8, depth: u8) -> CellTree {
+        let origin = if dims == 3 { [-16.0, -16.0, -8.0] } else { [-8.0, -8.0, 0.0] };
+        CellTree::new(dims, depth, origin, 32.0).unwrap()
+    }
+
+    /// A linear congruential generator, enough to pick cells and points.
+    struct Random(u64);
+
+    impl Random {
+        fn below(&mut self, bound: u64) -> u64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) % bound
+        }
+    }
+
+    #[test]
+    fn agrees_with_a_set_of_deepest_cells() {
+        for seed in 0..200 {
+            let mut random = Random(seed);
+            let dims = 2 + (seed % 2) as u8;
+            let tree = tree(dims, 3);
+            let mut cells = FinalizedCells::new(tree);
+            let mut reference = HashSet::new();
+            for _ in 0..200 {
+                let level = random.below(4) as u8;
+                let first = 1u64 << (dims * level);
+                let cell = CellCode(first + random.below(first));
+                let deepest: Vec<u64> = tree.deepest_range(cell).collect();
+                let was_final = deepest.iter().all(|code| reference.contains(code));
+                assert_eq!(cells.is_final_cell(cell), was_final);
+                assert_eq!(cells.is_open_cell(cell), !deepest.iter().any(|code| reference.contains(code)));
+                if random.below(4) == 0 && (level > 0 || random.below(20) == 0) {
+                    assert_eq!(cells.finalize(cell).is_err(), was_final);
+                    reference.extend(deepest);
+                }
+                let origin = tree.origin();
+                let point = std::array::from_fn(|axis| origin[axis] + random.below(64) as f64 / 2.0);
+                let code = tree.cell_of(point, 3).0;
+                assert_eq!(cells.is_final(point), reference.contains(&code), "seed {seed}");
+                assert_eq!(cells.check_point(point).is_err(), reference.contains(&code), "seed {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn complete_siblings_are_their_parent() {
+        let tree = tree(2, 10);
+        let mut cells = FinalizedCells::new(tree);
+        for code in tree.deepest_range(CellCode::ROOT) {
+            cells.finalize(CellCode(code)).unwrap();
+            assert_eq!(cells.ranges(), 1);
+        }
+        assert!(cells.is_complete());
+        assert_eq!(cells.tags(), 1 << 20);
+        assert!(cells.finalize(CellCode::ROOT).is_err());
+    }
+
+    #[test]
+    fn points_outside_of_the_tree_are_refused() {
+        let mut cells = FinalizedCells::new(tree(2, 2));
+        assert!(cells.check_point([-8.0, -8.0, 1e9]).is_ok());
+        assert!(cells.check_point([24.0, 0.0, 0.0]).is_err());
+        assert!(cells.check_point([f64::NAN, 0.0, 0.0]).is_err());
+        assert!(cells.finalize(CellCode(2)).is_err());
+        assert!(cells.finalize(CellCode(0)).is_err());
+        assert!(cells.finalize(CellCode(64)).is_err());
+        assert!(!cells.is_final([24.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_cell_of_the_deepest_possible_level_is_one_code() {
+        let tree = CellTree::new(2, 31, [0.0; 3], 2f64.powi(31)).unwrap();
+        let mut cells = FinalizedCells::new(tree);
+        let last = tree.cell_of([2f64.powi(31) - 1.0; 3], 31);
+        cells.finalize(last).unwrap();
+        assert!(cells.check_point([2f64.powi(31) - 1.0; 3]).is_err());
+        assert!(cells.check_point([2f64.powi(31) - 2.0; 3]).is_ok());
+        cells.finalize(CellCode::ROOT).unwrap();
+        assert!(cells.is_complete());
+    }
+}
