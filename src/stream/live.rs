@@ -51,6 +51,16 @@ impl<T: Copy> LiveVertices<T> {
         Ok(&self.local)
     }
 
+    /// The value of a live vertex that a residual point names, and forgets the vertex: no patch follows.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named before.
+    pub fn retire(&mut self, id: u64) -> Result<T> {
+        self.live
+            .remove(&id)
+            .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
+    }
+
     /// Number of vertices that are live now.
     #[must_use]
     pub fn len(&self) -> usize {
