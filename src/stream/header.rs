@@ -186,7 +186,7 @@ impl Header {
 
     fn encode_fixed(&self, body: &mut [u8], crs_code: u16, crs_len: usize) {
         let (code, scale, offset) = match self.coordinates {
-            Coordinates::F64 => (1, [1.0; 3], [0.0; 3]),
+            Coordinates::F64 => (1, [0.0; 3], [0.0; 3]),
             Coordinates::I32 { scale, offset } => (2, scale, offset),
         };
         body[0] = code;
