@@ -1,5 +1,6 @@
 //! Integration tests: one crate, one module per subject.
 
+mod circle;
 mod kernel;
 mod kernel_predicates;
 mod reduction;

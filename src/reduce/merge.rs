@@ -137,7 +137,7 @@ fn copy_through<R: Read, W: Write>(
                 .and_then(|()| patches.forward(&renumbered(patch, id_offset))),
             Event::ResidualPoints(points) => points
                 .iter()
-                .try_for_each(|&(id, point)| take_point(&mut part, id, point, &live, &region, id_offset)),
+                .try_for_each(|&(id, point)| take_point(&mut part, id, point, &mut live, &region, id_offset)),
             Event::Walls(walls) => {
                 part.walls.extend(walls);
                 Ok(())
@@ -145,7 +145,7 @@ fn copy_through<R: Read, W: Write>(
             Event::End(totals) => {
                 stats.points += totals.points;
                 stats.merged += totals.merged;
-                check_end(&part, &live)
+                all_retired(&live)
             }
             Event::Points(_) | Event::Cells(_) => unreachable!("the reader refuses these blocks in a mesh"),
         };
@@ -166,7 +166,7 @@ fn take_point(
     part: &mut Residual,
     id: Option<u64>,
     point: Point,
-    live: &LiveVertices<Point>,
+    live: &mut LiveVertices<Point>,
     region: &Region,
     id_offset: u64,
 ) -> Result<()> {
@@ -176,23 +176,18 @@ fn take_point(
         )));
     }
     if let Some(id) = id
-        && live.get(id) != Some(point)
+        && live.retire(id)? != point
     {
-        return Err(Error::malformed(format!("residual point {point:?} is not the live vertex {id}")));
+        return Err(Error::malformed(format!("residual point {point:?} is not where vertex {id} is")));
     }
     part.push(point, id.map_or(UNWRITTEN, |id| id + id_offset));
     Ok(())
 }
 
 /// Every vertex that is not finalized must be in the residual, or it would be lost.
-fn check_end(part: &Residual, live: &LiveVertices<Point>) -> Result<()> {
-    let written = part.ids.iter().filter(|&&id| id != UNWRITTEN).count();
-    if written == live.len() {
-        Ok(())
-    } else {
-        Err(Error::malformed(format!(
-            "{} vertices are not finalized, the residual has {written}",
-            live.len()
-        )))
+fn all_retired(live: &LiveVertices<Point>) -> Result<()> {
+    if live.is_empty() {
+        return Ok(());
     }
+    Err(Error::malformed(format!("{} vertices are neither finalized nor in the residual", live.len())))
 }

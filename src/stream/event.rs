@@ -2,6 +2,7 @@
 
 use crate::bounds::Point;
 use crate::cells::CellCode;
+use crate::error::{Error, Result};
 
 /// One block of a stream, decoded and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,16 +53,51 @@ impl Patch {
         self.new.len() + self.imported.len()
     }
 
+    /// The rules that need no memory of earlier patches, but for the number of their vertices.
+    pub(super) fn check(&self, vertices_before: u64, per_simplex: usize) -> Result<()> {
+        if self.first_id != vertices_before {
+            return Err(Error::malformed(format!(
+                "patch starts with vertex {}, expected {vertices_before}",
+                self.first_id
+            )));
+        }
+        if !is_increasing(&self.imported) || self.imported.last().is_some_and(|&id| id >= self.first_id) {
+            return Err(Error::malformed("imported vertices are not increasing ids of earlier patches"));
+        }
+        let vertices = self.vertices();
+        if !is_increasing(&self.finalized)
+            || self.finalized.last().is_some_and(|&local| local as usize >= vertices)
+        {
+            return Err(Error::malformed("finalized vertices are not increasing indices of the patch"));
+        }
+        for simplex in self.simplices.chunks_exact(per_simplex) {
+            if let Some(&local) = simplex.iter().find(|&&local| local as usize >= vertices) {
+                return Err(Error::malformed(format!(
+                    "simplex uses vertex {local} of {vertices} in its patch"
+                )));
+            }
+            if (1..per_simplex).any(|i| simplex[..i].contains(&simplex[i])) {
+                return Err(Error::malformed(format!("simplex {simplex:?} uses a vertex twice")));
+            }
+        }
+        Ok(())
+    }
+
     /// The simplices of a triangle mesh.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.simplices.chunks_exact(3).map(|t| [t[0], t[1], t[2]])
     }
 }
 
+fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
+    values.windows(2).all(|pair| pair[0] < pair[1])
+}
+
 /// What the END block states of the whole stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Points: of a points stream, those in it; of a mesh, those of the input it was made from.
+    /// Points: of a points stream, those in it; of a mesh, those of the input it was made from, which are
+    /// its vertices, its merged points, and its residual points that are no vertices.
     pub points: u64,
     /// Cell tags.
     pub cells: u64,

@@ -110,15 +110,16 @@ pub struct Header {
     pub dims: u8,
     /// Whether two-dimensional points carry an elevation. False in three dimensions, where z is geometry.
     pub has_elevation: bool,
-    /// Exact bounding box of all points of the stream, in stored coordinates; `None` if unknown or empty.
+    /// Box that holds all points of the stream, in stored coordinates; `None` if unknown or empty. Writers
+    /// give the smallest one where they can.
     pub bounds: Option<Bounds>,
-    /// Number of points, where known.
+    /// Number of points that END will state, where known.
     pub points: Option<u64>,
     /// The finalization tree that cell tags refer to.
     pub tree: Option<CellTree>,
     /// The region that a partial mesh covers, in stored coordinates.
     pub region: Option<Region>,
-    /// Whether the points of a cell stand together, right before its tag.
+    /// Whether the points between two tags lie in one cell of the second.
     pub chunked: bool,
     /// Coordinate reference system.
     pub crs: Crs,
@@ -185,7 +186,7 @@ impl Header {
 
     fn encode_fixed(&self, body: &mut [u8], crs_code: u16, crs_len: usize) {
         let (code, scale, offset) = match self.coordinates {
-            Coordinates::F64 => (1, [1.0; 3], [0.0; 3]),
+            Coordinates::F64 => (1, [0.0; 3], [0.0; 3]),
             Coordinates::I32 { scale, offset } => (2, scale, offset),
         };
         body[0] = code;
@@ -226,7 +227,8 @@ impl Header {
         }
         let flags = body[3];
         let known = FLAG_BOUNDS | FLAG_TREE | FLAG_REGION | FLAG_CHUNKED;
-        if body[2] > 1 || flags & !known != 0 || body[4..8].iter().any(|&byte| byte != 0) {
+        let is_reserved_zero = body[4..8].iter().chain(&body[148..152]).all(|&byte| byte == 0);
+        if body[2] > 1 || flags & !known != 0 || !is_reserved_zero {
             return Err(Error::malformed("header sets reserved bits"));
         }
         let floats = |range: std::ops::Range<usize>| -> Vec<f64> {
@@ -277,9 +279,9 @@ impl Header {
             return Err(format!("a {} in {} dimensions", self.kind.name(), self.dims));
         }
         if let Coordinates::I32 { scale, offset } = &self.coordinates
-            && !(scale.iter().all(|s| s.is_finite() && *s > 0.0) && offset.iter().all(|o| o.is_finite()))
+            && !scale.iter().zip(offset).all(|(&scale, &offset)| is_grid(scale, offset))
         {
-            return Err("scale or offset is not finite, or scale is not positive".into());
+            return Err("scale is not positive, or scale and offset are too far apart".into());
         }
         if let Some(Bounds { min, max }) = &self.bounds {
             let ordered = (0..3).all(|axis| min[axis] <= max[axis]);
@@ -287,11 +289,20 @@ impl Header {
             if !ordered || !storable {
                 return Err("the bounding box is not ordered or not storable".into());
             }
+            if self.coordinates_per_point() == 2 && (min[2], max[2]) != (0.0, 0.0) {
+                return Err("the bounding box has a height, but the points have no z".into());
+            }
+            if self.tree.is_some_and(|tree| !(tree.contains(*min) && tree.contains(*max))) {
+                return Err("the bounding box does not lie in the finalization tree".into());
+            }
         }
         if let Some(tree) = &self.tree
-            && tree.dims() != self.dims
+            && (tree.dims() != self.dims || (self.dims == 2 && tree.origin()[2] != 0.0))
         {
             return Err("the finalization tree has other dimensions than the points".into());
+        }
+        if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
+            return Err("only points with a finalization tree can be chunked".into());
         }
         if let Some(Region { min, max }) = &self.region
             && !(0..2).all(|axis| min[axis] < max[axis])
@@ -303,6 +314,15 @@ impl Header {
         }
         Ok(())
     }
+}
+
+/// Whether every i32 has world coordinates of its own, from which `to_stored` gives it back.
+///
+/// In steps of `scale`: the sum is rounded by at most 2^-53 (2^51 + 2^31 + 1), a quarter, product, difference
+/// and quotient by 2^-21 together; the total is below the half that rounding forgives.
+fn is_grid(scale: f64, offset: f64) -> bool {
+    let steps_max = 2f64.powi(51);
+    scale > 0.0 && offset.abs() <= scale * steps_max && (scale * steps_max).is_finite()
 }
 
 fn encode_crs(crs: &Crs) -> (u16, Vec<u8>) {

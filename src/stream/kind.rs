@@ -2,7 +2,7 @@
 
 use super::block::Tag;
 
-/// What a stream holds. A new kind is one row in [`Kind::ALL`].
+/// What a stream holds. A new kind is one row in the table of this file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Points, with the tags of cells that no later point lies in.
@@ -19,6 +19,8 @@ struct Row {
     name: &'static str,
     vertices_per_simplex: usize,
     blocks: &'static [Tag],
+    /// Whether all blocks of a tag come before those of the next one in `blocks`.
+    is_ordered: bool,
 }
 
 const ROWS: [Row; 3] = [
@@ -28,6 +30,7 @@ const ROWS: [Row; 3] = [
         name: "points",
         vertices_per_simplex: 0,
         blocks: &[Tag::Points, Tag::Cells],
+        is_ordered: false,
     },
     Row {
         kind: Kind::TriangleMesh,
@@ -35,6 +38,7 @@ const ROWS: [Row; 3] = [
         name: "triangle mesh",
         vertices_per_simplex: 3,
         blocks: &[Tag::Patch],
+        is_ordered: true,
     },
     Row {
         kind: Kind::PartialTriangleMesh,
@@ -42,6 +46,7 @@ const ROWS: [Row; 3] = [
         name: "partial triangle mesh",
         vertices_per_simplex: 3,
         blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
+        is_ordered: true,
     },
 ];
 
@@ -74,8 +79,14 @@ impl Kind {
         self.row().vertices_per_simplex
     }
 
-    /// Whether a stream of this kind may hold blocks of this tag.
-    pub(super) fn allows(self, tag: Tag) -> bool {
-        tag == Tag::End || self.row().blocks.contains(&tag)
+    /// Whether a block of tag `tag` may follow one of tag `last` (`None` at the start) in such a stream.
+    pub(super) fn allows(self, last: Option<Tag>, tag: Tag) -> bool {
+        let Row { blocks, is_ordered, .. } = self.row();
+        let rank = |tag: Tag| blocks.iter().position(|&block| block == tag);
+        match (rank(tag), last.and_then(rank)) {
+            (Some(rank), Some(last)) => !is_ordered || last <= rank,
+            (Some(_), None) => true,
+            (None, _) => tag == Tag::End,
+        }
     }
 }

@@ -51,10 +51,14 @@ impl<T: Copy> LiveVertices<T> {
         Ok(&self.local)
     }
 
-    /// The value of the vertex `id`, if it is live.
-    #[must_use]
-    pub fn get(&self, id: u64) -> Option<T> {
-        self.live.get(&id).copied()
+    /// The value of a live vertex that a residual point names, and forgets the vertex: no patch follows.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named before.
+    pub fn retire(&mut self, id: u64) -> Result<T> {
+        self.live
+            .remove(&id)
+            .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
     }
 
     /// Number of vertices that are live now.

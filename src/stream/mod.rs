@@ -3,11 +3,13 @@
 //! `formats/spmesh.md` is the specification; this module is its reader and its writer. Tools meet only here.
 
 mod block;
+mod chunks;
 mod event;
 mod finalized;
 mod header;
 mod kind;
 mod live;
+mod payload;
 mod reader;
 mod writer;
 

@@ -6,11 +6,11 @@ use std::io::Read;
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
-use super::event::{Event, Patch, Totals};
-use super::header::{Coordinates, Header, MAGIC, PREAMBLE_LEN, VERSION};
+use super::chunks::ChunkCheck;
+use super::event::{Event, Totals};
+use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
-use crate::bounds::Point;
-use crate::cells::CellCode;
+use super::payload;
 use crate::error::{Error, Result};
 use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
 
@@ -26,8 +26,12 @@ pub struct StreamReader<R: Read> {
     /// Number of blocks read, and the byte at which the next one starts.
     block: u64,
     offset: u64,
+    block_start: u64,
+    last_tag: Option<Tag>,
     totals: Totals,
     finalized: u64,
+    named_residual_points: u64,
+    chunks: Option<ChunkCheck>,
     ended: bool,
 }
 
@@ -40,17 +44,20 @@ impl<R: Read> StreamReader<R> {
         let name = name.into();
         let (header, offset) =
             read_header(&mut input).map_err(|e| e.at("header at byte 0").of_input(&name))?;
-        let payload = Vec::new();
-        let totals = Totals::default();
+        let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
         Ok(StreamReader {
             input,
             name,
             header,
-            payload,
+            payload: Vec::new(),
             block: 0,
             offset,
-            totals,
+            block_start: 0,
+            last_tag: None,
+            totals: Totals::default(),
             finalized: 0,
+            named_residual_points: 0,
+            chunks,
             ended: false,
         })
     }
@@ -78,17 +85,16 @@ impl<R: Read> StreamReader<R> {
     /// Adds input and position to an error about the block that was read last.
     pub fn locate(&self, error: Error) -> Error {
         let block = self.block.saturating_sub(1);
-        let start = self.offset - (self.payload.len() + FRAME_LEN) as u64;
-        error.at(format!("block {block} at byte {start}")).of_input(&self.name)
+        error.at(format!("block {block} at byte {}", self.block_start)).of_input(&self.name)
     }
 
-    /// The next block; `None` after END, when the input ends there too.
+    /// The next block; `None` after END. END itself comes only if the input ends there.
     ///
     /// # Errors
     /// If the input ends before END, goes on after it, or a block is damaged or breaks a rule.
     pub fn next_event(&mut self) -> Result<Option<Event>> {
         if self.ended {
-            return self.expect_end_of_input().map(|()| None);
+            return Ok(None);
         }
         let tag = match self.read_block() {
             Ok(tag) => tag,
@@ -98,6 +104,7 @@ impl<R: Read> StreamReader<R> {
             }
         };
         self.block += 1;
+        self.block_start = self.offset;
         self.offset += (FRAME_LEN + self.payload.len()) as u64;
         self.decode(tag).map(Some).map_err(|error| self.locate(error))
     }
@@ -133,158 +140,104 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        match frame.tag {
-            Some(tag) if self.header.kind.allows(tag) => Ok(tag),
-            Some(tag) => Err(Error::malformed(format!(
-                "block {:?} in a stream of kind {}",
+        let tag = frame.tag.ok_or_else(|| Error::malformed("unknown block tag"))?;
+        if !self.header.kind.allows(self.last_tag, tag) {
+            return Err(Error::malformed(format!(
+                "no block {:?} may stand here in a stream of kind {}",
                 String::from_utf8_lossy(&tag.bytes()),
                 self.header.kind.name()
-            ))),
-            None => Err(Error::malformed("unknown block tag")),
+            )));
         }
+        self.last_tag = Some(tag);
+        Ok(tag)
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {
+        let (header, payload) = (&self.header, &self.payload[..]);
         let event = match tag {
-            Tag::Points => Event::Points(self.decode_points(&self.payload)?),
-            Tag::Cells => Event::Cells(self.decode_cells()?),
-            Tag::Patch => Event::Patch(self.decode_patch()?),
-            Tag::ResidualPoints => Event::ResidualPoints(self.decode_residual_points()?),
-            Tag::Walls => Event::Walls(self.decode_walls()?),
+            Tag::Points => Event::Points(payload::points(header, payload)?),
+            Tag::Cells => Event::Cells(payload::cells(header, payload)?),
+            Tag::Patch => Event::Patch(payload::patch(header, self.totals.vertices, payload)?),
+            Tag::ResidualPoints => {
+                Event::ResidualPoints(payload::residual_points(header, self.totals.vertices, payload)?)
+            }
+            Tag::Walls => Event::Walls(payload::walls(self.totals.residual_points, payload)?),
             Tag::End => Event::End(self.decode_end()?),
         };
-        match &event {
-            Event::Points(points) => self.totals.points += points.len() as u64,
-            Event::Cells(cells) => self.totals.cells += cells.len() as u64,
-            Event::Patch(patch) => {
-                self.totals.vertices += patch.new.len() as u64;
-                let per_simplex = self.header.kind.vertices_per_simplex();
-                self.totals.simplices += (patch.simplices.len() / per_simplex) as u64;
-                self.finalized += patch.finalized.len() as u64;
-            }
-            Event::ResidualPoints(points) => self.totals.residual_points += points.len() as u64,
-            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
-            Event::End(_) => self.ended = true,
-        }
+        self.count(&event)?;
         Ok(event)
     }
 
-    fn decode_points(&self, bytes: &[u8]) -> Result<Vec<Point>> {
-        whole_records(bytes, self.header.point_len())?
-            .map(|record| decode_point(&self.header, record))
-            .collect()
-    }
-
-    fn decode_cells(&self) -> Result<Vec<CellCode>> {
-        let Some(tree) = &self.header.tree else {
-            return Err(Error::malformed("cell tag in a stream without a finalization tree"));
-        };
-        whole_records(&self.payload, 8)?
-            .map(|record| {
-                let cell = CellCode(LE::read_u64(record));
-                if tree.is_valid(cell) {
-                    Ok(cell)
-                } else {
-                    Err(Error::malformed(format!("location code {} is not a cell of the tree", cell.0)))
+    /// Brings the totals up to date, with the rules that span blocks.
+    fn count(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => {
+                self.totals.points += points.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.points(points)?;
                 }
-            })
-            .collect()
-    }
-
-    fn decode_patch(&self) -> Result<Patch> {
-        let bytes = &self.payload[..];
-        if bytes.len() < 24 {
-            return Err(Error::malformed(format!("patch of {} bytes, expected at least 24", bytes.len())));
+            }
+            Event::Cells(cells) => {
+                self.totals.cells += cells.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.cells(cells);
+                }
+            }
+            Event::Patch(patch) => {
+                let per_simplex = self.header.kind.vertices_per_simplex();
+                self.totals.vertices += patch.new.len() as u64;
+                self.totals.simplices += (patch.simplices.len() / per_simplex) as u64;
+                self.finalized += patch.finalized.len() as u64;
+            }
+            Event::ResidualPoints(points) => {
+                self.totals.residual_points += points.len() as u64;
+                self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
+            }
+            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::End(_) => {
+                self.expect_end_of_input()?;
+                self.ended = true;
+            }
         }
-        let (counts, rest) = bytes[8..].split_at(16);
-        let mut counts = counts.chunks_exact(4).map(|count| LE::read_u32(count) as usize);
-        let mut count = || counts.next().expect("four counts");
-        let (new, imported, simplices, finalized) = (count(), count(), count(), count());
-        let per_simplex = self.header.kind.vertices_per_simplex();
-        let lens = [new * self.header.point_len(), imported * 8, simplices * per_simplex * 4, finalized * 4];
-        if lens.iter().sum::<usize>() != rest.len() {
-            return Err(Error::malformed("the counts of the patch do not add up to its length"));
-        }
-        let (new, rest) = rest.split_at(lens[0]);
-        let (imported, rest) = rest.split_at(lens[1]);
-        let (simplices, finalized) = rest.split_at(lens[2]);
-        let locals = |bytes: &[u8]| bytes.chunks_exact(4).map(LE::read_u32).collect();
-        let patch = Patch {
-            first_id: LE::read_u64(bytes),
-            new: self.decode_points(new)?,
-            imported: imported.chunks_exact(8).map(LE::read_u64).collect(),
-            simplices: locals(simplices),
-            finalized: locals(finalized),
-        };
-        check_patch(&patch, self.totals.vertices, per_simplex)?;
-        Ok(patch)
+        Ok(())
     }
 
-    fn decode_residual_points(&self) -> Result<Vec<(Option<u64>, Point)>> {
-        whole_records(&self.payload, 8 + self.header.point_len())?
-            .map(|record| {
-                let id = LE::read_u64(record);
-                if id != u64::MAX && id >= self.totals.vertices {
-                    return Err(Error::malformed(format!("residual point has the id {id} of no vertex")));
-                }
-                let point = decode_point(&self.header, &record[8..])?;
-                Ok(((id != u64::MAX).then_some(id), point))
-            })
-            .collect()
-    }
-
-    fn decode_walls(&self) -> Result<Vec<[u32; 2]>> {
-        whole_records(&self.payload, 8)?
-            .map(|record| {
-                let wall = [LE::read_u32(record), LE::read_u32(&record[4..])];
-                let known = wall.iter().all(|&end| u64::from(end) < self.totals.residual_points);
-                if known && wall[0] != wall[1] {
-                    Ok(wall)
-                } else {
-                    Err(Error::malformed(format!(
-                        "wall {} to {} between no residual points",
-                        wall[0], wall[1]
-                    )))
-                }
-            })
-            .collect()
-    }
-
+    /// The totals that END states, if they are those of the blocks before. A mesh counts the points of the
+    /// input that it was made from: each is a vertex, was merged, or waits in the residual.
     fn decode_end(&self) -> Result<Totals> {
-        let fields: Vec<u64> = whole_records(&self.payload, 8)?.map(LE::read_u64).collect();
-        let Ok(fields) = <[u64; 7]>::try_from(fields) else {
-            return Err(Error::malformed(format!("END of {} bytes, expected 56", self.payload.len())));
-        };
-        let stated = Totals::from_fields(fields);
+        let stated = payload::totals(&self.payload)?;
+        let kind = self.header.kind;
         let mut counted = self.totals;
-        if self.header.kind.vertices_per_simplex() > 0 {
-            (counted.points, counted.merged) = (stated.points, stated.merged);
+        if kind.vertices_per_simplex() > 0 {
+            counted.merged = stated.merged;
+            let waiting = counted.residual_points - self.named_residual_points;
+            let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
+            counted.points = points.ok_or_else(|| Error::malformed("END: points are beyond counting"))?;
+            let retired = self.finalized + self.named_residual_points;
+            if retired != counted.vertices {
+                return Err(Error::malformed(format!(
+                    "END: {retired} of {} vertices were finalized or handed to the residual",
+                    counted.vertices
+                )));
+            }
         }
         if stated != counted {
             return Err(Error::malformed(format!("END states {stated:?}, but the stream holds {counted:?}")));
         }
-        let vertices = stated.vertices.checked_add(stated.merged);
-        if self.header.kind == Kind::TriangleMesh && vertices != Some(stated.points) {
-            return Err(Error::malformed("END: vertices and merged points are not all points"));
-        }
-        if self.header.kind == Kind::TriangleMesh && self.finalized != stated.vertices {
-            return Err(Error::malformed(format!(
-                "END: {} of {} vertices were finalized",
-                self.finalized, stated.vertices
-            )));
-        }
-        if self.header.kind == Kind::Points && self.header.points.is_some_and(|n| n != stated.points) {
+        if self.header.points.is_some_and(|points| points != stated.points) {
             return Err(Error::malformed("END: the header states another number of points"));
+        }
+        if let Some(chunks) = &self.chunks {
+            chunks.end()?;
         }
         Ok(stated)
     }
 
+    /// Nothing follows END, so END is handed out only when the input ends there.
     fn expect_end_of_input(&mut self) -> Result<()> {
         match read_full(&mut self.input, &mut [0])? {
             0 => Ok(()),
-            _ => Err(Error::malformed("the input goes on after END")
-                .at(format!("byte {}", self.offset))
-                .of_input(&self.name)),
+            _ => Err(Error::malformed("the input goes on after END").at(format!("byte {}", self.offset))),
         }
     }
 }
@@ -295,8 +248,11 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
     if found == 0 {
         return Err(Error::malformed("the input is empty, expected a spmesh stream"));
     }
-    if found < PREAMBLE_LEN || bytes[..8] != MAGIC {
-        return Err(Error::malformed("not a spmesh stream, or cut off within the first bytes"));
+    if !MAGIC.starts_with(&bytes[..found.min(MAGIC.len())]) {
+        return Err(Error::malformed("the first bytes are not those of a spmesh stream"));
+    }
+    if found < PREAMBLE_LEN {
+        return Err(Error::malformed(format!("truncated: found {found} of the first {PREAMBLE_LEN} bytes")));
     }
     let (version, kind) = (LE::read_u16(&bytes[8..]), LE::read_u16(&bytes[10..]));
     if version != VERSION {
@@ -334,61 +290,4 @@ fn read_full(input: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
         }
     }
     Ok(filled)
-}
-
-fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
-    if bytes.len().is_multiple_of(len) {
-        Ok(bytes.chunks_exact(len))
-    } else {
-        Err(Error::malformed(format!("{} bytes are not a whole number of records of {len}", bytes.len())))
-    }
-}
-
-fn decode_point(header: &Header, record: &[u8]) -> Result<Point> {
-    let mut point = [0.0; 3];
-    let width = header.coordinates.width();
-    for (value, bytes) in point.iter_mut().zip(record.chunks_exact(width)) {
-        *value = match header.coordinates {
-            Coordinates::F64 => LE::read_f64(bytes),
-            Coordinates::I32 { .. } => f64::from(LE::read_i32(bytes)),
-        };
-        if !value.is_finite() {
-            return Err(Error::malformed(format!("coordinate {value}")));
-        }
-    }
-    match &header.bounds {
-        Some(bounds) if !bounds.contains(point) => {
-            Err(Error::malformed(format!("point {point:?} lies outside of the header's bounding box")))
-        }
-        _ => Ok(point),
-    }
-}
-
-/// The rules of a patch that need no memory of earlier patches.
-fn check_patch(patch: &Patch, vertices_before: u64, per_simplex: usize) -> Result<()> {
-    if patch.first_id != vertices_before {
-        return Err(Error::malformed(format!(
-            "patch starts with vertex {}, expected {vertices_before}",
-            patch.first_id
-        )));
-    }
-    let increasing = |ids: &[u64]| ids.windows(2).all(|pair| pair[0] < pair[1]);
-    if !increasing(&patch.imported) || patch.imported.last().is_some_and(|&id| id >= patch.first_id) {
-        return Err(Error::malformed("imported vertices are not increasing ids of earlier patches"));
-    }
-    let vertices = patch.vertices();
-    if !patch.finalized.windows(2).all(|pair| pair[0] < pair[1])
-        || patch.finalized.last().is_some_and(|&local| local as usize >= vertices)
-    {
-        return Err(Error::malformed("finalized vertices are not increasing indices of the patch"));
-    }
-    for simplex in patch.simplices.chunks_exact(per_simplex) {
-        if let Some(&local) = simplex.iter().find(|&&local| local as usize >= vertices) {
-            return Err(Error::malformed(format!("simplex uses vertex {local} of {vertices} in its patch")));
-        }
-        if (1..per_simplex).any(|i| simplex[..i].contains(&simplex[i])) {
-            return Err(Error::malformed(format!("simplex {simplex:?} uses a vertex twice")));
-        }
-    }
-    Ok(())
 }

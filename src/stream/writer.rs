@@ -22,6 +22,7 @@ pub struct StreamWriter<W: Write> {
     output: W,
     header: Header,
     sequence: u32,
+    last_tag: Option<Tag>,
     /// Points that wait for their block to fill.
     points: Vec<u8>,
     payload: Vec<u8>,
@@ -39,6 +40,7 @@ impl<W: Write> StreamWriter<W> {
             output,
             header,
             sequence: 0,
+            last_tag: None,
             points: Vec::with_capacity(POINTS_PAYLOAD),
             payload: Vec::new(),
             totals: Totals::default(),
@@ -93,6 +95,10 @@ impl<W: Write> StreamWriter<W> {
     pub fn patch(&mut self, patch: &Patch) -> Result<()> {
         assert_eq!(patch.first_id, self.totals.vertices, "vertex ids count up in stream order");
         let per_simplex = self.header.kind.vertices_per_simplex();
+        debug_assert!(
+            patch.check(self.totals.vertices, per_simplex).is_ok(),
+            "a patch that no reader accepts"
+        );
         let payload = &mut self.payload;
         payload.clear();
         payload.extend_from_slice(&patch.first_id.to_le_bytes());
@@ -177,7 +183,13 @@ impl<W: Write> StreamWriter<W> {
     }
 
     fn flush_block(&mut self, tag: Tag) -> Result<()> {
-        assert!(self.header.kind.allows(tag), "{tag:?} in a stream of {}", self.header.kind.name());
+        assert!(
+            self.header.kind.allows(self.last_tag, tag),
+            "{tag:?} after {:?} in a stream of kind {}",
+            self.last_tag,
+            self.header.kind.name()
+        );
+        self.last_tag = Some(tag);
         if self.payload.len() > BLOCK_PAYLOAD_MAX {
             return Err(Error::usage(format!(
                 "cannot write a block of {} bytes, the maximum is {BLOCK_PAYLOAD_MAX}",

@@ -1,0 +1,52 @@
+//! The promise of a chunked points stream: the points between two tags lie in one cell of the next tag.
+
+use crate::bounds::{Bounds, Point};
+use crate::cells::{CellCode, CellTree};
+use crate::error::{Error, Result};
+
+/// Checks the promise with the bounding box of the points since the last tag.
+#[derive(Debug)]
+pub(super) struct ChunkCheck {
+    tree: CellTree,
+    waiting: Option<Bounds>,
+    /// Whether the last block held tags.
+    in_tags: bool,
+}
+
+impl ChunkCheck {
+    pub(super) fn new(tree: CellTree) -> Self {
+        ChunkCheck { tree, waiting: None, in_tags: false }
+    }
+
+    pub(super) fn points(&mut self, points: &[Point]) -> Result<()> {
+        let Some(bounds) = Bounds::of_points(points) else { return Ok(()) };
+        if self.in_tags {
+            self.end()?;
+            self.in_tags = false;
+        }
+        self.waiting = Some(self.waiting.map_or(bounds, |waiting| waiting.union(bounds)));
+        Ok(())
+    }
+
+    pub(super) fn cells(&mut self, cells: &[CellCode]) {
+        self.in_tags |= !cells.is_empty();
+        if let Some(Bounds { min, max }) = self.waiting {
+            let holds = |&cell: &CellCode| {
+                let level = self.tree.level(cell);
+                self.tree.cell_of(min, level) == cell && self.tree.cell_of(max, level) == cell
+            };
+            if cells.iter().any(holds) {
+                self.waiting = None;
+            }
+        }
+    }
+
+    pub(super) fn end(&self) -> Result<()> {
+        match self.waiting {
+            None => Ok(()),
+            Some(_) => Err(Error::malformed(
+                "the stream is chunked, but the points before the last tag do not lie in one cell of it",
+            )),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Payloads of blocks, decoded and checked as far as header and earlier counts allow.
+
+use byteorder::{ByteOrder, LittleEndian as LE};
+
+use super::event::{Patch, Totals};
+use super::header::{Coordinates, Header};
+use crate::bounds::Point;
+use crate::cells::CellCode;
+use crate::error::{Error, Result};
+
+/// Id in a residual record that says: not yet a vertex.
+const NO_VERTEX: u64 = u64::MAX;
+
+/// Length of the counts before the arrays of a patch, in bytes.
+const PATCH_FIXED_LEN: usize = 24;
+
+pub(super) fn points(header: &Header, bytes: &[u8]) -> Result<Vec<Point>> {
+    whole_records(bytes, header.point_len())?.map(|record| point(header, record)).collect()
+}
+
+pub(super) fn cells(header: &Header, bytes: &[u8]) -> Result<Vec<CellCode>> {
+    let Some(tree) = &header.tree else {
+        return Err(Error::malformed("cell tag in a stream without a finalization tree"));
+    };
+    whole_records(bytes, 8)?
+        .map(|record| {
+            let cell = CellCode(LE::read_u64(record));
+            if tree.is_valid(cell) {
+                Ok(cell)
+            } else {
+                Err(Error::malformed(format!("location code {} is not a cell of the tree", cell.0)))
+            }
+        })
+        .collect()
+}
+
+/// A patch; `vertices_before` were written by earlier ones.
+pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Result<Patch> {
+    if bytes.len() < PATCH_FIXED_LEN {
+        return Err(Error::malformed(format!(
+            "patch of {} bytes, expected at least {PATCH_FIXED_LEN}",
+            bytes.len()
+        )));
+    }
+    let per_simplex = header.kind.vertices_per_simplex();
+    let mut rest = &bytes[PATCH_FIXED_LEN..];
+    let mut array = |at: usize, record_len: usize| {
+        let len = u64::from(LE::read_u32(&bytes[at..])) * record_len as u64;
+        let (array, after) = usize::try_from(len).ok().and_then(|len| rest.split_at_checked(len))?;
+        rest = after;
+        Some(array)
+    };
+    let arrays = (array(8, header.point_len()), array(12, 8), array(16, per_simplex * 4), array(20, 4));
+    let ((Some(new), Some(imported), Some(simplices), Some(finalized)), true) = (arrays, rest.is_empty())
+    else {
+        return Err(Error::malformed("the counts of the patch do not add up to its length"));
+    };
+    let locals = |bytes: &[u8]| bytes.chunks_exact(4).map(LE::read_u32).collect();
+    let patch = Patch {
+        first_id: LE::read_u64(bytes),
+        new: points(header, new)?,
+        imported: imported.chunks_exact(8).map(LE::read_u64).collect(),
+        simplices: locals(simplices),
+        finalized: locals(finalized),
+    };
+    patch.check(vertices_before, per_simplex)?;
+    Ok(patch)
+}
+
+/// Residual points; ids must be those of `vertices` earlier ones.
+pub(super) fn residual_points(
+    header: &Header,
+    vertices: u64,
+    bytes: &[u8],
+) -> Result<Vec<(Option<u64>, Point)>> {
+    whole_records(bytes, 8 + header.point_len())?
+        .map(|record| {
+            let id = LE::read_u64(record);
+            if id != NO_VERTEX && id >= vertices {
+                return Err(Error::malformed(format!("residual point has the id {id} of no vertex")));
+            }
+            Ok(((id != NO_VERTEX).then_some(id), point(header, &record[8..])?))
+        })
+        .collect()
+}
+
+/// Walls between `residual_points` earlier ones.
+pub(super) fn walls(residual_points: u64, bytes: &[u8]) -> Result<Vec<[u32; 2]>> {
+    whole_records(bytes, 8)?
+        .map(|record| {
+            let wall = [LE::read_u32(record), LE::read_u32(&record[4..])];
+            let known = wall.iter().all(|&end| u64::from(end) < residual_points);
+            if known && wall[0] != wall[1] {
+                Ok(wall)
+            } else {
+                Err(Error::malformed(format!("wall {} to {} between no residual points", wall[0], wall[1])))
+            }
+        })
+        .collect()
+}
+
+pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {
+    let fields: Vec<u64> = whole_records(bytes, 8)?.map(LE::read_u64).collect();
+    match <[u64; 7]>::try_from(fields) {
+        Ok(fields) => Ok(Totals::from_fields(fields)),
+        Err(_) => Err(Error::malformed(format!("END of {} bytes, expected 56", bytes.len()))),
+    }
+}
+
+fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
+    if bytes.len().is_multiple_of(len) {
+        Ok(bytes.chunks_exact(len))
+    } else {
+        Err(Error::malformed(format!("{} bytes are not a whole number of records of {len}", bytes.len())))
+    }
+}
+
+/// A point that lies where the header says that all points lie.
+fn point(header: &Header, record: &[u8]) -> Result<Point> {
+    let mut point = [0.0; 3];
+    let width = header.coordinates.width();
+    for (value, bytes) in point.iter_mut().zip(record.chunks_exact(width)) {
+        *value = match header.coordinates {
+            Coordinates::F64 => LE::read_f64(bytes),
+            Coordinates::I32 { .. } => f64::from(LE::read_i32(bytes)),
+        };
+        if !value.is_finite() {
+            return Err(Error::malformed(format!("coordinate {value} is not finite")));
+        }
+    }
+    let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
+        "the header's bounding box"
+    } else if header.tree.is_some_and(|tree| !tree.contains(point)) {
+        "the finalization tree"
+    } else if header.region.is_some_and(|region| !region.contains(point)) {
+        "the region"
+    } else {
+        return Ok(point);
+    };
+    Err(Error::malformed(format!("point {point:?} lies outside of {outside_of}")))
+}
