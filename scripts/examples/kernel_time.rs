@@ -60,9 +60,9 @@ fn lattice(count: usize) -> Vec<[f64; 2]> {
     points
 }
 
-/// The lattice in hundredths: decimals are rounded, so that ties become near ties.
+/// The lattice in tenths: decimals are rounded, so that ties become near ties.
 fn decimal_lattice(count: usize) -> Vec<[f64; 2]> {
-    lattice(count).into_iter().map(|p| p.map(|c| c / 100.0 + 0.01)).collect()
+    lattice(count).into_iter().map(|p| p.map(|c| c / 1000.0)).collect()
 }
 
 fn time<T>(what: impl FnOnce() -> T) -> (T, f64) {
