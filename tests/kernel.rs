@@ -152,6 +152,36 @@ fn magnitudes_mixed_in_one_set() {
 }
 
 #[test]
+fn decimal_grids_are_nearly_cocircular() {
+    let mut kernel = Kernel::new();
+    for (step, width) in [(0.1, 4), (0.01, 5), (0.3, 6), (1e-7, 5)] {
+        let shift = [431_234.7, 5_412_345.1].map(|offset| if width == 5 { offset } else { 0.0 });
+        let points: Vec<[f64; 2]> = (0..30)
+            .map(|i| [f64::from(i % width) * step + shift[0], f64::from(i / width) * step + shift[1]])
+            .collect();
+        let kept: Vec<[f64; 2]> = distinct(&points)
+            .iter()
+            .zip(0..)
+            .filter(|(r, i)| *r == i)
+            .map(|(_, i)| points[i as usize])
+            .collect();
+        assert_triangles(&mut kernel, &kept, &exhaustive::triangles(&kept));
+    }
+}
+
+#[test]
+fn outliers_that_leave_the_rest_one_morton_cell() {
+    let mut kernel = Kernel::new();
+    for (seed, outlier) in [(0, 1e20), (1, 1e200), (2, f64::MAX), (3, -f64::MAX)] {
+        let mut random = Random::new(9000 + seed);
+        let mut points = sets::as_floats(&sets::uniform(&mut random, 26, 6));
+        points.push([outlier, 1.0]);
+        points.push([2.0, -outlier]);
+        assert_triangles(&mut kernel, &points, &exhaustive::triangles(&points));
+    }
+}
+
+#[test]
 fn order_of_input_does_not_matter() {
     let mut kernel = Kernel::new();
     for seed in 0..30 {

@@ -55,7 +55,7 @@ fn extreme_quadruples(random: &mut Random, d: i64, offset: i64) -> Vec<[f64; 2]>
         for _ in 0..4 {
             let coordinate = |random: &mut Random| {
                 let near = random.integer(0, 2).min(d);
-                offset + if random.bits() % 2 == 0 { near } else { d - near }
+                offset + if random.bits().is_multiple_of(2) { near } else { d - near }
             };
             let x = coordinate(random);
             let y = coordinate(random);

@@ -1,5 +1,6 @@
 //! Times the 2D kernel, in one thread, next to `spade`:
-//! `cargo run --release --example kernel_time -- [points] [rounds]`.
+//! `cargo run --release --example kernel_time -- [points] [rounds] [uniform|flight-lines|lattice|decimal-lattice]`. With the name of a
+//! set, that set alone and no peer, for profiling.
 
 use spade::Triangulation as _;
 use spmesh::delaunay2::{Kernel, Triangulation};
@@ -59,6 +60,11 @@ fn lattice(count: usize) -> Vec<[f64; 2]> {
     points
 }
 
+/// The lattice in tenths: decimals are rounded, so that ties become near ties.
+fn decimal_lattice(count: usize) -> Vec<[f64; 2]> {
+    lattice(count).into_iter().map(|p| p.map(|c| c / 1000.0)).collect()
+}
+
 fn time<T>(what: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let result = what();
@@ -73,9 +79,18 @@ fn main() -> spmesh::error::Result<()> {
     let numbers: Vec<usize> = std::env::args().skip(1).filter_map(|word| word.parse().ok()).collect();
     let count = numbers.first().copied().unwrap_or(1_000_000);
     let rounds = numbers.get(1).copied().unwrap_or(3);
-    for (name, points) in
-        [("uniform", uniform(count)), ("flight lines", flight_lines(count)), ("lattice", lattice(count))]
-    {
+    let alone = std::env::args().nth(3);
+    let sets: [(&str, fn(usize) -> Vec<[f64; 2]>); 4] = [
+        ("uniform", uniform),
+        ("flight-lines", flight_lines),
+        ("lattice", lattice),
+        ("decimal-lattice", decimal_lattice),
+    ];
+    for (name, generate) in sets {
+        if alone.as_ref().is_some_and(|alone| alone != name) {
+            continue;
+        }
+        let points = generate(count);
         let mut kernel = Kernel::new();
         let mut mesh = Triangulation::default();
         println!("{name}, {} points", points.len());
@@ -93,6 +108,9 @@ fn main() -> spmesh::error::Result<()> {
                 time(|| points.chunks(cell).try_for_each(|chunk| kernel.triangulate(chunk, &mut small)));
             result?;
             report("kernel, by 50k", &points, seconds);
+        }
+        if alone.is_some() {
+            continue;
         }
         let vertices: Vec<_> = points.iter().map(|p| spade::Point2::new(p[0], p[1])).collect();
         let (_, seconds) =

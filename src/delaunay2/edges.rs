@@ -5,6 +5,9 @@ pub(super) const NIL: u32 = u32::MAX;
 /// Corner number of half-edges with the outer face to their left.
 pub(super) const OUTER: u32 = u32::MAX;
 
+/// Corner number of half-edges whose triangle has not been extracted.
+pub(super) const UNNUMBERED: u32 = u32::MAX - 1;
+
 /// A directed edge. Sixteen bytes, so that a pair of twins never straddles a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(16))]
@@ -15,7 +18,7 @@ pub(super) struct HalfEdge {
     pub(super) onext: u32,
     /// Next half-edge that leaves the same vertex, clockwise.
     pub(super) oprev: u32,
-    /// Corner opposite to it in the triangle to its left, or [`OUTER`]; meaningful during extraction only.
+    /// Corner opposite to it in the triangle to its left, once extracted; [`UNNUMBERED`] before, [`OUTER`] for none.
     pub(super) corner: u32,
 }
 
@@ -51,6 +54,11 @@ impl Edges {
     }
 
     #[inline(always)]
+    pub(super) fn half_edge(&self, e: u32) -> HalfEdge {
+        self.half[e as usize]
+    }
+
+    #[inline(always)]
     pub(super) fn destination(&self, e: u32) -> u32 {
         self.half[e as usize].destination
     }
@@ -83,11 +91,6 @@ impl Edges {
     }
 
     #[inline(always)]
-    pub(super) fn corner(&self, e: u32) -> u32 {
-        self.half[e as usize].corner
-    }
-
-    #[inline(always)]
     pub(super) fn set_corner(&mut self, e: u32, corner: u32) {
         self.half[e as usize].corner = corner;
     }
@@ -107,7 +110,7 @@ impl Edges {
                 (onext, after)
             }
         };
-        self.half[e as usize] = HalfEdge { destination: v, onext, oprev, corner: 0 };
+        self.half[e as usize] = HalfEdge { destination: v, onext, oprev, corner: UNNUMBERED };
         let twin = e ^ 1;
         let (onext, oprev) = match before {
             NIL => (twin, twin),
@@ -117,7 +120,7 @@ impl Edges {
                 (before, oprev)
             }
         };
-        self.half[twin as usize] = HalfEdge { destination: u, onext, oprev, corner: 0 };
+        self.half[twin as usize] = HalfEdge { destination: u, onext, oprev, corner: UNNUMBERED };
         e
     }
 
@@ -144,7 +147,7 @@ impl Edges {
             return e;
         }
         let e = self.half.len() as u32;
-        let blank = HalfEdge { destination: NIL, onext: NIL, oprev: NIL, corner: 0 };
+        let blank = HalfEdge { destination: NIL, onext: NIL, oprev: NIL, corner: UNNUMBERED };
         self.half.extend_from_slice(&[blank, blank]);
         e
     }

@@ -1,6 +1,6 @@
 //! From half-edges to the arrays of a [`Triangulation`].
 
-use super::edges::{Edges, NIL, OUTER};
+use super::edges::{Edges, HalfEdge, NIL, OUTER, UNNUMBERED};
 use super::merge::Hull;
 use super::triangulation::{NONE, Triangulation};
 use crate::predicates::{Point2, lexicographic};
@@ -31,9 +31,6 @@ impl Extraction<'_> {
         self.walk_hull(hull.start, out);
         self.emit_triangles(out);
         self.emit_neighbours(out);
-        for (&index, &e) in self.indices.iter().zip(self.leaving.iter()) {
-            out.triangle_of_vertex[index as usize] = self.edges.corner(e) / 3;
-        }
     }
 
     fn find_leaving(&mut self) {
@@ -69,24 +66,28 @@ impl Extraction<'_> {
             let first = self.leaving[v as usize];
             let mut e = first;
             loop {
-                let next = self.edges.onext(e);
-                let (a, b) = (self.edges.destination(e), self.edges.destination(next));
-                if v < a && v < b && self.edges.corner(e) != OUTER {
+                let HalfEdge { destination: a, onext, corner, .. } = self.edges.half_edge(e);
+                if corner == UNNUMBERED {
                     let corner = 3 * out.triangles.len() as u32;
+                    let b = self.edges.destination(onext);
                     out.triangles.push([v, a, b].map(|v| self.indices[v as usize]));
                     self.edges.set_corner(self.edges.oprev(e ^ 1), corner);
-                    self.edges.set_corner(next ^ 1, corner + 1);
+                    self.edges.set_corner(onext ^ 1, corner + 1);
                     self.edges.set_corner(e, corner + 2);
                 }
-                e = next;
+                e = onext;
                 if e == first {
                     break;
                 }
             }
+            out.triangle_of_vertex[self.indices[v as usize] as usize] =
+                self.edges.half_edge(first).corner / 3;
         }
         debug_assert_eq!(out.triangles.len(), count);
     }
 
+    /// Links triangles across their sides: a pass over the edges in the order they are stored, without a branch that
+    /// is hard to predict.
     fn emit_neighbours(&mut self, out: &mut Triangulation) {
         out.neighbours.resize(out.triangles.len(), [NONE; 3]);
         let across = out.neighbours.as_flattened_mut();

@@ -38,11 +38,6 @@ struct Tip {
 
 impl<P: Predicates2> Stitch<'_, P> {
     #[inline(always)]
-    fn point(&self, v: u32) -> Point2 {
-        self.points[v as usize]
-    }
-
-    #[inline(always)]
     fn orientation(&mut self, u: u32, v: u32, w: u32) -> Sign {
         self.predicates.orient2d(self.points[u as usize], self.points[v as usize], self.points[w as usize])
     }
@@ -63,6 +58,14 @@ impl<P: Predicates2> Stitch<'_, P> {
         Hull { vertex: left.vertex, start: low, end: high ^ 1 }
     }
 
+    /// Whether `e` leaves a vertex that is beyond the origin of `than` across the cut, in the direction wanted.
+    #[inline(always)]
+    fn is_further(&self, e: u32, than: u32, cut: Cut, wanted: Ordering) -> bool {
+        let p = self.points[self.edges.origin(e) as usize];
+        let q = self.points[self.edges.origin(than) as usize];
+        cut.compare(p, q) == wanted
+    }
+
     /// The vertex of a hull that comes last (`Greater`) or first (`Less`) across the cut.
     ///
     /// Along a convex polygon the order across the cut has one maximum and one minimum, also where boundary points
@@ -72,25 +75,21 @@ impl<P: Predicates2> Stitch<'_, P> {
         if hull.start == NIL {
             return Tip { vertex: hull.vertex, edge: NIL };
         }
-        let edges = &*self.edges;
-        let further = |e: u32, than: u32| {
-            cut.compare(self.point(edges.origin(e)), self.point(edges.origin(than))) == wanted
-        };
-        let mut edge = if further(hull.end, hull.start) { hull.end } else { hull.start };
-        let mut next = edges.hull_next(edge);
-        if further(next, edge) {
-            while further(next, edge) {
+        let mut edge = if self.is_further(hull.end, hull.start, cut, wanted) { hull.end } else { hull.start };
+        let mut next = self.edges.hull_next(edge);
+        if self.is_further(next, edge, cut, wanted) {
+            while self.is_further(next, edge, cut, wanted) {
                 edge = next;
-                next = edges.hull_next(edge);
+                next = self.edges.hull_next(edge);
             }
         } else {
-            let mut previous = edges.hull_previous(edge);
-            while further(previous, edge) {
+            let mut previous = self.edges.hull_previous(edge);
+            while self.is_further(previous, edge, cut, wanted) {
                 edge = previous;
-                previous = edges.hull_previous(edge);
+                previous = self.edges.hull_previous(edge);
             }
         }
-        Tip { vertex: edges.origin(edge), edge }
+        Tip { vertex: self.edges.origin(edge), edge }
     }
 
     /// Adds the lower common tangent of two hulls and returns it, directed from left to right.

@@ -4,7 +4,7 @@ use crate::predicates::{Extent, Point2};
 
 /// Monotone map of the coordinates of an extent to `u32`, the same scale for both axes.
 ///
-/// Monotone means: p[axis] <= q[axis] implies cell(p)[axis] <= cell(q)[axis]. So two points whose cells differ on
+/// Monotone means: if p is at most q on an axis, so is the cell of p at most that of q. So two points whose cells differ on
 /// an axis differ on that axis, in the same direction: cells of the Morton trie are separated by axis-parallel
 /// lines, exactly, whatever was rounded.
 #[derive(Debug, Clone, Copy)]

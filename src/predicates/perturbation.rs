@@ -32,7 +32,7 @@ pub(super) fn cocircular<P: Predicates2 + ?Sized>(
 ) -> Sign {
     predicates.counts_mut().perturbed += 1;
     let above = |p, q| lexicographic(p, q) == Ordering::Greater;
-    if above(d, a) && above(d, b) && above(d, c) {
+    let sign = if above(d, a) && above(d, b) && above(d, c) {
         Sign::Negative
     } else if above(a, b) && above(a, c) {
         predicates.orient2d(d, b, c)
@@ -40,5 +40,7 @@ pub(super) fn cocircular<P: Predicates2 + ?Sized>(
         predicates.orient2d(a, d, c)
     } else {
         predicates.orient2d(a, b, d)
-    }
+    };
+    debug_assert_ne!(sign, Sign::Zero, "four distinct points of a circle");
+    sign
 }
