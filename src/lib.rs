@@ -6,6 +6,7 @@ pub mod bounds;
 pub mod cells;
 pub mod cli;
 pub mod error;
+pub mod finalize;
 pub mod limits;
 pub mod output;
 pub mod predicates;
