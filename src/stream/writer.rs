@@ -72,6 +72,27 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
+    /// Appends points that are encoded already, as [`encode_point`] does it.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(crate) fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
+        let point_len = self.header.point_len();
+        debug_assert!(bytes.len().is_multiple_of(point_len));
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let room = (POINTS_PAYLOAD - self.points.len()) / point_len * point_len;
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            self.points.extend_from_slice(now);
+            rest = later;
+            if self.points.len() + point_len > POINTS_PAYLOAD {
+                self.flush_points()?;
+            }
+        }
+        self.totals.points += (bytes.len() / point_len) as u64;
+        Ok(())
+    }
+
     /// Tags cells as final: no later point lies in them. Writes what points are still waiting first.
     ///
     /// # Errors
@@ -208,7 +229,10 @@ fn write_error(cause: std::io::Error) -> Error {
 }
 
 /// Appends the stored form of `point`.
-fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
+///
+/// # Errors
+/// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+pub(crate) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {
             return Err(Error::malformed(format!("coordinate {value} does not fit the stream's encoding")));
