@@ -65,6 +65,9 @@ fn decimal_lattice(count: usize) -> Vec<[f64; 2]> {
     lattice(count).into_iter().map(|p| p.map(|c| c / 1000.0)).collect()
 }
 
+/// Makes a set of about the given number of points.
+type Generator = fn(usize) -> Vec<[f64; 2]>;
+
 fn time<T>(what: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let result = what();
@@ -80,7 +83,7 @@ fn main() -> spmesh::error::Result<()> {
     let count = numbers.first().copied().unwrap_or(1_000_000);
     let rounds = numbers.get(1).copied().unwrap_or(3);
     let alone = std::env::args().nth(3);
-    let sets: [(&str, fn(usize) -> Vec<[f64; 2]>); 4] = [
+    let sets: [(&str, Generator); 4] = [
         ("uniform", uniform),
         ("flight-lines", flight_lines),
         ("lattice", lattice),
