@@ -165,7 +165,7 @@ fn mutate(random: &mut Random, frames: &mut Vec<Vec<u8>>) {
 fn sealed_damage_never_panics_and_what_is_accepted_can_be_written() {
     let vectors = load("pass", "txt");
     let mut accepted = 0;
-    for seed in 0..60_000 {
+    for seed in 0..200_000 {
         let mut random = Random(seed);
         let bytes = &vectors[random.below(vectors.len())].bytes;
         let mut pieces: Vec<_> = frames(bytes).into_iter().map(|range| bytes[range].to_vec()).collect();
@@ -182,7 +182,7 @@ fn sealed_damage_never_panics_and_what_is_accepted_can_be_written() {
             Err(error) => assert_eq!(error.kind(), ErrorKind::Malformed, "seed {seed}: {error}"),
         }
     }
-    assert!(accepted > 1_000, "only {accepted} cases got through, the damage is too heavy to test anything");
+    assert!(accepted > 3_000, "only {accepted} cases got through, the damage is too heavy to test anything");
 }
 
 fn read_all(bytes: &[u8]) -> Result<()> {
@@ -366,7 +366,7 @@ fn random_streams_come_back_as_they_were_written() {
 
 #[test]
 fn the_python_reader_accepts_random_streams() {
-    for seed in 0..40 {
+    for seed in 0..12 {
         let (_, _, bytes) = random_stream(seed);
         let Some(output) = run_python("scripts/spmesh_reader.py", &["-q", "-"], &bytes) else { return };
         assert!(output.status.success(), "seed {seed}: {}", String::from_utf8_lossy(&output.stderr));
