@@ -1,8 +1,11 @@
 //! Integration tests: one crate, one module per subject.
 
+mod allocation;
 mod circle;
 mod finalize;
 mod kernel;
 mod kernel_predicates;
 mod reduction;
 mod reference;
+mod stream;
+mod vectors;

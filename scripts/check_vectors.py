@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""Runs the Python reader on every vector of formats/vectors, in one process.
+
+    python3 check_vectors.py
+
+A vector in pass must give its text twin (.txt), one in fail must be refused with the words of its .err file.
+Exit 0, or 1 with a line for each vector that came out otherwise.
+"""
+
+import glob
+import io
+import os
+import sys
+
+import spmesh_reader
+
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats", "vectors")
+
+
+def load(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return file.read()
+
+
+def read(data):
+    """The text twin, and the message of the error if there is one."""
+    lines = []
+    stream = spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lines.append))
+    try:
+        stream.read()
+    except spmesh_reader.Malformed as error:
+        return None, "%s: %s" % (stream.where, error)
+    return "".join(lines), None
+
+
+def main():
+    wrong = 0
+    paths = sorted(glob.glob(os.path.join(FOLDER, "*", "*.hex")))
+    for path in paths:
+        stem, name = path[: -len(".hex")], os.path.relpath(path, FOLDER)
+        text, error = read(bytes.fromhex("".join(line.split("#")[0] for line in load(path).splitlines())))
+        if name.startswith("pass"):
+            holds = text == load(stem + ".txt")
+        else:
+            holds = error is not None and load(stem + ".err").strip() in error
+        if not holds:
+            wrong += 1
+            print("check_vectors: %s: %s" % (name, error or "another text than expected"), file=sys.stderr)
+    print("%d vectors, %d wrong" % (len(paths), wrong))
+    return 1 if wrong or not paths else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

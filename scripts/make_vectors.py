@@ -1,0 +1,475 @@
+#!/usr/bin/env python3
+"""Writes the test vectors of the stream format into formats/vectors/{pass,fail}.
+
+    python3 make_vectors.py            (--check writes nothing and fails if a file differs)
+
+A writer of its own, from the text of formats/spmesh.md alone. Every vector is spelled out here, with its text twin or
+the words that the error must contain.
+"""
+
+import os
+import struct
+import sys
+from decimal import Decimal
+
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats", "vectors")
+UNKNOWN = 2**64 - 1
+MAGIC = b"\x89SPM\r\n\x1a\n"
+KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3}
+INF, NAN = float("inf"), float("nan")
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return crc ^ 0xFFFFFFFF
+
+
+def number(value):
+    """A decimal as the text twin writes it; coordinates are given as strings or integers."""
+    if value in (INF, -INF):
+        return str(value)
+    text = format(Decimal(value), "f")
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+class Vector:
+    """A stream in the making: pieces of bytes, each with a comment, and the lines of its text twin."""
+
+    def __init__(self, kind="points", **fields):
+        self.pieces, self.lines, self.sequence = [], [], 0
+        self.header(kind, **fields)
+
+    def put(self, data, comment):
+        self.pieces.append((data, comment))
+        return self
+
+    def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
+               chunked=False, wkt=None, geokeys=None, producer="vector", **damage):
+        """`grid` is scale and offset; `damage` overrides a field with raw bytes, by its name below."""
+        self.grid, self.dims, self.axes = grid, dims, dims + elevation
+        scale, offset = grid or (("0",) * 3, ("0",) * 3)
+        crs, encoding = b"", 0
+        if wkt is not None:
+            crs, encoding = wkt.encode(), 1
+        if geokeys is not None:
+            crs, encoding = b"".join(struct.pack("<I", len(r)) + r for r in geokeys), 2
+        producer = producer.encode()
+        flags = (bounds is not None) + 2 * (tree is not None) + 4 * (region is not None) + 8 * chunked
+        depth, *cube = tree or (0, 0, 0, 0, 0)
+        floats = lambda values: struct.pack("<%dd" % len(values), *map(float, values))
+        fields = [
+            ("magic", MAGIC, "magic"),
+            ("version", struct.pack("<H", 1), "version"),
+            ("kind", struct.pack("<H", KINDS[kind]), "kind: " + kind),
+            ("length", struct.pack("<I", 192 + len(crs) + len(producer)), "body length"),
+            ("type", bytes([2 if grid else 1]), "coordinate type " + ("i32" if grid else "f64")),
+            ("dims", bytes([dims]), "dims"),
+            ("elevation", bytes([elevation]), "elevation"),
+            ("flags", bytes([flags]), "flags"),
+            ("reserved1", bytes(4), "reserved"),
+            ("points", struct.pack("<Q", UNKNOWN if points is None else points), "points"),
+            ("scale", floats(scale), "scale"),
+            ("offset", floats(offset), "offset"),
+            ("box", floats(bounds or (0,) * 6), "bounding box"),
+            ("cube", floats(cube), "tree origin and side"),
+            ("depth", struct.pack("<I", depth), "tree depth"),
+            ("reserved2", bytes(4), "reserved"),
+            ("region", floats(region or (0,) * 4), "region"),
+            ("encoding", struct.pack("<H", encoding), "CRS encoding"),
+            ("producer_length", struct.pack("<H", len(producer)), "producer length"),
+            ("crs_length", struct.pack("<I", len(crs)), "CRS length"),
+            ("crs", crs, "CRS"),
+            ("producer", producer, "producer"),
+        ]
+        assert set(damage) <= {name for name, _, _ in fields} | {"checksum"}, damage
+        for name, data, comment in fields:
+            if data or name in damage:
+                self.put(damage.get(name, data), comment)
+        self.put(damage.get("checksum", struct.pack("<I", crc32c(self.bytes()))), "CRC32C of the header")
+        yes = ("no", "yes")
+        self.say("version 1", "kind " + kind, "coordinates " + ("i32" if grid else "f64"))
+        if grid:
+            self.say("scale " + " ".join(scale), "offset " + " ".join(offset))
+        self.say("dims %d" % dims, "elevation " + yes[elevation])
+        if bounds:
+            self.say("bounds " + " ".join(map(number, bounds)))
+        if points is not None:
+            self.say("points %d" % points)
+        if tree:
+            self.say("tree " + " ".join(map(number, tree)))
+        if region:
+            self.say("region " + " ".join(map(number, region)))
+        self.say("chunked " + yes[chunked])
+        if wkt is not None:
+            self.say('wkt "%s"' % wkt.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n"))
+        if geokeys is not None:
+            self.say("geokeys " + " ".join(r.hex() or "-" for r in geokeys))
+        self.say('producer "%s"' % producer.decode())
+
+    def say(self, *lines):
+        self.lines += ["#spmesh " + line for line in lines]
+
+    def bytes(self):
+        return b"".join(data for data, _ in self.pieces)
+
+    def block(self, tag, payload, **damage):
+        """`payload` is a list of bytes with comments; `damage` may set length, sequence or checksum."""
+        data = b"".join(piece for piece, _ in payload)
+        sequence, length = damage.get("sequence", self.sequence), damage.get("length", len(data))
+        head = tag + struct.pack("<II", sequence, length)
+        self.put(head[:4], "block " + tag.decode("latin1")).put(head[4:8], "sequence").put(head[8:], "length")
+        self.put(struct.pack("<I", damage.get("checksum", crc32c(head + data))), "CRC32C of the block")
+        for piece, comment in payload:
+            self.put(piece, comment)
+        self.sequence += 1
+        return self
+
+    def point(self, point):
+        """A point as bytes and as text; coordinates are integers of the grid, or decimals in strings."""
+        assert len(point) == self.axes, point
+        if self.grid:
+            world = [Decimal(c) * Decimal(s) + Decimal(o) for c, s, o in zip(point, *self.grid)]
+            data = struct.pack("<%di" % self.axes, *point)
+        else:
+            world, data = point, struct.pack("<%dd" % self.axes, *map(float, point))
+        world = ["nan" if str(c) in ("nan", "inf") else number(c) for c in world] + ["0"] * (3 - self.axes)
+        return data, " ".join(world)
+
+    def points(self, *points, **damage):
+        pairs = [self.point(point) for point in points]
+        self.lines += ["v " + text for _, text in pairs]
+        return self.block(b"PNTS", [(data, "point " + text) for data, text in pairs], **damage)
+
+    def cells(self, *codes):
+        self.lines += ["x cell %d" % code for code in codes]
+        return self.block(b"CELL", [(struct.pack("<Q", code), "cell %d" % code) for code in codes])
+
+    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None):
+        pairs = [self.point(point) for point in new]
+        counts = counts or [len(new), len(imported), len(simplices), len(finalized)]
+        ids = list(range(first, first + len(new))) + list(imported)
+        name = lambda local: str(ids[local] + 1 if local < len(ids) else "?")
+        self.lines += ["# patch"] + ["v " + text for _, text in pairs]
+        self.lines += ["f " + " ".join(map(name, t)) for t in simplices] + ["x " + name(local) for local in finalized]
+        payload = [(struct.pack("<Q", first), "first id"), (struct.pack("<4I", *counts), "counts N M S F")]
+        payload += [(data, "vertex %d: %s" % (first + i, text)) for i, (data, text) in enumerate(pairs)]
+        payload += [(struct.pack("<Q", vertex), "imports vertex %d" % vertex) for vertex in imported]
+        payload += [(struct.pack("<3I", *t), "triangle of vertices %s" % " ".join(map(str, t))) for t in simplices]
+        payload += [(struct.pack("<I", local), "finalizes local vertex %d" % local) for local in finalized]
+        return self.block(b"PTCH", payload)
+
+    def residual(self, *points):
+        payload = []
+        for vertex, *point in points:
+            data, text = self.point(point)
+            self.lines.append("r %s %s" % ("-" if vertex is None else vertex + 1, text))
+            name = "no vertex yet" if vertex is None else "vertex %d" % vertex
+            payload += [(struct.pack("<Q", UNKNOWN if vertex is None else vertex), name), (data, "at " + text)]
+        return self.block(b"RPNT", payload)
+
+    def walls(self, *walls):
+        self.lines += ["w %d %d" % (a + 1, b + 1) for a, b in walls]
+        return self.block(b"WALL", [(struct.pack("<2I", *wall), "wall %d to %d" % wall) for wall in walls])
+
+    def end(self, points=0, cells=0, vertices=0, simplices=0, merged=0, residual=0, walls=0, **damage):
+        totals = dict(points=points, cells=cells, vertices=vertices, simplices=simplices, merged=merged,
+                      residual=residual, walls=walls)
+        self.lines.append("# end " + " ".join("%s %d" % total for total in totals.items()))
+        return self.block(b"END ", [(struct.pack("<Q", n), name) for name, n in totals.items()], **damage)
+
+    def cut(self, length):
+        """Cuts bytes off the end."""
+        while length >= len(self.pieces[-1][0]):
+            length -= len(self.pieces.pop()[0])
+        data, comment = self.pieces[-1]
+        self.pieces[-1] = (data[: len(data) - length], comment + ", cut off")
+        return self
+
+    def hex(self, title):
+        lines = ["# " + title]
+        for data, comment in self.pieces:
+            rows = [data[i : i + 24].hex(" ") for i in range(0, len(data), 24)] or [""]
+            lines += ["%-72s # %s" % (rows[0], comment)] + rows[1:]
+        return "\n".join(lines) + "\n"
+
+    def text(self):
+        return "\n".join(self.lines) + "\n"
+
+
+CM = (("0.01", "0.01", "0.5"), ("1000", "-2000", "0"))
+HALF = (("0.5", "0.5", "0.25"), ("0", "0", "0"))
+QUADTREE = (2, 0, 0, 0, 4)
+SQUARE = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (2, 2, 4)]
+PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
+
+
+def passing():
+    """Name, title and vector of each stream that is well-formed."""
+    yield "points-empty", "No points, nothing known but their number", Vector(
+        grid=CM, elevation=1, points=0).end()
+    yield "points-f64-2d", "Two dimensions without elevation, coordinates of every size", Vector(
+        bounds=("-1e22", "-0.1", 0, "1.5", "5e-324", 0)).points(
+        ("-1e22", "0"), ("-0.0", "5e-324"), ("1.5", "-0.1")).end(3)
+    yield "points-i32-elevation", "Integers with a scale per axis, and well-known text with a line break", Vector(
+        grid=CM, elevation=1, bounds=(-2147483648, -1, -7, 50, 2147483647, 7), points=3,
+        wkt='LOCAL_CS["Gr\u00fcn",\nUNIT["m\\",1]]').points(
+        (50, -1, 7), (-2147483648, 2147483647, 0)).points((0, 0, -7)).end(3)
+    yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
+        grid=HALF, elevation=1,
+        geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
+    yield "points-3d-octree", "Three dimensions, chunked by an octree that starts below zero", Vector(
+        dims=3, chunked=True, tree=(1, -4, -4, -4, 8), bounds=(-4, -4, -1, 3, 1, "3.75")).cells(9, 10, 12, 13, 14).points(
+        ("-4", "-4", "-1"), ("-1", "-0.5", "-1")).cells(8).points(("3", "1", "3.75"), ("0", "1", "-1")).cells(
+        1).end(4, 7)
+    yield "points-i32-3d", "Three dimensions in integers, no tree", Vector(grid=HALF, dims=3).points(
+        (1, 2, 3), (-1, -2, -3)).end(2)
+    yield "points-chunked", "Chunked by a quadtree; a run of tags in two blocks", Vector(
+        grid=HALF, elevation=1, chunked=True, tree=QUADTREE, bounds=(0, 0, 0, 3, 3, 9), points=6).cells(
+        24, 25).points((1, 0, 9), (1, 0, 8)).cells(16).cells(17).points((2, 1, 0)).points((3, 0, 0)).cells(
+        5).points((2, 2, 1), (3, 3, 1)).cells(7).end(6, 6)
+    yield "points-tagged", "Tags between points in input order: siblings one by one, then what is left of their parent", Vector(
+        tree=QUADTREE).points(("0", "0"), ("3.5", "3.5"), ("1", "0")).cells(16, 17).points(("1", "1")).cells(
+        19, 18).points(("3", "3")).cells(31).points(("2", "2")).cells(1).end(6, 6)
+    yield "points-deep-tree", "A cell at the deepest level of a quadtree", Vector(
+        grid=HALF, tree=(31, -(2**30), 0, 0, 2**31)).points((-(2**30), 0)).cells(2**62).points(
+        (-(2**30) + 1, 0)).end(2, 1)
+    yield "points-empty-blocks", "Blocks without records", Vector(grid=HALF, tree=QUADTREE).points().cells().points(
+        (1, 1)).points().end(1)
+    yield "mesh-empty", "A mesh without vertices", Vector("triangle mesh").end()
+    yield "mesh-one-triangle", "One triangle in f64 without elevation", Vector("triangle mesh", points=3).patch(
+        0, [("0", "0"), ("0.1", "0"), ("0", "1e-7")], (), [(0, 1, 2)], (0, 1, 2)).end(3, vertices=3, simplices=1)
+    yield "mesh-two-patches", "Imports and finalization; one point was merged", Vector(
+        "triangle mesh", grid=HALF, elevation=1, bounds=(0, 0, 0, 2, 2, 4), points=5).patch(
+        0, SQUARE[:3], (), [(0, 1, 2)], (0,)).patch(3, SQUARE[3:], (1, 2), [(0, 2, 1)], (0, 1, 2)).end(
+        5, vertices=4, simplices=2, merged=1)
+    yield "mesh-late-finalization", "Patches that hold only vertices, only triangles, only finalization, and nothing", Vector(
+        "triangle mesh", grid=HALF, elevation=1).patch(0, SQUARE).patch(4, (), (0, 1, 2), [(0, 1, 2)]).patch(
+        4, (), (1, 2, 3), [(2, 1, 0)], (0,)).patch(4).patch(4, (), (0, 2, 3), (), (0, 1, 2)).end(
+        4, vertices=4, simplices=2)
+    yield "mesh-no-triangles", "Collinear points: vertices without triangles", Vector(
+        "triangle mesh", grid=HALF).patch(0, [(0, 0), (1, 1), (2, 2)], (), (), (0, 1, 2)).end(7, vertices=3, merged=4)
+    yield "partial-empty", "A partial mesh of the whole plane, without points", Vector(
+        "partial triangle mesh", region=(-INF, -INF, INF, INF)).end()
+    yield "partial-residual", "One final triangle, its walls, and two points that are no vertices yet", Vector(
+        **PARTIAL, points=6).patch(0, SQUARE[:3], (), [(0, 1, 2)]).residual((0, 0, 0, 0), (None, 7, 7, 0)).residual(
+        (2, 0, 2, 1), (1, 2, 0, 1), (None, 5, 0, 0)).walls((0, 3), (3, 2), (2, 0)).end(
+        6, vertices=3, simplices=1, merged=1, residual=5, walls=3)
+    yield "partial-finalized-inside", "A partial mesh of which one vertex is final", Vector(**PARTIAL).patch(
+        0, [(2, 2, 0), (0, 0, 0), (6, 0, 0), (2, 6, 0)], (), [(0, 1, 2), (0, 2, 3), (0, 3, 1)], (0,)).residual(
+        (1, 0, 0, 0), (2, 6, 0, 0), (3, 2, 6, 0)).walls((0, 1), (1, 2), (2, 0)).end(
+        4, vertices=4, simplices=3, residual=3, walls=3)
+
+
+def failing_headers():
+    """Name, words of the error, and vector of headers that break a rule."""
+    f64 = lambda *values: struct.pack("<%dd" % len(values), *values)
+    damage = [
+        ("magic", "not those of a spmesh stream", dict(magic=b"\x88SPM\r\n\x1a\n")),
+        ("magic-text-mode", "not those of a spmesh stream", dict(magic=b"\x89SPM\n\x1a\n")),
+        ("version", "version 2", dict(version=b"\2\0")),
+        ("kind", "unknown stream kind 99", dict(kind_code=b"\x63\0")),
+        ("header-oversize", "the maximum is 1048576", dict(length=struct.pack("<I", 2**20 + 1))),
+        ("header-short", "truncated", dict(length=struct.pack("<I", 2**20))),
+        ("header-checksum", "checksum does not match", dict(checksum=bytes(4))),
+        ("coordinate-type", "coordinate type 3", dict(type=b"\3")),
+        ("dims", "dimension", dict(dims_code=b"\4")),
+        ("elevation-in-3d", "elevation", dict(dims_code=b"\3", elevation_code=b"\1")),
+        ("reserved-elevation", "reserved bits", dict(elevation_code=b"\2")),
+        ("reserved-flag", "reserved bits", dict(flags=b"\x10")),
+        ("reserved-bytes", "reserved bits", dict(reserved1=b"\0\0\0\1")),
+        ("reserved-bytes-tree", "reserved bits", dict(reserved2=b"\1\0\0\0")),
+        ("crs-length", "do not add up", dict(crs_length=b"\1\0\0\0")),
+        ("crs-encoding", "CRS encoding 3", dict(encoding=b"\3\0")),
+        ("crs-not-utf8", "CRS is not UTF-8", dict(wkt="ab", crs=b"\xff\xfe")),
+        ("geokeys-length", "GeoKey records do not fit", dict(geokeys=[b"", b"", b"ab"], crs=b"\0\0\0\0\0\0\0\0\3\0\0\0ab")),
+        ("geokeys-left-over", "GeoKey records do not fit", dict(geokeys=[b"", b"", b"ab"], crs=bytes(12) + b"ab")),
+        ("producer-not-utf8", "producer is not UTF-8", dict(producer="a", producer_raw=b"\xff")),
+        ("scale-zero", "scale is not positive", dict(grid=HALF, scale=f64(0.5, 0, 1))),
+        ("scale-nan", "scale is not positive", dict(grid=HALF, scale=f64(0.5, NAN, 1))),
+        ("scale-infinite", "too far apart", dict(grid=HALF, scale=f64(1, 1, INF))),
+        ("offset-too-far", "too far apart", dict(grid=HALF, offset=f64(0, 0.5 * 2.0**51 + 1, 0))),
+        ("box-not-ordered", "box is not ordered", dict(bounds=(0, 1, 0, 1, 0, 0))),
+        ("box-nan", "box is not ordered", dict(bounds=(0, 0, 0, 1, 1, 0), box=f64(0, NAN, 0, 1, 1, 0))),
+        ("box-infinite", "not storable", dict(bounds=(0, 0, 0, INF, 1, 0))),
+        ("box-fraction", "not storable", dict(grid=HALF, bounds=(0, 0, 0, "0.5", 1, 0))),
+        ("box-height", "no z", dict(bounds=(0, 0, 0, 1, 1, 1))),
+        ("box-outside-tree", "box does not lie in the finalization tree", dict(bounds=(0, 0, 0, 4, 1, 0), tree=QUADTREE)),
+        ("tree-side", "out of range or not exact", dict(tree=(2, 0, 0, 0, 3))),
+        ("tree-side-negative", "out of range or not exact", dict(tree=(2, 0, 0, 0, -4))),
+        ("tree-origin", "out of range or not exact", dict(tree=(2, "0.1", 0, 0, 4))),
+        ("tree-origin-far", "out of range or not exact", dict(tree=(2, 2.0**24, 0, 0, 4))),
+        ("tree-depth", "out of range or not exact", dict(tree=(32, 0, 0, 0, 4))),
+        ("tree-height", "other dimensions", dict(tree=(2, 0, 0, 1, 4))),
+        ("octree-depth", "out of range or not exact", dict(dims=3, tree=(21, 0, 0, 0, 4))),
+        ("chunked-without-tree", "can be chunked", dict(chunked=True)),
+        ("chunked-mesh", "can be chunked", dict(kind="triangle mesh", chunked=True, tree=QUADTREE)),
+        ("region-of-points", "region goes with a partial mesh", dict(region=(0, 0, 1, 1))),
+        ("region-missing", "region goes with a partial mesh", dict(kind="partial triangle mesh")),
+        ("region-empty", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 0, 1))),
+        ("region-nan", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 1, 1),
+                                               region_raw=f64(0, 0, 1, NAN))),
+        ("mesh-in-3d", "a triangle mesh in 3", dict(kind="triangle mesh", dims=3)),
+    ]
+    for name, words, fields in damage:
+        yield name, words, DamagedVector(fields).end()
+
+
+class DamagedVector(Vector):
+    """A vector whose header takes raw bytes also for fields that share their name with an argument."""
+
+    RAW = {"kind_code": "kind", "dims_code": "dims", "elevation_code": "elevation", "producer_raw": "producer",
+           "region_raw": "region"}
+
+    def __init__(self, fields):
+        raw = {self.RAW[name]: data for name, data in fields.items() if name in self.RAW}
+        super().__init__(**{name: value for name, value in fields.items() if name not in self.RAW})
+        if raw:
+            self.replace(raw)
+
+    def replace(self, raw):
+        comments = {"kind": "kind: ", "dims": "dims", "elevation": "elevation", "producer": "producer", "region": "region"}
+        for name, data in raw.items():
+            at = max(i for i, (_, c) in enumerate(self.pieces) if c == comments[name] or c.startswith("kind: ") and name == "kind")
+            self.pieces[at] = (data, self.pieces[at][1])
+        self.pieces.pop()
+        self.put(struct.pack("<I", crc32c(self.bytes())), "CRC32C of the header")
+
+
+def failing_streams():
+    """Name, words of the error, and vector of streams with a good header."""
+    points = lambda **fields: Vector(grid=HALF, elevation=1, **fields)
+    f64 = lambda **fields: Vector(**fields)
+    mesh = lambda **fields: Vector("triangle mesh", grid=HALF, elevation=1, **fields)
+    partial = lambda: Vector(**PARTIAL)
+    first = lambda: mesh().patch(0, SQUARE[:3], (), [(0, 1, 2)], (0,))
+    raw = lambda data, comment="payload": [(data, comment)]
+
+    empty = points()
+    empty.pieces = []
+    yield "empty-input", "the input is empty", empty
+    yield "cut-in-magic", "truncated", points().cut(len(points().bytes()) - 5)
+    yield "cut-in-header", "truncated", points().cut(40)
+    yield "no-blocks", "truncated", points()
+    yield "no-end", "truncated", points().points((1, 1, 1))
+    yield "cut-in-frame", "truncated", points().points((1, 1, 1)).end(1).cut(60)
+    yield "cut-in-payload", "truncated", points().points((1, 1, 1)).end(1).cut(1)
+    yield "block-oversize", "the maximum is 1048576", points().block(b"PNTS", [], length=2**20 + 1)
+    yield "block-checksum", "checksum does not match", points().points((1, 1, 1), checksum=0).end(1)
+    yield "sequence-gap", "sequence number 2, expected 1", points().points((1, 1, 1)).points((1, 1, 1), sequence=2).end(2)
+    yield "sequence-repeated", "sequence number 0, expected 1", points().points((1, 1, 1)).points((1, 1, 1), sequence=0).end(2)
+    yield "tag-unknown", "unknown block tag", points().block(b"PNTX", []).end()
+    yield "patch-in-points", "may stand here", points().patch().end()
+    yield "cells-in-mesh", "may stand here", mesh(tree=QUADTREE).cells(1).end(cells=1)
+    yield "residual-in-mesh", "may stand here", mesh().residual((None, 0, 0, 0)).end(1, residual=1)
+    yield "patch-after-residual", "may stand here", partial().residual((None, 0, 0, 0)).patch().end(1, residual=1)
+    yield "residual-after-walls", "may stand here", partial().residual((None, 0, 0, 0), (None, 1, 1, 0)).walls(
+        (0, 1)).residual((None, 2, 2, 0)).end(3, residual=3, walls=1)
+    yield "trailing-byte", "goes on after END", points().end().put(b"\0", "one byte too many")
+    yield "two-streams", "goes on after END", points().end().put(points().end().bytes(), "another stream")
+
+    yield "points-length", "whole number of records", points().block(b"PNTS", raw(bytes(13))).end(1)
+    yield "point-nan", "not finite", f64().points(("nan", "0")).end(1)
+    yield "point-infinite", "not finite", f64().points(("0", "inf")).end(1)
+    yield "point-outside-box", "outside of the header's bounding box", points(bounds=(0, 0, 0, 3, 3, 0)).points(
+        (3, 3, 0), (3, 4, 0)).end(2)
+    yield "point-outside-tree", "outside of the finalization tree", points(tree=QUADTREE).points((4, 0, 0)).end(1)
+    yield "point-outside-region", "outside of the region", partial().residual((None, 8, 0, 0)).end(1, residual=1)
+    yield "cell-without-tree", "without a finalization tree", points().cells(1).end(cells=1)
+    yield "cell-zero", "location code 0", points(tree=QUADTREE).cells(0).end(cells=1)
+    yield "cell-between-levels", "location code 9", points(tree=QUADTREE).cells(9).end(cells=1)
+    yield "cell-too-deep", "location code 64", points(tree=QUADTREE).cells(64).end(cells=1)
+    yield "cells-length", "whole number of records", points(tree=QUADTREE).block(b"CELL", raw(bytes(9))).end(cells=1)
+    yield "cell-twice", "cell 16 is final already", points(tree=QUADTREE).cells(16, 17, 16).end(cells=3)
+    yield "cell-after-ancestor", "cell 27 is final already", points(tree=QUADTREE).cells(6).cells(27).end(cells=2)
+    yield "cell-after-siblings", "cell 5 is final already", points(tree=QUADTREE).cells(20, 21, 22, 23, 5).end(cells=5)
+    yield "point-in-final-cell", "in a cell that is final", points(tree=QUADTREE).points((0, 0, 0)).cells(16).points(
+        (1, 1, 0)).points((0, 0, 1)).end(3, 1)
+    yield "point-in-final-ancestor", "in a cell that is final", points(tree=QUADTREE).cells(7).points((3, 2, 0)).end(1, 1)
+    yield "point-on-lower-border", "in a cell that is final", f64(tree=QUADTREE).cells(7).points(
+        ("1.9999999999999998", "2"), ("2", "2")).end(2, 1)
+    yield "chunk-of-two-cells", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
+        (0, 0, 0), (1, 0, 0)).cells(16, 17).end(2, 2)
+    yield "chunk-of-another-cell", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
+        (0, 0, 0)).cells(17).points((0, 0, 1)).cells(16).end(2, 2)
+    yield "chunk-without-tag", "do not lie in one cell", points(tree=QUADTREE, chunked=True).cells(17).points(
+        (0, 0, 0)).end(1, 1)
+    yield "end-points", "END states", points().points((1, 1, 1)).end(2)
+    yield "end-cells", "END states", points(tree=QUADTREE).cells(4).end()
+    yield "end-merged-points", "END states", points().points((1, 1, 1)).end(1, merged=1)
+    yield "end-header-points", "another number of points", points(points=2).points((1, 1, 1)).end(1)
+    yield "end-length", "END of 48 bytes", points().block(b"END ", raw(bytes(48)))
+
+    yield "patch-short", "expected at least 24", mesh().block(b"PTCH", raw(bytes(23))).end()
+    yield "patch-counts", "do not add up", mesh().patch(0, SQUARE, counts=(5, 0, 0, 0)).end()
+    yield "patch-counts-huge", "do not add up", mesh().patch(0, SQUARE, counts=(2**32 - 1,) * 4).end()
+    yield "patch-first-id", "patch starts with vertex 1, expected 0", mesh().patch(1).end()
+    yield "import-not-increasing", "not increasing ids", first().patch(3, (), (2, 1), (), (0, 1)).end(3, vertices=3, simplices=1)
+    yield "import-of-new-vertex", "not increasing ids", mesh().patch(0, SQUARE, (3,)).end(4, vertices=4)
+    yield "import-unknown", "not increasing ids", first().patch(3, (), (1, 7)).end(3, vertices=3, simplices=1)
+    yield "import-after-finalization", "vertex 0 referenced after finalization", first().patch(
+        3, SQUARE[3:], (0, 1), [(0, 1, 2)], (0, 2)).end(4, vertices=4, simplices=2)
+    yield "finalized-twice", "vertex 0 referenced after finalization", first().patch(3, (), (0, 1), (), (0, 1)).end(
+        3, vertices=3, simplices=1)
+    yield "simplex-index", "simplex uses", mesh().patch(0, SQUARE[:3], (), [(0, 1, 3)], (0, 1, 2)).end(3, vertices=3, simplices=1)
+    yield "simplex-repeats-vertex", "uses a vertex twice", mesh().patch(0, SQUARE[:3], (), [(0, 1, 0)], (0, 1, 2)).end(
+        3, vertices=3, simplices=1)
+    yield "finalized-index", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 1, 3)).end(3, vertices=3)
+    yield "finalized-not-increasing", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 2, 1)).end(3, vertices=3)
+    yield "finalized-repeated", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 1, 1)).end(3, vertices=3)
+    yield "vertex-not-finalized", "1 of 3 vertices were finalized", first().end(3, vertices=3, simplices=1)
+    yield "end-vertices", "END states", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(2, vertices=2)
+    yield "end-simplices", "END states", mesh().patch(0, SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2)).end(3, vertices=3, simplices=2)
+    yield "end-mesh-points", "END states", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(3, vertices=1, merged=1)
+    yield "end-beyond-counting", "END", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(0, vertices=1, merged=2**64 - 1)
+
+    yield "residual-length", "whole number of records", partial().block(b"RPNT", raw(bytes(19))).end(1, residual=1)
+    yield "residual-unknown-id", "the id 3 of no vertex", partial().patch(0, SQUARE[:3], (), (), (0, 1, 2)).residual(
+        (3, 0, 0, 0)).end(3, vertices=3, residual=1)
+    yield "residual-finalized-id", "names vertex 0, which is not live", partial().patch(0, SQUARE[:2], (), (), (0,)).residual(
+        (0, 0, 0, 0)).end(2, vertices=2, residual=1)
+    yield "residual-id-twice", "names vertex 1, which is not live", partial().patch(0, SQUARE[:2]).residual(
+        (1, 2, 0, 1), (1, 2, 0, 1)).end(2, vertices=2, residual=2)
+    yield "residual-moved", "other coordinates than its vertex 1", partial().patch(0, SQUARE[:2]).residual(
+        (0, 0, 0, 0), (1, 2, 0, 2)).end(2, vertices=2, residual=2)
+    yield "residual-forgets-vertex", "1 of 2 vertices were finalized", partial().patch(0, SQUARE[:2]).residual(
+        (1, 2, 0, 1)).end(2, vertices=2, residual=1)
+    yield "end-partial-points", "END states", partial().residual((None, 0, 0, 0)).end(2, residual=1)
+    yield "wall-unknown-point", "wall 0 to 1 between no", partial().residual((None, 0, 0, 0)).walls((0, 1)).end(1, residual=1, walls=1)
+    yield "wall-to-itself", "wall 0 to 0 between no", partial().residual((None, 0, 0, 0)).walls((0, 0)).end(1, residual=1, walls=1)
+    yield "end-walls", "END states", partial().residual((None, 0, 0, 0)).end(1, residual=1, walls=1)
+
+
+def files():
+    """Path and content of every file."""
+    for name, title, vector in passing():
+        yield "pass/%s.hex" % name, vector.hex(title)
+        yield "pass/%s.txt" % name, vector.text()
+    for source in (failing_headers(), failing_streams()):
+        for name, words, vector in source:
+            yield "fail/%s.hex" % name, vector.hex("Must be refused: " + words)
+            yield "fail/%s.err" % name, words + "\n"
+
+
+def main(arguments):
+    different = []
+    for path, content in files():
+        path = os.path.join(FOLDER, *path.split("/"))
+        if arguments == ["--check"]:
+            with open(path, encoding="utf-8", newline="") as file:
+                if file.read() != content:
+                    different.append(path)
+        else:
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w", encoding="utf-8", newline="") as file:
+                file.write(content)
+    for path in different:
+        print("make_vectors: %s differs" % path, file=sys.stderr)
+    return 1 if different else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,548 @@
+#!/usr/bin/env python3
+"""Verifies a spmesh stream and prints its text twin.
+
+    python3 spmesh_reader.py FILE      (- for stdin; -q prints nothing)
+
+A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with the standard
+library alone. It checks every rule of the text but the orientation of triangles, those included that need a memory
+of cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit 1: the input cannot be read.
+"""
+
+import bisect
+import json
+import math
+import os
+import struct
+import sys
+from decimal import Decimal
+
+UNKNOWN = 2**64 - 1
+
+
+class Malformed(Exception):
+    """The input breaks a rule of the format."""
+
+
+def require(holds, message):
+    if not holds:
+        raise Malformed(message)
+
+
+# --- 4.1 CRC32C ---------------------------------------------------------------------------------------------------
+
+
+def crc_table():
+    table = []
+    for byte in range(256):
+        for _ in range(8):
+            byte = (byte >> 1) ^ (0x82F63B78 if byte & 1 else 0)
+        table.append(byte)
+    return table
+
+
+CRC_TABLE = crc_table()
+
+
+def crc32c(data):
+    table, crc = CRC_TABLE, 0xFFFFFFFF
+    for byte in data:
+        crc = table[(crc ^ byte) & 0xFF] ^ (crc >> 8)
+    return crc ^ 0xFFFFFFFF
+
+
+assert crc32c(b"123456789") == 0xE3069283
+
+
+# --- 2 Header -----------------------------------------------------------------------------------------------------
+
+MAGIC = b"\x89SPM\r\n\x1a\n"
+KINDS = {
+    1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
+    2: ("triangle mesh", (2,), ((b"PTCH",),)),
+    3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+}
+
+
+class Header:
+    def __init__(self, data):
+        """`data` is the header without its checksum, which has been verified."""
+        kind, length = struct.unpack_from("<HI", data, 10)
+        require(kind in KINDS, "unknown stream kind %d" % kind)
+        require(length >= 192, "header body of %d bytes, expected at least 192" % length)
+        self.kind, dims_of_kind, self.phases = KINDS[kind]
+        coordinate_type, self.dims, elevation, flags, reserved = struct.unpack_from("<BBBBI", data, 16)
+        require(reserved == 0 and elevation < 2 and flags < 16 and data[164:168] == bytes(4), "reserved bits are set")
+        require(coordinate_type in (1, 2), "coordinate type %d" % coordinate_type)
+        require(self.dims in (2, 3) and not (self.dims == 3 and elevation), "%d dimensions with elevation %d" % (self.dims, elevation))
+        require(self.dims in dims_of_kind, "a %s in %d dimensions" % (self.kind, self.dims))
+        self.is_integer = coordinate_type == 2
+        self.has_elevation = elevation == 1
+        self.axes = self.dims + elevation
+        self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
+        self.is_mesh = self.kind != "points"
+        (self.points,) = struct.unpack_from("<Q", data, 24)
+        self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
+        if self.is_integer:
+            self.check_grid()
+        self.tree = Tree(self.dims, data) if flags & 2 else None
+        self.bounds = struct.unpack_from("<6d", data, 80) if flags & 1 else None
+        self.check_bounds()
+        self.region = struct.unpack_from("<4d", data, 168) if flags & 4 else None
+        self.check_region()
+        self.chunked = flags & 8 != 0
+        require(not self.chunked or (self.tree and not self.is_mesh), "only points with a finalization tree can be chunked")
+        self.read_tail(data, length)
+
+    def check_grid(self):
+        for scale, offset in zip(self.scale, self.offset):
+            require(
+                scale > 0 and abs(offset) <= scale * 2.0**51 and scale * 2.0**51 < math.inf,
+                "scale is not positive, or scale and offset are too far apart",
+            )
+
+    def check_bounds(self):
+        if self.bounds is None:
+            return
+        low, high = self.bounds[:3], self.bounds[3:]
+        require(all(a <= b for a, b in zip(low, high)), "the bounding box is not ordered")
+        require(all(map(self.is_storable, self.bounds)), "the bounding box is not storable")
+        require(self.axes == 3 or low[2] == high[2] == 0, "the bounding box has a height, but the points have no z")
+        if self.tree:
+            require(self.tree.contains(low) and self.tree.contains(high), "the bounding box does not lie in the finalization tree")
+
+    def is_storable(self, value):
+        if self.is_integer:
+            return math.isfinite(value) and value == int(value) and -(2**31) <= value < 2**31
+        return math.isfinite(value)
+
+    def check_region(self):
+        require((self.region is not None) == (self.kind == "partial triangle mesh"), "a region goes with a partial mesh, and only with one")
+        if self.region:
+            x0, y0, x1, y1 = self.region
+            require(x0 < x1 and y0 < y1, "the region is empty or not a number")
+
+    def read_tail(self, data, length):
+        encoding, producer_length, crs_length = struct.unpack_from("<HHI", data, 200)
+        require(192 + producer_length + crs_length == length, "lengths of CRS and producer do not add up to the header's length")
+        crs, producer = data[208 : 208 + crs_length], data[208 + crs_length :]
+        self.producer = utf8(producer, "producer")
+        self.wkt = self.geokeys = None
+        if encoding == 1:
+            self.wkt = utf8(crs, "CRS")
+        elif encoding == 2:
+            self.geokeys = geokeys(crs)
+        else:
+            require(encoding == 0 and not crs, "CRS encoding %d with %d bytes" % (encoding, crs_length))
+
+    def point(self, stored):
+        """A stored point with its z, if it lies where the header says that all points lie."""
+        point = stored if self.axes == 3 else stored + (0,)
+        x, y, z = point
+        if not self.is_integer:
+            require(math.isfinite(x) and math.isfinite(y) and math.isfinite(z), "coordinate is not finite")
+        if self.bounds:
+            x0, y0, z0, x1, y1, z1 = self.bounds
+            require(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1, "point %r lies outside of the header's bounding box" % (point,))
+        if self.tree:
+            require(self.tree.contains(point), "point %r lies outside of the finalization tree" % (point,))
+        if self.region:
+            x0, y0, x1, y1 = self.region
+            require(x0 <= x < x1 and y0 <= y < y1, "point %r lies outside of the region" % (point,))
+        return point
+
+    def points_of(self, data):
+        require(len(data) % self.record.size == 0, "%d bytes are not a whole number of records of %d" % (len(data), self.record.size))
+        return [self.point(stored) for stored in self.record.iter_unpack(data)]
+
+
+def utf8(data, what):
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise Malformed("%s is not UTF-8" % what) from None
+
+
+def geokeys(data):
+    records = []
+    for _ in range(3):
+        require(len(data) >= 4, "GeoKey records do not fit the CRS")
+        length = int.from_bytes(data[:4], "little")
+        require(len(data) >= 4 + length, "GeoKey records do not fit the CRS")
+        records.append(data[4 : 4 + length])
+        data = data[4 + length :]
+    require(not data, "GeoKey records do not fit the CRS")
+    return records
+
+
+# --- 2.3 Finalization tree ----------------------------------------------------------------------------------------
+
+
+class Tree:
+    def __init__(self, dims, data):
+        self.dims = dims
+        self.origin = struct.unpack_from("<3d", data, 128)
+        (self.side,) = struct.unpack_from("<d", data, 152)
+        (self.depth,) = struct.unpack_from("<I", data, 160)
+        out_of_range = "the finalization tree is out of range or not exact"
+        require(self.depth <= (31 if dims == 2 else 20), out_of_range)
+        require(2.0**-1022 <= self.side < math.inf and math.frexp(self.side)[0] == 0.5, out_of_range)
+        unit = self.side / 2.0**31
+        for origin in self.origin[:dims]:
+            steps = origin / unit
+            require(steps.is_integer() and steps * unit == origin, out_of_range)
+            require(abs(steps) + 2.0**31 < 2.0**53 and origin + self.side < math.inf, out_of_range)
+        require(dims == 3 or self.origin[2] == 0, "the finalization tree has other dimensions than the points")
+
+    def contains(self, point):
+        for x, origin in zip(point[: self.dims], self.origin):
+            if not origin <= x < origin + self.side:
+                return False
+        return True
+
+    def level(self, code):
+        """Level of a location code, or None if it is no cell of the tree."""
+        bits = code.bit_length() - 1
+        return bits // self.dims if code > 0 and bits % self.dims == 0 and bits // self.dims <= self.depth else None
+
+    def deepest(self, code):
+        """The cells of the deepest level in a cell: first code and one past the last."""
+        shift = self.dims * (self.depth - self.level(code))
+        return code << shift, (code + 1) << shift
+
+    def corners(self, code):
+        level, low, high = self.level(code), [], []
+        for axis in range(self.dims):
+            index = 0
+            for group in reversed(range(level)):
+                index = index << 1 | code >> (group * self.dims + axis) & 1
+            side = self.side / 2.0**level
+            low.append(self.origin[axis] + index * side)
+            high.append(self.origin[axis] + (index + 1) * side)
+        return low, high
+
+    def code_of(self, point):
+        """Location code of the deepest cell that holds a point, by halving: every border is exact."""
+        code, low, side = 1, list(self.origin), self.side
+        for _ in range(self.depth):
+            side /= 2
+            bits = 0
+            for axis in range(self.dims):
+                if point[axis] >= low[axis] + side:
+                    low[axis] += side
+                    bits |= 1 << axis
+            code = code << self.dims | bits
+        return code
+
+
+# --- 4.3 Finalization tags ----------------------------------------------------------------------------------------
+
+
+class FinalCells:
+    """Disjoint ranges of final cells of the deepest level; ranges that touch are one."""
+
+    def __init__(self, tree):
+        self.tree, self.starts, self.ends = tree, [], []
+        self.open = None
+
+    def is_final(self, start, end):
+        at = bisect.bisect_right(self.starts, start) - 1
+        return at >= 0 and end <= self.ends[at]
+
+    def is_open(self, start, end):
+        at = bisect.bisect_left(self.starts, end) - 1
+        return at < 0 or self.ends[at] <= start
+
+    def tag(self, code):
+        require(self.tree.level(code) is not None, "location code %d is not a cell of the tree" % code)
+        start, end = self.tree.deepest(code)
+        require(not self.is_final(start, end), "cell %d is final already" % code)
+        first = bisect.bisect_left(self.ends, start)
+        last = bisect.bisect_right(self.starts, end)
+        if first < last:
+            start, end = min(start, self.starts[first]), max(end, self.ends[last - 1])
+        self.starts[first:last], self.ends[first:last] = [start], [end]
+        self.open = None
+
+    def check(self, point):
+        if self.open:
+            low, high = self.open
+            if all(a <= x < b for a, x, b in zip(low, point, high)):
+                return
+        code = self.tree.code_of(point)
+        require(not self.is_final(*self.tree.deepest(code)), "point %r lies in a cell that is final" % (point,))
+        while code > 1 and self.is_open(*self.tree.deepest(code >> self.tree.dims)):
+            code >>= self.tree.dims
+        self.open = self.tree.corners(code)
+
+
+class Chunks:
+    """The promise of a chunked stream: points between two runs of tags lie in one cell of the second."""
+
+    def __init__(self, tree):
+        self.tree, self.box, self.in_tags = tree, None, False
+
+    def points(self, points):
+        if points and self.in_tags:
+            self.end()
+            self.in_tags = False
+        for point in points:
+            if self.box is None:
+                self.box = (list(point), list(point))
+            self.box = ([min(p) for p in zip(self.box[0], point)], [max(p) for p in zip(self.box[1], point)])
+
+    def tag(self, code):
+        self.in_tags = True
+        if self.box:
+            low, high = self.tree.corners(code)
+            if all(a <= x <= y < b for a, x, y, b in zip(low, self.box[0], self.box[1], high)):
+                self.box = None
+
+    def end(self):
+        require(self.box is None, "the stream is chunked, but the points before the last tag do not lie in one cell of it")
+
+
+# --- 1, 4 Stream and blocks ---------------------------------------------------------------------------------------
+
+
+class Stream:
+    """Reads a stream, block by block, and prints it."""
+
+    def __init__(self, source, text):
+        self.source, self.text = source, text
+        self.where, self.offset = "header at byte 0", 0
+        self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
+        self.live = {}
+        self.finalized = self.named = self.phase = 0
+
+    def take(self, length):
+        data = self.source.read(length)
+        require(len(data) == length, "truncated: found %d of %d bytes" % (len(data), length))
+        self.offset += length
+        return data
+
+    def read(self):
+        start = self.source.read(16)
+        require(start, "the input is empty, expected a spmesh stream")
+        require(MAGIC.startswith(start[:8]), "the first bytes are not those of a spmesh stream")
+        require(len(start) == 16, "truncated: found %d of the first 16 bytes" % len(start))
+        self.offset = 16
+        version, _, length = struct.unpack("<HHI", start[8:])
+        require(version == 1, "stream of version %d, this program reads 1" % version)
+        require(length <= 2**20, "header body of %d bytes, the maximum is %d" % (length, 2**20))
+        data = start + self.take(length)
+        require(crc32c(data) == int.from_bytes(self.take(4), "little"), "checksum does not match: the header is damaged")
+        self.header = Header(data)
+        self.text.header(self.header)
+        tree = self.header.tree
+        self.cells = FinalCells(tree) if tree else None
+        self.chunks = Chunks(tree) if self.header.chunked else None
+        block = 0
+        while self.block(block) != b"END ":
+            block += 1
+
+    def block(self, number):
+        self.where = "block %d at byte %d" % (number, self.offset)
+        frame = self.take(16)
+        tag, sequence, length, checksum = struct.unpack("<4sIII", frame)
+        require(length <= 2**20, "block of %d bytes, the maximum is %d" % (length, 2**20))
+        payload = self.take(length)
+        require(crc32c(frame[:12] + payload) == checksum, "checksum does not match: the block is damaged")
+        require(sequence == number % 2**32, "block has sequence number %d, expected %d" % (sequence, number % 2**32))
+        readers = {b"PNTS": self.points, b"CELL": self.tags, b"PTCH": self.patch, b"RPNT": self.residual, b"WALL": self.walls, b"END ": self.end}
+        require(tag in readers, "unknown block tag")
+        if tag != b"END ":
+            phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
+            require(phase >= self.phase, "no block %r may stand here in a stream of kind %s" % (tag.decode(), self.header.kind))
+            self.phase = phase
+        readers[tag](payload)
+        return tag
+
+    def points(self, payload):
+        points = self.header.points_of(payload)
+        if self.cells:
+            for point in points:
+                self.cells.check(point)
+        if self.chunks:
+            self.chunks.points(points)
+        self.total["points"] += len(points)
+        self.text.vertices(points)
+
+    def tags(self, payload):
+        require(self.cells, "cell tag in a stream without a finalization tree")
+        require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
+        for (code,) in struct.iter_unpack("<Q", payload):
+            self.cells.tag(code)
+            if self.chunks:
+                self.chunks.tag(code)
+            self.total["cells"] += 1
+            self.text.line("x cell %d" % code)
+
+    def patch(self, payload):
+        require(len(payload) >= 24, "patch of %d bytes, expected at least 24" % len(payload))
+        first, n, m, s, f = struct.unpack_from("<QIIII", payload)
+        lengths = [n * self.header.record.size, m * 8, s * 12, f * 4]
+        require(24 + sum(lengths) == len(payload), "the counts of the patch do not add up to its length")
+        require(first == self.total["vertices"], "patch starts with vertex %d, expected %d" % (first, self.total["vertices"]))
+        at = 24 + lengths[0]
+        new = self.header.points_of(payload[24:at])
+        imported = struct.unpack_from("<%dQ" % m, payload, at)
+        corners = struct.unpack_from("<%dI" % (3 * s), payload, at + lengths[1])
+        finalized = struct.unpack_from("<%dI" % f, payload, at + lengths[1] + lengths[2])
+        require(is_increasing(imported) and (m == 0 or imported[-1] < first), "imported vertices are not increasing ids of earlier patches")
+        require(is_increasing(finalized) and (f == 0 or finalized[-1] < n + m), "finalized vertices are not increasing indices of the patch")
+        require(s == 0 or max(corners) < n + m, "simplex uses a vertex that its patch does not have")
+        for vertex in imported:
+            require(vertex in self.live, "vertex %d referenced after finalization" % vertex)
+        ids = list(range(first, first + n)) + list(imported)
+        triangles = list(zip(corners[0::3], corners[1::3], corners[2::3]))
+        for a, b, c in triangles:
+            require(a != b and b != c and c != a, "simplex (%d, %d, %d) uses a vertex twice" % (a, b, c))
+        self.live.update(zip(range(first, first + n), new))
+        for local in finalized:
+            del self.live[ids[local]]
+        self.total["vertices"] += n
+        self.total["simplices"] += s
+        self.finalized += f
+        self.text.patch(new, [(ids[a], ids[b], ids[c]) for a, b, c in triangles], [ids[local] for local in finalized])
+
+    def residual(self, payload):
+        size = 8 + self.header.record.size
+        require(len(payload) % size == 0, "%d bytes are not a whole number of records of %d" % (len(payload), size))
+        for at in range(0, len(payload), size):
+            (vertex,) = struct.unpack_from("<Q", payload, at)
+            point = self.header.point(self.header.record.unpack_from(payload, at + 8))
+            if vertex != UNKNOWN:
+                require(vertex < self.total["vertices"], "residual point has the id %d of no vertex" % vertex)
+                require(vertex in self.live, "residual point names vertex %d, which is not live" % vertex)
+                require(self.live.pop(vertex) == point, "residual point has other coordinates than its vertex %d" % vertex)
+                self.named += 1
+            self.total["residual"] += 1
+            self.text.residual(None if vertex == UNKNOWN else vertex, point)
+
+    def walls(self, payload):
+        require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
+        for a, b in struct.iter_unpack("<II", payload):
+            require(a != b and max(a, b) < self.total["residual"], "wall %d to %d between no residual points" % (a, b))
+            self.total["walls"] += 1
+            self.text.line("w %d %d" % (a + 1, b + 1))
+
+    def end(self, payload):
+        require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))
+        stated = dict(zip(self.total, struct.unpack("<7Q", payload)))
+        counted = dict(self.total)
+        if self.header.is_mesh:
+            counted["merged"] = stated["merged"]
+            counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
+            retired = self.finalized + self.named
+            require(not self.live and retired == counted["vertices"], "END: %d of %d vertices were finalized or handed to the residual" % (retired, counted["vertices"]))
+        require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
+        require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
+        if self.chunks:
+            self.chunks.end()
+        require(not self.source.read(1), "the input goes on after END")
+        self.text.line("# end " + " ".join("%s %d" % total for total in stated.items()))
+
+
+def is_increasing(values):
+    return all(a < b for a, b in zip(values, values[1:]))
+
+
+# --- Text twin (formats/text.md) ----------------------------------------------------------------------------------
+
+
+def decimal(value):
+    digits = repr(float(value))
+    if "e" in digits:
+        return format(Decimal(digits), "f")
+    return digits[:-2] if digits.endswith(".0") else digits
+
+
+def decimals(values):
+    return " ".join(map(decimal, values))
+
+
+class Text:
+    def __init__(self, write):
+        self.write = write
+
+    def line(self, line):
+        self.write(line + "\n")
+
+    def header(self, header):
+        self.world = self.grid(header) if header.is_integer else decimals
+        yes = {True: "yes", False: "no"}
+        lines = ["version 1", "kind " + header.kind, "coordinates " + ("i32" if header.is_integer else "f64")]
+        if header.is_integer:
+            lines += ["scale " + decimals(header.scale), "offset " + decimals(header.offset)]
+        lines += ["dims %d" % header.dims, "elevation " + yes[header.has_elevation]]
+        if header.bounds:
+            lines.append("bounds " + decimals(header.bounds))
+        if header.points != UNKNOWN:
+            lines.append("points %d" % header.points)
+        if header.tree:
+            lines.append("tree %d %s" % (header.tree.depth, decimals(header.tree.origin + (header.tree.side,))))
+        if header.region:
+            lines.append("region " + decimals(header.region))
+        lines.append("chunked " + yes[header.chunked])
+        if header.wkt is not None:
+            lines.append("wkt " + json.dumps(header.wkt, ensure_ascii=False))
+        if header.geokeys:
+            lines.append("geokeys " + " ".join(record.hex() or "-" for record in header.geokeys))
+        lines.append("producer " + json.dumps(header.producer, ensure_ascii=False))
+        for line in lines:
+            self.line("#spmesh " + line)
+
+    def grid(self, header):
+        (sx, sy, sz), (ox, oy, oz) = header.scale, header.offset
+        has_z = header.axes == 3
+
+        def world(point):
+            x, y, z = point
+            return "%s %s %s" % (decimal(x * sx + ox), decimal(y * sy + oy), decimal(z * sz + oz) if has_z else "0")
+
+        return world
+
+    def vertices(self, points):
+        world = self.world
+        self.write("".join(["v %s\n" % world(point) for point in points]))
+
+    def patch(self, new, triangles, finalized):
+        self.line("# patch")
+        self.vertices(new)
+        self.write("".join(["f %d %d %d\n" % (a + 1, b + 1, c + 1) for a, b, c in triangles]))
+        self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
+
+    def residual(self, vertex, point):
+        self.line("r %s %s" % ("-" if vertex is None else vertex + 1, self.world(point)))
+
+
+def main(arguments):
+    quiet = "-q" in arguments
+    names = [argument for argument in arguments if argument != "-q"]
+    if len(names) != 1:
+        print(__doc__, file=sys.stderr)
+        return 2
+    name = "stdin" if names[0] == "-" else names[0]
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(encoding="utf-8", newline="\n")
+    stream = None
+    try:
+        with sys.stdin.buffer if names[0] == "-" else open(name, "rb") as source:
+            stream = Stream(source, Text((lambda text: None) if quiet else sys.stdout.write))
+            stream.read()
+            sys.stdout.flush()
+        return 0
+    except Malformed as error:
+        sys.stdout.flush()
+        print("spmesh_reader: %s: %s: %s" % (name, stream.where, error), file=sys.stderr)
+        return 3
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
+    except OSError as error:
+        print("spmesh_reader: %s: %s" % (name, error), file=sys.stderr)
+        return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

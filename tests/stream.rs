@@ -1,0 +1,398 @@
+//! The reader believes nothing and the writer loses nothing.
+
+use spmesh::bounds::{Bounds, Point, Region};
+use spmesh::cells::{CellCode, CellTree};
+use spmesh::error::{ErrorKind, Result};
+use spmesh::stream::{Coordinates, Crs, Event, Header, Kind, Patch, StreamReader, StreamWriter};
+
+use crate::allocation::largest_during;
+use crate::vectors::{load, run_python, verify};
+
+/// SplitMix64 (Steele, Lea and Flood 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound as u64) as usize
+    }
+
+    fn coin(&mut self) -> bool {
+        self.next() & 1 == 1
+    }
+}
+
+/// Writes events as a stream. Residual and points blocks may come out cut differently.
+fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
+    let mut writer = StreamWriter::new(Vec::new(), header.clone())?;
+    for event in events {
+        match event {
+            Event::Points(points) => writer.points(points)?,
+            Event::Cells(cells) => writer.cells(cells)?,
+            Event::Patch(patch) => writer.patch(patch)?,
+            Event::ResidualPoints(points) => writer.residual_points(points)?,
+            Event::Walls(walls) => writer.walls(walls)?,
+            Event::End(totals) => return writer.end(totals.points, totals.merged),
+        }
+    }
+    panic!("events without END")
+}
+
+/// Joins neighbours of a kind and drops empty ones, which is all that writing may change.
+fn joined(events: Vec<Event>) -> Vec<Event> {
+    let mut result: Vec<Event> = Vec::new();
+    for event in events {
+        match (result.last_mut(), event) {
+            (Some(Event::Points(before)), Event::Points(points)) => before.extend(points),
+            (Some(Event::Cells(before)), Event::Cells(cells)) => before.extend(cells),
+            (Some(Event::ResidualPoints(before)), Event::ResidualPoints(points)) => before.extend(points),
+            (Some(Event::Walls(before)), Event::Walls(walls)) => before.extend(walls),
+            (_, Event::Points(points)) if points.is_empty() => {}
+            (_, Event::Cells(cells)) if cells.is_empty() => {}
+            (_, Event::ResidualPoints(points)) if points.is_empty() => {}
+            (_, Event::Walls(walls)) if walls.is_empty() => {}
+            (_, event) => result.push(event),
+        }
+    }
+    result
+}
+
+fn assert_malformed(bytes: &[u8], case: &str) {
+    let error = verify(bytes).map(|_| ()).expect_err(case);
+    assert_eq!(error.kind(), ErrorKind::Malformed, "{case}: {error}");
+    assert!(error.to_string().contains("byte "), "{case}: {error}");
+}
+
+#[test]
+fn what_was_read_can_be_written() {
+    for vector in load("pass", "txt") {
+        let (header, events) = verify(&vector.bytes).unwrap();
+        let (header_again, events_again) = verify(&write(&header, &events).unwrap()).unwrap();
+        assert_eq!(header_again, header, "{}", vector.name);
+        assert_eq!(joined(events_again), joined(events), "{}", vector.name);
+    }
+}
+
+#[test]
+fn a_stream_cut_anywhere_is_malformed() {
+    for vector in load("pass", "txt") {
+        for len in 0..vector.bytes.len() {
+            assert_malformed(&vector.bytes[..len], &format!("{} cut at {len}", vector.name));
+        }
+    }
+}
+
+#[test]
+fn a_flipped_bit_changes_nothing_or_is_malformed() {
+    for vector in load("pass", "txt") {
+        let whole = verify(&vector.bytes).unwrap();
+        for bit in 0..vector.bytes.len() * 8 {
+            let mut bytes = vector.bytes.clone();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            match verify(&bytes) {
+                Ok(read) => assert_eq!(read, whole, "{} with bit {bit} flipped", vector.name),
+                Err(error) => assert_eq!(error.kind(), ErrorKind::Malformed, "{}: {error}", vector.name),
+            }
+        }
+    }
+}
+
+/// Start and end of header and blocks, checksums included.
+fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
+    let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
+    let mut start = 16 + u32_at(12) + 4;
+    let mut frames = vec![0..start];
+    while start < bytes.len() {
+        let end = start + 16 + u32_at(start + 8);
+        frames.push(start..end);
+        start = end;
+    }
+    frames
+}
+
+/// Puts sequence numbers, lengths and checksums right, so that damage reaches the checks behind them.
+fn seal(mut frames: Vec<Vec<u8>>) -> Vec<u8> {
+    let header = &mut frames[0];
+    let body_end = header.len() - 4;
+    header[12..16].copy_from_slice(&(body_end as u32 - 16).to_le_bytes());
+    let checksum = crc32c::crc32c(&header[..body_end]);
+    header[body_end..].copy_from_slice(&checksum.to_le_bytes());
+    for (sequence, block) in (0u32..).zip(&mut frames[1..]) {
+        let len = block.len() as u32 - 16;
+        block[4..8].copy_from_slice(&sequence.to_le_bytes());
+        block[8..12].copy_from_slice(&len.to_le_bytes());
+        let checksum = crc32c::crc32c_append(crc32c::crc32c(&block[..12]), &block[16..]);
+        block[12..16].copy_from_slice(&checksum.to_le_bytes());
+    }
+    frames.concat()
+}
+
+fn mutate(random: &mut Random, frames: &mut Vec<Vec<u8>>) {
+    let at = random.below(frames.len());
+    let other = random.below(frames.len());
+    let fixed = if at == 0 { 208 } else { 16 };
+    match random.below(8) {
+        0 if at > 0 && other > 0 => frames.swap(at, other),
+        1 if at > 0 => drop(frames.remove(at)),
+        2 if at > 0 => frames.insert(at, frames[at].clone()),
+        3 if at > 0 && other > 0 => {
+            let tag = frames[other][..4].to_vec();
+            frames[at][..4].copy_from_slice(&tag);
+        }
+        4 if frames[at].len() > fixed + 4 => {
+            let len = 1 + random.below(frames[at].len() - fixed - 4);
+            frames[at].drain(fixed..fixed + len);
+        }
+        _ => {
+            let frame = &mut frames[at];
+            let start = if at == 0 { 10 } else { 16 };
+            if frame.len() > start {
+                let byte = start + random.below(frame.len() - start);
+                frame[byte] = [0, 1, 2, 0x7f, 0x80, 0xff, random.next() as u8][random.below(7)];
+            }
+        }
+    }
+}
+
+#[test]
+fn sealed_damage_never_panics_and_what_is_accepted_can_be_written() {
+    let vectors = load("pass", "txt");
+    let mut accepted = 0;
+    for seed in 0..200_000 {
+        let mut random = Random(seed);
+        let bytes = &vectors[random.below(vectors.len())].bytes;
+        let mut pieces: Vec<_> = frames(bytes).into_iter().map(|range| bytes[range].to_vec()).collect();
+        for _ in 0..1 + random.below(3) {
+            mutate(&mut random, &mut pieces);
+        }
+        match verify(&seal(pieces)) {
+            Ok((header, events)) => {
+                accepted += 1;
+                let (header_again, events_again) = verify(&write(&header, &events).unwrap()).unwrap();
+                assert_eq!(header_again, header, "seed {seed}");
+                assert_eq!(joined(events_again), joined(events), "seed {seed}");
+            }
+            Err(error) => assert_eq!(error.kind(), ErrorKind::Malformed, "seed {seed}: {error}"),
+        }
+    }
+    assert!(accepted > 3_000, "only {accepted} cases got through, the damage is too heavy to test anything");
+}
+
+fn read_all(bytes: &[u8]) -> Result<()> {
+    let mut reader = StreamReader::new(bytes, "hostile")?;
+    while reader.next_event()?.is_some() {}
+    Ok(())
+}
+
+#[test]
+fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
+    const BLOCK_MAX: usize = 1 << 20;
+    let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+    let points =
+        write(&Header::new(Kind::Points, grid, 2, false), &[Event::End(Default::default())]).unwrap();
+    let region = Some(Region::PLANE);
+    let partial = Header { region, ..Header::new(Kind::PartialTriangleMesh, grid, 2, false) };
+    let partial = write(&partial, &[Event::End(Default::default())]).unwrap();
+    let with_block = |stream: &[u8], tag: &[u8; 4], payload: Vec<u8>| {
+        let block = [tag, &[0; 12][..], &payload].concat();
+        seal(vec![stream[frames(stream)[0].clone()].to_vec(), block])
+    };
+    let counts = |counts: [u32; 4]| {
+        let counts = counts.iter().flat_map(|count| count.to_le_bytes());
+        let mut payload: Vec<u8> = [0; 8].into_iter().chain(counts).collect();
+        payload.resize(BLOCK_MAX, 0);
+        payload
+    };
+    let mut cases = vec![
+        with_block(&points, b"PNTS", vec![0; BLOCK_MAX]),
+        with_block(&partial, b"RPNT", vec![0xff; BLOCK_MAX]),
+        with_block(&partial, b"PTCH", counts([(BLOCK_MAX as u32 - 24) / 8, 0, 0, 0])),
+        with_block(&partial, b"PTCH", counts([u32::MAX; 4])),
+        with_block(&partial, b"PTCH", counts([0, u32::MAX, 0, 0])),
+        with_block(&points, b"END ", vec![0; BLOCK_MAX]),
+    ];
+    for at in [12, 204, frames(&points)[1].start + 8] {
+        for value in [u32::MAX, 1 << 31, 1 << 20] {
+            let mut bytes = points.clone();
+            bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+            cases.push(bytes);
+        }
+    }
+    for (case, bytes) in cases.iter().enumerate() {
+        let largest = largest_during(|| {
+            let error = read_all(bytes).expect_err("nothing here is whole");
+            assert_eq!(error.kind(), ErrorKind::Malformed, "case {case}: {error}");
+        });
+        assert!(largest <= 4 * BLOCK_MAX, "case {case}: {largest} bytes at once");
+    }
+}
+
+/// A header with random parts, and coordinates that fit all of them.
+fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
+    let dims = if kind == Kind::Points && random.coin() { 3 } else { 2 };
+    let coordinates = if random.coin() {
+        Coordinates::F64
+    } else {
+        Coordinates::I32 { scale: [0.01, 0.5, 1e-3], offset: [5e5, -4e6, random.below(100) as f64] }
+    };
+    let mut header = Header::new(kind, coordinates, dims, dims == 2 && random.coin());
+    let tree = CellTree::new(dims, 4, [-32.0, 0.0, if dims == 3 { -8.0 } else { 0.0 }], 64.0).unwrap();
+    header.tree = (kind == Kind::Points || random.coin()).then_some(tree);
+    header.region =
+        (kind == Kind::PartialTriangleMesh).then_some(Region { min: [-32.0, 0.0], max: [32.0; 2] });
+    header.crs = match random.below(3) {
+        0 => Crs::Unknown,
+        1 => Crs::Wkt("PROJCS[\"\u{fc}\\\t\u{1}\u{7f}\u{2028}\"]".repeat(random.below(9))),
+        _ => Crs::GeoKeys {
+            directory: vec![1; random.below(20)],
+            doubles: Vec::new(),
+            ascii: vec![7; random.below(3)],
+        },
+    };
+    header.producer = "x".repeat(random.below(3));
+    (header, tree)
+}
+
+fn random_point(random: &mut Random, header: &Header) -> Point {
+    let mut point: Point = std::array::from_fn(|_| random.below(32) as f64);
+    point[0] -= 16.0;
+    if matches!(header.coordinates, Coordinates::F64) {
+        point = point.map(|x| x + random.below(1 << 20) as f64 / f64::from(1 << 20));
+    }
+    point[header.coordinates_per_point()..].fill(0.0);
+    point
+}
+
+/// Points in random order; cells of the deepest level are tagged once no point of them is left.
+fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<Event> {
+    let mut points: Vec<Point> = (0..random.below(300)).map(|_| random_point(random, header)).collect();
+    let mut events = Vec::new();
+    while !points.is_empty() {
+        let rest = points.split_off(points.len().min(1 + random.below(40)));
+        let open = |cell: &CellCode| !rest.iter().any(|&point| tree.cell_of(point, 4) == *cell);
+        let mut cells: Vec<_> = points.iter().map(|&point| tree.cell_of(point, 4)).filter(open).collect();
+        cells.sort();
+        cells.dedup();
+        events.extend([Event::Points(points), Event::Cells(cells)]);
+        points = rest;
+    }
+    events
+}
+
+/// Patches with random imports and finalization, then a residual of what is live.
+fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
+    let mut live: Vec<(u64, Point)> = Vec::new();
+    let mut events = Vec::new();
+    let mut first_id = 0;
+    for _ in 0..random.below(20) {
+        let new: Vec<Point> = (0..random.below(8)).map(|_| random_point(random, header)).collect();
+        let imported: Vec<_> = live.iter().copied().filter(|_| random.below(3) == 0).collect();
+        let vertices = new.len() + imported.len();
+        let mut simplices = Vec::new();
+        for _ in 0..if vertices < 3 { 0 } else { random.below(6) } {
+            let start = random.below(vertices);
+            simplices.extend((0..3).map(|i| ((start + i) % vertices) as u32));
+        }
+        let finalized: Vec<u32> = (0..vertices as u32).filter(|_| random.below(3) == 0).collect();
+        let imported = imported.iter().map(|&(id, _)| id).collect();
+        let patch = Patch { first_id, new, imported, simplices, finalized };
+        live.extend(patch.new.iter().zip(first_id..).map(|(&point, id)| (id, point)));
+        live.retain(|&(id, _)| !patch.finalized.iter().any(|&local| patch.id(local) == id));
+        first_id += patch.new.len() as u64;
+        events.push(Event::Patch(patch));
+    }
+    if header.kind == Kind::TriangleMesh {
+        let imported: Vec<u64> = live.iter().map(|&(id, _)| id).collect();
+        let finalized = (0..imported.len() as u32).collect();
+        events.push(Event::Patch(Patch { first_id, imported, finalized, ..Patch::default() }));
+    } else {
+        let mut residual: Vec<_> = live.iter().map(|&(id, point)| (Some(id), point)).collect();
+        residual.extend((0..random.below(5)).map(|_| (None, random_point(random, header))));
+        let ends = residual.len() as u32;
+        let walls = (1..ends).map(|end| [end - 1, end]).collect();
+        events.extend([Event::ResidualPoints(residual), Event::Walls(walls)]);
+    }
+    events
+}
+
+/// A stream with random content, whole and well-formed.
+fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
+    let mut random = Random(seed);
+    let kind = [Kind::Points, Kind::TriangleMesh, Kind::PartialTriangleMesh][random.below(3)];
+    let (mut header, tree) = random_header(&mut random, kind);
+    let events = match kind {
+        Kind::Points => random_points(&mut random, &header, &tree),
+        _ => random_mesh(&mut random, &header),
+    };
+    let mut points = Vec::new();
+    for event in &events {
+        match event {
+            Event::Points(block) => points.extend(block),
+            Event::Patch(patch) => points.extend(&patch.new),
+            Event::ResidualPoints(block) => {
+                points.extend(block.iter().filter(|(id, _)| id.is_none()).map(|&(_, point)| point));
+            }
+            _ => {}
+        }
+    }
+    let merged = if kind == Kind::Points { 0 } else { random.below(9) as u64 };
+    let input_points = points.len() as u64 + merged;
+    header.points = random.coin().then_some(input_points);
+    header.bounds = if random.coin() { Bounds::of_points(&points) } else { None };
+    let end = spmesh::stream::Totals { points: input_points, merged, ..Default::default() };
+    let all = [&events[..], &[Event::End(end)]].concat();
+    let bytes = write(&header, &all).unwrap();
+    (header, events, bytes)
+}
+
+#[test]
+fn random_streams_come_back_as_they_were_written() {
+    for seed in 0..2_000 {
+        let (header, events, bytes) = random_stream(seed);
+        let (header_again, mut events_again) =
+            verify(&bytes).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        assert_eq!(header_again, header, "seed {seed}");
+        assert!(matches!(events_again.pop(), Some(Event::End(_))));
+        assert_eq!(joined(events_again), joined(events), "seed {seed}");
+    }
+}
+
+#[test]
+fn the_python_reader_accepts_random_streams() {
+    for seed in 0..12 {
+        let (_, _, bytes) = random_stream(seed);
+        let Some(output) = run_python("scripts/spmesh_reader.py", &["-q", "-"], &bytes) else { return };
+        assert!(output.status.success(), "seed {seed}: {}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+#[test]
+fn a_writer_that_is_dropped_leaves_no_whole_stream() {
+    let header = Header::new(Kind::Points, Coordinates::F64, 2, false);
+    let mut bytes = Vec::new();
+    let mut writer = StreamWriter::new(&mut bytes, header).unwrap();
+    writer.points(&[[1.0, 2.0, 0.0]]).unwrap();
+    drop(writer);
+    assert_malformed(&bytes, "dropped");
+}
+
+#[test]
+fn long_blocks_are_cut_below_the_maximum() {
+    let tree = CellTree::new(2, 10, [0.0; 3], 1024.0).unwrap();
+    let header = Header { tree: Some(tree), ..Header::new(Kind::Points, Coordinates::F64, 2, true) };
+    let cells: Vec<CellCode> = tree.deepest_range(CellCode::ROOT).map(CellCode).collect();
+    let points = vec![[1.0, 2.0, 3.0]; 100_000];
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    writer.points(&points).unwrap();
+    writer.cells(&cells).unwrap();
+    let (_, events) = verify(&writer.end(0, 0).unwrap()).unwrap();
+    assert!(events.len() > 10);
+    assert_eq!(joined(events)[..2], [Event::Points(points), Event::Cells(cells)]);
+}

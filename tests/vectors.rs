@@ -1,0 +1,128 @@
+//! The vectors of `formats/vectors`: read by this crate and by the Python reader, with the same outcome.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use spmesh::bounds::Point;
+use spmesh::error::{Error, ErrorKind, Result};
+use spmesh::stream::{Event, FinalizedCells, Header, LiveVertices, StreamReader};
+
+/// One vector: its name, its bytes, and what is expected (text twin, or words of the error).
+pub struct Vector {
+    pub name: String,
+    pub bytes: Vec<u8>,
+    pub expected: String,
+}
+
+pub fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// All vectors of a folder, by name.
+pub fn load(folder: &str, extension: &str) -> Vec<Vector> {
+    let mut vectors = Vec::new();
+    for entry in std::fs::read_dir(repository("formats/vectors").join(folder)).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|found| found == "hex") {
+            vectors.push(Vector {
+                name: path.file_stem().unwrap().to_string_lossy().into_owned(),
+                bytes: parse_hex(&std::fs::read_to_string(&path).unwrap()),
+                expected: std::fs::read_to_string(path.with_extension(extension)).unwrap(),
+            });
+        }
+    }
+    vectors.sort_by(|a, b| a.name.cmp(&b.name));
+    assert!(vectors.len() > 10, "the vectors of {folder} are missing");
+    vectors
+}
+
+fn parse_hex(text: &str) -> Vec<u8> {
+    let data = text.lines().map(|line| line.split('#').next().unwrap());
+    data.flat_map(str::split_whitespace).map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
+}
+
+/// Reads a whole stream and checks every rule, those included that need a memory of cells and vertices.
+pub fn verify(bytes: &[u8]) -> Result<(Header, Vec<Event>)> {
+    let mut reader = StreamReader::new(bytes, "vector")?;
+    let header = reader.header().clone();
+    let mut cells = header.tree.map(FinalizedCells::new);
+    let mut live = LiveVertices::new();
+    let mut events = Vec::new();
+    while let Some(event) = reader.next_event()? {
+        remember(&mut cells, &mut live, &event).map_err(|error| reader.locate(error))?;
+        events.push(event);
+    }
+    assert!(live.is_empty(), "the totals of END leave no vertex");
+    Ok((header, events))
+}
+
+fn remember(cells: &mut Option<FinalizedCells>, live: &mut LiveVertices<Point>, event: &Event) -> Result<()> {
+    match (event, cells) {
+        (Event::Points(points), Some(cells)) => cells.check_points(points),
+        (Event::Cells(tags), Some(cells)) => tags.iter().try_for_each(|&cell| cells.finalize(cell)),
+        (Event::Patch(patch), _) => live.enter(patch, |_, point| point).map(|_| ()),
+        (Event::ResidualPoints(points), _) => points.iter().try_for_each(|&(id, point)| match id {
+            Some(id) if live.retire(id)? != point => {
+                Err(Error::malformed(format!("residual point has other coordinates than its vertex {id}")))
+            }
+            _ => Ok(()),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Runs a script of this repository with `input` on stdin; `None`, said on stderr, where there is no Python.
+pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Output> {
+    let spawned = Command::new("python3")
+        .arg(repository(script))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let Ok(mut child) = spawned else {
+        // Not eprintln!, which the test harness keeps to itself.
+        writeln!(std::io::stderr(), "SKIPPED: python3 is missing, {script} was not run").unwrap();
+        return None;
+    };
+    let mut stdin = child.stdin.take().unwrap();
+    let output = std::thread::scope(|scope| {
+        // The script may end before it has read everything.
+        scope.spawn(move || drop(stdin.write_all(input)));
+        child.wait_with_output().unwrap()
+    });
+    Some(output)
+}
+
+#[test]
+fn vectors_that_must_pass_do() {
+    for vector in load("pass", "txt") {
+        if let Err(error) = verify(&vector.bytes) {
+            panic!("{}: {error}", vector.name);
+        }
+    }
+}
+
+#[test]
+fn vectors_that_must_fail_do_with_their_words_and_a_position() {
+    for vector in load("fail", "err") {
+        let error = verify(&vector.bytes).map(|_| ()).expect_err(&vector.name);
+        let message = error.to_string();
+        assert_eq!(error.kind(), ErrorKind::Malformed, "{}: {message}", vector.name);
+        assert!(message.contains(vector.expected.trim_end()), "{}: {message}", vector.name);
+        assert!(message.contains(" byte ") || message.contains(": byte "), "{}: {message}", vector.name);
+    }
+}
+
+#[test]
+fn the_python_reader_gives_the_same_twins_and_the_same_errors() {
+    let Some(output) = run_python("scripts/check_vectors.py", &[], &[]) else { return };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn the_vectors_are_those_that_their_writer_spells_out() {
+    let Some(output) = run_python("scripts/make_vectors.py", &["--check"], &[]) else { return };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
