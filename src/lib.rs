@@ -7,6 +7,7 @@ pub mod cells;
 pub mod cli;
 pub mod delaunay2;
 pub mod error;
+pub mod finalize;
 pub mod limits;
 pub mod order;
 pub mod output;

@@ -20,3 +20,4 @@ pub use kind::Kind;
 pub use live::LiveVertices;
 pub use reader::StreamReader;
 pub use writer::StreamWriter;
+pub(crate) use writer::encode_point;

@@ -72,6 +72,23 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
+    /// Appends points that are encoded already, as [`encode_point`] does it.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(crate) fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
+        let point_len = self.header.point_len();
+        debug_assert!(bytes.len().is_multiple_of(point_len));
+        for bytes in bytes.chunks(POINTS_PAYLOAD / 2 / point_len * point_len) {
+            if self.points.len() + bytes.len() > POINTS_PAYLOAD {
+                self.flush_points()?;
+            }
+            self.points.extend_from_slice(bytes);
+        }
+        self.totals.points += (bytes.len() / point_len) as u64;
+        Ok(())
+    }
+
     /// Tags cells as final: no later point lies in them. Writes what points are still waiting first.
     ///
     /// # Errors
@@ -208,7 +225,10 @@ fn write_error(cause: std::io::Error) -> Error {
 }
 
 /// Appends the stored form of `point`.
-fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
+///
+/// # Errors
+/// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+pub(crate) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {
             return Err(Error::malformed(format!("coordinate {value} does not fit the stream's encoding")));

@@ -1,0 +1,270 @@
+//! Spatial finalization of points (thesis 5.2): from points in any order to a stream that says, as early as
+//! the input allows, which cells of the plane or of space no later point lies in.
+//!
+//! Pass 1 finds the bounding box, or takes it from the headers of the input. Pass 2 counts points per cell
+//! ([`count`]), on a grid as fine as the memory for counters allows; crowded cells are counted again, finer
+//! ([`survey`]). The counts decide the leaves of the finalization tree ([`plan`]). Pass 3 writes the points and
+//! tags a leaf when its counter reaches zero ([`emit`]): either in input order, or chunked, and then points
+//! wait in pages ([`pages`]) within the memory budget, and beyond it in a temporary file ([`spill`]).
+//!
+//! How many points wait in memory and how many on disk does not show in the result. Counters are 64 bits wide.
+
+mod budget;
+mod buffer;
+mod count;
+mod emit;
+mod pages;
+mod plan;
+mod spill;
+mod survey;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+pub use budget::Budget;
+
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
+use crate::source::{Description, PointReader};
+use crate::stream::{Header, Kind, StreamWriter};
+use plan::Plan;
+use survey::Survey;
+
+/// Points that a leaf holds about, unless the user says otherwise.
+pub const CELL_POINTS: u64 = 20_000;
+
+/// An input that can be read from its start as often as needed, the same every time.
+pub trait Passes {
+    /// What is known before reading.
+    fn description(&self) -> &Description;
+
+    /// Starts a pass.
+    ///
+    /// # Errors
+    /// If the input cannot be opened.
+    fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+}
+
+/// Which cells are leaves of the finalization tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Leaves {
+    /// Cells that hold at most `cell_points` (or cannot be divided) and whose parent holds more; none deeper
+    /// than `level_max`. Sparse siblings are thus collapsed into their parent (option m of the thesis).
+    Collapsed {
+        /// Most points in a leaf that could be divided.
+        cell_points: u64,
+        /// Deepest level, if it is limited.
+        level_max: Option<u8>,
+    },
+    /// All occupied cells of one level: the grid of 2^k x 2^k cells of the thesis.
+    Level(u8),
+}
+
+/// The order of the points in the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// The points of a leaf stand together, in input order, right before its tag.
+    Chunked,
+    /// All points keep their order; tags are inserted.
+    Preserved,
+}
+
+/// What to do.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Which cells become leaves.
+    pub leaves: Leaves,
+    /// In which order points are written.
+    pub order: Order,
+    /// Memory for counters, leaves and waiting points.
+    pub budget: Budget,
+    /// Where waiting points go when the budget is used up; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+}
+
+impl Options {
+    fn check(&self, dims: u8) -> Result<()> {
+        let depth_max = depth_max(dims);
+        match self.leaves {
+            Leaves::Level(level) | Leaves::Collapsed { level_max: Some(level), .. } if level > depth_max => {
+                Err(Error::usage(format!(
+                    "level {level} is too deep: the deepest in {dims} dimensions is {depth_max}"
+                )))
+            }
+            Leaves::Collapsed { cell_points: 0, .. } => {
+                Err(Error::usage("a leaf must be allowed to hold at least one point"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Deepest level of a tree.
+fn depth_max(dims: u8) -> u8 {
+    if dims == 2 { QUADTREE_DEPTH_MAX } else { OCTREE_DEPTH_MAX }
+}
+
+/// The passes over the input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pass {
+    /// Finding the bounding box.
+    Bounds,
+    /// Counting points per cell.
+    Count,
+    /// Counting the points of crowded cells on a finer grid.
+    Refine,
+    /// Writing points and tags.
+    Write,
+}
+
+impl Pass {
+    /// Name for people and for JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Pass::Bounds => "bounds",
+            Pass::Count => "count",
+            Pass::Refine => "refine",
+            Pass::Write => "write",
+        }
+    }
+}
+
+/// Hears of the work while it goes on; `()` does not listen.
+pub trait Observer {
+    /// A pass starts; the input has `total` points, where that is known.
+    fn pass(&mut self, _pass: Pass, _total: Option<u64>) {}
+
+    /// So many points of the pass are done.
+    fn done(&mut self, _points: u64) {}
+
+    /// Something that the user should know.
+    fn notice(&mut self, _message: &str) {}
+}
+
+impl Observer for () {}
+
+/// What happened: the columns of table 5.1 of the thesis, and more.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Points written.
+    pub points: u64,
+    /// Points dropped because a coordinate is not finite.
+    pub invalid: u64,
+    /// Every pass over the input with its time, in order.
+    pub passes: Vec<(&'static str, Duration)>,
+    /// Level of the deepest leaf.
+    pub level: u8,
+    /// Leaves: occupied cells that are tagged.
+    pub occupied_cells: u64,
+    /// Maximal empty cells, tagged at the start.
+    pub empty_cells: u64,
+    /// Points in the fullest leaf.
+    pub cell_points_max: u64,
+    /// Most points that waited for their cell at once, in memory and on disk.
+    pub buffered_points_max: u64,
+    /// Most bytes of memory that pages of waiting points took up.
+    pub buffered_bytes_max: u64,
+    /// Points that had to wait on disk.
+    pub spilled_points: u64,
+    /// Bytes written to the temporary file.
+    pub spilled_bytes: u64,
+}
+
+impl Stats {
+    /// Average number of points in a leaf.
+    #[must_use]
+    pub fn cell_points_avg(&self) -> f64 {
+        self.points as f64 / self.occupied_cells.max(1) as f64
+    }
+}
+
+/// Reads `input` two or more times and writes its finalized point stream, END included, to `output`.
+///
+/// Without points the stream has neither bounds nor tree. Where the extent of the points is so large that no
+/// cube around them is finite, it has no tree, no tags, and keeps the input order.
+///
+/// Memory: the budget, on any input, and one batch of the reader.
+///
+/// # Errors
+/// What the input fails with; [`crate::error::ErrorKind::Malformed`] if it changes between passes;
+/// [`crate::error::ErrorKind::Memory`] if the budget is too small for the counters or leaves asked for;
+/// I/O if output or temporary file cannot be written.
+pub fn run<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
+    options.check(input.description().dims)?;
+    let mut work = Work { input, observer, stats: Stats::default() };
+    let survey = work.survey(options)?;
+    let header = header_of(input.description(), &survey, options);
+    match survey.grid {
+        Some(grid) => {
+            let plan = Plan::new(grid, options.leaves, &options.budget)?;
+            work.note_plan(&plan);
+            let header = Header { tree: Some(plan.tree()), ..header };
+            let writer = StreamWriter::new(output, header)?;
+            match options.order {
+                Order::Chunked => work.write_chunked(plan, options, writer)?,
+                Order::Preserved => work.write_preserved(plan, writer)?,
+            }
+        }
+        None => work.write_untagged(StreamWriter::new(output, header)?)?,
+    }
+    Ok(work.stats)
+}
+
+fn header_of(description: &Description, survey: &Survey, options: &Options) -> Header {
+    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
+    Header {
+        bounds: survey.bounds,
+        points: Some(survey.points),
+        chunked: survey.grid.is_some() && options.order == Order::Chunked,
+        crs: crs.clone(),
+        ..Header::new(Kind::Points, coordinates, dims, has_elevation)
+    }
+}
+
+/// What all passes share.
+struct Work<'a, P: Passes + ?Sized> {
+    input: &'a P,
+    observer: &'a mut dyn Observer,
+    stats: Stats,
+}
+
+impl<P: Passes + ?Sized> Work<'_, P> {
+    /// Makes one pass over the input, handing every batch to `consume`; the number of invalid points dropped.
+    fn read_all(&mut self, pass: Pass, mut consume: impl FnMut(&[Point]) -> Result<()>) -> Result<u64> {
+        let start = Instant::now();
+        let total = match self.stats.points {
+            0 => self.input.description().stated_points,
+            known => Some(known),
+        };
+        self.observer.pass(pass, total);
+        let mut reader = self.input.read()?;
+        let mut batch = Vec::new();
+        let mut done = 0;
+        loop {
+            reader.next_batch(&mut batch)?;
+            if batch.is_empty() {
+                break;
+            }
+            consume(&batch)?;
+            done += batch.len() as u64;
+            self.observer.done(done);
+        }
+        self.stats.passes.push((pass.name(), start.elapsed()));
+        Ok(reader.invalid())
+    }
+
+    fn note_plan(&mut self, plan: &Plan) {
+        self.stats.level = plan.tree().depth();
+        self.stats.occupied_cells = plan.leaves() as u64;
+        self.stats.empty_cells = plan.empty().len() as u64;
+        self.stats.cell_points_max = plan.count_max();
+    }
+}
