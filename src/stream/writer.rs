@@ -79,11 +79,15 @@ impl<W: Write> StreamWriter<W> {
     pub(crate) fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
         let point_len = self.header.point_len();
         debug_assert!(bytes.len().is_multiple_of(point_len));
-        for bytes in bytes.chunks(POINTS_PAYLOAD / 2 / point_len * point_len) {
-            if self.points.len() + bytes.len() > POINTS_PAYLOAD {
+        let mut rest = bytes;
+        while !rest.is_empty() {
+            let room = (POINTS_PAYLOAD - self.points.len()) / point_len * point_len;
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            self.points.extend_from_slice(now);
+            rest = later;
+            if self.points.len() + point_len > POINTS_PAYLOAD {
                 self.flush_points()?;
             }
-            self.points.extend_from_slice(bytes);
         }
         self.totals.points += (bytes.len() / point_len) as u64;
         Ok(())

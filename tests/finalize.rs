@@ -1,0 +1,504 @@
+//! Finalized point streams keep their promises, on any input and within any memory.
+//!
+//! The checker derives cells from location codes and header itself and shares no code with the engine.
+
+use std::cell::Cell;
+
+use spmesh::bounds::{Bounds, Point};
+use spmesh::error::{Error, ErrorKind, Result};
+use spmesh::finalize::{Budget, Leaves, Observer, Options, Order, Passes, Stats, run};
+use spmesh::source::{Description, PointReader};
+use spmesh::stream::{Coordinates, Crs, Event, Header, StreamReader};
+
+/// Points in memory as an input; `changed` are what later passes see instead.
+struct Memory {
+    description: Description,
+    points: Vec<Point>,
+    changed: Option<Vec<Point>>,
+    passes: Cell<u32>,
+}
+
+impl Memory {
+    fn new(set: &Set) -> Memory {
+        let description = Description {
+            coordinates: set.coordinates,
+            dims: set.dims,
+            has_elevation: set.dims == 2,
+            crs: Crs::Wkt("LOCAL_CS[\"test\"]".into()),
+            stated_bounds: None,
+            stated_points: None,
+        };
+        Memory { description, points: set.points.clone(), changed: None, passes: Cell::new(0) }
+    }
+}
+
+impl Passes for Memory {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        self.passes.set(self.passes.get() + 1);
+        let points = match &self.changed {
+            Some(changed) if self.passes.get() > 2 => changed,
+            _ => &self.points,
+        };
+        Ok(Box::new(MemoryReader { rest: points }))
+    }
+}
+
+struct MemoryReader<'a> {
+    rest: &'a [Point],
+}
+
+impl PointReader for MemoryReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        let (now, later) = self.rest.split_at(self.rest.len().min(977));
+        batch.clear();
+        batch.extend_from_slice(now);
+        self.rest = later;
+        Ok(())
+    }
+
+    fn invalid(&self) -> u64 {
+        0
+    }
+}
+
+#[derive(Default)]
+struct Notices(Vec<String>);
+
+impl Observer for Notices {
+    fn notice(&mut self, message: &str) {
+        self.0.push(message.into());
+    }
+}
+
+/// A seeded generator (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        self.next() % n
+    }
+}
+
+struct Set {
+    name: &'static str,
+    dims: u8,
+    coordinates: Coordinates,
+    points: Vec<Point>,
+}
+
+const GRID: Coordinates = Coordinates::I32 { scale: [0.01; 3], offset: [500_000.0, 4_000_000.0, 0.0] };
+
+fn set(name: &'static str, dims: u8, coordinates: Coordinates, points: Vec<Point>) -> Set {
+    Set { name, dims, coordinates, points }
+}
+
+fn integer_points(n: usize, seed: u64, extent: u64) -> Vec<Point> {
+    let mut random = Random(seed);
+    (0..n).map(|_| [0; 3].map(|_: u8| random.below(extent) as f64 - 1000.0)).collect()
+}
+
+/// Two thirds of the points in a few spots of a wide area.
+fn clustered(n: usize, seed: u64) -> Vec<Point> {
+    let mut random = Random(seed);
+    let cluster = |random: &mut Random| {
+        let center = random.below(3) as f64 * 1e8;
+        [0; 3].map(|_: u8| center + random.below(300) as f64)
+    };
+    let anywhere = |random: &mut Random| [0; 3].map(|_: u8| random.below(1 << 30) as f64);
+    (0..n).map(|i| if i % 3 > 0 { cluster(&mut random) } else { anywhere(&mut random) }).collect()
+}
+
+/// Strips that are walked to and fro, as a plane does.
+fn swaths(n: usize) -> Vec<Point> {
+    let mut random = Random(5);
+    let along = |i: usize| if i / 500 % 2 == 0 { i % 500 } else { 499 - i % 500 };
+    (0..n)
+        .map(|i| [along(i) as f64 * 20.0, (i / 500 * 1000) as f64 + random.below(1500) as f64, 7.0])
+        .collect()
+}
+
+fn lattice(side: u32, step: f64) -> Vec<Point> {
+    (0..side * side).map(|i| [f64::from(i % side) * step, f64::from(i / side) * step, 0.0]).collect()
+}
+
+fn shuffled(mut points: Vec<Point>) -> Vec<Point> {
+    let mut random = Random(77);
+    for i in (1..points.len()).rev() {
+        points.swap(i, random.below(i as u64 + 1) as usize);
+    }
+    points
+}
+
+fn scaled(points: Vec<Point>, factor: f64) -> Vec<Point> {
+    points.into_iter().map(|point| point.map(|value| value * factor)).collect()
+}
+
+fn sets() -> Vec<Set> {
+    let duplicates = integer_points(3000, 3, 6);
+    let unit: Vec<Point> = {
+        let mut random = Random(11);
+        (0..2000).map(|_| [0; 3].map(|_: u8| random.unit() - 0.5)).collect()
+    };
+    vec![
+        set("random", 2, GRID, integer_points(3000, 1, 100_000)),
+        set("clustered", 2, GRID, clustered(3000, 2)),
+        set("swaths", 2, GRID, swaths(4000)),
+        set("swaths permuted", 2, GRID, shuffled(swaths(4000))),
+        set("duplicates", 2, GRID, duplicates),
+        set("lattice", 2, GRID, lattice(64, 16.0)),
+        set("all equal", 2, GRID, vec![[12.0, -7.0, 3.0]; 1500]),
+        set("one point", 2, GRID, vec![[12.0, -7.0, 3.0]]),
+        set("on a line", 2, GRID, (0..2000).map(|i| [f64::from(i), 5.0, 0.0]).collect()),
+        set("ends of i32", 2, GRID, vec![[f64::from(i32::MIN); 3], [f64::from(i32::MAX); 3], [0.0; 3]]),
+        set("f64", 2, Coordinates::F64, unit.clone()),
+        set("f64 huge", 2, Coordinates::F64, scaled(unit.clone(), 1e307)),
+        set("f64 tiny", 2, Coordinates::F64, scaled(unit.clone(), 1e-320)),
+        set("f64 all equal", 2, Coordinates::F64, vec![[0.1, 1e9, -1e-9]; 800]),
+        set("space", 3, GRID, integer_points(3000, 4, 5000)),
+        set("space clustered", 3, GRID, clustered(3000, 9)),
+        set("space f64", 3, Coordinates::F64, unit),
+    ]
+}
+
+fn options(leaves: Leaves, order: Order) -> Options {
+    let budget = Budget::of_engine(64 << 20).expect("enough");
+    Options { leaves, order, budget, temp_dir: None }
+}
+
+fn collapsed(cell_points: u64) -> Leaves {
+    Leaves::Collapsed { cell_points, level_max: None }
+}
+
+/// A cell as integers: its range of codes at level 62 / dims, and its box.
+struct Tagged {
+    codes: std::ops::Range<u128>,
+    min: Point,
+    max: Point,
+}
+
+impl Tagged {
+    fn new(header: &Header, code: u64) -> Tagged {
+        let tree = header.tree.expect("tags need a tree");
+        let dims = usize::from(tree.dims());
+        let level = (63 - code.leading_zeros() as usize) / dims;
+        let step = tree.side() / (1u64 << level) as f64;
+        let (mut min, mut max) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        for axis in 0..dims {
+            let index: u64 = (0..level).map(|bit| (code >> (bit * dims + axis) & 1) << bit).sum();
+            min[axis] = tree.origin()[axis] + index as f64 * step;
+            max[axis] = tree.origin()[axis] + (index + 1) as f64 * step;
+        }
+        let shift = (62 / dims - level) * dims;
+        Tagged { codes: u128::from(code) << shift..u128::from(code + 1) << shift, min, max }
+    }
+
+    fn contains(&self, point: &Point) -> bool {
+        (0..3).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
+    }
+}
+
+/// What a stream holds, in order.
+struct Decoded {
+    header: Header,
+    points: Vec<Point>,
+    /// Tags, each with the number of points before it.
+    tags: Vec<(usize, Tagged)>,
+}
+
+fn decode(stream: &[u8]) -> Decoded {
+    let mut reader = StreamReader::new(stream, "test").expect("a stream");
+    let header = reader.header().clone();
+    let (mut points, mut tags) = (Vec::new(), Vec::new());
+    while let Some(event) = reader.next_event().expect("a sound stream") {
+        match event {
+            Event::Points(more) => points.extend(more),
+            Event::Cells(cells) => {
+                tags.extend(cells.iter().map(|cell| (points.len(), Tagged::new(&header, cell.0))));
+            }
+            Event::End(totals) => assert_eq!(totals.points, points.len() as u64),
+            other => panic!("{other:?} in a points stream"),
+        }
+    }
+    Decoded { header, points, tags }
+}
+
+/// The tagged cells, in the order of the tree.
+fn codes(decoded: &Decoded) -> Vec<(u128, u128)> {
+    let mut codes: Vec<_> = decoded.tags.iter().map(|(_, cell)| (cell.codes.start, cell.codes.end)).collect();
+    codes.sort_unstable();
+    codes
+}
+
+fn sorted(points: &[Point]) -> Vec<[u64; 3]> {
+    let mut bits: Vec<_> = points.iter().map(|point| point.map(|value| (value + 0.0).to_bits())).collect();
+    bits.sort_unstable();
+    bits
+}
+
+fn finalize(set: &Set, options: &Options) -> (Vec<u8>, Stats) {
+    let mut stream = Vec::new();
+    let stats = run(&Memory::new(set), options, &mut (), &mut stream)
+        .unwrap_or_else(|error| panic!("{}: {error}", set.name));
+    (stream, stats)
+}
+
+/// Checks every promise of a finalized stream of `input`.
+fn check(set: &Set, options: &Options, stream: &[u8]) -> Decoded {
+    let decoded = decode(stream);
+    let Decoded { header, points, tags } = &decoded;
+    let name = set.name;
+    assert_eq!(header.points, Some(set.points.len() as u64), "{name}");
+    assert_eq!(header.bounds, Bounds::of_points(&set.points), "{name}");
+    assert_eq!(header.chunked, options.order == Order::Chunked && !set.points.is_empty(), "{name}");
+    assert_eq!(header.crs, Crs::Wkt("LOCAL_CS[\"test\"]".into()));
+    assert_eq!(sorted(points), sorted(&set.points), "{name}: every point comes out once");
+    for (before, cell) in tags {
+        let late = points[*before..].iter().find(|point| cell.contains(point));
+        assert_eq!(late, None, "{name}: after the tag of its cell");
+    }
+    let mut ranges: Vec<_> = tags.iter().map(|(_, cell)| cell.codes.clone()).collect();
+    ranges.sort_unstable_by_key(|range| range.start);
+    assert!(
+        ranges.windows(2).all(|pair| pair[0].end == pair[1].start),
+        "{name}: tags neither overlap nor gap"
+    );
+    let root = 1u128 << (62 / u32::from(set.dims) * u32::from(set.dims));
+    assert_eq!(
+        (ranges[0].start, ranges[ranges.len() - 1].end),
+        (root, 2 * root),
+        "{name}: tags fill the cube"
+    );
+    match options.order {
+        Order::Preserved => assert_eq!(points, &set.points, "{name}: the order is preserved"),
+        Order::Chunked => check_chunks(set, &decoded),
+    }
+    decoded
+}
+
+/// The points of a cell stand right before its tag, in the order of the input.
+fn check_chunks(set: &Set, decoded: &Decoded) {
+    let mut start = 0;
+    for (end, cell) in &decoded.tags {
+        let expected: Vec<&Point> = set.points.iter().filter(|point| cell.contains(point)).collect();
+        let found: Vec<&Point> = decoded.points[start..*end].iter().collect();
+        assert_eq!(found, expected, "{}: chunk", set.name);
+        start = *end;
+    }
+    assert_eq!(start, decoded.points.len(), "{}: a tag follows the last point", set.name);
+}
+
+#[test]
+fn every_promise_holds_on_every_set_at_every_level() {
+    for set in sets() {
+        for order in [Order::Chunked, Order::Preserved] {
+            for level in [0, 1, 2, 3, 5, 8] {
+                let options = options(Leaves::Level(level), order);
+                let (stream, stats) = finalize(&set, &options);
+                let decoded = check(&set, &options, &stream);
+                assert_eq!(stats.level, level);
+                assert_eq!(decoded.header.tree.map(|tree| tree.depth()), Some(level));
+                assert_eq!(stats.occupied_cells + stats.empty_cells, decoded.tags.len() as u64);
+            }
+        }
+    }
+}
+
+#[test]
+fn every_promise_holds_with_leaves_chosen_from_the_counts() {
+    for set in sets() {
+        for order in [Order::Chunked, Order::Preserved] {
+            for cell_points in [1, 10, 300, 1_000_000] {
+                let options = options(collapsed(cell_points), order);
+                let (stream, stats) = finalize(&set, &options);
+                check(&set, &options, &stream);
+                assert!(cell_points < 1_000_000 || stats.occupied_cells == 1, "{}", set.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn leaves_hold_at_most_cell_points_and_their_parents_hold_more() {
+    // Sets with many equal points, or with many points in a cell of the deepest level, cannot be divided.
+    let cannot_be_divided = ["all equal", "f64 all equal", "f64 tiny", "duplicates", "space clustered"];
+    for set in sets().iter().filter(|set| !cannot_be_divided.contains(&set.name)) {
+        let options = options(collapsed(100), Order::Chunked);
+        let (stream, stats) = finalize(set, &options);
+        assert!(stats.cell_points_max <= 100, "{}: {}", set.name, stats.cell_points_max);
+        let decoded = decode(&stream);
+        for (_, cell) in &decoded.tags {
+            let siblings = 1u128 << set.dims;
+            let len = (cell.codes.end - cell.codes.start) * siblings;
+            let parent = cell.codes.start / len * len..cell.codes.start / len * len + len;
+            let inside = decoded
+                .tags
+                .iter()
+                .filter(|(_, other)| parent.start <= other.codes.start && other.codes.end <= parent.end);
+            let points: usize = inside
+                .map(|(_, other)| set.points.iter().filter(|point| other.contains(point)).count())
+                .sum();
+            assert!(points > 100 || decoded.tags.len() == 1, "{}: a parent of {points} points", set.name);
+        }
+    }
+}
+
+#[test]
+fn a_deepest_level_limits_leaves_chosen_from_the_counts() {
+    let set = set("clustered", 2, GRID, clustered(3000, 2));
+    let leaves = Leaves::Collapsed { cell_points: 10, level_max: Some(4) };
+    let options = options(leaves, Order::Chunked);
+    let (stream, stats) = finalize(&set, &options);
+    check(&set, &options, &stream);
+    assert_eq!(stats.level, 4);
+}
+
+#[test]
+fn the_memory_budget_is_kept_and_does_not_show_in_the_result() {
+    for name in ["random", "swaths permuted", "clustered", "space", "f64 huge", "all equal"] {
+        let small = sets().into_iter().find(|set| set.name == name).expect("a set of this name");
+        let points: Vec<Point> = (0..8).flat_map(|_| small.points.iter().copied()).collect();
+        let set = Set { points: shuffled(points), ..small };
+        for leaves in [Leaves::Level(0), Leaves::Level(2), Leaves::Level(3), collapsed(400)] {
+            let plenty = options(leaves, Order::Chunked);
+            let (expected, _) = finalize(&set, &plenty);
+            for bytes in [64 << 10, 100 << 10] {
+                let budget = Budget::of_engine(bytes).expect("the least");
+                let (stream, stats) = finalize(&set, &Options { budget, ..plenty.clone() });
+                assert!(stats.buffered_bytes_max <= bytes);
+                assert!(stats.spilled_points > 0 && stats.spilled_bytes > 0, "{name} does not spill");
+                // Little memory for counters may mean other leaves, but nothing else may differ.
+                let decoded = check(&set, &plenty, &stream);
+                if codes(&decoded) == codes(&decode(&expected)) {
+                    assert!(stream == expected, "{name}: spilling shows in the result");
+                } else {
+                    assert!(leaves == collapsed(400), "{name}: other leaves of {leaves:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn crowded_cells_are_counted_again() {
+    // A grid of counters that fits 64 KiB is too coarse for the clusters.
+    let set = set("clustered", 2, GRID, clustered(6000, 21));
+    let budget = Budget::of_engine(64 << 10).expect("the least");
+    let options = Options { budget, ..options(collapsed(100), Order::Chunked) };
+    let (stream, stats) = finalize(&set, &options);
+    check(&set, &options, &stream);
+    assert!(stats.passes.iter().any(|(name, _)| *name == "refine"), "{:?}", stats.passes);
+    assert!(stats.cell_points_max <= 400, "{} points in a leaf", stats.cell_points_max);
+}
+
+#[test]
+fn no_points_make_a_stream_without_bounds_and_tree() {
+    for order in [Order::Chunked, Order::Preserved] {
+        for stated_bounds in [None, Some(Bounds { min: [0.0; 3], max: [9.0; 3] })] {
+            let mut input = Memory::new(&set("empty", 2, GRID, Vec::new()));
+            input.description.stated_bounds = stated_bounds;
+            let mut stream = Vec::new();
+            run(&input, &options(Leaves::Level(3), order), &mut (), &mut stream).expect("works");
+            let decoded = decode(&stream);
+            assert_eq!((decoded.header.bounds, decoded.header.tree), (None, None));
+            assert_eq!((decoded.header.points, decoded.header.chunked), (Some(0), false));
+            assert!(decoded.points.is_empty() && decoded.tags.is_empty());
+        }
+    }
+}
+
+#[test]
+fn extents_without_a_finite_cube_are_copied_without_tags() {
+    let points = vec![[-1.7e308, 0.0, 0.0], [1.7e308, 1.0, 0.0], [3.0, 2.0, 1.0]];
+    let set = set("endless", 2, Coordinates::F64, points);
+    let mut notices = Notices::default();
+    let mut stream = Vec::new();
+    run(&Memory::new(&set), &options(collapsed(1), Order::Chunked), &mut notices, &mut stream)
+        .expect("works");
+    let decoded = decode(&stream);
+    assert_eq!(decoded.points, set.points);
+    assert!(decoded.header.tree.is_none() && !decoded.header.chunked && decoded.tags.is_empty());
+    assert_eq!(notices.0.len(), 1);
+}
+
+#[test]
+fn stated_bounds_save_a_pass_and_are_not_believed() {
+    let set = set("random", 2, GRID, integer_points(3000, 1, 100_000));
+    let exact = Bounds::of_points(&set.points).expect("points");
+    let wide = Bounds { min: exact.min.map(|x| x - 10.0), max: exact.max.map(|x| x + 10.0) };
+    let tight = Bounds { min: exact.min.map(|x| x + 10.0), max: exact.max.map(|x| x - 70_000.0) };
+    let huge = Bounds { min: [-2e9; 3], max: [2e9; 3] };
+    for leaves in [Leaves::Level(4), collapsed(50)] {
+        let is_fixed = leaves == Leaves::Level(4);
+        for (stated, passes, notices) in
+            [(exact, 2, 0), (wide, 2, 0), (tight, 3, 1), (huge, if is_fixed { 3 } else { 2 }, 0)]
+        {
+            let mut input = Memory::new(&set);
+            input.description.stated_bounds = Some(stated);
+            let (mut stream, mut heard) = (Vec::new(), Notices::default());
+            let options = options(leaves, Order::Chunked);
+            let stats = run(&input, &options, &mut heard, &mut stream).expect("works");
+            check(&set, &options, &stream);
+            assert_eq!((stats.passes.len(), heard.0.len()), (passes, notices), "{stated:?}");
+        }
+    }
+}
+
+#[test]
+fn an_input_that_changes_between_passes_is_malformed() {
+    let points = integer_points(3000, 1, 100_000);
+    let fewer = points[1..].to_vec();
+    let more = [&points[..], &[points[5]]].concat();
+    let moved: Vec<Point> = points.iter().map(|&[x, y, z]| [x, 90_000.0 - y, z]).collect();
+    let outside = [&points[1..], &[[1e9, 0.0, 0.0]]].concat();
+    for changed in [fewer, more, moved, outside, Vec::new()] {
+        for order in [Order::Chunked, Order::Preserved] {
+            let mut input = Memory::new(&set("random", 2, GRID, points.clone()));
+            input.changed = Some(changed.clone());
+            let mut stream = Vec::new();
+            let result = run(&input, &options(Leaves::Level(4), order), &mut (), &mut stream);
+            let error = result.expect_err("the third pass differs");
+            assert_eq!(error.kind(), ErrorKind::Malformed);
+            assert!(error.to_string().contains("changed between"), "{error}");
+            let mut reader = StreamReader::new(&stream[..], "partial").expect("a header");
+            let end = std::iter::from_fn(|| reader.next_event().transpose()).find(Result::is_err);
+            assert!(end.is_some(), "a stream that failed has no END");
+        }
+    }
+}
+
+#[test]
+fn requests_that_cannot_be_met_are_refused() {
+    let set = set("random", 2, GRID, integer_points(3000, 1, 100_000));
+    let refused = |options: &Options| -> Error {
+        run(&Memory::new(&set), options, &mut (), &mut Vec::new()).expect_err("refused")
+    };
+    let too_deep = options(Leaves::Level(32), Order::Chunked);
+    assert_eq!(refused(&too_deep).kind(), ErrorKind::Usage);
+    assert_eq!(refused(&options(collapsed(0), Order::Chunked)).kind(), ErrorKind::Usage);
+    let budget = Budget::of_engine(64 << 10).expect("the least");
+    let too_many_leaves = Options { budget, ..options(Leaves::Level(20), Order::Chunked) };
+    assert_eq!(refused(&too_many_leaves).kind(), ErrorKind::Memory);
+    assert_eq!(Budget::of_engine(1000).expect_err("too small").kind(), ErrorKind::Memory);
+    assert_eq!(Budget::of_process(1 << 20).expect_err("too small").kind(), ErrorKind::Memory);
+    let temp_dir = Some("/nonexistent/folder".into());
+    let nowhere = Options { budget, temp_dir, ..options(Leaves::Level(0), Order::Chunked) };
+    let many = Set { points: integer_points(20_000, 1, 1000), ..set };
+    let error = run(&Memory::new(&many), &nowhere, &mut (), &mut Vec::new()).expect_err("no folder");
+    assert_eq!(error.kind(), ErrorKind::Io);
+    assert!(error.to_string().contains("/nonexistent/folder"), "{error}");
+}
