@@ -1,10 +1,37 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams, SPA and SPB.
 
+mod crs;
+mod detect;
+mod grid;
+mod input;
+mod las_header;
+mod laz;
+mod laz_chunks;
+mod lines;
+mod origin;
+mod panic_guard;
+mod placement;
+mod records;
+mod sp;
+mod spa;
+mod spb;
+mod stream;
+mod text;
+
 use std::path::PathBuf;
+
+pub use crs::crs_name;
+pub use input::Input;
+pub use sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpReader};
+pub use spa::SpaReader;
+pub use spb::SpbReader;
 
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
 use crate::stream::{Coordinates, Crs};
+
+/// About how many points a batch has.
+const BATCH_POINTS: usize = 1 << 16;
 
 /// What to read of the files, and how.
 #[derive(Debug, Clone, Default)]

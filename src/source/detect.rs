@@ -1,0 +1,93 @@
+//! Recognises files by their content. Names say little: data arrives through pipes, and endings lie.
+
+use std::io::Read;
+
+use super::origin::FileView;
+use crate::error::{Error, Result};
+
+/// Bytes from the start of a file that are looked at.
+const HEAD_LEN: u64 = 1 << 16;
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// LAS, LAZ or COPC.
+    Las,
+    /// A stream of this project.
+    Stream,
+    /// Streaming points as text, by Isenburg.
+    Spa,
+    /// Streaming points as bytes, by Isenburg.
+    Spb,
+    /// Lines of coordinates.
+    Text,
+}
+
+/// First bytes of files that are often given by mistake, and what to do about it.
+const MISTAKEN: [(&[u8], &str); 7] = [
+    (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
+    (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
+    (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
+    (b"BZh", "bzip2 data: decompress it first, for example with bzcat"),
+    (b"\xfd7zXZ\x00", "xz data: decompress it first, for example with xzcat"),
+    (b"\xff\xfe", "text in UTF-16: convert it first, for example with iconv -f utf-16 -t utf-8"),
+    (b"ply\n", "a PLY file: convert it first, for example with pdal translate"),
+];
+
+/// What `file` is.
+///
+/// # Errors
+/// If it is empty or of no known format.
+pub(super) fn detect(file: &FileView) -> Result<Format> {
+    let mut head = Vec::new();
+    let mut start = file.range(0, file.len()).take(HEAD_LEN);
+    start.read_to_end(&mut head).map_err(|e| Error::io("reading", e))?;
+    if head.is_empty() {
+        return Err(Error::malformed("empty: no point file has no bytes at all"));
+    }
+    if head.starts_with(b"LASF") {
+        return Ok(Format::Las);
+    }
+    if head.starts_with(b"\x89SPM") {
+        return Ok(Format::Stream);
+    }
+    if let Some((_, what)) = MISTAKEN.iter().find(|(magic, _)| head.starts_with(magic)) {
+        return Err(Error::malformed(format!("is {what}")));
+    }
+    // Version 7, byte order 0 or 1, then data type (two bits) and finalization method.
+    if let [7, 0 | 1, flags, ..] = head[..]
+        && flags & 3 < 3
+        && flags >> 2 <= 4
+    {
+        return Ok(Format::Spb);
+    }
+    if let Some(at) = head.iter().position(|&byte| byte == 0) {
+        return Err(Error::malformed(format!(
+            "zero byte at byte {at}: not text, and neither LAS, LAZ, SPB nor a spmesh stream"
+        )));
+    }
+    Ok(if is_spa(&head) { Format::Spa } else { Format::Text })
+}
+
+/// Whether text is SPA: by its first event, or by the fields of its header.
+fn is_spa(head: &[u8]) -> bool {
+    let mut has_fields = false;
+    for line in head.split(|&byte| byte == b'\n') {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let Some(first) = words.next() else { continue };
+        if first.starts_with(b"#") {
+            let field = words.next().unwrap_or_default();
+            has_fields |= matches!(field, b"npoints" | b"datatype" | b"finalizemethod")
+                || field.starts_with(b"bb_min")
+                || field.starts_with(b"bb_max");
+            continue;
+        }
+        let second = words.next().and_then(|word| std::str::from_utf8(word).ok()).unwrap_or_default();
+        return match first {
+            b"v" | b"p" => second.parse::<f64>().is_ok(),
+            b"x" => second == "cell",
+            _ => false,
+        };
+    }
+    has_fields
+}

@@ -1,0 +1,143 @@
+//! Moves points from the coordinates of their file to those of the whole input, and drops what is not wanted.
+
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::stream::Coordinates;
+
+/// Largest deviation of a scale ratio from a whole number, relative.
+const RATIO_TOLERANCE: f64 = 1e-9;
+
+/// Largest deviation of an offset from a whole number of quanta, and of a coordinate from a side of the
+/// bounds filter, in quanta.
+const QUANTA_TOLERANCE: f64 = 1e-6;
+
+/// How the points of one file become points of the input.
+#[derive(Debug)]
+pub(super) struct Placement {
+    step: Step,
+    /// Sides of the bounds filter in the file's stored coordinates: min x, min y, max x, max y.
+    bounds: Option<[f64; 4]>,
+    skip_invalid: bool,
+    /// Points dropped so far because a coordinate is not finite.
+    pub(super) invalid: u64,
+}
+
+#[derive(Debug)]
+enum Step {
+    Same,
+    /// Exact: both are integers, of which the file's count whole multiples of the input's.
+    Integers {
+        factor: Point,
+        shift: Point,
+    },
+    ToWorld(Coordinates),
+    /// To the nearest grid point.
+    ToGrid {
+        from: Coordinates,
+        to: Coordinates,
+    },
+}
+
+impl Placement {
+    pub(super) fn new(
+        from: &Coordinates,
+        to: &Coordinates,
+        bounds: Option<[f64; 4]>,
+        skip_invalid: bool,
+    ) -> Self {
+        let step = if from == to {
+            Step::Same
+        } else if *to == Coordinates::F64 {
+            Step::ToWorld(*from)
+        } else if let Some((factor, shift)) = whole_steps(from, to) {
+            Step::Integers { factor, shift }
+        } else {
+            Step::ToGrid { from: *from, to: *to }
+        };
+        let bounds = bounds.map(|bounds| stored_bounds(from, bounds));
+        Placement { step, bounds, skip_invalid, invalid: 0 }
+    }
+
+    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless it is to be dropped.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite (and that is not to be skipped), or does not fit the input's grid. The
+    /// caller knows the record and adds it.
+    #[inline]
+    pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<()> {
+        if let Some([min_x, min_y, max_x, max_y]) = self.bounds
+            && !(min_x <= stored[0] && stored[0] <= max_x && min_y <= stored[1] && stored[1] <= max_y)
+            && stored[0].is_finite()
+            && stored[1].is_finite()
+        {
+            return Ok(());
+        }
+        let placed = match &self.step {
+            Step::Same => stored,
+            Step::Integers { factor, shift } => {
+                std::array::from_fn(|axis| stored[axis] * factor[axis] + shift[axis])
+            }
+            Step::ToWorld(from) => from.to_world(stored),
+            Step::ToGrid { from, to } => to.to_stored(from.to_world(stored)),
+        };
+        if !placed.iter().all(|value| value.is_finite()) {
+            return self.refuse(stored);
+        }
+        if let Step::Integers { .. } | Step::ToGrid { .. } = self.step
+            && !placed.iter().all(|value| f64::from(*value as i32) == *value)
+        {
+            return Err(Error::usage(format!(
+                "coordinates {stored:?} are {placed:?} steps of the common grid, beyond 32 bits: \
+                 give a coarser --scale or another --offset"
+            )));
+        }
+        batch.push(placed);
+        Ok(())
+    }
+
+    #[cold]
+    fn refuse(&mut self, stored: Point) -> Result<()> {
+        if self.skip_invalid {
+            self.invalid += 1;
+            return Ok(());
+        }
+        Err(Error::malformed(format!(
+            "coordinates {stored:?} are not finite (--skip-invalid drops and counts such points)"
+        )))
+    }
+}
+
+/// Factor and shift per axis that turn stored integers of `from` into those of `to` exactly, if there are any.
+pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
+    let (Coordinates::I32 { scale, offset }, Coordinates::I32 { scale: to_scale, offset: to_offset }) =
+        (from, to)
+    else {
+        return None;
+    };
+    let (mut factor, mut shift) = ([0.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        factor[axis] = whole(scale[axis] / to_scale[axis], RATIO_TOLERANCE * scale[axis] / to_scale[axis])?;
+        shift[axis] = whole((offset[axis] - to_offset[axis]) / to_scale[axis], QUANTA_TOLERANCE)?;
+        if factor[axis] < 1.0 {
+            return None;
+        }
+    }
+    Some((factor, shift))
+}
+
+fn whole(value: f64, tolerance: f64) -> Option<f64> {
+    let rounded = value.round();
+    ((value - rounded).abs() <= tolerance && rounded.abs() < 2f64.powi(52)).then_some(rounded)
+}
+
+/// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside, however
+/// the products of scale and integer are rounded.
+fn stored_bounds(from: &Coordinates, bounds: [f64; 4]) -> [f64; 4] {
+    match from {
+        Coordinates::F64 => bounds,
+        Coordinates::I32 { scale, offset } => std::array::from_fn(|side| {
+            let steps = (bounds[side] - offset[side % 2]) / scale[side % 2];
+            if side < 2 { (steps - QUANTA_TOLERANCE).ceil() } else { (steps + QUANTA_TOLERANCE).floor() }
+        }),
+    }
+}
