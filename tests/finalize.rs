@@ -126,7 +126,7 @@ fn clustered(n: usize, seed: u64) -> Vec<Point> {
 /// Strips that are walked to and fro, as a plane does.
 fn swaths(n: usize) -> Vec<Point> {
     let mut random = Random(5);
-    let along = |i: usize| if (i / 500).is_multiple_of(2) { i % 500 } else { 499 - i % 500 };
+    let along = |i: usize| if i / 500 % 2 == 0 { i % 500 } else { 499 - i % 500 };
     (0..n)
         .map(|i| [along(i) as f64 * 20.0, (i / 500 * 1000) as f64 + random.below(1500) as f64, 7.0])
         .collect()

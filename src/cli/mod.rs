@@ -2,7 +2,9 @@
 
 pub mod progress;
 pub mod spdelaunay2d;
+pub mod spfinalize;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,7 +16,7 @@ use crate::error::{Error, ErrorKind};
 ///
 /// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
 pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
-    let flags = match Flags::try_parse() {
+    let flags = match Flags::try_parse_from(join_stats_format(std::env::args_os())) {
         Ok(flags) => flags,
         Err(message) => {
             // Help and version go to stdout; a reader that leaves early is not an error worth words.
@@ -33,6 +35,22 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
             ExitCode::from(code)
         }
     }
+}
+
+/// Makes `--stats json` one argument. For clap the format must be joined to its flag (`--stats=json`), or
+/// `--stats FILE` would take the file for a format.
+fn join_stats_format(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    for argument in arguments {
+        match joined.last_mut() {
+            Some(last) if last == "--stats" && (argument == "text" || argument == "json") => {
+                last.push("=");
+                last.push(argument);
+            }
+            _ => joined.push(argument),
+        }
+    }
+    joined
 }
 
 /// Flags that every tool has.

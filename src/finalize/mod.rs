@@ -27,7 +27,7 @@ pub use budget::Budget;
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
-use crate::source::{Description, PointReader};
+use crate::source::{Description, Input, PointReader};
 use crate::stream::{Header, Kind, StreamWriter};
 use plan::Plan;
 use survey::Survey;
@@ -266,5 +266,15 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         self.stats.occupied_cells = plan.leaves() as u64;
         self.stats.empty_cells = plan.empty().len() as u64;
         self.stats.cell_points_max = plan.count_max();
+    }
+}
+
+impl Passes for Input {
+    fn description(&self) -> &Description {
+        Input::description(self)
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Input::read(self)
     }
 }

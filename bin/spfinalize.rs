@@ -1,0 +1,7 @@
+//! `spfinalize`: points in, finalized point stream out.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    spmesh::cli::main(spmesh::cli::spfinalize::run)
+}

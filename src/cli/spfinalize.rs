@@ -1,0 +1,266 @@
+//! The command line of `spfinalize`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use clap::Parser;
+
+use super::progress::Progress;
+use super::{Common, StatsFormat, notice, parse_size, peak_memory};
+use crate::error::Error;
+use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Stats};
+use crate::output::Output;
+use crate::source::{Input, SourceOptions};
+
+const TOOL: &str = "spfinalize";
+
+const EXAMPLES: &str = "\
+Examples:
+  Triangulate a tile in bounded memory:
+      spfinalize tile.laz | spdelaunay2d -o tile.sp
+  Ground and water of many files as one input, keeping within 256 MB:
+      spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.sp
+  A grid of 2^6 x 2^6 cells, points in their own order, with the figures of the run:
+      spfinalize --level 6 --preserve --stats text tile.laz -o tile.sp
+  Points of space from text on stdin:
+      zcat scan.xyz.gz | spfinalize --octree - | spinfo -
+
+Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept.";
+
+/// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
+///
+/// Reads LAS, LAZ, COPC, text, spmesh streams, SPA or SPB, and writes a stream of points in which tags say
+/// which cells no later point lies in. Points of a cell are held back and written together (chunked), unless
+/// --preserve is given. The input is read two or three times; what cannot be read again is spooled.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Files to read as one input; - is stdin, and the default
+    #[arg(value_name = "INPUT")]
+    inputs: Vec<PathBuf>,
+
+    /// Read the files that are listed in this file, one per line
+    #[arg(long, value_name = "FILE")]
+    lof: Option<PathBuf>,
+
+    /// Where to write; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Take all occupied cells of this level as leaves; with --cell-points, the deepest level of leaves. 0 is
+    /// a single cell
+    #[arg(long, value_name = "K")]
+    level: Option<u8>,
+
+    /// Divide cells that hold more points than this [default: 20000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    cell_points: Option<u64>,
+
+    /// Keep the order of the points and only insert tags
+    #[arg(long)]
+    preserve: bool,
+
+    /// Divide space with an octree: z is geometry, not elevation
+    #[arg(long)]
+    octree: bool,
+
+    /// Memory of the process; points beyond it wait in a temporary file
+    #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
+    memory: u64,
+
+    /// Folder for temporary files [default: the system's]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    /// Keep only points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    keep_class: Vec<u8>,
+
+    /// Drop points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    drop_class: Vec<u8>,
+
+    /// Keep only first returns
+    #[arg(long)]
+    first_only: bool,
+
+    /// Keep only last returns
+    #[arg(long)]
+    last_only: bool,
+
+    /// Keep only points whose x and y lie in this closed box
+    #[arg(long, value_name = "MINX,MINY,MAXX,MAXY", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
+    bounds: Option<[f64; 4]>,
+
+    /// Drop and count points with a coordinate that is not finite, instead of failing
+    #[arg(long)]
+    skip_invalid: bool,
+
+    /// Put coordinates on a grid of these steps
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>)]
+    scale: Option<[f64; 3]>,
+
+    /// World coordinates of the origin of that grid [default: 0,0,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true, requires = "scale")]
+    offset: Option<[f64; 3]>,
+
+    /// Print the figures of the run on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// Everything that reading, finalizing and writing fail with.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let options = flags.options()?;
+    let input = Input::open(&flags.paths()?, &flags.source_options())?;
+    for message in input.notices() {
+        notice(TOOL, &flags.common, message);
+    }
+    let mut output = Output::create(&flags.output, true)?;
+    let mut watch = Watch { common: &flags.common, progress: None };
+    let stats = finalize::run(&input, &options, &mut watch, &mut output)?;
+    drop(watch);
+    output.commit()?;
+    if stats.spilled_points > 0 {
+        let message =
+            format!("{} points waited in a temporary file, for lack of --memory", stats.spilled_points);
+        notice(TOOL, &flags.common, &message);
+    }
+    match flags.stats {
+        Some(StatsFormat::Text) => eprint!("{}", stats_text(&stats)),
+        Some(StatsFormat::Json) => eprintln!("{}", stats_json(&stats)),
+        None => {}
+    }
+    Ok(())
+}
+
+impl Flags {
+    fn options(&self) -> anyhow::Result<Options> {
+        let leaves = match (self.level, self.cell_points) {
+            (Some(level), None) => Leaves::Level(level),
+            (level_max, cell_points) => {
+                Leaves::Collapsed { cell_points: cell_points.unwrap_or(CELL_POINTS), level_max }
+            }
+        };
+        Ok(Options {
+            leaves,
+            order: if self.preserve { Order::Preserved } else { Order::Chunked },
+            budget: Budget::of_process(self.memory)?,
+            temp_dir: self.temp_dir.clone(),
+        })
+    }
+
+    fn source_options(&self) -> SourceOptions {
+        SourceOptions {
+            keep_class: self.keep_class.clone(),
+            drop_class: self.drop_class.clone(),
+            first_only: self.first_only,
+            last_only: self.last_only,
+            bounds: self.bounds,
+            skip_invalid: self.skip_invalid,
+            dims: if self.octree { 3 } else { 2 },
+            grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
+            temp_dir: self.temp_dir.clone(),
+        }
+    }
+
+    fn paths(&self) -> anyhow::Result<Vec<PathBuf>> {
+        let mut paths = self.inputs.clone();
+        if let Some(list) = &self.lof {
+            paths.extend(read_list(list)?);
+        } else if paths.is_empty() {
+            paths.push(PathBuf::from("-"));
+        }
+        Ok(paths)
+    }
+}
+
+/// The files listed in `list`, one per line; empty lines do not count.
+fn read_list(list: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let text = std::fs::read_to_string(list)
+        .map_err(|e| Error::io("reading the list of files", e).of_input(list.display().to_string()))?;
+    let paths: Vec<PathBuf> =
+        text.lines().map(str::trim).filter(|line| !line.is_empty()).map(PathBuf::from).collect();
+    if paths.is_empty() {
+        return Err(Error::usage("lists no files").of_input(list.display().to_string()))
+            .context("nothing to read");
+    }
+    Ok(paths)
+}
+
+/// `N` numbers between commas.
+fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
+    let found = numbers.len();
+    numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
+}
+
+/// Shows progress and notices on stderr.
+struct Watch<'a> {
+    common: &'a Common,
+    progress: Option<Progress>,
+}
+
+impl Observer for Watch<'_> {
+    fn pass(&mut self, pass: Pass, total: Option<u64>) {
+        self.progress = None;
+        self.progress = Some(Progress::new(self.common, pass.name(), total));
+    }
+
+    fn done(&mut self, points: u64) {
+        if let Some(progress) = &mut self.progress {
+            progress.set(points);
+        }
+    }
+
+    fn notice(&mut self, message: &str) {
+        notice(TOOL, self.common, message);
+    }
+}
+
+fn stats_text(stats: &Stats) -> String {
+    let mut rows: Vec<(String, String)> = Vec::new();
+    let mut row = |name: &str, value: String| rows.push((name.into(), value));
+    row("points", stats.points.to_string());
+    row("invalid points skipped", stats.invalid.to_string());
+    for (pass, time) in &stats.passes {
+        row(&format!("time of pass {pass:?}"), format!("{:.2} s", time.as_secs_f64()));
+    }
+    row("peak memory", format!("{:.1} MB", peak_memory() as f64 / 1e6));
+    row("most points buffered", stats.buffered_points_max.to_string());
+    row("most bytes buffered in memory", stats.buffered_bytes_max.to_string());
+    row("level", stats.level.to_string());
+    row("occupied cells", stats.occupied_cells.to_string());
+    row("empty cells", stats.empty_cells.to_string());
+    row("points per cell, average", format!("{:.0}", stats.cell_points_avg()));
+    row("points per cell, most", stats.cell_points_max.to_string());
+    row("points spilled", stats.spilled_points.to_string());
+    row("bytes spilled", stats.spilled_bytes.to_string());
+    rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
+}
+
+fn stats_json(stats: &Stats) -> serde_json::Value {
+    let passes: Vec<_> = stats
+        .passes
+        .iter()
+        .map(|(name, time)| serde_json::json!({"pass": name, "seconds": time.as_secs_f64()}))
+        .collect();
+    serde_json::json!({
+        "points": stats.points,
+        "invalid_skipped": stats.invalid,
+        "passes": passes,
+        "peak_memory_bytes": peak_memory(),
+        "buffered": {"points_max": stats.buffered_points_max, "memory_bytes_max": stats.buffered_bytes_max},
+        "level": stats.level,
+        "cells": {"occupied": stats.occupied_cells, "empty": stats.empty_cells},
+        "points_per_cell": {"avg": stats.cell_points_avg(), "max": stats.cell_points_max},
+        "spilled": {"points": stats.spilled_points, "bytes": stats.spilled_bytes},
+    })
+}
