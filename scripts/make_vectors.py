@@ -48,8 +48,9 @@ class Vector:
         return self
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
-               chunked=False, wkt=None, geokeys=None, producer="vector", **damage):
-        """`grid` is scale and offset; `damage` overrides a field with raw bytes, by its name below."""
+               chunked=False, wkt=None, geokeys=None, producer="vector", raw=None):
+        """`grid` is scale and offset; `raw` overrides a field with bytes, by its name below."""
+        raw = raw or {}
         self.grid, self.dims, self.axes = grid, dims, dims + elevation
         scale, offset = grid or (("0",) * 3, ("0",) * 3)
         crs, encoding = b"", 0
@@ -85,11 +86,11 @@ class Vector:
             ("crs", crs, "CRS"),
             ("producer", producer, "producer"),
         ]
-        assert set(damage) <= {name for name, _, _ in fields} | {"checksum"}, damage
+        assert set(raw) <= {name for name, _, _ in fields} | {"checksum"}, raw
         for name, data, comment in fields:
-            if data or name in damage:
-                self.put(damage.get(name, data), comment)
-        self.put(damage.get("checksum", struct.pack("<I", crc32c(self.bytes()))), "CRC32C of the header")
+            if data or name in raw:
+                self.put(raw.get(name, data), comment)
+        self.put(raw.get("checksum", struct.pack("<I", crc32c(self.bytes()))), "CRC32C of the header")
         yes = ("no", "yes")
         self.say("version 1", "kind " + kind, "coordinates " + ("i32" if grid else "f64"))
         if grid:
@@ -265,20 +266,20 @@ def passing():
 
 
 def failing_headers():
-    """Name, words of the error, and vector of headers that break a rule."""
+    """Name, words of the error, and vector of headers that break a rule. Bytes override a field as it is stored."""
     f64 = lambda *values: struct.pack("<%dd" % len(values), *values)
     damage = [
         ("magic", "not those of a spmesh stream", dict(magic=b"\x88SPM\r\n\x1a\n")),
         ("magic-text-mode", "not those of a spmesh stream", dict(magic=b"\x89SPM\n\x1a\n")),
         ("version", "version 2", dict(version=b"\2\0")),
-        ("kind", "unknown stream kind 99", dict(kind_code=b"\x63\0")),
+        ("kind", "unknown stream kind 99", dict(kind=b"\x63\0")),
         ("header-oversize", "the maximum is 1048576", dict(length=struct.pack("<I", 2**20 + 1))),
         ("header-short", "truncated", dict(length=struct.pack("<I", 2**20))),
         ("header-checksum", "checksum does not match", dict(checksum=bytes(4))),
         ("coordinate-type", "coordinate type 3", dict(type=b"\3")),
-        ("dims", "dimension", dict(dims_code=b"\4")),
-        ("elevation-in-3d", "elevation", dict(dims_code=b"\3", elevation_code=b"\1")),
-        ("reserved-elevation", "reserved bits", dict(elevation_code=b"\2")),
+        ("dims", "dimension", dict(dims=b"\4")),
+        ("elevation-in-3d", "elevation", dict(dims=b"\3", elevation=b"\1")),
+        ("reserved-elevation", "reserved bits", dict(elevation=b"\2")),
         ("reserved-flag", "reserved bits", dict(flags=b"\x10")),
         ("reserved-bytes", "reserved bits", dict(reserved1=b"\0\0\0\1")),
         ("reserved-bytes-tree", "reserved bits", dict(reserved2=b"\1\0\0\0")),
@@ -287,7 +288,7 @@ def failing_headers():
         ("crs-not-utf8", "CRS is not UTF-8", dict(wkt="ab", crs=b"\xff\xfe")),
         ("geokeys-length", "GeoKey records do not fit", dict(geokeys=[b"", b"", b"ab"], crs=b"\0\0\0\0\0\0\0\0\3\0\0\0ab")),
         ("geokeys-left-over", "GeoKey records do not fit", dict(geokeys=[b"", b"", b"ab"], crs=bytes(12) + b"ab")),
-        ("producer-not-utf8", "producer is not UTF-8", dict(producer="a", producer_raw=b"\xff")),
+        ("producer-not-utf8", "producer is not UTF-8", dict(producer=b"\xff" * 6)),
         ("scale-zero", "scale is not positive", dict(grid=HALF, scale=f64(0.5, 0, 1))),
         ("scale-nan", "scale is not positive", dict(grid=HALF, scale=f64(0.5, NAN, 1))),
         ("scale-infinite", "too far apart", dict(grid=HALF, scale=f64(1, 1, INF))),
@@ -310,33 +311,13 @@ def failing_headers():
         ("region-of-points", "region goes with a partial mesh", dict(region=(0, 0, 1, 1))),
         ("region-missing", "region goes with a partial mesh", dict(kind="partial triangle mesh")),
         ("region-empty", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 0, 1))),
-        ("region-nan", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 1, 1),
-                                               region_raw=f64(0, 0, 1, NAN))),
+        ("region-nan", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 1, NAN))),
         ("mesh-in-3d", "a triangle mesh in 3", dict(kind="triangle mesh", dims=3)),
     ]
     for name, words, fields in damage:
-        yield name, words, DamagedVector(fields).end()
-
-
-class DamagedVector(Vector):
-    """A vector whose header takes raw bytes also for fields that share their name with an argument."""
-
-    RAW = {"kind_code": "kind", "dims_code": "dims", "elevation_code": "elevation", "producer_raw": "producer",
-           "region_raw": "region"}
-
-    def __init__(self, fields):
-        raw = {self.RAW[name]: data for name, data in fields.items() if name in self.RAW}
-        super().__init__(**{name: value for name, value in fields.items() if name not in self.RAW})
-        if raw:
-            self.replace(raw)
-
-    def replace(self, raw):
-        comments = {"kind": "kind: ", "dims": "dims", "elevation": "elevation", "producer": "producer", "region": "region"}
-        for name, data in raw.items():
-            at = max(i for i, (_, c) in enumerate(self.pieces) if c == comments[name] or c.startswith("kind: ") and name == "kind")
-            self.pieces[at] = (data, self.pieces[at][1])
-        self.pieces.pop()
-        self.put(struct.pack("<I", crc32c(self.bytes())), "CRC32C of the header")
+        raw = {field: value for field, value in fields.items() if isinstance(value, bytes)}
+        arguments = {field: value for field, value in fields.items() if field not in raw}
+        yield name, words, Vector(raw=raw, **arguments).end()
 
 
 def failing_streams():
@@ -359,8 +340,10 @@ def failing_streams():
     yield "cut-in-payload", "truncated", points().points((1, 1, 1)).end(1).cut(1)
     yield "block-oversize", "the maximum is 1048576", points().block(b"PNTS", [], length=2**20 + 1)
     yield "block-checksum", "checksum does not match", points().points((1, 1, 1), checksum=0).end(1)
-    yield "sequence-gap", "sequence number 2, expected 1", points().points((1, 1, 1)).points((1, 1, 1), sequence=2).end(2)
-    yield "sequence-repeated", "sequence number 0, expected 1", points().points((1, 1, 1)).points((1, 1, 1), sequence=0).end(2)
+    yield ("sequence-gap", "sequence number 2, expected 1",
+        points().points((1, 1, 1)).points((1, 1, 1), sequence=2).end(2))
+    yield ("sequence-repeated", "sequence number 0, expected 1",
+        points().points((1, 1, 1)).points((1, 1, 1), sequence=0).end(2))
     yield "tag-unknown", "unknown block tag", points().block(b"PNTX", []).end()
     yield "patch-in-points", "may stand here", points().patch().end()
     yield "cells-in-mesh", "may stand here", mesh(tree=QUADTREE).cells(1).end(cells=1)
@@ -385,10 +368,12 @@ def failing_streams():
     yield "cells-length", "whole number of records", points(tree=QUADTREE).block(b"CELL", raw(bytes(9))).end(cells=1)
     yield "cell-twice", "cell 16 is final already", points(tree=QUADTREE).cells(16, 17, 16).end(cells=3)
     yield "cell-after-ancestor", "cell 27 is final already", points(tree=QUADTREE).cells(6).cells(27).end(cells=2)
-    yield "cell-after-siblings", "cell 5 is final already", points(tree=QUADTREE).cells(20, 21, 22, 23, 5).end(cells=5)
+    yield ("cell-after-siblings", "cell 5 is final already",
+        points(tree=QUADTREE).cells(20, 21, 22, 23, 5).end(cells=5))
     yield "point-in-final-cell", "in a cell that is final", points(tree=QUADTREE).points((0, 0, 0)).cells(16).points(
         (1, 1, 0)).points((0, 0, 1)).end(3, 1)
-    yield "point-in-final-ancestor", "in a cell that is final", points(tree=QUADTREE).cells(7).points((3, 2, 0)).end(1, 1)
+    yield ("point-in-final-ancestor", "in a cell that is final",
+        points(tree=QUADTREE).cells(7).points((3, 2, 0)).end(1, 1))
     yield "point-on-lower-border", "in a cell that is final", f64(tree=QUADTREE).cells(7).points(
         ("1.9999999999999998", "2"), ("2", "2")).end(2, 1)
     yield "chunk-of-two-cells", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
@@ -407,22 +392,28 @@ def failing_streams():
     yield "patch-counts", "do not add up", mesh().patch(0, SQUARE, counts=(5, 0, 0, 0)).end()
     yield "patch-counts-huge", "do not add up", mesh().patch(0, SQUARE, counts=(2**32 - 1,) * 4).end()
     yield "patch-first-id", "patch starts with vertex 1, expected 0", mesh().patch(1).end()
-    yield "import-not-increasing", "not increasing ids", first().patch(3, (), (2, 1), (), (0, 1)).end(3, vertices=3, simplices=1)
+    yield ("import-not-increasing", "not increasing ids",
+        first().patch(3, (), (2, 1), (), (0, 1)).end(3, vertices=3, simplices=1))
     yield "import-of-new-vertex", "not increasing ids", mesh().patch(0, SQUARE, (3,)).end(4, vertices=4)
     yield "import-unknown", "not increasing ids", first().patch(3, (), (1, 7)).end(3, vertices=3, simplices=1)
     yield "import-after-finalization", "vertex 0 referenced after finalization", first().patch(
         3, SQUARE[3:], (0, 1), [(0, 1, 2)], (0, 2)).end(4, vertices=4, simplices=2)
     yield "finalized-twice", "vertex 0 referenced after finalization", first().patch(3, (), (0, 1), (), (0, 1)).end(
         3, vertices=3, simplices=1)
-    yield "simplex-index", "simplex uses", mesh().patch(0, SQUARE[:3], (), [(0, 1, 3)], (0, 1, 2)).end(3, vertices=3, simplices=1)
+    yield ("simplex-index", "simplex uses",
+        mesh().patch(0, SQUARE[:3], (), [(0, 1, 3)], (0, 1, 2)).end(3, vertices=3, simplices=1))
     yield "simplex-repeats-vertex", "uses a vertex twice", mesh().patch(0, SQUARE[:3], (), [(0, 1, 0)], (0, 1, 2)).end(
         3, vertices=3, simplices=1)
-    yield "finalized-index", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 1, 3)).end(3, vertices=3)
-    yield "finalized-not-increasing", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 2, 1)).end(3, vertices=3)
-    yield "finalized-repeated", "not increasing indices", mesh().patch(0, SQUARE[:3], (), (), (0, 1, 1)).end(3, vertices=3)
+    yield ("finalized-index", "not increasing indices",
+        mesh().patch(0, SQUARE[:3], (), (), (0, 1, 3)).end(3, vertices=3))
+    yield ("finalized-not-increasing", "not increasing indices",
+        mesh().patch(0, SQUARE[:3], (), (), (0, 2, 1)).end(3, vertices=3))
+    yield ("finalized-repeated", "not increasing indices",
+        mesh().patch(0, SQUARE[:3], (), (), (0, 1, 1)).end(3, vertices=3))
     yield "vertex-not-finalized", "1 of 3 vertices were finalized", first().end(3, vertices=3, simplices=1)
     yield "end-vertices", "END states", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(2, vertices=2)
-    yield "end-simplices", "END states", mesh().patch(0, SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2)).end(3, vertices=3, simplices=2)
+    yield ("end-simplices", "END states",
+        mesh().patch(0, SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2)).end(3, vertices=3, simplices=2))
     yield "end-mesh-points", "END states", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(3, vertices=1, merged=1)
     yield "end-beyond-counting", "END", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(0, vertices=1, merged=2**64 - 1)
 
@@ -438,8 +429,10 @@ def failing_streams():
     yield "residual-forgets-vertex", "1 of 2 vertices were finalized", partial().patch(0, SQUARE[:2]).residual(
         (1, 2, 0, 1)).end(2, vertices=2, residual=1)
     yield "end-partial-points", "END states", partial().residual((None, 0, 0, 0)).end(2, residual=1)
-    yield "wall-unknown-point", "wall 0 to 1 between no", partial().residual((None, 0, 0, 0)).walls((0, 1)).end(1, residual=1, walls=1)
-    yield "wall-to-itself", "wall 0 to 0 between no", partial().residual((None, 0, 0, 0)).walls((0, 0)).end(1, residual=1, walls=1)
+    yield ("wall-unknown-point", "wall 0 to 1 between no",
+        partial().residual((None, 0, 0, 0)).walls((0, 1)).end(1, residual=1, walls=1))
+    yield ("wall-to-itself", "wall 0 to 0 between no",
+        partial().residual((None, 0, 0, 0)).walls((0, 0)).end(1, residual=1, walls=1))
     yield "end-walls", "END states", partial().residual((None, 0, 0, 0)).end(1, residual=1, walls=1)
 
 

@@ -73,7 +73,10 @@ class Header:
         coordinate_type, self.dims, elevation, flags, reserved = struct.unpack_from("<BBBBI", data, 16)
         require(reserved == 0 and elevation < 2 and flags < 16 and data[164:168] == bytes(4), "reserved bits are set")
         require(coordinate_type in (1, 2), "coordinate type %d" % coordinate_type)
-        require(self.dims in (2, 3) and not (self.dims == 3 and elevation), "%d dimensions with elevation %d" % (self.dims, elevation))
+        require(
+            self.dims in (2, 3) and not (self.dims == 3 and elevation),
+            "%d dimensions with elevation %d" % (self.dims, elevation),
+        )
         require(self.dims in dims_of_kind, "a %s in %d dimensions" % (self.kind, self.dims))
         self.is_integer = coordinate_type == 2
         self.has_elevation = elevation == 1
@@ -90,7 +93,10 @@ class Header:
         self.region = struct.unpack_from("<4d", data, 168) if flags & 4 else None
         self.check_region()
         self.chunked = flags & 8 != 0
-        require(not self.chunked or (self.tree and not self.is_mesh), "only points with a finalization tree can be chunked")
+        require(
+            not self.chunked or (self.tree and not self.is_mesh),
+            "only points with a finalization tree can be chunked",
+        )
         self.read_tail(data, length)
 
     def check_grid(self):
@@ -108,7 +114,10 @@ class Header:
         require(all(map(self.is_storable, self.bounds)), "the bounding box is not storable")
         require(self.axes == 3 or low[2] == high[2] == 0, "the bounding box has a height, but the points have no z")
         if self.tree:
-            require(self.tree.contains(low) and self.tree.contains(high), "the bounding box does not lie in the finalization tree")
+            require(
+                self.tree.contains(low) and self.tree.contains(high),
+                "the bounding box does not lie in the finalization tree",
+            )
 
     def is_storable(self, value):
         if self.is_integer:
@@ -116,14 +125,20 @@ class Header:
         return math.isfinite(value)
 
     def check_region(self):
-        require((self.region is not None) == (self.kind == "partial triangle mesh"), "a region goes with a partial mesh, and only with one")
+        require(
+            (self.region is not None) == (self.kind == "partial triangle mesh"),
+            "a region goes with a partial mesh, and only with one",
+        )
         if self.region:
             x0, y0, x1, y1 = self.region
             require(x0 < x1 and y0 < y1, "the region is empty or not a number")
 
     def read_tail(self, data, length):
         encoding, producer_length, crs_length = struct.unpack_from("<HHI", data, 200)
-        require(192 + producer_length + crs_length == length, "lengths of CRS and producer do not add up to the header's length")
+        require(
+            192 + producer_length + crs_length == length,
+            "lengths of CRS and producer do not add up to the header's length",
+        )
         crs, producer = data[208 : 208 + crs_length], data[208 + crs_length :]
         self.producer = utf8(producer, "producer")
         self.wkt = self.geokeys = None
@@ -142,7 +157,10 @@ class Header:
             require(math.isfinite(x) and math.isfinite(y) and math.isfinite(z), "coordinate is not finite")
         if self.bounds:
             x0, y0, z0, x1, y1, z1 = self.bounds
-            require(x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1, "point %r lies outside of the header's bounding box" % (point,))
+            require(
+                x0 <= x <= x1 and y0 <= y <= y1 and z0 <= z <= z1,
+                "point %r lies outside of the header's bounding box" % (point,),
+            )
         if self.tree:
             require(self.tree.contains(point), "point %r lies outside of the finalization tree" % (point,))
         if self.region:
@@ -151,7 +169,10 @@ class Header:
         return point
 
     def points_of(self, data):
-        require(len(data) % self.record.size == 0, "%d bytes are not a whole number of records of %d" % (len(data), self.record.size))
+        require(
+            len(data) % self.record.size == 0,
+            "%d bytes are not a whole number of records of %d" % (len(data), self.record.size),
+        )
         return [self.point(stored) for stored in self.record.iter_unpack(data)]
 
 
@@ -298,7 +319,10 @@ class Chunks:
                 self.box = None
 
     def end(self):
-        require(self.box is None, "the stream is chunked, but the points before the last tag do not lie in one cell of it")
+        require(
+            self.box is None,
+            "the stream is chunked, but the points before the last tag do not lie in one cell of it",
+        )
 
 
 # --- 1, 4 Stream and blocks ---------------------------------------------------------------------------------------
@@ -330,7 +354,10 @@ class Stream:
         require(version == 1, "stream of version %d, this program reads 1" % version)
         require(length <= 2**20, "header body of %d bytes, the maximum is %d" % (length, 2**20))
         data = start + self.take(length)
-        require(crc32c(data) == int.from_bytes(self.take(4), "little"), "checksum does not match: the header is damaged")
+        require(
+            crc32c(data) == int.from_bytes(self.take(4), "little"),
+            "checksum does not match: the header is damaged",
+        )
         self.header = Header(data)
         self.text.header(self.header)
         tree = self.header.tree
@@ -348,11 +375,21 @@ class Stream:
         payload = self.take(length)
         require(crc32c(frame[:12] + payload) == checksum, "checksum does not match: the block is damaged")
         require(sequence == number % 2**32, "block has sequence number %d, expected %d" % (sequence, number % 2**32))
-        readers = {b"PNTS": self.points, b"CELL": self.tags, b"PTCH": self.patch, b"RPNT": self.residual, b"WALL": self.walls, b"END ": self.end}
+        readers = {
+            b"PNTS": self.points,
+            b"CELL": self.tags,
+            b"PTCH": self.patch,
+            b"RPNT": self.residual,
+            b"WALL": self.walls,
+            b"END ": self.end,
+        }
         require(tag in readers, "unknown block tag")
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
-            require(phase >= self.phase, "no block %r may stand here in a stream of kind %s" % (tag.decode(), self.header.kind))
+            require(
+                phase >= self.phase,
+                "no block %r may stand here in a stream of kind %s" % (tag.decode(), self.header.kind),
+            )
             self.phase = phase
         readers[tag](payload)
         return tag
@@ -382,14 +419,23 @@ class Stream:
         first, n, m, s, f = struct.unpack_from("<QIIII", payload)
         lengths = [n * self.header.record.size, m * 8, s * 12, f * 4]
         require(24 + sum(lengths) == len(payload), "the counts of the patch do not add up to its length")
-        require(first == self.total["vertices"], "patch starts with vertex %d, expected %d" % (first, self.total["vertices"]))
+        require(
+            first == self.total["vertices"],
+            "patch starts with vertex %d, expected %d" % (first, self.total["vertices"]),
+        )
         at = 24 + lengths[0]
         new = self.header.points_of(payload[24:at])
         imported = struct.unpack_from("<%dQ" % m, payload, at)
         corners = struct.unpack_from("<%dI" % (3 * s), payload, at + lengths[1])
         finalized = struct.unpack_from("<%dI" % f, payload, at + lengths[1] + lengths[2])
-        require(is_increasing(imported) and (m == 0 or imported[-1] < first), "imported vertices are not increasing ids of earlier patches")
-        require(is_increasing(finalized) and (f == 0 or finalized[-1] < n + m), "finalized vertices are not increasing indices of the patch")
+        require(
+            is_increasing(imported) and (m == 0 or imported[-1] < first),
+            "imported vertices are not increasing ids of earlier patches",
+        )
+        require(
+            is_increasing(finalized) and (f == 0 or finalized[-1] < n + m),
+            "finalized vertices are not increasing indices of the patch",
+        )
         require(s == 0 or max(corners) < n + m, "simplex uses a vertex that its patch does not have")
         for vertex in imported:
             require(vertex in self.live, "vertex %d referenced after finalization" % vertex)
@@ -414,7 +460,10 @@ class Stream:
             if vertex != UNKNOWN:
                 require(vertex < self.total["vertices"], "residual point has the id %d of no vertex" % vertex)
                 require(vertex in self.live, "residual point names vertex %d, which is not live" % vertex)
-                require(self.live.pop(vertex) == point, "residual point has other coordinates than its vertex %d" % vertex)
+                require(
+                    self.live.pop(vertex) == point,
+                    "residual point has other coordinates than its vertex %d" % vertex,
+                )
                 self.named += 1
             self.total["residual"] += 1
             self.text.residual(None if vertex == UNKNOWN else vertex, point)
@@ -422,7 +471,10 @@ class Stream:
     def walls(self, payload):
         require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
         for a, b in struct.iter_unpack("<II", payload):
-            require(a != b and max(a, b) < self.total["residual"], "wall %d to %d between no residual points" % (a, b))
+            require(
+                a != b and max(a, b) < self.total["residual"],
+                "wall %d to %d between no residual points" % (a, b),
+            )
             self.total["walls"] += 1
             self.text.line("w %d %d" % (a + 1, b + 1))
 
@@ -434,7 +486,10 @@ class Stream:
             counted["merged"] = stated["merged"]
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
             retired = self.finalized + self.named
-            require(not self.live and retired == counted["vertices"], "END: %d of %d vertices were finalized or handed to the residual" % (retired, counted["vertices"]))
+            require(
+                not self.live and retired == counted["vertices"],
+                "END: %d of %d vertices were finalized or handed to the residual" % (retired, counted["vertices"]),
+            )
         require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
         if self.chunks:

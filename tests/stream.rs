@@ -107,12 +107,12 @@ fn a_flipped_bit_changes_nothing_or_is_malformed() {
 /// Start and end of header and blocks, checksums included.
 fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
-    let mut start = 16 + u32_at(12) + 4;
-    let mut frames = vec![0..start];
-    while start < bytes.len() {
-        let end = start + 16 + u32_at(start + 8);
-        frames.push(start..end);
-        start = end;
+    let mut frames = Vec::new();
+    let mut frame = 0..16 + u32_at(12) + 4;
+    while frame.start < bytes.len() {
+        let start = frame.end;
+        frames.push(frame);
+        frame = start..if start < bytes.len() { start + 16 + u32_at(start + 8) } else { start };
     }
     frames
 }

@@ -83,7 +83,8 @@ pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Outp
         .spawn();
     let Ok(mut child) = spawned else {
         // Not eprintln!, which the test harness keeps to itself.
-        writeln!(std::io::stderr(), "SKIPPED: python3 is missing, {script} was not run").unwrap();
+        let mut stderr = std::io::stderr();
+        writeln!(stderr, "SKIPPED: python3 is missing, {script} was not run").unwrap();
         return None;
     };
     let mut stdin = child.stdin.take().unwrap();
