@@ -146,7 +146,8 @@ fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
 
 fn coordinates(raw: &raw::Header) -> Result<Coordinates> {
     let scale = [raw.x_scale_factor, raw.y_scale_factor, raw.z_scale_factor];
-    let offset = [raw.x_offset, raw.y_offset, raw.z_offset];
+    // Adding zero makes a negative zero, which some writers leave behind, a positive one.
+    let offset = [raw.x_offset, raw.y_offset, raw.z_offset].map(|offset| offset + 0.0);
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         if !(scale[axis] > 0.0 && scale[axis].is_finite()) {
             return Err(Error::malformed(format!(
