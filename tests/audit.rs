@@ -2,6 +2,8 @@
 
 #[path = "audit/command.rs"]
 mod command;
+#[path = "audit/exhaustive.rs"]
+mod exhaustive;
 #[path = "audit/mesh.rs"]
 mod mesh;
 #[path = "audit/mutations.rs"]

@@ -107,8 +107,11 @@ impl Audit {
     /// Checks the next event.
     ///
     /// # Errors
-    /// The first violation; the audit is over then.
+    /// The first violation, which every later event gets too.
     pub fn event(&mut self, event: &Event) -> Result<(), Violation> {
+        if let Some(violation) = &self.violation {
+            return Err(violation.clone());
+        }
         let checked = self.check_given(event).and_then(|()| self.check(event));
         let open_edges = self.triangles().map_or(0, |triangles| triangles.edges.len());
         self.open_edges_max = self.open_edges_max.max(open_edges);

@@ -1,11 +1,12 @@
 //! Whole meshes by hand: each kind of fault is found and named.
 
-use spmesh::audit::{Check, Standard};
+use spmesh::audit::{Check, PointSet, Standard};
 use spmesh::bounds::Bounds;
+use spmesh::error::ErrorKind;
 use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamWriter};
 
 use super::reference::Random;
-use super::{Mesh, Verdict, assert_violates, audit, mesh_header, point};
+use super::{Mesh, Verdict, assert_violates, audit, grid, mesh_header, point};
 
 const CANONICAL: Standard = Standard::Canonical;
 
@@ -230,6 +231,26 @@ fn given_points_must_match() {
     let more = assert_violates(mesh.audit_with(&[&KITE[..], &[[3, 3]]].concat()), Check::Points, &[]);
     assert_eq!(more.vertices, [(None, [3.0, 3.0, 0.0])]);
     assert_violates(mesh.audit_with(&KITE[..3]), Check::Points, &[3]);
+}
+
+#[test]
+fn given_points_of_floats_know_one_zero() {
+    let mut set = PointSet::new(Coordinates::F64);
+    set.extend(&[[-0.0, 0.25, 7.0], [0.0, 0.25, 8.0], [1e300, -0.0, 0.0], [-5e-324, -1.5, 0.0]]);
+    let set = set.finish(&Coordinates::F64).unwrap();
+    let mut writer =
+        StreamWriter::new(Vec::new(), Header::new(Kind::TriangleMesh, Coordinates::F64, 2, false)).unwrap();
+    let new = vec![[-5e-324, -1.5, 0.0], [1e300, 0.0, 0.0], [0.0, 0.25, 0.0]];
+    writer
+        .patch(&Patch { new, simplices: vec![0, 1, 2], finalized: vec![0, 1, 2], ..Patch::default() })
+        .unwrap();
+    audit(&writer.end(3, 0).unwrap(), CANONICAL, Some(set)).unwrap();
+}
+
+#[test]
+fn given_points_of_another_encoding_cannot_be_compared() {
+    let error = PointSet::new(Coordinates::F64).finish(&grid()).map(|_| ()).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Usage);
 }
 
 #[test]
