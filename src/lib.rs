@@ -2,6 +2,7 @@
 //!
 //! The tools in `bin/` are thin; everything they do is here. `ARCHITECTURE.md` has the module map.
 
+pub mod audit;
 pub mod bounds;
 pub mod cells;
 pub mod cli;

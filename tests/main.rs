@@ -1,6 +1,7 @@
 //! Integration tests: one crate, one module per subject.
 
 mod allocation;
+mod audit;
 mod circle;
 mod finalize;
 mod kernel;

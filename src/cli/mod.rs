@@ -3,6 +3,7 @@
 pub mod progress;
 pub mod spdelaunay2d;
 pub mod spfinalize;
+pub mod spinfo;
 
 use std::ffi::OsString;
 use std::path::PathBuf;

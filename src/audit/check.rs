@@ -1,0 +1,196 @@
+//! What an audit checks, how often it did, and what it found.
+
+use crate::bounds::Point;
+use crate::error::{Error, ErrorKind};
+use crate::stream::Header;
+
+/// One kind of claim that an audit proves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Check {
+    /// Every triangle is strictly counterclockwise.
+    Orientation,
+    /// Every directed edge belongs to one triangle.
+    Edges,
+    /// Every interior edge is locally Delaunay.
+    Delaunay,
+    /// Ties between cocircular points are resolved canonically.
+    Canonical,
+    /// Every vertex is used, and its triangles close around it or form one fan from boundary to boundary.
+    Vertices,
+    /// No vertex is used after it was finalized, and all are finalized at the end.
+    Finalization,
+    /// The boundary is one convex cycle that turns once; or all vertices lie on a line.
+    Hull,
+    /// Triangles, vertices and hull edges are as many as in a disk.
+    Euler,
+    /// Counts of points add up.
+    Counts,
+    /// The bounding box of the header is tight.
+    Bounds,
+    /// The positions of the vertices are those of the given points.
+    Points,
+    /// Points lie in the region, or in the cube of the finalization tree.
+    Region,
+    /// No point follows the tag of its cell.
+    Cells,
+    /// The points of a cell stand together, right before its tag.
+    Chunks,
+    /// Residual points are the vertices that are not final, and points not written before, each once.
+    Residual,
+    /// Walls are the open edges of the final triangles.
+    Walls,
+}
+
+impl Check {
+    /// Every check, in the order of reports.
+    pub const ALL: [Check; 16] = [
+        Check::Orientation,
+        Check::Edges,
+        Check::Delaunay,
+        Check::Canonical,
+        Check::Vertices,
+        Check::Finalization,
+        Check::Hull,
+        Check::Euler,
+        Check::Counts,
+        Check::Bounds,
+        Check::Points,
+        Check::Region,
+        Check::Cells,
+        Check::Chunks,
+        Check::Residual,
+        Check::Walls,
+    ];
+
+    /// Name for people and for JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.row().0
+    }
+
+    /// What holds if the check passes.
+    #[must_use]
+    pub fn claim(self) -> &'static str {
+        self.row().1
+    }
+
+    fn row(self) -> (&'static str, &'static str) {
+        match self {
+            Check::Orientation => ("orientation", "every triangle is counterclockwise"),
+            Check::Edges => ("edges", "every directed edge belongs to one triangle"),
+            Check::Delaunay => ("delaunay", "every interior edge is locally Delaunay"),
+            Check::Canonical => ("canonical", "cocircular points are triangulated canonically"),
+            Check::Vertices => ("vertices", "every vertex has one fan of triangles"),
+            Check::Finalization => ("finalization", "no vertex is used after its finalization"),
+            Check::Hull => ("hull", "the boundary is one convex cycle"),
+            Check::Euler => ("euler", "triangles = 2 vertices - 2 - hull edges"),
+            Check::Counts => ("counts", "vertices, merged and unwritten points are all points"),
+            Check::Bounds => ("bounds", "the bounding box is tight"),
+            Check::Points => ("points", "the vertices are the given points"),
+            Check::Region => ("region", "every point lies in the region of the stream"),
+            Check::Cells => ("cells", "no point follows the tag of its cell"),
+            Check::Chunks => ("chunks", "the points of a cell stand together before its tag"),
+            Check::Residual => ("residual", "the residual is what is not final, each point once"),
+            Check::Walls => ("walls", "the walls are the open edges of the final triangles"),
+        }
+    }
+}
+
+/// How often each check was made.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ledger {
+    tallies: [Option<Tally>; Check::ALL.len()],
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Tally {
+    tests: u64,
+    exactly: u64,
+}
+
+impl Ledger {
+    /// A ledger with a line for each of `checks`, even if there is nothing to test.
+    pub(super) fn of(checks: &[Check]) -> Self {
+        let mut ledger = Ledger::default();
+        checks.iter().for_each(|&check| ledger.tallies[check as usize] = Some(Tally::default()));
+        ledger
+    }
+
+    /// Adds one test, and whether the filter left it to exact arithmetic.
+    pub(super) fn count(&mut self, check: Check, exactly: bool) {
+        let tally = self.tallies[check as usize].get_or_insert_default();
+        tally.tests += 1;
+        tally.exactly += u64::from(exactly);
+    }
+
+    /// Adds tests that need no arithmetic.
+    pub(super) fn add(&mut self, check: Check, tests: u64) {
+        self.tallies[check as usize].get_or_insert_default().tests += tests;
+    }
+
+    /// The checks that were made; all passed unless `violation` says otherwise.
+    pub(super) fn lines(&self, violation: Option<&Violation>) -> Vec<CheckLine> {
+        let line = |check: Check| {
+            let tally = self.tallies[check as usize]?;
+            let passed = violation.is_none_or(|violation| violation.check != check);
+            Some(CheckLine { check, passed, tests: tally.tests, exactly: tally.exactly })
+        };
+        Check::ALL.into_iter().filter_map(line).collect()
+    }
+}
+
+/// One line of a report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CheckLine {
+    /// What was checked.
+    pub check: Check,
+    /// Whether no test failed.
+    pub passed: bool,
+    /// Number of tests made.
+    pub tests: u64,
+    /// Number of tests that the floating-point filter left to exact arithmetic.
+    pub exactly: u64,
+}
+
+/// The first thing that is wrong with a stream.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Violation {
+    /// The check that failed.
+    pub check: Check,
+    /// What is wrong, with the ids of the vertices concerned.
+    pub message: String,
+    /// The vertices or points concerned, each with its id where it has one, in stored coordinates.
+    pub vertices: Vec<(Option<u64>, Point)>,
+}
+
+impl Violation {
+    pub(super) fn new(check: Check, message: impl Into<String>) -> Self {
+        Violation { check, message: message.into(), vertices: Vec::new() }
+    }
+
+    pub(super) fn with(mut self, id: impl Into<Option<u64>>, at: Point) -> Self {
+        self.vertices.push((id.into(), at));
+        self
+    }
+
+    /// The violation as an error, with the geometry in world coordinates of the stream's `header`.
+    #[must_use]
+    pub fn to_error(&self, header: &Header) -> Error {
+        let mut message = format!("{} check failed: {}", self.check.name(), self.message);
+        for (i, &(id, stored)) in self.vertices.iter().enumerate() {
+            let world = header.coordinates.to_world(stored);
+            let world: Vec<String> = world[..usize::from(header.dims)].iter().map(|&x| shortest(x)).collect();
+            let name = id.map_or("point".to_string(), |id| id.to_string());
+            let separator = if i == 0 { ":" } else { "," };
+            message += &format!("{separator} {name} at ({})", world.join(", "));
+        }
+        Error::new(ErrorKind::Audit, message)
+    }
+}
+
+/// A world coordinate without the noise that scale and offset leave in its last digits.
+pub(crate) fn shortest(world: f64) -> String {
+    let rounded = (world * 1e6).round() / 1e6;
+    let is_noise = (rounded - world).abs() <= 2.0 * f64::EPSILON * world.abs();
+    if is_noise { rounded } else { world }.to_string()
+}

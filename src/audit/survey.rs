@@ -1,0 +1,139 @@
+//! What a stream holds, in numbers.
+
+use crate::bounds::Bounds;
+use crate::error::Result;
+use crate::stream::{Event, LiveVertices, Patch, Totals};
+
+/// Figures of a stream, gathered event by event.
+#[derive(Debug, Default)]
+pub struct Survey {
+    live: LiveVertices<()>,
+    found: Option<Bounds>,
+    totals: Totals,
+    patches: u64,
+    largest_patch: PatchSize,
+    cells: CellPoints,
+    /// Points since the last tag.
+    run: u64,
+}
+
+/// Size of a patch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub struct PatchSize {
+    /// Simplices.
+    pub simplices: u64,
+    /// Vertices that the patch brings.
+    pub new: u64,
+    /// Vertices of earlier patches that it uses.
+    pub imported: u64,
+}
+
+/// Points before cell tags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct CellPoints {
+    /// Number of times that points were followed by tags.
+    pub runs: u64,
+    /// Points in all these runs.
+    pub points: u64,
+    /// Points in the longest.
+    pub max: u64,
+}
+
+impl Survey {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Survey::default()
+    }
+
+    /// Adds the next event.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`] if a patch uses a vertex after its finalization.
+    pub fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => {
+                self.extend(points.iter().copied());
+                self.totals.points += points.len() as u64;
+                self.run += points.len() as u64;
+            }
+            Event::Cells(cells) => {
+                self.totals.cells += cells.len() as u64;
+                self.end_run();
+            }
+            Event::Patch(patch) => return self.patch(patch),
+            Event::ResidualPoints(points) => {
+                self.extend(points.iter().map(|&(_, point)| point));
+                self.totals.residual_points += points.len() as u64;
+            }
+            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::End(totals) => self.totals = *totals,
+        }
+        Ok(())
+    }
+
+    /// Totals of the blocks so far; after the end, what END states.
+    #[must_use]
+    pub fn totals(&self) -> Totals {
+        self.totals
+    }
+
+    /// Bounding box of what was read, in stored coordinates.
+    #[must_use]
+    pub fn found_bounds(&self) -> Option<Bounds> {
+        self.found
+    }
+
+    /// Most vertices that were live at once: the width of the stream.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.live.live_max()
+    }
+
+    /// Number of patches.
+    #[must_use]
+    pub fn patches(&self) -> u64 {
+        self.patches
+    }
+
+    /// Size of the patch with the most simplices.
+    #[must_use]
+    pub fn largest_patch(&self) -> PatchSize {
+        self.largest_patch
+    }
+
+    /// Points before cell tags; in a chunked stream these are the points of single cells.
+    #[must_use]
+    pub fn cell_points(&self) -> CellPoints {
+        self.cells
+    }
+
+    fn patch(&mut self, patch: &Patch) -> Result<()> {
+        self.extend(patch.new.iter().copied());
+        let size = PatchSize {
+            simplices: patch.triangles().count() as u64,
+            new: patch.new.len() as u64,
+            imported: patch.imported.len() as u64,
+        };
+        self.totals.vertices += size.new;
+        self.totals.simplices += size.simplices;
+        self.patches += 1;
+        self.largest_patch = self.largest_patch.max(size);
+        self.live.enter(patch, |_, _| ()).map(|_| ())
+    }
+
+    fn extend(&mut self, points: impl Iterator<Item = crate::bounds::Point>) {
+        for point in points {
+            self.found.get_or_insert(Bounds::of_point(point)).extend(point);
+        }
+    }
+
+    fn end_run(&mut self) {
+        let run = std::mem::take(&mut self.run);
+        if run > 0 {
+            self.cells.runs += 1;
+            self.cells.points += run;
+            self.cells.max = self.cells.max.max(run);
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The tool `spinfo`.
+
+mod report;
+
+use std::io::{BufReader, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Parser, ValueEnum};
+
+use super::progress::Progress;
+use super::{Common, open_input};
+use crate::audit::{Audit, PointSet, Standard, Survey};
+use crate::error::{Error, Result};
+use crate::output::Output;
+use crate::stream::{Event, Header, Kind, StreamReader};
+use report::Summary;
+
+const INPUT_BUFFER_LEN: usize = 1 << 18;
+
+const EXAMPLES: &str = "\
+Examples:
+  spinfo mesh.spm                         what is in it
+  spfinalize a.laz | spdelaunay2d | spinfo --audit
+                                          prove that the mesh is right
+  spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
+  spinfo --audit --points a.spp mesh.spm  and has exactly these points
+  spinfo --json mesh.spm | jq .counts     for programs
+
+Exit codes: 0 fine, 3 the stream is malformed or truncated, 4 the audit found a violation.";
+
+/// Says what a spmesh stream holds, and proves that it keeps its promises
+#[derive(Debug, Parser)]
+#[command(name = "spinfo", version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Stream to read; - is stdin
+    #[arg(value_name = "FILE", default_value = "-")]
+    input: PathBuf,
+
+    /// Print one JSON object instead of text
+    #[arg(long)]
+    json: bool,
+
+    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation
+    #[arg(
+        long,
+        value_enum,
+        value_name = "STANDARD",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "canonical"
+    )]
+    audit: Option<AuditStandard>,
+
+    /// Prove also that the vertices of the mesh are exactly the positions of this points stream
+    #[arg(long, value_name = "FILE", requires = "audit")]
+    points: Option<PathBuf>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--audit` asks of the edges of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum AuditStandard {
+    /// Interior edges are locally Delaunay, and ties are resolved as spdelaunay2d does
+    Canonical,
+    /// Interior edges are locally Delaunay
+    Delaunay,
+}
+
+impl From<AuditStandard> for Standard {
+    fn from(standard: AuditStandard) -> Self {
+        match standard {
+            AuditStandard::Canonical => Standard::Canonical,
+            AuditStandard::Delaunay => Standard::Delaunay,
+        }
+    }
+}
+
+/// Reads the stream to its end and prints what it holds.
+///
+/// # Errors
+/// If the stream is malformed, cannot be read, or fails the audit (then the report is printed first).
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let (input, name) = open_input(&flags.input)?;
+    let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
+    let header = reader.header().clone();
+    let mut audit = match flags.audit {
+        None => None,
+        Some(standard) => Some(Audit::new(&header, standard.into(), given_points(&flags, &header)?)),
+    };
+    let mut survey = Survey::new();
+    let mut progress = Progress::new(&flags.common, "reading", header.points);
+    let mut failure = None;
+    while let Some(event) = reader.next_event()? {
+        if let Some(violation) = audit.as_mut().and_then(|audit| audit.event(&event).err()) {
+            failure = Some(reader.locate(violation.to_error(&header)));
+            break;
+        }
+        survey.event(&event).map_err(|error| reader.locate(error))?;
+        progress.set(survey.totals().points.max(survey.totals().vertices));
+    }
+    drop(progress);
+    let summary = Summary {
+        name: reader.name(),
+        header: &header,
+        survey: &survey,
+        audit: audit.as_ref().map(Audit::report),
+        failure: failure.as_ref(),
+        bytes: reader.bytes_read(),
+    };
+    print(&if flags.json { summary.json() } else { summary.text() })?;
+    failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// The points of `--points`, to be compared with the mesh.
+fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
+    let Some(path) = &flags.points else { return Ok(None) };
+    if mesh.kind.vertices_per_simplex() == 0 {
+        return Err(Error::usage(format!("--points goes with a mesh, not with {}", mesh.kind.name())));
+    }
+    if path == Path::new("-") && flags.input == Path::new("-") {
+        return Err(Error::usage("mesh and points cannot both come from stdin"));
+    }
+    let (input, name) = open_input(path)?;
+    let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
+    if reader.header().kind != Kind::Points {
+        let message = format!("--points needs a stream of points, not a {}", reader.header().kind.name());
+        return Err(Error::usage(message).of_input(reader.name()));
+    }
+    let mut points = PointSet::new(reader.header().coordinates);
+    while let Some(event) = reader.next_event()? {
+        if let Event::Points(batch) = event {
+            points.extend(&batch);
+        }
+    }
+    points.finish(&mesh.coordinates).map(Some)
+}
+
+fn print(text: &str) -> Result<()> {
+    let mut output = Output::create(Path::new("-"), false)?;
+    output.write_all(text.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
+    output.commit()
+}

@@ -1,0 +1,255 @@
+//! What `spinfo` prints: a table for people, or one JSON object.
+
+use serde_json::{Value, json};
+
+use crate::audit::{Report, Survey, shortest};
+use crate::bounds::Point;
+use crate::error::Error;
+use crate::stream::{Coordinates, Crs, Header};
+
+/// Everything that is known of a stream after it was read.
+pub(super) struct Summary<'a> {
+    pub(super) name: &'a str,
+    pub(super) header: &'a Header,
+    pub(super) survey: &'a Survey,
+    pub(super) audit: Option<Report>,
+    pub(super) failure: Option<&'a Error>,
+    pub(super) bytes: u64,
+}
+
+impl Summary<'_> {
+    /// Lines of a name and its value; the audit has a line per check.
+    pub(super) fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.name, self.header.kind.name());
+        let mut line = |name: &str, value: String| text += &format!("  {name:<12} {value}\n");
+        line("producer", self.header.producer.clone());
+        line("coordinates", self.coordinates_text());
+        line("bounds", self.world_bounds().map_or("none".into(), |bounds| self.bounds_text(&bounds)));
+        line("CRS", crs_text(&self.header.crs));
+        if let Some(tree) = &self.header.tree {
+            let shape = if tree.dims() == 2 { "quadtree" } else { "octree" };
+            let origin = words(&tree.origin()[..usize::from(tree.dims())]);
+            line(
+                "tree",
+                format!("{shape}, depth {}, origin {origin}, side {} (stored)", tree.depth(), tree.side()),
+            );
+        }
+        if let Some(region) = &self.header.region {
+            line("region", format!("from {} to {} (stored)", words(&region.min), words(&region.max)));
+        }
+        self.figures(&mut line);
+        if let Some(report) = &self.audit {
+            text += &audit_text(report);
+        }
+        text
+    }
+
+    /// Counts of what was read; figures that the kind does not have are left out.
+    fn figures(&self, line: &mut impl FnMut(&str, String)) {
+        let totals = self.survey.totals();
+        let counts = [
+            ("points", totals.points),
+            ("merged", totals.merged),
+            ("vertices", totals.vertices),
+            ("triangles", totals.simplices),
+            ("cells", totals.cells),
+            ("residual", totals.residual_points),
+            ("walls", totals.walls),
+        ];
+        for (name, count) in counts {
+            if count > 0 || name == "points" {
+                line(name, count.to_string());
+            }
+        }
+        if self.header.kind.vertices_per_simplex() > 0 {
+            let largest = self.survey.largest_patch();
+            line("width", format!("{} live vertices", self.survey.width()));
+            line(
+                "patches",
+                format!(
+                    "{}, largest: {} triangles, {} new and {} imported vertices",
+                    self.survey.patches(),
+                    largest.simplices,
+                    largest.new,
+                    largest.imported
+                ),
+            );
+        } else {
+            let cells = self.survey.cell_points();
+            line("chunked", if self.header.chunked { "yes" } else { "no" }.into());
+            if let Some(mean) = mean(cells.points, cells.runs) {
+                line("points/tag", format!("mean {mean:.1}, max {} before {} tags", cells.max, cells.runs));
+            }
+        }
+        line("bytes", self.bytes.to_string());
+    }
+
+    /// One object; counts of what was read so far if the audit failed.
+    pub(super) fn json(&self) -> String {
+        let header = self.header;
+        let (totals, largest, cells) =
+            (self.survey.totals(), self.survey.largest_patch(), self.survey.cell_points());
+        let dims = usize::from(header.dims);
+        let object = json!({
+            "input": self.name,
+            "kind": header.kind.name(),
+            "producer": header.producer,
+            "dims": header.dims,
+            "has_elevation": header.has_elevation,
+            "coordinates": coordinates_json(&header.coordinates),
+            "bounds": self.world_bounds().map(|[min, max]| json!({"min": min, "max": max})),
+            "crs": crs_json(&header.crs),
+            "tree": header.tree.map(|tree| json!({
+                "dims": tree.dims(),
+                "depth": tree.depth(),
+                "origin": tree.origin()[..dims],
+                "side": tree.side(),
+            })),
+            "region": header.region.map(|region| json!({
+                "min": region.min.map(finite), "max": region.max.map(finite),
+            })),
+            "chunked": header.chunked,
+            "counts": {
+                "points": totals.points,
+                "vertices": totals.vertices,
+                "triangles": totals.simplices,
+                "cells": totals.cells,
+                "merged": totals.merged,
+                "residual_points": totals.residual_points,
+                "walls": totals.walls,
+            },
+            "width": self.survey.width(),
+            "patches": self.survey.patches(),
+            "largest_patch": {
+                "triangles": largest.simplices, "new": largest.new, "imported": largest.imported,
+            },
+            "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
+            "bytes": self.bytes,
+            "audit": self.audit.as_ref().map(|report| self.audit_json(report)),
+        });
+        format!("{object:#}\n")
+    }
+
+    fn audit_json(&self, report: &Report) -> Value {
+        let checks: Vec<Value> = report
+            .lines
+            .iter()
+            .map(|line| {
+                json!({
+                    "check": line.check.name(),
+                    "claim": line.check.claim(),
+                    "ok": line.passed,
+                    "tests": line.tests,
+                    "exact": line.exactly,
+                })
+            })
+            .collect();
+        let violation = report.violation.as_ref().map(|violation| {
+            let vertices: Vec<Value> = violation
+                .vertices
+                .iter()
+                .map(|&(id, stored)| json!({"id": id, "at": self.world(stored)}))
+                .collect();
+            json!({
+                "check": violation.check.name(),
+                "message": self.failure.map(Error::to_string),
+                "vertices": vertices,
+            })
+        });
+        json!({
+            "ok": report.violation.is_none(),
+            "checks": checks,
+            "violation": violation,
+            "live_max": report.live_max,
+            "open_edges_max": report.open_edges_max,
+        })
+    }
+
+    fn coordinates_text(&self) -> String {
+        let header = self.header;
+        let elevation = if header.has_elevation { " with elevation" } else { "" };
+        let encoding = match &header.coordinates {
+            Coordinates::F64 => "f64".to_string(),
+            Coordinates::I32 { scale, offset } => {
+                format!("i32, scale {}, offset {}", words(scale), words(offset))
+            }
+        };
+        format!("{}D{elevation}, {encoding}", header.dims)
+    }
+
+    /// Box of the header, or of what was read where the header states none: min and max.
+    fn world_bounds(&self) -> Option<[Vec<f64>; 2]> {
+        let bounds = self.header.bounds.or(self.survey.found_bounds())?;
+        Some([self.world(bounds.min), self.world(bounds.max)])
+    }
+
+    fn bounds_text(&self, [min, max]: &[Vec<f64>; 2]) -> String {
+        let source = if self.header.bounds.is_some() { "" } else { " (found, not stated)" };
+        format!("{} to {}{source}", words(min), words(max))
+    }
+
+    /// World coordinates, as many as a point of the stream has.
+    fn world(&self, stored: Point) -> Vec<f64> {
+        let world = self.header.coordinates.to_world(stored);
+        world[..self.header.coordinates_per_point()].to_vec()
+    }
+}
+
+fn audit_text(report: &Report) -> String {
+    let verdict = if report.violation.is_none() { "passed" } else { "FAILED" };
+    let mut text = format!(
+        "audit {verdict}, with at most {} vertices and {} open edges in memory\n",
+        report.live_max, report.open_edges_max
+    );
+    for line in &report.lines {
+        let (verdict, name) = (if line.passed { "ok" } else { "FAILED" }, line.check.name());
+        text += &format!("  {name:<12} {verdict:<6} {:>11} tests", line.tests);
+        if line.exactly > 0 {
+            text += &format!(" ({} exact)", line.exactly);
+        }
+        text += &format!(": {}\n", line.check.claim());
+    }
+    text
+}
+
+fn coordinates_json(coordinates: &Coordinates) -> Value {
+    match coordinates {
+        Coordinates::F64 => json!({"type": "f64"}),
+        Coordinates::I32 { scale, offset } => json!({"type": "i32", "scale": scale, "offset": offset}),
+    }
+}
+
+fn crs_text(crs: &Crs) -> String {
+    match crs {
+        Crs::Unknown => "unknown".into(),
+        Crs::Wkt(text) => format!("{} (WKT, {} bytes)", wkt_name(text).unwrap_or("unnamed"), text.len()),
+        Crs::GeoKeys { directory, .. } => format!("GeoKeys ({} bytes)", directory.len()),
+    }
+}
+
+fn crs_json(crs: &Crs) -> Value {
+    match crs {
+        Crs::Unknown => Value::Null,
+        Crs::Wkt(text) => json!({"encoding": "wkt", "name": wkt_name(text), "wkt": text}),
+        Crs::GeoKeys { .. } => json!({"encoding": "geokeys"}),
+    }
+}
+
+/// Name of the outermost object of well-known text: its first quoted string.
+fn wkt_name(text: &str) -> Option<&str> {
+    text.split('"').nth(1).filter(|name| !name.is_empty())
+}
+
+fn words(values: &[f64]) -> String {
+    let words: Vec<String> = values.iter().map(|&value| shortest(value)).collect();
+    format!("({})", words.join(", "))
+}
+
+/// JSON has no infinity: an open side of a region is null.
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn mean(sum: u64, count: u64) -> Option<f64> {
+    (count > 0).then(|| sum as f64 / count as f64)
+}

@@ -1,0 +1,112 @@
+//! The command `spinfo`: exit codes, text and JSON.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use spmesh::stream::{Crs, Header, Kind, StreamWriter};
+
+use super::{Mesh, grid, point};
+
+fn spinfo(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spinfo"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    // A tool that refuses its arguments does not read its input.
+    let _ = stdin.write_all(input);
+    drop(stdin);
+    child.wait_with_output().unwrap()
+}
+
+fn square(triangles: &[[usize; 3]]) -> Vec<u8> {
+    Mesh::new(&[[0, 0], [10, 0], [10, 10], [0, 10]], triangles).stream()
+}
+
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn text_names_what_is_there() {
+    let output = spinfo(&["--audit"], &square(&[[0, 1, 3], [1, 2, 3]]));
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success(), "{text}");
+    for line in
+        ["stdin: triangle mesh", "triangles    2", "width        4 live", "audit passed", "canonical    ok"]
+    {
+        assert!(text.contains(line), "{line:?} in\n{text}");
+    }
+    assert!(output.stderr.is_empty());
+}
+
+#[test]
+fn json_is_one_object() {
+    let output = spinfo(&["--json", "--audit", "-"], &square(&[[0, 1, 3], [1, 2, 3]]));
+    let object = json(&output);
+    assert_eq!(object["kind"], "triangle mesh");
+    assert_eq!(object["crs"], Value::Null);
+    assert_eq!(object["counts"]["points"], 4);
+    assert_eq!(object["counts"]["triangles"], 2);
+    assert_eq!(object["counts"]["vertices"], 4);
+    assert_eq!(object["counts"]["cells"], 0);
+    assert_eq!(object["bounds"]["min"][0], 1000.0);
+    assert_eq!(object["audit"]["ok"], true);
+}
+
+#[test]
+fn violation_exits_with_4_and_says_where() {
+    let stream = square(&[[0, 1, 2], [0, 2, 3]]);
+    let output = spinfo(&["--audit", "--json"], &stream);
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.starts_with("spinfo: stdin: block 0 at byte "), "{message}");
+    assert!(message.contains("edge 0 to 2"), "{message}");
+    let audit = &json(&output)["audit"];
+    assert_eq!(audit["ok"], false);
+    assert_eq!(audit["violation"]["check"], "canonical");
+    assert_eq!(audit["violation"]["vertices"][1]["id"], 2);
+    assert_eq!(spinfo(&["--audit=delaunay"], &stream).status.code(), Some(0));
+    assert_eq!(spinfo(&[], &stream).status.code(), Some(0));
+}
+
+#[test]
+fn truncated_stream_exits_with_3() {
+    let stream = square(&[[0, 1, 3], [1, 2, 3]]);
+    for len in [0, 7, 100, stream.len() - 1] {
+        let output = spinfo(&["--audit"], &stream[..len]);
+        assert_eq!(output.status.code(), Some(3));
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn points_of_another_file_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.spm");
+    let header =
+        Header { crs: Crs::Wkt("LOCAL_CS[\"here\"]".into()), ..Header::new(Kind::Points, grid(), 2, false) };
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    writer.points(&[[0, 0], [10, 0], [10, 10], [0, 10], [10, 0], [5, 4]].map(|p| point(&p))).unwrap();
+    std::fs::write(&path, writer.end(0, 0).unwrap()).unwrap();
+    let path = path.to_str().unwrap();
+    let output = spinfo(&["--audit", "--points", path], &square(&[[0, 1, 3], [1, 2, 3]]));
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(4), "{message}");
+    assert!(message.contains("point at (1000.05, 2000.04)"), "{message}");
+    assert_eq!(json(&spinfo(&["--json", path], &[]))["crs"]["name"], "here");
+    assert_eq!(spinfo(&["--points", path], &[]).status.code(), Some(2));
+    assert_eq!(spinfo(&["--audit", "--points", path, path], &[]).status.code(), Some(2));
+}
+
+#[test]
+fn help_shows_examples() {
+    let output = spinfo(&["--help"], &[]);
+    assert!(output.status.success());
+    assert!(String::from_utf8(output.stdout).unwrap().contains("spinfo --audit"));
+    assert!(spinfo(&["--version"], &[]).status.success());
+}
