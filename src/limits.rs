@@ -9,6 +9,9 @@ pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 
+/// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
+pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
+
 /// Deepest level of a quadtree; with it a location code has 2 * 31 + 1 = 63 bits.
 pub const QUADTREE_DEPTH_MAX: u8 = 31;
 

@@ -3,6 +3,7 @@
 mod allocation;
 mod audit;
 mod circle;
+mod convert;
 mod finalize;
 mod kernel;
 mod kernel_predicates;

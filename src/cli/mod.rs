@@ -1,6 +1,7 @@
 //! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
 
 pub mod progress;
+pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spfinalize;
 pub mod spinfo;

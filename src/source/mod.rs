@@ -2,29 +2,46 @@
 
 mod crs;
 mod detect;
+mod events;
 mod grid;
 mod input;
 mod las_header;
 mod laz;
 mod laz_chunks;
 mod lines;
+mod mesh_events;
+mod obj;
 mod origin;
 mod panic_guard;
+mod patches;
 mod placement;
 mod records;
+mod sma;
+mod smb;
+mod smb_header;
 mod sp;
+mod sp_events;
 mod spa;
 mod spb;
+mod statements;
 mod stream;
 mod text;
+mod twin;
+mod twin_header;
 
 use std::path::PathBuf;
 
 pub use crs::crs_name;
+pub use events::EventSource;
 pub use input::Input;
+pub use obj::ObjSource;
+pub use sma::SmaSource;
+pub use smb::SmbSource;
 pub use sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpReader};
+pub use sp_events::SpEvents;
 pub use spa::SpaReader;
 pub use spb::SpbReader;
+pub use twin::TwinSource;
 
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 
 /// Checks the promise with the bounding box of the points since the last tag.
 #[derive(Debug)]
-pub(super) struct ChunkCheck {
+pub(crate) struct ChunkCheck {
     tree: CellTree,
     waiting: Option<Bounds>,
     /// Whether the last block held tags.
@@ -14,11 +14,11 @@ pub(super) struct ChunkCheck {
 }
 
 impl ChunkCheck {
-    pub(super) fn new(tree: CellTree) -> Self {
+    pub(crate) fn new(tree: CellTree) -> Self {
         ChunkCheck { tree, waiting: None, in_tags: false }
     }
 
-    pub(super) fn points(&mut self, points: &[Point]) -> Result<()> {
+    pub(crate) fn points(&mut self, points: &[Point]) -> Result<()> {
         let Some(bounds) = Bounds::of_points(points) else { return Ok(()) };
         if self.in_tags {
             self.end()?;
@@ -28,7 +28,7 @@ impl ChunkCheck {
         Ok(())
     }
 
-    pub(super) fn cells(&mut self, cells: &[CellCode]) {
+    pub(crate) fn cells(&mut self, cells: &[CellCode]) {
         self.in_tags |= !cells.is_empty();
         if let Some(Bounds { min, max }) = self.waiting {
             let holds = |&cell: &CellCode| {
@@ -41,7 +41,7 @@ impl ChunkCheck {
         }
     }
 
-    pub(super) fn end(&self) -> Result<()> {
+    pub(crate) fn end(&self) -> Result<()> {
         match self.waiting {
             None => Ok(()),
             Some(_) => Err(Error::malformed(

@@ -269,7 +269,7 @@ impl Header {
     }
 
     /// The rules that hold between the fields, for writer and reader alike.
-    fn check(&self) -> std::result::Result<(), String> {
+    pub(crate) fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
         }

@@ -61,6 +61,12 @@ impl Kind {
         ROWS.iter().find(|row| row.code == code).map(|row| row.kind)
     }
 
+    /// The kind with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        ROWS.iter().find(|row| row.name == name).map(|row| row.kind)
+    }
+
     /// Code in the header.
     #[must_use]
     pub fn code(self) -> u16 {

@@ -13,11 +13,13 @@ mod payload;
 mod reader;
 mod writer;
 
+pub(crate) use chunks::ChunkCheck;
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use header::{Coordinates, Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;
+pub(crate) use payload::check_place;
 pub use reader::StreamReader;
 pub use writer::StreamWriter;
 pub(crate) use writer::encode_point;

@@ -128,6 +128,12 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
             return Err(Error::malformed(format!("coordinate {value} is not finite")));
         }
     }
+    check_place(header, point)?;
+    Ok(point)
+}
+
+/// That a point lies where the header says that all points lie.
+pub(crate) fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
         "the header's bounding box"
     } else if header.tree.is_some_and(|tree| !tree.contains(point)) {
@@ -135,7 +141,7 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
     } else if header.region.is_some_and(|region| !region.contains(point)) {
         "the region"
     } else {
-        return Ok(point);
+        return Ok(());
     };
     Err(Error::malformed(format!("point {point:?} lies outside of {outside_of}")))
 }

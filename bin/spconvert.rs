@@ -1,0 +1,7 @@
+//! Converts streams of points and meshes to and from other formats.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    spmesh::cli::main(spmesh::cli::spconvert::run)
+}

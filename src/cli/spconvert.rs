@@ -1,0 +1,90 @@
+//! The command line of `spconvert`.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::Parser;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+use super::{Common, notice, open_input};
+use crate::convert::{Format, Options, convert};
+use crate::error::Error;
+use crate::output::Output;
+
+const EXAMPLES: &str = "\
+Formats:
+  spm   binary stream                     text  its text twin, lossless both ways
+  obj   Wavefront OBJ                     ply   Stanford PLY (write only)
+  spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
+
+Examples:
+  spconvert mesh.spm --to text | less
+  spfinalize tile.laz | spdelaunay2d | spconvert --to ply -o tin.ply
+  spconvert old.smb -o mesh.spm
+  spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
+
+The format of the input is recognized by its content, or its name; that of the output by its name.
+OBJ, PLY, SMA and SMB hold no CRS; SMB rounds coordinates to 32 bits. A notice says what is lost.
+Meshes of OBJ do not say when vertices are final: all of them are at the end.";
+
+/// Convert streams of points and meshes to and from other formats
+#[derive(Debug, Parser)]
+#[command(name = "spconvert", version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Input file; - is stdin
+    #[arg(default_value = "-")]
+    input: PathBuf,
+
+    /// Output file; - is stdout
+    #[arg(short, long, default_value = "-")]
+    output: PathBuf,
+
+    /// Format of the output [default: by the name of the output]
+    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    to: Option<Format>,
+
+    /// Format of the input [default: by its content, or its name]
+    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    from: Option<Format>,
+
+    /// Write PLY as text
+    #[arg(long)]
+    ascii: bool,
+
+    /// Dimensions of SPA and SPB points without a finalization tree: 2 (z is an elevation) or 3
+    #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
+    dims: Option<u8>,
+
+    /// Folder for the temporary files that PLY needs
+    #[arg(long, value_name = "DIR")]
+    temp_dir: Option<PathBuf>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+fn formats() -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(Format::names())
+        .map(|name| Format::from_name(&name).expect("the name is one of the names"))
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// See [`convert`]; then no output file is made.
+pub fn run(flags: Flags) -> Result<()> {
+    let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
+        Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
+    })?;
+    let options =
+        Options { from: flags.from, dims: flags.dims, ascii: flags.ascii, temp_dir: flags.temp_dir };
+    let (input, name) = open_input(&flags.input)?;
+    let is_binary = to.is_binary() && !(to == Format::Ply && options.ascii);
+    let mut output = Output::create(&flags.output, is_binary)?;
+    let notices = convert(input, &name, to, &mut output, &options)?;
+    output.commit()?;
+    for message in &notices {
+        notice("spconvert", &flags.common, &format!("{name}: {message}"));
+    }
+    Ok(())
+}

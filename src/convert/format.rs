@@ -1,0 +1,78 @@
+//! The table of formats.
+
+use std::path::Path;
+
+/// A format that streams are converted from or to. A new format is one row in the table of this file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// The binary stream.
+    Spm,
+    /// Its text twin.
+    Text,
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford PLY.
+    Ply,
+    /// Isenburg's streaming points, text.
+    Spa,
+    /// Isenburg's streaming points, binary.
+    Spb,
+    /// Isenburg's streaming meshes, text.
+    Sma,
+    /// Isenburg's streaming meshes, binary.
+    Smb,
+}
+
+struct Row {
+    format: Format,
+    name: &'static str,
+    extension: &'static str,
+    is_binary: bool,
+}
+
+const ROWS: [Row; 8] = [
+    Row { format: Format::Spm, name: "spm", extension: "spm", is_binary: true },
+    Row { format: Format::Text, name: "text", extension: "txt", is_binary: false },
+    Row { format: Format::Obj, name: "obj", extension: "obj", is_binary: false },
+    Row { format: Format::Ply, name: "ply", extension: "ply", is_binary: true },
+    Row { format: Format::Spa, name: "spa", extension: "spa", is_binary: false },
+    Row { format: Format::Spb, name: "spb", extension: "spb", is_binary: true },
+    Row { format: Format::Sma, name: "sma", extension: "sma", is_binary: false },
+    Row { format: Format::Smb, name: "smb", extension: "smb", is_binary: true },
+];
+
+impl Format {
+    fn row(self) -> &'static Row {
+        ROWS.iter().find(|row| row.format == self).expect("every format has its row")
+    }
+
+    /// Names of all formats.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        ROWS.iter().map(|row| row.name)
+    }
+
+    /// The format with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        ROWS.iter().find(|row| row.name == name).map(|row| row.format)
+    }
+
+    /// The format that the extension of `path` names, if it names one.
+    #[must_use]
+    pub fn from_path(path: &Path) -> Option<Self> {
+        let extension = path.extension()?.to_str()?;
+        ROWS.iter().find(|row| row.extension.eq_ignore_ascii_case(extension)).map(|row| row.format)
+    }
+
+    /// Name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Whether a terminal cannot show it.
+    #[must_use]
+    pub fn is_binary(self) -> bool {
+        self.row().is_binary
+    }
+}

@@ -1,0 +1,434 @@
+//! Reads the text twin of a stream (`formats/text.md`).
+
+use std::io::Read;
+
+use super::events::EventSource;
+use super::statements::{
+    Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
+};
+use super::twin_header::TwinHeader;
+use crate::bounds::Point;
+use crate::cells::CellCode;
+use crate::error::{Error, Result};
+use crate::limits::BLOCK_PAYLOAD_MAX;
+use crate::stream::{ChunkCheck, Coordinates, Event, Header, Kind, Patch, Totals, check_place};
+
+/// Lines of one sort that become one event at most.
+const BATCH_MAX: usize = 4096;
+
+/// One line, parsed. Vertices and residual points are counted from 0 here.
+enum Statement {
+    Vertex(Point),
+    Cell(CellCode),
+    Patch,
+    Triangle([u64; 3]),
+    Final(u64),
+    Residual(Option<u64>, Point),
+    Wall([u64; 2]),
+    End(Totals),
+}
+
+/// The lines of a patch, with ids instead of local indices.
+#[derive(Default)]
+struct PatchLines {
+    new: Vec<Point>,
+    triangles: Vec<[u64; 3]>,
+    finalized: Vec<u64>,
+}
+
+impl PatchLines {
+    /// Length of the payload without imported vertices, in bytes.
+    fn len_min(&self, header: &Header) -> usize {
+        24 + self.new.len() * header.point_len() + self.triangles.len() * 12 + self.finalized.len() * 4
+    }
+}
+
+/// Lines that make the next event.
+enum Group {
+    Empty,
+    Points(Vec<Point>),
+    Cells(Vec<CellCode>),
+    Patch(PatchLines),
+    Residual(Vec<(Option<u64>, Point)>),
+    Walls(Vec<[u32; 2]>),
+}
+
+/// Reads a text twin. Memory: one line, and one block's worth of lines.
+///
+/// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input and line.
+pub struct TwinSource<R> {
+    lines: Lines<R>,
+    header: Header,
+    held: Option<Statement>,
+    group: Group,
+    totals: Totals,
+    finalized: u64,
+    named_residual_points: u64,
+    chunks: Option<ChunkCheck>,
+    ended: bool,
+}
+
+impl<R: Read> TwinSource<R> {
+    /// Reads the header; `name` is what messages call the input.
+    ///
+    /// # Errors
+    /// If the input is no text twin, or its header is not complete or breaks a rule.
+    pub fn new(input: R, name: impl Into<String>) -> Result<Self> {
+        let mut lines = Lines::new(input, name);
+        let mut header = TwinHeader::default();
+        let mut is_first_content = false;
+        while let Some(line) = lines.next_line()? {
+            let parsed = match line.strip_prefix(b"#spmesh ") {
+                Some(rest) => header.line(rest),
+                None => {
+                    is_first_content = is_content(line);
+                    Ok(())
+                }
+            };
+            parsed.map_err(|e| lines.locate(e))?;
+            if is_first_content {
+                break;
+            }
+        }
+        let header = header.finish().map_err(|e| lines.locate(e))?;
+        let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
+        let mut source = TwinSource {
+            lines,
+            header,
+            held: None,
+            group: Group::Empty,
+            totals: Totals::default(),
+            finalized: 0,
+            named_residual_points: 0,
+            chunks,
+            ended: false,
+        };
+        if is_first_content {
+            source.held =
+                parse_statement(source.lines.current(), &source.header).map_err(|e| source.locate(e))?;
+        }
+        Ok(source)
+    }
+
+    fn read_statement(&mut self) -> Result<Statement> {
+        loop {
+            let Some(line) = self.lines.next_line()? else {
+                return Err(Error::malformed("truncated: the text ends without the line \"# end\""));
+            };
+            if let Some(statement) = parse_statement(line, &self.header)? {
+                return Ok(statement);
+            }
+        }
+    }
+
+    fn advance(&mut self) -> Result<Event> {
+        loop {
+            let statement = match self.held.take() {
+                Some(statement) => statement,
+                None => self.read_statement()?,
+            };
+            if !self.group.takes(&statement) {
+                self.held = Some(statement);
+                return self.take_group();
+            }
+            if let Statement::End(stated) = statement {
+                self.check_end(stated)?;
+                self.expect_end_of_input()?;
+                self.ended = true;
+                return Ok(Event::End(stated));
+            }
+            self.push(statement)?;
+        }
+    }
+
+    /// Adds a statement to the group, which it starts if there is none.
+    fn push(&mut self, statement: Statement) -> Result<()> {
+        let is_mesh = self.header.kind != Kind::Points;
+        let is_partial = self.header.kind == Kind::PartialTriangleMesh;
+        let residual_points = self.totals.residual_points;
+        match (&mut self.group, statement) {
+            (Group::Points(points), Statement::Vertex(point)) => points.push(point),
+            (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
+            (Group::Patch(patch), Statement::Vertex(point)) => patch.new.push(point),
+            (Group::Patch(patch), Statement::Triangle(triangle)) => patch.triangles.push(triangle),
+            (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
+            (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
+            (Group::Walls(walls), Statement::Wall(wall)) => walls.push(check_wall(wall, residual_points)?),
+            (Group::Empty, statement) => {
+                self.group = match statement {
+                    Statement::Vertex(_) if !is_mesh => Group::Points(Vec::new()),
+                    Statement::Cell(_) if !is_mesh => Group::Cells(Vec::new()),
+                    Statement::Patch if is_mesh && self.totals.residual_points == 0 => {
+                        Group::Patch(PatchLines::default())
+                    }
+                    Statement::Residual(..) if is_partial && self.totals.walls == 0 => {
+                        Group::Residual(Vec::new())
+                    }
+                    Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
+                    _ => {
+                        let kind = self.header.kind.name();
+                        return Err(Error::malformed(format!("a {kind} cannot have this line here")));
+                    }
+                };
+                if !matches!(statement, Statement::Patch) {
+                    return self.push(statement);
+                }
+            }
+            _ => unreachable!("the group takes the statement"),
+        }
+        match &self.group {
+            Group::Patch(patch) if patch.len_min(&self.header) > BLOCK_PAYLOAD_MAX => Err(too_long()),
+            _ => Ok(()),
+        }
+    }
+
+    /// The event of the group, checked by the rules of the stream.
+    fn take_group(&mut self) -> Result<Event> {
+        Ok(match std::mem::replace(&mut self.group, Group::Empty) {
+            Group::Empty => unreachable!("the empty group takes every statement"),
+            Group::Points(points) => {
+                self.totals.points += points.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.points(&points)?;
+                }
+                Event::Points(points)
+            }
+            Group::Cells(cells) => {
+                self.totals.cells += cells.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.cells(&cells);
+                }
+                Event::Cells(cells)
+            }
+            Group::Patch(lines) => Event::Patch(self.patch_of(lines)?),
+            Group::Residual(points) => {
+                let named = || points.iter().filter_map(|&(id, _)| id);
+                if let Some(id) = named().find(|&id| id >= self.totals.vertices) {
+                    return Err(Error::malformed(format!(
+                        "residual point is vertex {}, which is none",
+                        id + 1
+                    )));
+                }
+                self.totals.residual_points += points.len() as u64;
+                self.named_residual_points += named().count() as u64;
+                Event::ResidualPoints(points)
+            }
+            Group::Walls(walls) => {
+                self.totals.walls += walls.len() as u64;
+                Event::Walls(walls)
+            }
+        })
+    }
+
+    fn patch_of(&mut self, lines: PatchLines) -> Result<Patch> {
+        let first_id = self.totals.vertices;
+        let len_min = lines.len_min(&self.header);
+        let PatchLines { new, triangles, finalized } = lines;
+        let used = || triangles.iter().flatten().chain(&finalized).copied();
+        let end = first_id + new.len() as u64;
+        if let Some(id) = used().find(|&id| id >= end) {
+            return Err(Error::malformed(format!("vertex {} of {end}", id + 1)));
+        }
+        let mut imported: Vec<u64> = used().filter(|&id| id < first_id).collect();
+        imported.sort_unstable();
+        imported.dedup();
+        if len_min + imported.len() * 8 > BLOCK_PAYLOAD_MAX {
+            return Err(too_long());
+        }
+        let local = |id: &u64| match id.checked_sub(first_id) {
+            Some(new) => new as u32,
+            None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
+        };
+        let simplices: Vec<u32> = triangles.iter().flatten().map(local).collect();
+        let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
+        finalized.sort_unstable();
+        if finalized.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(Error::malformed("the patch finalizes a vertex twice"));
+        }
+        self.totals.vertices = end;
+        self.totals.simplices += triangles.len() as u64;
+        self.finalized += finalized.len() as u64;
+        Ok(Patch { first_id, new, imported, simplices, finalized })
+    }
+
+    /// The rules of END (`formats/spmesh.md` 4.7).
+    fn check_end(&self, stated: Totals) -> Result<()> {
+        let mut counted = self.totals;
+        if self.header.kind != Kind::Points {
+            counted.merged = stated.merged;
+            let waiting = counted.residual_points - self.named_residual_points;
+            let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
+            counted.points = points.ok_or_else(|| Error::malformed("end: points are beyond counting"))?;
+            let retired = self.finalized + self.named_residual_points;
+            if retired != counted.vertices {
+                return Err(Error::malformed(format!(
+                    "end: {retired} of {} vertices were finalized or handed to the residual",
+                    counted.vertices
+                )));
+            }
+        }
+        if stated != counted {
+            return Err(Error::malformed(format!("end states {stated:?}, but the text holds {counted:?}")));
+        }
+        if self.header.points.is_some_and(|points| points != stated.points) {
+            return Err(Error::malformed("end: the header states another number of points"));
+        }
+        self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
+    }
+
+    fn expect_end_of_input(&mut self) -> Result<()> {
+        while let Some(line) = self.lines.next_line()? {
+            if !line.trim_ascii().is_empty() {
+                return Err(Error::malformed("the text goes on after its end"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<R: Read> EventSource for TwinSource<R> {
+    fn header(&self) -> &Header {
+        &self.header
+    }
+
+    fn next_event(&mut self) -> Result<Option<Event>> {
+        if self.ended {
+            return Ok(None);
+        }
+        self.advance().map(Some).map_err(|e| self.locate(e))
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.lines.locate(error)
+    }
+}
+
+impl Group {
+    /// Whether the statement belongs to the event that the group makes.
+    fn takes(&self, statement: &Statement) -> bool {
+        match (self, statement) {
+            (Group::Empty, _) => true,
+            (Group::Points(points), Statement::Vertex(_)) => points.len() < BATCH_MAX,
+            (Group::Cells(cells), Statement::Cell(_)) => cells.len() < BATCH_MAX,
+            (Group::Patch(_), Statement::Vertex(_) | Statement::Triangle(_) | Statement::Final(_)) => true,
+            (Group::Residual(points), Statement::Residual(..)) => points.len() < BATCH_MAX,
+            (Group::Walls(walls), Statement::Wall(_)) => walls.len() < BATCH_MAX,
+            _ => false,
+        }
+    }
+}
+
+/// Whether a line is a statement of content or end.
+fn is_content(line: &[u8]) -> bool {
+    let mut fields = fields(line);
+    match fields.next() {
+        None => false,
+        Some(b"#") => matches!(fields.next(), Some(b"patch" | b"end")),
+        Some(first) => first[0] != b'#',
+    }
+}
+
+/// The statement of a line; `None` for empty lines and comments.
+fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
+    if !is_content(line) {
+        return Ok(None);
+    }
+    let mut fields = fields(line);
+    let fields = &mut fields;
+    let statement = match next_field(fields)? {
+        b"v" => Statement::Vertex(parse_point(fields, header)?),
+        b"f" => Statement::Triangle(parse_triangle(fields)?),
+        b"x" => match next_field(fields)? {
+            b"cell" => Statement::Cell(parse_cell(next_field(fields)?, header)?),
+            vertex => Statement::Final(parse_number(vertex)?),
+        },
+        b"r" => {
+            let vertex = next_field(fields)?;
+            let vertex = (vertex != b"-").then(|| parse_number(vertex)).transpose()?;
+            Statement::Residual(vertex, parse_point(fields, header)?)
+        }
+        b"w" => Statement::Wall([parse_number(next_field(fields)?)?, parse_number(next_field(fields)?)?]),
+        b"#" => match next_field(fields)? {
+            b"patch" => Statement::Patch,
+            _ => Statement::End(parse_end(fields)?),
+        },
+        other => return Err(unexpected(other, "v, f, x, r, w or a comment")),
+    };
+    expect_no_field(fields)?;
+    Ok(Some(statement))
+}
+
+/// A point in stored coordinates, from world coordinates, checked by the header.
+fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Point> {
+    let world = parse_decimals::<3>(fields)?;
+    let mut stored = header.coordinates.to_stored(world);
+    stored[header.coordinates_per_point()..].fill(0.0);
+    if let Coordinates::I32 { .. } = header.coordinates {
+        // What rounds to -0 is the integer 0.
+        stored = stored.map(|value| value + 0.0);
+    }
+    for (value, world) in stored.iter().zip(world) {
+        if !header.coordinates.can_store(*value) {
+            return Err(Error::malformed(format!("coordinate {world} does not fit the header's encoding")));
+        }
+    }
+    check_place(header, stored)?;
+    Ok(stored)
+}
+
+fn parse_triangle<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<[u64; 3]> {
+    let mut triangle = [0; 3];
+    for vertex in &mut triangle {
+        *vertex = parse_number(next_field(fields)?)?;
+    }
+    let [a, b, c] = triangle;
+    if a == b || b == c || c == a {
+        return Err(Error::malformed("triangle uses a vertex twice"));
+    }
+    Ok(triangle)
+}
+
+fn parse_cell(field: &[u8], header: &Header) -> Result<CellCode> {
+    let Some(tree) = &header.tree else {
+        return Err(Error::malformed("cell tag in a stream without a finalization tree"));
+    };
+    let cell = CellCode(parse_integer(field)?);
+    tree.is_valid(cell).then_some(cell).ok_or_else(|| unexpected(field, "a location code of the tree"))
+}
+
+/// A number counted from 1, as one counted from 0.
+fn parse_number(field: &[u8]) -> Result<u64> {
+    parse_integer(field)?.checked_sub(1).ok_or_else(|| unexpected(field, "a number from 1 on"))
+}
+
+fn parse_end<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Totals> {
+    let mut total = |name: &str| {
+        let found = next_field(fields)?;
+        if found != name.as_bytes() {
+            return Err(unexpected(found, name));
+        }
+        parse_integer(next_field(fields)?)
+    };
+    Ok(Totals {
+        points: total("points")?,
+        cells: total("cells")?,
+        vertices: total("vertices")?,
+        simplices: total("simplices")?,
+        merged: total("merged")?,
+        residual_points: total("residual")?,
+        walls: total("walls")?,
+    })
+}
+
+/// A wall between two of the residual points.
+fn check_wall(wall: [u64; 2], residual_points: u64) -> Result<[u32; 2]> {
+    let ends = wall.map(|end| u32::try_from(end).ok().filter(|_| end < residual_points));
+    match ends {
+        [Some(from), Some(to)] if from != to => Ok([from, to]),
+        _ => Err(Error::malformed("wall between no two residual points")),
+    }
+}
+
+fn too_long() -> Error {
+    Error::malformed(format!("the patch is longer than a block of {BLOCK_PAYLOAD_MAX} bytes"))
+}

@@ -1,0 +1,102 @@
+//! OBJ and PLY hold the mesh, and kinds that a format cannot hold are refused.
+
+use std::io::Cursor;
+
+use spmesh::convert::{Format, Options, convert};
+use spmesh::error::ErrorKind;
+
+use super::independent::{obj, ply};
+use super::{converted, samples, text_of, with_notices};
+
+#[test]
+fn obj_and_ply_hold_the_mesh() {
+    let streams: Vec<_> = samples::grids().into_iter().map(samples::mesh).collect();
+    for stream in
+        streams.into_iter().chain([samples::points(2, false, true), samples::points(3, false, false)])
+    {
+        let expected = obj(&text_of(&stream));
+        let text = converted(&stream, Format::Spm, Format::Obj).unwrap();
+        assert_eq!(obj(std::str::from_utf8(&text).unwrap()), expected);
+        assert_eq!(ply(&converted(&stream, Format::Spm, Format::Ply).unwrap()), expected);
+        let options = Options { ascii: true, ..Options::default() };
+        let mut ascii = Vec::new();
+        convert(Cursor::new(stream), "test", Format::Ply, &mut ascii, &options).unwrap();
+        assert_eq!(ply(&ascii), expected);
+    }
+}
+
+#[test]
+fn plain_obj_is_read() {
+    let text = "# cube corner\no thing\nvn 0 0 1\nf 1 2/7 3//1 # late vertices\n";
+    assert!(converted(text.as_bytes(), Format::Obj, Format::Spm).is_err(), "a comment in a face");
+    let text = "o thing\nvn 0 0 1\nf 1 2/7 3//1\nv 0 0 1 0.5\nv 1 0 2\nv 1 1 3\nv 0 1 4\nf -4 -3 -2 -1\n";
+    let (stream, notices) = with_notices(text.as_bytes(), Format::Obj, Format::Spm).unwrap();
+    let soup = obj(&text_of(&stream));
+    assert_eq!(soup.vertices, [[0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [1.0, 1.0, 3.0], [0.0, 1.0, 4.0]]);
+    assert_eq!(soup.triangles, [[0, 1, 2], [0, 1, 2], [0, 2, 3]]);
+    assert!(notices[0].contains("all are at the end"));
+    for bad in
+        ["f 1 2 3\n", "v 0 0 0\nf 1 1 1\n", "v 0 0\n", "f 1 2\n", "hello\n", "f 0 1 2\n", "v 0 0 nan\n"]
+    {
+        let error = converted(bad.as_bytes(), Format::Obj, Format::Spm).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Malformed, "{bad}");
+    }
+}
+
+#[test]
+fn long_obj_is_cut_into_patches() {
+    let mut text = String::new();
+    for i in 0..10_000 {
+        text += &format!("v {} {} 0\n", i / 2, i % 2);
+    }
+    for i in 1..=9_998 {
+        text += &format!("f {i} {} {}\n", i + 1, i + 2);
+    }
+    let stream = converted(text.as_bytes(), Format::Obj, Format::Spm).unwrap();
+    let twin = text_of(&stream);
+    assert_eq!(obj(&twin), obj(&text));
+    assert!(twin.matches("# patch").count() > 5);
+}
+
+#[test]
+fn kinds_that_a_format_cannot_hold_are_refused() {
+    let mesh = samples::mesh(samples::grids()[0]);
+    let cases = [
+        (samples::points(2, true, false), vec![Format::Sma, Format::Smb]),
+        (mesh, vec![Format::Spa, Format::Spb]),
+        (
+            samples::partial(),
+            vec![Format::Obj, Format::Ply, Format::Sma, Format::Smb, Format::Spa, Format::Spb],
+        ),
+    ];
+    for (stream, formats) in cases {
+        for format in formats {
+            let error = converted(&stream, Format::Spm, format).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Usage);
+            assert!(error.to_string().contains("cannot be written as"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn formats_are_recognized_by_content() {
+    let mesh = samples::mesh(samples::grids()[0]);
+    let points = samples::points(2, true, false);
+    for (stream, formats) in [
+        (&mesh, [Format::Spm, Format::Text, Format::Obj, Format::Sma, Format::Smb].as_slice()),
+        (&points, [Format::Spm, Format::Text, Format::Spa, Format::Spb].as_slice()),
+    ] {
+        for &format in formats {
+            let input = converted(stream, Format::Spm, format).unwrap();
+            let mut output = Vec::new();
+            convert(Cursor::new(input), "-", Format::Text, &mut output, &Options::default()).unwrap();
+        }
+    }
+    let plain = b"v 0 0 0\nv 1 0 0\n".to_vec();
+    let guess = |name: &str| {
+        convert(Cursor::new(plain.clone()), name, Format::Spm, &mut Vec::new(), &Options::default())
+    };
+    assert_eq!(guess("stdin").unwrap_err().kind(), ErrorKind::Usage);
+    guess("mesh.OBJ").unwrap();
+    guess("points.spa").unwrap();
+}

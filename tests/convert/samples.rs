@@ -1,0 +1,135 @@
+//! Small streams of every kind.
+
+use spmesh::bounds::{Bounds, Point, Region};
+use spmesh::cells::{CellCode, CellTree};
+use spmesh::stream::{Coordinates, Crs, Header, Kind, Patch, StreamWriter};
+
+pub const SIDE: u64 = 12;
+
+/// Grids that are hard for decimals: a northing in millimetres, tiny steps, steps that are no power of two.
+pub fn grids() -> Vec<Coordinates> {
+    let grid = |scale: f64, offset: [f64; 3]| Coordinates::I32 { scale: [scale; 3], offset };
+    vec![
+        Coordinates::F64,
+        grid(0.001, [412_345.678, 5_432_109.876, -12.5]),
+        grid(1e-7, [8.5, 47.1, 0.0]),
+        grid(0.01, [0.0; 3]),
+        grid(0.3, [1e9 / 3.0, -1e9 / 7.0, 0.1]),
+    ]
+}
+
+/// A linear congruential generator.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn below(&mut self, bound: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % bound
+    }
+}
+
+fn point(coordinates: &Coordinates, x: u64, y: u64, random: &mut Random) -> Point {
+    match coordinates {
+        Coordinates::F64 => {
+            let jitter = random.below(1000) as f64 / 3000.0;
+            [x as f64 + jitter, y as f64 - jitter / 7.0, jitter * 100.0]
+        }
+        Coordinates::I32 { .. } => {
+            let mut stored = |i: u64| (i * 1_000_000 + random.below(900_000)) as f64 - 5e6;
+            [stored(x), stored(y), stored(0)]
+        }
+    }
+}
+
+/// A mesh of `SIDE` squared vertices, one patch per row; vertices are final after the row above theirs. The
+/// last row is finalized by a patch without triangles.
+pub fn mesh(coordinates: Coordinates) -> Vec<u8> {
+    let mut random = Random(7);
+    let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
+    header.crs = Crs::Wkt("PROJCS[\"a \\ \u{e9}\"]\n".into());
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    for row in 0..SIDE {
+        let new = (0..SIDE).map(|x| point(&coordinates, x, row, &mut random)).collect();
+        let mut patch = Patch { first_id: row * SIDE, new, ..Patch::default() };
+        if row > 0 {
+            patch.imported = ((row - 1) * SIDE..row * SIDE).collect();
+            let side = SIDE as u32;
+            for x in 0..side - 1 {
+                patch.simplices.extend([side + x, side + x + 1, x + 1, side + x, x + 1, x]);
+            }
+            patch.finalized = (side..2 * side).collect();
+        }
+        writer.patch(&patch).unwrap();
+    }
+    let imported = ((SIDE - 1) * SIDE..SIDE * SIDE).collect();
+    let finalized = (0..SIDE as u32).collect();
+    let last = Patch { first_id: SIDE * SIDE, imported, finalized, ..Patch::default() };
+    writer.patch(&last).unwrap();
+    writer.end(SIDE * SIDE + 3, 3).unwrap()
+}
+
+/// Points of a quadtree or octree of two levels, chunked and tagged cell by cell.
+pub fn points(dims: u8, has_elevation: bool, is_i32: bool) -> Vec<u8> {
+    let coordinates = match is_i32 {
+        false => Coordinates::F64,
+        true => Coordinates::I32 { scale: [0.01, 0.01, 0.001], offset: [300_000.0, 5_000_000.25, 10.0] },
+    };
+    let axes = usize::from(dims);
+    let mut origin = [0.0; 3];
+    origin[..axes].fill(-64.0);
+    let tree = CellTree::new(dims, 2, origin, 128.0).unwrap();
+    let mut header = Header::new(Kind::Points, coordinates, dims, has_elevation);
+    let top = if header.coordinates_per_point() == 3 { 64.0 } else { 0.0 };
+    header.bounds =
+        Some(Bounds { min: [-64.0, -64.0, -top], max: [63.0, 63.0, if dims == 3 { 63.0 } else { top }] });
+    header.tree = Some(tree);
+    header.chunked = true;
+    let mut random = Random(3);
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let first = 1u64 << (2 * dims);
+    for code in first..2 * first {
+        let (min, _) = tree.corners(CellCode(code));
+        // Corners of cells are the points that a rounded border would lose.
+        let mut inside = vec![min];
+        for _ in 0..random.below(5) {
+            let mut step = |axis: usize| min[axis] + random.below(32) as f64;
+            let z = if dims == 3 { step(2) } else { 0.0 };
+            inside.push([step(0), step(1), z]);
+        }
+        if header_has_no_z(dims, has_elevation) {
+            inside.iter_mut().for_each(|point| point[2] = 0.0);
+        }
+        writer.points(&inside).unwrap();
+        writer.cells(&[CellCode(code)]).unwrap();
+    }
+    writer.end(0, 0).unwrap()
+}
+
+fn header_has_no_z(dims: u8, has_elevation: bool) -> bool {
+    dims == 2 && !has_elevation
+}
+
+/// A partial mesh with a residual.
+pub fn partial() -> Vec<u8> {
+    let mut header = Header::new(Kind::PartialTriangleMesh, Coordinates::F64, 2, false);
+    header.region = Some(Region { min: [f64::NEG_INFINITY, 0.0], max: [8.0, f64::INFINITY] });
+    header.crs = Crs::GeoKeys { directory: vec![1, 0, 255], doubles: vec![], ascii: b"x|".to_vec() };
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let new = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let patch = Patch { first_id: 0, new, simplices: vec![0, 1, 2], finalized: vec![0], ..Patch::default() };
+    writer.patch(&patch).unwrap();
+    let residual = [(Some(1), [1.0, 0.0, 0.0]), (None, [5.0, 1e-300, 0.0]), (Some(2), [0.0, 1.0, 0.0])];
+    writer.residual_points(&residual).unwrap();
+    writer.walls(&[[0, 2], [2, 1]]).unwrap();
+    writer.end(4, 0).unwrap()
+}
+
+/// One stream of every sort.
+pub fn all() -> Vec<Vec<u8>> {
+    let mut all: Vec<Vec<u8>> = grids().into_iter().map(mesh).collect();
+    for is_i32 in [false, true] {
+        all.extend([points(2, true, is_i32), points(2, false, is_i32), points(3, false, is_i32)]);
+    }
+    all.push(partial());
+    all
+}

@@ -1,0 +1,87 @@
+//! The text twin loses nothing.
+
+use spmesh::convert::Format;
+use spmesh::error::ErrorKind;
+
+use super::{converted, samples, text_of};
+
+#[test]
+fn stream_to_text_to_stream_is_the_identity() {
+    for stream in samples::all() {
+        let text = text_of(&stream);
+        let back = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        assert!(back == stream, "differs after {}", text.lines().next().unwrap());
+        assert_eq!(text_of(&back), text);
+    }
+}
+
+#[test]
+fn text_to_text_is_the_identity() {
+    for stream in samples::all() {
+        let text = text_of(&stream);
+        let again = converted(text.as_bytes(), Format::Text, Format::Text).unwrap();
+        assert_eq!(String::from_utf8(again).unwrap(), text);
+    }
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    for stream in [samples::points(3, false, true), samples::partial()] {
+        let text = text_of(&stream);
+        for end in 0..text.len() - 1 {
+            let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Malformed, "cut at byte {end}: {error}");
+        }
+    }
+}
+
+#[test]
+fn free_spacing_and_comments_are_accepted() {
+    let text = text_of(&samples::partial());
+    let loose = text.replace(" 0\n", "\t0  \r\n").replace("# patch", "\n# a comment\n#patch\n  # patch");
+    let stream = converted(loose.as_bytes(), Format::Text, Format::Spm).unwrap();
+    assert_eq!(text_of(&stream), text);
+}
+
+#[test]
+fn errors_name_the_line() {
+    let text = text_of(&samples::partial());
+    let cases = [
+        ("f 1 2 3", "f 1 2 2", "uses a vertex twice"),
+        ("f 1 2 3", "f 1 2 4", "vertex 4 of 3"),
+        ("f 1 2 3", "f 1 2", "a field is missing"),
+        ("f 1 2 3", "f 1 2 3 1", "end of the line"),
+        ("f 1 2 3", "c 1 2 3 4", "expected v, f, x, r, w"),
+        ("x 1", "x 0", "from 1 on"),
+        ("x 1\n", "", "2 of 3 vertices were finalized"),
+        ("v 1 0 0", "v 9 0 0", "outside of the region"),
+        ("v 1 0 0", "v inf 0 0", "finite number"),
+        ("w 1 3", "w 1 4", "wall between no two"),
+        ("w 3 2", "# patch", "cannot have this line here"),
+        ("r 2 ", "r 7 ", "residual point is vertex 7"),
+        ("simplices 1", "simplices 2", "end states"),
+        ("#spmesh dims 2\n", "", "does not say the dims"),
+        ("#spmesh dims 2", "#spmesh dims 4", "expected 2 or 3"),
+        ("version 1", "version 2", "expected 1"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert!(text.contains(found), "{found} in {text}");
+        let damaged = text.replacen(found, replaced, 1);
+        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Malformed);
+        let message = error.to_string();
+        assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+    }
+}
+
+#[test]
+fn lines_and_patches_have_a_maximum() {
+    let line = [b"#spmesh version 1\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();
+    let error = converted(&line, Format::Text, Format::Spm).unwrap_err();
+    assert!(error.to_string().contains("line of more than 65536 bytes"), "{error}");
+    let header = "#spmesh version 1\n#spmesh kind triangle mesh\n#spmesh coordinates f64\n#spmesh dims 2\n\
+                  #spmesh elevation no\n#spmesh chunked no\n#spmesh producer \"\"\n# patch\n";
+    let patch = header.to_string() + &"v 0 0 0\n".repeat(70_000);
+    let error = converted(patch.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+    assert!(error.to_string().contains("longer than a block"), "{error}");
+}
