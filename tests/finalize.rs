@@ -126,7 +126,7 @@ fn clustered(n: usize, seed: u64) -> Vec<Point> {
 /// Strips that are walked to and fro, as a plane does.
 fn swaths(n: usize) -> Vec<Point> {
     let mut random = Random(5);
-    let along = |i: usize| if i / 500 % 2 == 0 { i % 500 } else { 499 - i % 500 };
+    let along = |i: usize| if (i / 500).is_multiple_of(2) { i % 500 } else { 499 - i % 500 };
     (0..n)
         .map(|i| [along(i) as f64 * 20.0, (i / 500 * 1000) as f64 + random.below(1500) as f64, 7.0])
         .collect()
@@ -501,4 +501,52 @@ fn requests_that_cannot_be_met_are_refused() {
     let error = run(&Memory::new(&many), &nowhere, &mut (), &mut Vec::new()).expect_err("no folder");
     assert_eq!(error.kind(), ErrorKind::Io);
     assert!(error.to_string().contains("/nonexistent/folder"), "{error}");
+}
+
+/// Text of points whose order has no coherence, more than the least memory holds.
+fn incoherent_text() -> String {
+    integer_points(40_000, 8, 1_000_000).iter().map(|[x, y, z]| format!("{x}.5 {y} {z}\n")).collect()
+}
+
+#[test]
+fn the_tool_writes_a_whole_file_and_nothing_when_the_disk_is_full() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (input, output) = (folder.path().join("points.xyz"), folder.path().join("points.spm"));
+    std::fs::write(&input, incoherent_text()).expect("written");
+    let run = |limit: &str| {
+        // With the signal ignored, a write beyond the limit fails as on a full disk.
+        let script = format!("trap '' XFSZ; {limit} exec \"$0\" \"$@\"");
+        let mut command = std::process::Command::new("sh");
+        command.args(["-c", &script, env!("CARGO_BIN_EXE_spfinalize")]).arg(&input);
+        command.arg("-o").arg(&output).arg("--temp-dir").arg(folder.path());
+        command.args(["--memory", &Budget::process_min().to_string()]);
+        command.output().expect("sh runs")
+    };
+    let full = run("ulimit -f 64;");
+    let message = String::from_utf8_lossy(&full.stderr).into_owned();
+    assert_eq!(full.status.code(), Some(1), "{message}");
+    assert!(message.contains("temporary file in") && message.contains("too large"), "{message}");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("the folder").count(), 1, "nothing is left behind");
+    let done = run("");
+    assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
+    assert!(String::from_utf8_lossy(&done.stderr).contains("waited in a temporary file"));
+    let decoded = decode(&std::fs::read(&output).expect("the output"));
+    assert_eq!(decoded.points.len(), 40_000);
+}
+
+#[test]
+fn the_tool_tells_its_figures_to_machines() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let input = folder.path().join("points.xyz");
+    std::fs::write(&input, "1 2 3\n4 5 6\n1 5 6\n").expect("written");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_spfinalize"))
+        .args(["--stats", "json", "--quiet", "--level", "1"])
+        .arg(&input)
+        .output()
+        .expect("runs");
+    assert_eq!(output.status.code(), Some(0));
+    let figures: serde_json::Value = serde_json::from_slice(&output.stderr).expect("one JSON object");
+    assert_eq!(figures["points"], 3);
+    assert_eq!(figures["cells"]["occupied"], 3);
+    assert_eq!(decode(&output.stdout).points.len(), 3);
 }

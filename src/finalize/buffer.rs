@@ -114,7 +114,7 @@ impl CellBuffers {
             drained += bytes.len() as u64;
             consume(bytes)
         };
-        if let Some(spill) = self.spill.as_ref().filter(|_| state.first_extent != NO_EXTENT) {
+        if let Some(spill) = self.spill.as_mut().filter(|_| state.first_extent != NO_EXTENT) {
             spill.read_chain(state.first_extent, self.record_len, &mut consume)?;
         }
         for_each_page(&self.pages, &state, &mut consume)?;

@@ -22,6 +22,8 @@ pub(super) struct Spill {
     waiting: Vec<u8>,
     waiting_max: usize,
     end: u64,
+    /// What was read back last.
+    piece: Vec<u8>,
 }
 
 impl Spill {
@@ -36,7 +38,7 @@ impl Spill {
         let file =
             tempfile::tempfile_in(&folder).map_err(|e| Error::io("creating it", e).of_input(&place))?;
         let waiting = Vec::with_capacity(io_len);
-        Ok(Spill { file, place, waiting, waiting_max: io_len, end: 0 })
+        Ok(Spill { file, place, waiting, waiting_max: io_len, end: 0, piece: vec![0; io_len] })
     }
 
     /// Bytes in the file.
@@ -95,25 +97,26 @@ impl Spill {
     /// # Errors
     /// If the file cannot be read, or `consume` fails.
     pub(super) fn read_chain(
-        &self,
+        &mut self,
         first: u64,
         record_len: usize,
         mut consume: impl FnMut(&[u8]) -> Result<()>,
     ) -> Result<()> {
         debug_assert!(self.waiting.is_empty());
-        let mut piece = vec![0; self.waiting_max / record_len * record_len];
+        let piece_max = (self.piece.len() / record_len * record_len) as u64;
         let mut extent = first;
         while extent != NO_EXTENT {
             let mut header = [0; EXTENT_HEADER_LEN];
-            self.read_at(&mut header, extent)?;
+            read_at(&self.file, &self.place, &mut header, extent)?;
             let (next, len) = header.split_at(8);
             let len = u64::from_le_bytes(len.try_into().expect("8 bytes"));
             let mut done = 0;
             while done < len {
-                let piece_len = (len - done).min(piece.len() as u64) as usize;
-                self.read_at(&mut piece[..piece_len], extent + EXTENT_HEADER_LEN as u64 + done)?;
-                consume(&piece[..piece_len])?;
-                done += piece_len as u64;
+                let piece = 0..(len - done).min(piece_max) as usize;
+                let offset = extent + EXTENT_HEADER_LEN as u64 + done;
+                read_at(&self.file, &self.place, &mut self.piece[piece.clone()], offset)?;
+                consume(&self.piece[piece.clone()])?;
+                done += piece.len() as u64;
             }
             extent = u64::from_le_bytes(next.try_into().expect("8 bytes"));
         }
@@ -124,9 +127,9 @@ impl Spill {
         let written = self.file.write_all_at(bytes, offset);
         written.map_err(|e| Error::io("writing points that exceed --memory", e).of_input(&self.place))
     }
+}
 
-    fn read_at(&self, bytes: &mut [u8], offset: u64) -> Result<()> {
-        let read = self.file.read_exact_at(bytes, offset);
-        read.map_err(|e| Error::io("reading points back", e).of_input(&self.place))
-    }
+fn read_at(file: &File, place: &str, bytes: &mut [u8], offset: u64) -> Result<()> {
+    let read = file.read_exact_at(bytes, offset);
+    read.map_err(|e| Error::io("reading points back", e).of_input(place))
 }
