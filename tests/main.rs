@@ -3,10 +3,13 @@
 mod allocation;
 mod audit;
 mod circle;
+mod cli;
 mod convert;
 mod finalize;
 mod kernel;
 mod kernel_predicates;
+mod pipelines;
+mod programs;
 mod reduction;
 mod reference;
 mod stream;

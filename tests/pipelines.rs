@@ -1,0 +1,186 @@
+//! Tools chained by pipes: what comes out, and what happens when one of them dies.
+
+use std::fs;
+use std::io::Read;
+use std::process::Stdio;
+
+use crate::programs::{cloud, outcome, run, sample, start, tool};
+
+/// A chunked stream of a cloud that is much longer than a pipe holds.
+fn long_stream() -> Vec<u8> {
+    let output = run("spfinalize", &["--cell-points", "2000", "-"], cloud(60_000).as_bytes());
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    assert!(output.stdout.len() > 1_000_000);
+    output.stdout
+}
+
+fn mesh_of(points: &[u8], arguments: &[&str]) -> Vec<u8> {
+    let output = run("spdelaunay2d", arguments, points);
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    output.stdout
+}
+
+#[test]
+fn a_real_tile_becomes_an_audited_mesh() {
+    let tile = sample("lareunion.laz");
+    let points = run("spfinalize", &["--cell-points", "3000", &tile], &[]);
+    assert!(points.status.success(), "{:?}", outcome(&points));
+    let mesh = mesh_of(&points.stdout, &["--duplicates", "lowest"]);
+    let audit = run("spinfo", &["--audit", "--json", "-"], &mesh);
+    assert!(audit.status.success(), "{:?}", outcome(&audit));
+    let report: serde_json::Value = serde_json::from_slice(&audit.stdout).unwrap();
+    assert_eq!(report["counts"]["points"], 59_712);
+    assert_eq!(report["counts"]["vertices"], 59_712 - 51);
+}
+
+/// The triangles of a mesh by their coordinates, sorted, from its text twin.
+fn triangles(mesh: &[u8]) -> Vec<[String; 3]> {
+    let output = run("spconvert", &["--to", "text"], mesh);
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut vertices: Vec<String> = Vec::new();
+    let mut triangles = Vec::new();
+    for line in text.lines() {
+        if let Some(vertex) = line.strip_prefix("v ") {
+            vertices.push(vertex.rsplit_once(' ').unwrap().0.to_string());
+        } else if let Some(face) = line.strip_prefix("f ") {
+            let t: Vec<usize> = face.split(' ').map(|i| i.parse::<usize>().unwrap() - 1).collect();
+            let turn = |k: usize| std::array::from_fn(|i| vertices[t[(i + k) % 3]].clone());
+            triangles.push((0..3).map(turn).min().unwrap());
+        }
+    }
+    triangles.sort_unstable();
+    triangles
+}
+
+#[test]
+fn levels_order_threads_and_preserving_change_nothing() {
+    let tile = sample("lareunion.laz");
+    let reference = run("spfinalize", &["--level", "0", &tile], &[]).stdout;
+    let reference = triangles(&mesh_of(&reference, &["--threads", "1"]));
+    assert!(reference.len() > 100_000);
+    for arguments in
+        [&["--level", "1"][..], &["--level", "4"], &["--level", "6", "--preserve"], &["--preserve"]]
+    {
+        let points = run("spfinalize", &[arguments, &[&tile]].concat(), &[]);
+        assert!(points.status.success(), "{:?}", outcome(&points));
+        for threads in ["1", "2"] {
+            let mesh = mesh_of(&points.stdout, &["--threads", threads]);
+            assert!(triangles(&mesh) == reference, "{arguments:?}, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn tiles_of_a_real_file_merge_to_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = folder.path().join("points.spm");
+    let points = points.to_str().unwrap();
+    let tile = sample("lareunion.laz");
+    assert!(run("spfinalize", &["-o", points, &tile], &[]).status.success());
+    let info = run("spinfo", &["--json", points], &[]);
+    let info: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    let bound = |corner: &str, axis: usize| info["bounds"][corner][axis].as_f64().unwrap();
+    let border = |axis: usize, i: u32| match i {
+        0 => f64::NEG_INFINITY,
+        4 => f64::INFINITY,
+        i => bound("min", axis) + (bound("max", axis) - bound("min", axis)) * f64::from(i) / 4.0,
+    };
+    let mut merge = vec!["--merge".to_string()];
+    for i in 0..16 {
+        let (x, y) = (i % 4, i / 4);
+        let region = format!("{},{},{},{}", border(0, x), border(1, y), border(0, x + 1), border(1, y + 1));
+        let part = folder.path().join(format!("part{i}.spm")).to_str().unwrap().to_string();
+        let output = run("spdelaunay2d", &["--partial", "--region", &region, "-o", &part, points], &[]);
+        assert!(output.status.success(), "{:?}", outcome(&output));
+        merge.push(part);
+    }
+    let merge: Vec<&str> = merge.iter().map(String::as_str).collect();
+    let whole = mesh_of(&fs::read(points).unwrap(), &[]);
+    let merged = mesh_of(&[], &merge);
+    assert!(triangles(&merged) == triangles(&whole));
+    assert!(run("spinfo", &["--audit", "-"], &merged).status.success());
+}
+
+#[test]
+fn a_killed_producer_leaves_no_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("cloud.xyz");
+    fs::write(&source, cloud(60_000)).unwrap();
+    let mut finalize =
+        start("spfinalize", &["--cell-points", "2000", source.to_str().unwrap()], Stdio::null());
+    let mut delaunay = tool("spdelaunay2d");
+    let mesh = folder.path().join("mesh.spm");
+    delaunay.args(["-o", mesh.to_str().unwrap()]).stdin(Stdio::piped());
+    let mut delaunay = delaunay.spawn().unwrap();
+    // Forward a part of the stream; the finalizer then waits with the rest until it is killed.
+    let mut part = vec![0; 300_000];
+    finalize.stdout.as_mut().unwrap().read_exact(&mut part).unwrap();
+    std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &part).unwrap();
+    finalize.kill().unwrap();
+    let mut rest = Vec::new();
+    finalize.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
+    std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &rest).unwrap();
+    assert!(!finalize.wait().unwrap().success());
+    let output = delaunay.wait_with_output().unwrap();
+    let (code, message) = outcome(&output);
+    assert_eq!(code, Some(3), "{message}");
+    assert!(message.starts_with("spdelaunay2d: stdin: block "), "{message}");
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["cloud.xyz"]);
+}
+
+#[test]
+fn errors_travel_down_the_pipe() {
+    let points = long_stream();
+    let cut = &points[..points.len() / 2];
+    let mesh = run("spdelaunay2d", &[], cut);
+    assert_eq!(outcome(&mesh).0, Some(3));
+    for (name, arguments) in [("spinfo", &["--audit", "-"][..]), ("spconvert", &["--to", "text"])] {
+        let (code, message) = outcome(&run(name, arguments, &mesh.stdout));
+        assert_eq!(code, Some(3), "{name}: {message}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_silent() {
+    let points = long_stream();
+    let mesh = mesh_of(&points, &[]);
+    let folder = tempfile::tempdir().unwrap();
+    let files = ["points.spm", "mesh.spm"].map(|name| folder.path().join(name).to_str().unwrap().to_string());
+    fs::write(&files[0], &points).unwrap();
+    fs::write(&files[1], &mesh).unwrap();
+    let runs = [
+        ("spfinalize", vec![&files[0][..]]),
+        ("spdelaunay2d", vec![&files[0]]),
+        ("spconvert", vec!["--to", "text", &files[1]]),
+        ("spconvert", vec!["--to", "ply", &files[1]]),
+    ];
+    for (name, arguments) in runs {
+        let mut child = start(name, &arguments, Stdio::null());
+        let mut head = [0; 1000];
+        child.stdout.take().unwrap().read_exact(&mut head).unwrap();
+        let (code, message) = outcome(&child.wait_with_output().unwrap());
+        assert_eq!((code, &message[..]), (Some(141), ""), "{name} {arguments:?}");
+    }
+}
+
+#[test]
+fn a_full_disk_is_an_error_with_its_reason() {
+    if !std::path::Path::new("/dev/full").exists() {
+        eprintln!("SKIPPED: there is no /dev/full");
+        return;
+    }
+    let points = long_stream();
+    let mesh = mesh_of(&points, &[]);
+    let runs = [
+        ("spfinalize", vec!["-", "-o", "/dev/full"], &points),
+        ("spdelaunay2d", vec!["-o", "/dev/full"], &points),
+        ("spconvert", vec!["--to", "text", "-o", "/dev/full"], &mesh),
+    ];
+    for (name, arguments, input) in runs {
+        let (code, message) = outcome(&run(name, &arguments, input));
+        assert_eq!(code, Some(1), "{name}: {message}");
+        assert!(message.contains("No space left on device"), "{name}: {message}");
+    }
+}
