@@ -198,10 +198,14 @@ impl Summary<'_> {
 
 fn audit_text(report: &Report) -> String {
     let verdict = if report.violation.is_none() { "passed" } else { "FAILED" };
-    let mut text = format!(
-        "audit {verdict}, with at most {} vertices and {} open edges in memory\n",
-        report.live_max, report.open_edges_max
-    );
+    let mut text = format!("audit {verdict}");
+    if report.live_max > 0 {
+        text += &format!(
+            ", with at most {} vertices and {} open edges in memory",
+            report.live_max, report.open_edges_max
+        );
+    }
+    text.push('\n');
     for line in &report.lines {
         let (verdict, name) = (if line.passed { "ok" } else { "FAILED" }, line.check.name());
         text += &format!("  {name:<12} {verdict:<6} {:>11} tests", line.tests);
