@@ -29,12 +29,13 @@ impl CodeSet {
         self.ends.insert(start, end);
     }
 
-    pub(super) fn overlaps(&self, codes: Range<u64>) -> bool {
-        self.ends.range(..codes.end).next_back().is_some_and(|(_, &end)| end > codes.start)
+    /// Whether all of `codes` are held. Intervals that touch are merged, so that one must hold them.
+    pub(super) fn covers(&self, codes: Range<u64>) -> bool {
+        self.ends.range(..=codes.start).next_back().is_some_and(|(_, &end)| end >= codes.end)
     }
 
     pub(super) fn contains(&self, code: u64) -> bool {
-        self.overlaps(code..code + 1)
+        self.covers(code..code + 1)
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -81,12 +82,13 @@ mod tests {
     fn intervals_merge_and_are_found() {
         let mut set = CodeSet::default();
         for codes in [4..6, 10..12, 6..7, 1..2, 8..10] {
-            assert!(!set.overlaps(codes.clone()));
+            assert!(!set.covers(codes.clone()));
             set.insert(codes);
         }
         assert_eq!(set.ends.iter().collect::<Vec<_>>(), [(&1, &2), (&4, &7), (&8, &12)]);
         let held: Vec<u64> = (0..14).filter(|&code| set.contains(code)).collect();
         assert_eq!(held, [1, 4, 5, 6, 8, 9, 10, 11]);
+        assert!(set.covers(5..7) && !set.covers(6..8) && !set.covers(7..9));
         set.insert(0..20);
         assert_eq!(set.ends.len(), 1);
     }

@@ -31,9 +31,9 @@ pub enum Check {
     Points,
     /// Points lie in the region, or in the cube of the finalization tree.
     Region,
-    /// No point follows the tag of its cell.
+    /// No point follows the tag of its cell, and every tag is news.
     Cells,
-    /// The points of a cell stand together, right before its tag.
+    /// The points between tags lie in one of the cells that are tagged next.
     Chunks,
     /// Residual points are the vertices that are not final, and points not written before, each once.
     Residual,
@@ -88,8 +88,8 @@ impl Check {
             Check::Bounds => ("bounds", "the bounding box is tight"),
             Check::Points => ("points", "the vertices are the given points"),
             Check::Region => ("region", "every point lies in the region of the stream"),
-            Check::Cells => ("cells", "no point follows the tag of its cell"),
-            Check::Chunks => ("chunks", "the points of a cell stand together before its tag"),
+            Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
+            Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),
             Check::Residual => ("residual", "the residual is what is not final, each point once"),
             Check::Walls => ("walls", "the walls are the open edges of the final triangles"),
         }

@@ -13,12 +13,12 @@ pub(super) struct PointsAudit {
     chunked: bool,
     extent: Extent,
     points: u64,
-    /// Everything that is tagged, and the tagged cells that hold points.
     tagged: CodeSet,
-    occupied: CodeSet,
-    /// Smallest and largest code of the points since the last tag. A cell is a range of codes, so that all
-    /// of them lie in it if these two do.
-    run: Option<[u64; 2]>,
+    /// Smallest and largest code of the points that wait for the tag of their cell. A cell is a range of
+    /// codes, so that all of them lie in it if these two do.
+    waiting: Option<[u64; 2]>,
+    /// Whether tags came after the last point.
+    in_tags: bool,
 }
 
 /// Checks that a points stream must pass.
@@ -41,8 +41,8 @@ impl PointsAudit {
             extent: Extent::new(header),
             points: 0,
             tagged: CodeSet::default(),
-            occupied: CodeSet::default(),
-            run: None,
+            waiting: None,
+            in_tags: false,
         }
     }
 
@@ -68,44 +68,42 @@ impl PointsAudit {
                 return Err(Violation::new(Check::Cells, message).with(None, point));
             }
         }
-        let [first, last] = self.run.unwrap_or([code, code]);
-        self.run = Some([first.min(code), last.max(code)]);
+        if std::mem::take(&mut self.in_tags) {
+            self.check_chunk()?;
+        }
+        let [first, last] = self.waiting.unwrap_or([code, code]);
+        self.waiting = Some([first.min(code), last.max(code)]);
         Ok(())
     }
 
     pub(super) fn cells(&mut self, cells: &[CellCode], ledger: &mut Ledger) -> Result<(), Violation> {
         let Some(tree) = self.tree else { return Ok(()) };
-        if let Some(run) = self.run.take()
-            && self.chunked
-        {
-            self.chunk(&tree, run, cells, ledger)?;
+        for &cell in cells {
+            self.in_tags = true;
+            ledger.add(Check::Cells, 1);
+            let codes = codes_of(&tree, cell);
+            if self.tagged.covers(codes.clone()) {
+                let message = format!("cell {} is tagged, but all of it is final already", cell.0);
+                return Err(Violation::new(Check::Cells, message));
+            }
+            if self.waiting.is_some_and(|waiting| waiting.iter().all(|code| codes.contains(code))) {
+                self.waiting = None;
+                if self.chunked {
+                    ledger.add(Check::Chunks, 1);
+                }
+            }
+            self.tagged.insert(codes);
         }
-        cells.iter().for_each(|&cell| self.tagged.insert(codes_of(&tree, cell)));
         Ok(())
     }
 
-    /// The points since the last tag must be all those of one of the cells that are tagged now.
-    fn chunk(
-        &mut self,
-        tree: &CellTree,
-        run: [u64; 2],
-        cells: &[CellCode],
-        ledger: &mut Ledger,
-    ) -> Result<(), Violation> {
-        ledger.add(Check::Chunks, 1);
-        let holds = |cell: &&CellCode| run.iter().all(|code| codes_of(tree, **cell).contains(code));
-        let Some(cell) = cells.iter().find(holds) else {
-            let cell = cells.first().map_or(0, |cell| cell.0);
-            let message = format!("points before the tag of cell {cell} do not all lie in one tagged cell");
-            return Err(Violation::new(Check::Chunks, message));
-        };
-        let codes = codes_of(tree, *cell);
-        if self.occupied.overlaps(codes.clone()) {
-            let message = format!("points of cell {} stand in several places of the stream", cell.0);
-            return Err(Violation::new(Check::Chunks, message));
+    /// All points before the last tags must have found the tag of the cell that holds all of them.
+    fn check_chunk(&mut self) -> Result<(), Violation> {
+        if self.waiting.take().is_none() || !self.chunked {
+            return Ok(());
         }
-        self.occupied.insert(codes);
-        Ok(())
+        let message = "the points before the last tags do not all lie in one of the tagged cells";
+        Err(Violation::new(Check::Chunks, message))
     }
 
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
@@ -114,10 +112,7 @@ impl PointsAudit {
             let message = format!("END states {} points, found {}", totals.points, self.points);
             return Err(Violation::new(Check::Counts, message));
         }
-        if self.chunked && self.run.is_some() {
-            let message = "the last points of a chunked stream lie in no tagged cell";
-            return Err(Violation::new(Check::Chunks, message));
-        }
+        self.check_chunk()?;
         self.extent.check_tight(3, ledger)
     }
 }

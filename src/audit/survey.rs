@@ -1,13 +1,15 @@
 //! What a stream holds, in numbers.
 
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, Point};
 use crate::error::Result;
-use crate::stream::{Event, LiveVertices, Patch, Totals};
+use crate::stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 
-/// Figures of a stream, gathered event by event.
+/// Figures of a stream, gathered event by event. It verifies what the reader of the container has no memory
+/// for: that nothing finalized comes again.
 #[derive(Debug, Default)]
 pub struct Survey {
     live: LiveVertices<()>,
+    finalized: Option<FinalizedCells>,
     found: Option<Bounds>,
     totals: Totals,
     patches: u64,
@@ -40,29 +42,38 @@ pub struct CellPoints {
 }
 
 impl Survey {
-    /// Nothing yet.
+    /// A survey of a stream with this header.
     #[must_use]
-    pub fn new() -> Self {
-        Survey::default()
+    pub fn new(header: &Header) -> Self {
+        Survey { finalized: header.tree.map(FinalizedCells::new), ..Survey::default() }
     }
 
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if a patch uses a vertex after its finalization.
+    /// [`crate::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news, or a
+    /// vertex is used after its finalization.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
+                if let Some(finalized) = &mut self.finalized {
+                    finalized.check_points(points)?;
+                }
                 self.extend(points.iter().copied());
                 self.totals.points += points.len() as u64;
                 self.run += points.len() as u64;
             }
             Event::Cells(cells) => {
+                if let Some(finalized) = &mut self.finalized {
+                    cells.iter().try_for_each(|&cell| finalized.finalize(cell))?;
+                }
                 self.totals.cells += cells.len() as u64;
                 self.end_run();
             }
             Event::Patch(patch) => return self.patch(patch),
             Event::ResidualPoints(points) => {
+                let mut ids = points.iter().filter_map(|&(id, _)| id);
+                ids.try_for_each(|id| self.live.retire(id))?;
                 self.extend(points.iter().map(|&(_, point)| point));
                 self.totals.residual_points += points.len() as u64;
             }
@@ -122,7 +133,7 @@ impl Survey {
         self.live.enter(patch, |_, _| ()).map(|_| ())
     }
 
-    fn extend(&mut self, points: impl Iterator<Item = crate::bounds::Point>) {
+    fn extend(&mut self, points: impl Iterator<Item = Point>) {
         for point in points {
             self.found.get_or_insert(Bounds::of_point(point)).extend(point);
         }

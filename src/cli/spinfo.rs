@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use clap::{Parser, ValueEnum};
 
 use super::progress::Progress;
-use super::{Common, open_input};
+use super::{Common, notice, open_input};
 use crate::audit::{Audit, PointSet, Standard, Survey};
 use crate::error::{Error, Result};
 use crate::output::Output;
-use crate::stream::{Event, Header, Kind, StreamReader};
+use crate::source::{Input, SourceOptions};
+use crate::stream::{Coordinates, Header, StreamReader};
 use report::Summary;
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
@@ -23,7 +24,7 @@ Examples:
   spfinalize a.laz | spdelaunay2d | spinfo --audit
                                           prove that the mesh is right
   spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
-  spinfo --audit --points a.spp mesh.spm  and has exactly these points
+  spinfo --audit --points a.laz mesh.spm  and it has exactly these points
   spinfo --json mesh.spm | jq .counts     for programs
 
 Exit codes: 0 fine, 3 the stream is malformed or truncated, 4 the audit found a violation.";
@@ -51,9 +52,10 @@ pub struct Flags {
     )]
     audit: Option<AuditStandard>,
 
-    /// Prove also that the vertices of the mesh are exactly the positions of this points stream
+    /// Prove also that the vertices of the mesh are exactly the points of this file, of any format that
+    /// spfinalize reads; can be given several times
     #[arg(long, value_name = "FILE", requires = "audit")]
-    points: Option<PathBuf>,
+    points: Vec<PathBuf>,
 
     #[command(flatten)]
     common: Common,
@@ -89,7 +91,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         None => None,
         Some(standard) => Some(Audit::new(&header, standard.into(), given_points(&flags, &header)?)),
     };
-    let mut survey = Survey::new();
+    let mut survey = Survey::new(&header);
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
@@ -115,26 +117,32 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 
 /// The points of `--points`, to be compared with the mesh.
 fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
-    let Some(path) = &flags.points else { return Ok(None) };
+    if flags.points.is_empty() {
+        return Ok(None);
+    }
     if mesh.kind.vertices_per_simplex() == 0 {
         return Err(Error::usage(format!("--points goes with a mesh, not with {}", mesh.kind.name())));
     }
-    if path == Path::new("-") && flags.input == Path::new("-") {
+    let stdin = Path::new("-");
+    if flags.input == stdin && flags.points.iter().any(|path| path == stdin) {
         return Err(Error::usage("mesh and points cannot both come from stdin"));
     }
-    let (input, name) = open_input(path)?;
-    let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
-    if reader.header().kind != Kind::Points {
-        let message = format!("--points needs a stream of points, not a {}", reader.header().kind.name());
-        return Err(Error::usage(message).of_input(reader.name()));
-    }
-    let mut points = PointSet::new(reader.header().coordinates);
-    while let Some(event) = reader.next_event()? {
-        if let Event::Points(batch) = event {
-            points.extend(&batch);
+    let grid = match mesh.coordinates {
+        Coordinates::F64 => None,
+        Coordinates::I32 { scale, offset } => Some((scale, offset)),
+    };
+    let options = SourceOptions { dims: mesh.dims, grid, ..SourceOptions::default() };
+    let input = Input::open(&flags.points, &options)?;
+    input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
+    let mut points = PointSet::new(input.description().coordinates);
+    let (mut reader, mut batch) = (input.read()?, Vec::new());
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            return points.finish(&mesh.coordinates).map(Some);
         }
+        points.extend(&batch);
     }
-    points.finish(&mesh.coordinates).map(Some)
 }
 
 fn print(text: &str) -> Result<()> {

@@ -1,9 +1,9 @@
 //! Points streams: tags, chunks and boxes.
 
-use spmesh::audit::{Check, Report, Standard};
+use spmesh::audit::{Audit, Check, Report, Standard, Violation};
 use spmesh::bounds::{Bounds, Point};
 use spmesh::cells::{CellCode, CellTree};
-use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
+use spmesh::stream::{Coordinates, Event, Header, Kind, StreamWriter, Totals};
 
 use super::{Verdict, assert_violates, audit};
 
@@ -19,6 +19,26 @@ fn audit_chunks(header: &Header, chunks: &[Chunk]) -> Result<Report, Verdict> {
         }
     }
     audit(&writer.end(0, 0).unwrap(), Standard::Canonical, None)
+}
+
+/// Gives the chunks to the audit directly, past the reader, which has a check of its own for some faults.
+fn audit_events(header: &Header, chunks: &[Chunk]) -> Result<(), Violation> {
+    let mut audit = Audit::new(header, Standard::Canonical, None);
+    for (points, cells) in chunks {
+        audit.event(&Event::Points(points.to_vec()))?;
+        for &cell in *cells {
+            audit.event(&Event::Cells(vec![CellCode(cell)]))?;
+        }
+    }
+    let points = chunks.iter().map(|(points, _)| points.len() as u64).sum();
+    audit.event(&Event::End(Totals { points, ..Totals::default() }))
+}
+
+#[track_caller]
+fn assert_no_chunk(chunks: &[Chunk]) {
+    assert_eq!(audit_events(&header(true), chunks).unwrap_err().check, Check::Chunks);
+    assert!(matches!(audit_chunks(&header(true), chunks), Err(Verdict::Malformed(_))));
+    assert!(audit_events(&Header { bounds: None, ..header(false) }, chunks).is_ok());
 }
 
 /// A quadtree of two levels over [0, 4) x [0, 4); cells 4 to 7 are its quadrants.
@@ -64,25 +84,28 @@ fn point_after_the_tag_of_an_ancestor_or_of_all_children() {
 
 #[test]
 fn points_of_two_cells_are_no_chunk() {
-    let both = [LOWER_LEFT[0], UPPER_RIGHT[0]];
-    let chunks: [Chunk; 1] = [(&both, &[4, 7])];
-    assert_violates(audit_chunks(&header(true), &chunks), Check::Chunks, &[]);
+    assert_no_chunk(&[(&[LOWER_LEFT[0], UPPER_RIGHT[0]], &[4, 7])]);
 }
 
 #[test]
 fn chunk_without_its_tag() {
-    let chunks: [Chunk; 2] = [(&LOWER_LEFT, &[5]), (&UPPER_RIGHT, &[7])];
-    assert_violates(audit_chunks(&header(true), &chunks), Check::Chunks, &[]);
-    let chunks: [Chunk; 2] = [(&LOWER_LEFT, &[4]), (&UPPER_RIGHT, &[])];
-    assert_violates(audit_chunks(&header(true), &chunks), Check::Chunks, &[]);
+    assert_no_chunk(&[(&UPPER_RIGHT, &[5]), (&LOWER_LEFT, &[4])]);
+    assert_no_chunk(&[(&LOWER_LEFT, &[4]), (&UPPER_RIGHT, &[])]);
 }
 
-/// The first run of points is tagged as a child, the second as its parent.
+/// The tags of a chunk may fill several blocks, and the tagged cell may be final in part.
 #[test]
-fn chunk_in_several_places() {
-    let child = [[0.5, 0.5, 1.0]];
-    let chunks: [Chunk; 2] = [(&child, &[16]), (&LOWER_LEFT, &[4])];
-    assert_violates(audit_chunks(&header(true), &chunks), Check::Chunks, &[]);
+fn chunk_before_a_run_of_tags() {
+    let header = Header { bounds: None, ..header(true) };
+    audit_events(&header, &[(&[], &[19]), (&LOWER_LEFT, &[5, 6, 4]), (&UPPER_RIGHT, &[7])]).unwrap();
+}
+
+#[test]
+fn tags_must_be_news() {
+    for tags in [&[4, 4][..], &[1, 16], &[16, 17, 18, 19, 4]] {
+        let violation = audit_events(&header(false), &[(&[], tags)]).unwrap_err();
+        assert_eq!(violation.check, Check::Cells, "{tags:?}");
+    }
 }
 
 #[test]
@@ -99,8 +122,8 @@ fn bounds_of_points_must_be_tight() {
 #[test]
 fn point_outside_of_the_tree() {
     let header = Header { bounds: None, ..header(false) };
-    let violation = assert_violates(audit_chunks(&header, &[(&[[4.0, 0.0, 0.0]], &[])]), Check::Region, &[]);
-    assert_eq!(violation.vertices, [(None, [4.0, 0.0, 0.0])]);
+    let violation = audit_events(&header, &[(&[[4.0, 0.0, 0.0]], &[])]).unwrap_err();
+    assert_eq!((violation.check, &violation.vertices[..]), (Check::Region, &[(None, [4.0, 0.0, 0.0])][..]));
 }
 
 #[test]

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use crate::audit::{Report, Survey, shortest};
 use crate::bounds::Point;
 use crate::error::Error;
+use crate::source::crs_name;
 use crate::stream::{Coordinates, Crs, Header};
 
 /// Everything that is known of a stream after it was read.
@@ -197,10 +198,14 @@ impl Summary<'_> {
 
 fn audit_text(report: &Report) -> String {
     let verdict = if report.violation.is_none() { "passed" } else { "FAILED" };
-    let mut text = format!(
-        "audit {verdict}, with at most {} vertices and {} open edges in memory\n",
-        report.live_max, report.open_edges_max
-    );
+    let mut text = format!("audit {verdict}");
+    if report.live_max > 0 {
+        text += &format!(
+            ", with at most {} vertices and {} open edges in memory",
+            report.live_max, report.open_edges_max
+        );
+    }
+    text.push('\n');
     for line in &report.lines {
         let (verdict, name) = (if line.passed { "ok" } else { "FAILED" }, line.check.name());
         text += &format!("  {name:<12} {verdict:<6} {:>11} tests", line.tests);
@@ -220,24 +225,20 @@ fn coordinates_json(coordinates: &Coordinates) -> Value {
 }
 
 fn crs_text(crs: &Crs) -> String {
+    let name = crs_name(crs).unwrap_or_else(|| "unnamed".to_string());
     match crs {
         Crs::Unknown => "unknown".into(),
-        Crs::Wkt(text) => format!("{} (WKT, {} bytes)", wkt_name(text).unwrap_or("unnamed"), text.len()),
-        Crs::GeoKeys { directory, .. } => format!("GeoKeys ({} bytes)", directory.len()),
+        Crs::Wkt(text) => format!("{name} (WKT, {} bytes)", text.len()),
+        Crs::GeoKeys { .. } => format!("{name} (GeoKeys)"),
     }
 }
 
 fn crs_json(crs: &Crs) -> Value {
     match crs {
         Crs::Unknown => Value::Null,
-        Crs::Wkt(text) => json!({"encoding": "wkt", "name": wkt_name(text), "wkt": text}),
-        Crs::GeoKeys { .. } => json!({"encoding": "geokeys"}),
+        Crs::Wkt(text) => json!({"encoding": "wkt", "name": crs_name(crs), "wkt": text}),
+        Crs::GeoKeys { .. } => json!({"encoding": "geokeys", "name": crs_name(crs)}),
     }
-}
-
-/// Name of the outermost object of well-known text: its first quoted string.
-fn wkt_name(text: &str) -> Option<&str> {
-    text.split('"').nth(1).filter(|name| !name.is_empty())
 }
 
 fn words(values: &[f64]) -> String {
