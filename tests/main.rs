@@ -9,5 +9,6 @@ mod kernel;
 mod kernel_predicates;
 mod reduction;
 mod reference;
+mod sources;
 mod stream;
 mod vectors;
