@@ -28,12 +28,12 @@ fn try_read(folder: &Folder, content: &[u8]) {
     assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
 }
 
-/// Damages each byte of the first `until` and of the last 64 in several ways.
+/// Damages in several ways each byte of the first `until`, of the last 64, and one of 29 between.
 fn damage(name: &str, until: usize) {
     let folder = Folder::new();
     let whole = std::fs::read(sample(name)).unwrap();
-    let at_ends = |&at: &usize| at < until || at + 64 > whole.len();
-    for at in (0..whole.len()).filter(at_ends) {
+    let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 29 == 0;
+    for at in (0..whole.len()).filter(is_chosen) {
         for change in [0x01, 0x80, 0xff] {
             let mut damaged = whole.clone();
             damaged[at] ^= change;
@@ -45,18 +45,18 @@ fn damage(name: &str, until: usize) {
 #[test]
 fn damage_to_las_is_survived() {
     damage("hextest.las", 387);
-    damage("1_4_w_evlr.las", 500);
+    damage("1_4_w_evlr.las", 400);
 }
 
 #[test]
 fn damage_to_laz_is_survived() {
-    damage("autzen.laz", 900);
-    damage("pointwise.laz", 500);
+    damage("autzen.laz", 300);
+    damage("pointwise.laz", 340);
 }
 
 #[test]
 fn damage_to_layered_laz_is_survived() {
-    damage("autzen.copc.laz", 4368);
+    damage("autzen.copc.laz", 400);
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn files_cut_anywhere_are_errors() {
     let folder = Folder::new();
     for name in ["hextest.las", "autzen.laz", "autzen.copc.laz"] {
         let whole = std::fs::read(sample(name)).unwrap();
-        for len in 0..whole.len() {
+        for len in (0..whole.len()).step_by(3) {
             try_read(&folder, &whole[..len]);
         }
         let whole_points = super::points(&[sample(name)], &flat()).unwrap();
