@@ -12,5 +12,6 @@ mod pipelines;
 mod programs;
 mod reduction;
 mod reference;
+mod sources;
 mod stream;
 mod vectors;

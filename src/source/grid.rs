@@ -39,11 +39,10 @@ pub(super) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
     let Some(&first) = grids.first() else { return Ok(Coordinates::F64) };
     let mut scale = first.0;
     for (member, grid) in members.iter().zip(&grids) {
-        for axis in 0..3 {
-            scale[axis] =
-                common_measure(scale[axis], grid.0[axis]).ok_or_else(|| conflict(&members[0], member))?;
+        // Axes that have one scale in each file keep having one: they go through the same steps.
+        for (scale, other) in scale.iter_mut().zip(grid.0) {
+            *scale = common_measure(*scale, other).ok_or_else(|| conflict(&members[0], member))?;
         }
-        // The axes of a file have one quantum, and so have those of the grid: they go through the same steps.
     }
     let grid = Coordinates::I32 { scale, offset: first.1 };
     for member in members {

@@ -131,12 +131,13 @@ impl Source {
 
     /// Refuses what the file cannot give.
     fn check(&self, options: &SourceOptions) -> Result<()> {
-        let is_las = matches!(self.content, Content::Las(_));
-        if !is_las && !(options.keep_class.is_empty() && options.drop_class.is_empty()) {
-            return Err(Error::usage("classes are unknown here: only LAS and LAZ files have them"));
-        }
-        if !is_las && (options.first_only || options.last_only) {
-            return Err(Error::usage("returns are unknown here: only LAS and LAZ files have them"));
+        if !matches!(self.content, Content::Las(_)) {
+            if !options.keep_class.is_empty() || !options.drop_class.is_empty() {
+                return Err(Error::usage("classes are unknown here: only LAS and LAZ files have them"));
+            }
+            if options.first_only || options.last_only {
+                return Err(Error::usage("returns are unknown here: only LAS and LAZ files have them"));
+            }
         }
         if options.dims == 3 && self.stated.has_z == Some(false) {
             return Err(Error::usage("points have no third coordinate, three dimensions need it"));

@@ -177,10 +177,10 @@ impl Survey {
             let along = pulse / points as f64;
             let sweep = pulse / per_sweep;
             let swing = 2.0 * (sweep.fract() - 0.5);
-            let across = if sweep as u64 % 2 == 0 { swing } else { -swing };
+            let across = if (sweep as u64).is_multiple_of(2) { swing } else { -swing };
             let wander = 0.02 * self.swath_width * (along * 5.0 + drift).sin();
             let x = centre + wander + 0.5 * self.swath_width * across + 0.2 * spacing * random.signed();
-            let north = if line % 2 == 0 { along } else { 1.0 - along };
+            let north = if line.is_multiple_of(2) { along } else { 1.0 - along };
             let y = north * self.side + 0.2 * spacing * random.signed();
             let ground = self.ground(x, y) + 0.03 * random.signed();
             let canopy = ground + VEGETATION_HEIGHT * random.unit();

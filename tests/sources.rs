@@ -1,0 +1,76 @@
+//! Point files of other programs: every point of theirs, exactly, or an error that says what is wrong where.
+
+mod damage;
+mod grids;
+mod las;
+mod las_file;
+mod sp;
+mod text;
+
+use std::path::{Path, PathBuf};
+
+use spmesh::bounds::Point;
+use spmesh::error::{ErrorKind, Result};
+use spmesh::source::{Input, SourceOptions};
+
+/// Options for two dimensions and nothing else.
+fn flat() -> SourceOptions {
+    SourceOptions { dims: 2, ..SourceOptions::default() }
+}
+
+/// A bundled sample.
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
+
+/// Files that last as long as a test.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Folder(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        std::fs::write(&path, content).expect("a temporary file");
+        path
+    }
+}
+
+/// All points of one pass.
+fn pass(input: &Input) -> Result<Vec<Point>> {
+    let mut reader = input.read()?;
+    let (mut points, mut batch) = (Vec::new(), Vec::new());
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            return Ok(points);
+        }
+        points.extend_from_slice(&batch);
+    }
+}
+
+/// All points of `paths`, the same in two passes.
+fn points(paths: &[PathBuf], options: &SourceOptions) -> Result<Vec<Point>> {
+    let input = Input::open(paths, options)?;
+    let first = pass(&input)?;
+    assert_eq!(first, pass(&input)?, "two passes over {paths:?} differ");
+    Ok(first)
+}
+
+/// Points of a file with this content.
+fn points_of(content: impl AsRef<[u8]>) -> Result<Vec<Point>> {
+    let folder = Folder::new();
+    points(&[folder.file("points", content)], &flat())
+}
+
+/// Asserts that reading fails with `kind` and a message with all of `parts`.
+fn assert_fails<T: std::fmt::Debug>(result: Result<T>, kind: ErrorKind, parts: &[&str]) {
+    let error = result.expect_err("reading should fail");
+    let message = error.to_string();
+    assert_eq!(error.kind(), kind, "{message}");
+    for part in parts {
+        assert!(message.contains(part), "{part:?} is not in {message:?}");
+    }
+}

@@ -1,0 +1,79 @@
+//! Damaged files: whatever byte is wrong, reading ends with points or an error, within bounded memory.
+
+use super::{Folder, flat, sample};
+use crate::allocation::largest_during;
+use spmesh::source::Input;
+
+/// Largest single allocation that a damaged small file may cause: a group of chunks.
+const ALLOCATION_MAX: usize = 65 << 20;
+
+/// Reads all points of `content`, whatever comes of it.
+fn try_read(folder: &Folder, content: &[u8]) {
+    let path = folder.file("damaged", content);
+    let read = || -> spmesh::error::Result<()> {
+        let input = Input::open(&[path], &flat())?;
+        let mut reader = input.read()?;
+        let mut batch = Vec::new();
+        let mut points = 0;
+        while points < 10_000_000 {
+            reader.next_batch(&mut batch)?;
+            if batch.is_empty() {
+                break;
+            }
+            points += batch.len();
+        }
+        Ok(())
+    };
+    let largest = largest_during(|| drop(read()));
+    assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
+}
+
+/// Damages in several ways each byte of the first `until`, of the last 64, and one of 29 between.
+fn damage(name: &str, until: usize) {
+    let folder = Folder::new();
+    let whole = std::fs::read(sample(name)).unwrap();
+    let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 29 == 0;
+    for at in (0..whole.len()).filter(is_chosen) {
+        for change in [0x01, 0x80, 0xff] {
+            let mut damaged = whole.clone();
+            damaged[at] ^= change;
+            try_read(&folder, &damaged);
+        }
+    }
+}
+
+#[test]
+fn damage_to_las_is_survived() {
+    damage("hextest.las", 387);
+    damage("1_4_w_evlr.las", 400);
+}
+
+#[test]
+fn damage_to_laz_is_survived() {
+    damage("autzen.laz", 300);
+    damage("pointwise.laz", 340);
+}
+
+#[test]
+fn damage_to_layered_laz_is_survived() {
+    damage("autzen.copc.laz", 400);
+}
+
+#[test]
+fn files_cut_anywhere_are_errors() {
+    let folder = Folder::new();
+    for name in ["hextest.las", "autzen.laz", "autzen.copc.laz"] {
+        let whole = std::fs::read(sample(name)).unwrap();
+        for len in (0..whole.len()).step_by(3) {
+            try_read(&folder, &whole[..len]);
+        }
+        let whole_points = super::points(&[sample(name)], &flat()).unwrap();
+        for len in (0..whole.len()).step_by(7) {
+            let path = folder.file("cut", &whole[..len]);
+            // What follows the points may be missing; a point never is.
+            if let Ok(found) = super::points(&[path], &flat()) {
+                assert_eq!(found, whole_points, "{name} cut at {len}");
+            }
+        }
+    }
+}

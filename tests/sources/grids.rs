@@ -1,0 +1,124 @@
+//! The common grid of files whose scales and offsets differ.
+
+use std::path::PathBuf;
+
+use spmesh::bounds::Point;
+use spmesh::error::{ErrorKind, Result};
+use spmesh::source::{Input, SourceOptions};
+use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
+
+use super::las_file::LasFile;
+use super::{Folder, assert_fails, flat, pass, points};
+
+/// Opens files with these scales and offsets and the same positions.
+fn open(
+    grids: &[([f64; 3], [f64; 3])],
+    positions: &[[i32; 3]],
+    options: &SourceOptions,
+) -> Result<(Coordinates, Vec<Point>)> {
+    let folder = Folder::new();
+    let file = |(index, &(scale, offset)): (usize, &([f64; 3], [f64; 3]))| -> PathBuf {
+        folder.file(&format!("{index}.las"), LasFile { scale, offset, ..LasFile::of(positions) }.bytes())
+    };
+    let paths: Vec<PathBuf> = grids.iter().enumerate().map(file).collect();
+    let input = Input::open(&paths, options)?;
+    Ok((input.description().coordinates, pass(&input)?))
+}
+
+#[test]
+fn axes_of_geometry_get_one_quantum() {
+    let grid = ([0.001, 0.00025, 0.01], [10.0, 20.0, 30.0]);
+    let (coordinates, found) = open(&[grid], &[[3, 5, 7]], &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::I32 { scale: [0.00025, 0.00025, 0.01], offset: grid.1 });
+    assert_eq!(found, [[12.0, 5.0, 7.0]]);
+    let solid = SourceOptions { dims: 3, ..SourceOptions::default() };
+    let (coordinates, found) = open(&[grid], &[[3, 5, 7]], &solid).unwrap();
+    assert_eq!(coordinates, Coordinates::I32 { scale: [0.00025; 3], offset: grid.1 });
+    assert_eq!(found, [[12.0, 5.0, 280.0]]);
+}
+
+#[test]
+fn scales_of_halves_and_thirds_meet_in_sixths() {
+    let (coordinates, found) = open(&[([0.03, 0.02, 0.01], [0.0; 3])], &[[1, 1, 1]], &flat()).unwrap();
+    let Coordinates::I32 { scale, .. } = coordinates else { panic!("{coordinates:?}") };
+    assert!((scale[0] - 0.01).abs() < 1e-12 && scale[0] == scale[1]);
+    assert_eq!(found, [[3.0, 2.0, 1.0]]);
+}
+
+#[test]
+fn axes_without_common_measure_become_world_coordinates() {
+    let scale = [1.16451354e-6, 1.164510015e-6, 0.01];
+    let (coordinates, found) = open(&[(scale, [5.0, 6.0, 7.0])], &[[10, 20, 30]], &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::F64);
+    assert_eq!(found, [[10.0 * scale[0] + 5.0, 20.0 * scale[1] + 6.0, 30.0 * scale[2] + 7.0]]);
+}
+
+#[test]
+fn axes_whose_common_grid_is_too_fine_become_world_coordinates() {
+    let grid = ([1.0, 0.001, 0.01], [0.0; 3]);
+    let (coordinates, _) = open(&[grid], &[[-2_000_000_000, 0, 0], [2_000_000_000, 1, 1]], &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::F64);
+}
+
+#[test]
+fn files_meet_on_the_finest_grid() {
+    let grids = [([0.01; 3], [100.0, 0.0, 0.0]), ([0.001; 3], [100.5, -3.0, 0.0])];
+    let (coordinates, found) = open(&grids, &[[7, 8, 9]], &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::I32 { scale: [0.001; 3], offset: [100.0, 0.0, 0.0] });
+    assert_eq!(found, [[70.0, 80.0, 90.0], [507.0, -2992.0, 9.0]]);
+}
+
+#[test]
+fn an_offset_that_does_not_fit_is_moved_by_whole_steps() {
+    let positions = [[2_000_000_000, 0, 0], [2_000_000_001, 5, 0]];
+    let grids = [([0.01; 3], [0.0; 3]), ([0.01; 3], [10_000_000.0, 0.0, 0.0])];
+    let (coordinates, found) = open(&grids, &positions, &flat()).unwrap();
+    let Coordinates::I32 { offset, .. } = coordinates else { panic!("{coordinates:?}") };
+    let world: Vec<f64> = found.iter().map(|point| coordinates.to_world(*point)[0]).collect();
+    assert!(offset[0] > 0.0 && found.iter().all(|point| coordinates.can_store(point[0])));
+    for (found, expected) in world.iter().zip([2e7, 2e7 + 0.01, 3e7, 3e7 + 0.01]) {
+        assert!((found - expected).abs() < 1e-6, "{found} is not {expected}");
+    }
+}
+
+#[test]
+fn files_without_a_common_grid_are_named() {
+    let offsets = [([0.01; 3], [0.0; 3]), ([0.01; 3], [0.005, 0.0, 0.0])];
+    let expected = ["0.las", "1.las", "--scale", "--offset"];
+    assert_fails(open(&offsets, &[[1, 1, 1]], &flat()), ErrorKind::Usage, &expected);
+    let scales = [([0.01; 3], [0.0; 3]), ([0.0100001; 3], [0.0; 3])];
+    assert_fails(open(&scales, &[[1, 1, 1]], &flat()), ErrorKind::Usage, &expected);
+    let options = SourceOptions { grid: Some(([0.001; 3], [0.0; 3])), ..flat() };
+    let (_, found) = open(&offsets, &[[1, 1, 1]], &options).unwrap();
+    assert_eq!(found, [[10.0, 10.0, 10.0], [15.0, 10.0, 10.0]]);
+}
+
+#[test]
+fn a_given_grid_rounds_to_nearest_and_refuses_what_it_cannot_hold() {
+    let folder = Folder::new();
+    let path = folder.file("a.xyz", "1.24 -1.26 3\n5e9 0 0\n");
+    let options = SourceOptions { grid: Some(([0.5; 3], [0.0; 3])), ..flat() };
+    let path = std::slice::from_ref(&path);
+    assert_fails(points(path, &options), ErrorKind::Usage, &["a.xyz", "line 2", "beyond 32 bits"]);
+    let bounds = Some([-10.0, -10.0, 10.0, 10.0]);
+    assert_eq!(points(path, &SourceOptions { bounds, ..options }).unwrap(), [[2.0, -3.0, 6.0]]);
+    let uneven = SourceOptions { grid: Some(([0.5, 0.25, 1.0], [0.0; 3])), ..flat() };
+    assert_fails(points(path, &uneven), ErrorKind::Usage, &["must be equal"]);
+}
+
+#[test]
+fn streams_are_sources_with_their_own_coordinates() {
+    let folder = Folder::new();
+    let coordinates = Coordinates::I32 { scale: [0.25; 3], offset: [1.0, 2.0, 3.0] };
+    let header = Header::new(Kind::Points, coordinates, 2, true);
+    let expected = [[4.0, 5.0, 6.0], [-7.0, 8.0, 9.0]];
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    writer.points(&expected).unwrap();
+    let bytes = writer.end(0, 0).unwrap();
+    let path = folder.file("a.spm", &bytes);
+    let input = Input::open(&[path], &flat()).unwrap();
+    assert_eq!(input.description().coordinates, coordinates);
+    assert_eq!(pass(&input).unwrap(), expected);
+    let cut = folder.file("cut.spm", &bytes[..bytes.len() - 1]);
+    assert_fails(points(&[cut], &flat()), ErrorKind::Malformed, &["cut.spm", "truncated"]);
+}

@@ -1,0 +1,181 @@
+//! LAS, LAZ and COPC.
+
+use std::ffi::CString;
+use std::os::unix::ffi::OsStrExt;
+
+use spmesh::bounds::Bounds;
+use spmesh::error::ErrorKind;
+use spmesh::source::{Input, SourceOptions, crs_name};
+use spmesh::stream::{Coordinates, Crs};
+
+use super::las_file::{LasFile, Record, geo_keys};
+use super::{Folder, assert_fails, flat, pass, points, points_of, sample};
+
+#[test]
+fn samples_have_the_points_and_the_box_that_their_headers_state() {
+    let samples = [
+        ("1_4_w_evlr.las", 1000),
+        ("1_4_w_evlr.laz", 1000),
+        ("autzen.copc.laz", 107),
+        ("autzen.laz", 106),
+        ("crop_duplicate.laz", 849),
+        ("hextest.las", 8),
+        ("point10.las", 1065),
+        ("point10.laz", 1065),
+        ("pointwise.laz", 1065),
+    ];
+    for (name, count) in samples {
+        let input = Input::open(&[sample(name)], &flat()).unwrap();
+        let found = pass(&input).unwrap();
+        assert_eq!(found.len(), count, "{name}");
+        assert_eq!(input.description().stated_points, Some(count as u64), "{name}");
+        assert_eq!(input.description().stated_bounds, Bounds::of_points(&found), "{name}");
+        assert!(input.notices().is_empty(), "{name}: {:?}", input.notices());
+    }
+}
+
+#[test]
+fn twins_have_the_same_points() {
+    for name in ["point10", "1_4_w_evlr"] {
+        let read = |ending| points(&[sample(&format!("{name}.{ending}"))], &flat()).unwrap();
+        assert_eq!(read("las"), read("laz"), "{name}");
+    }
+}
+
+#[test]
+fn integers_stay_what_they_are_in_the_file() {
+    let positions = [[i32::MIN, i32::MAX, 0], [-1, 1, 7], [i32::MAX, i32::MIN, -7]];
+    for format in 0..=10 {
+        let mut las = LasFile { format, offset: [1e6, -3.3, 0.1], ..LasFile::of(&positions) };
+        las.scale = [0.001; 3];
+        let expected: Vec<_> = positions.iter().map(|position| position.map(f64::from)).collect();
+        assert_eq!(points_of(las.bytes()).unwrap(), expected, "format {format}");
+    }
+}
+
+#[test]
+fn filters_keep_classes_and_returns() {
+    let record = |x, class, number, of| Record { position: [x, 0, 0], class, number, of };
+    // A number of 0 is no number: neither first_only nor last_only may drop it.
+    let records = vec![record(0, 2, 1, 2), record(1, 2, 2, 2), record(2, 5, 1, 1), record(3, 9, 0, 0)];
+    for format in [1, 6] {
+        let las = LasFile { format, records: records.clone(), ..LasFile::of(&[]) };
+        let folder = Folder::new();
+        let path = folder.file("a.las", las.bytes());
+        let kept = |options: SourceOptions| -> Vec<i32> {
+            let found = points(std::slice::from_ref(&path), &SourceOptions { dims: 2, ..options }).unwrap();
+            found.iter().map(|point| point[0] as i32).collect()
+        };
+        let default = SourceOptions::default;
+        assert_eq!(kept(default()), [0, 1, 2, 3]);
+        assert_eq!(kept(SourceOptions { keep_class: vec![2, 9], ..default() }), [0, 1, 3]);
+        assert_eq!(kept(SourceOptions { drop_class: vec![2], ..default() }), [2, 3]);
+        assert_eq!(kept(SourceOptions { first_only: true, ..default() }), [0, 2, 3]);
+        assert_eq!(kept(SourceOptions { last_only: true, ..default() }), [1, 2, 3]);
+    }
+}
+
+#[test]
+fn bounds_are_closed_and_not_fooled_by_rounding() {
+    let folder = Folder::new();
+    let path =
+        folder.file("a.las", LasFile::of(&[[1002, 0, 0], [1003, 7, 0], [1004, 7, 0], [1005, 8, 0]]).bytes());
+    let bounds = Some([10.03, 0.0, 10.05, 0.07]);
+    let found = points(&[path], &SourceOptions { bounds, ..flat() }).unwrap();
+    assert_eq!(found, [[1003.0, 7.0, 0.0], [1004.0, 7.0, 0.0]]);
+}
+
+#[test]
+fn classes_of_text_are_a_usage_error() {
+    let folder = Folder::new();
+    let path = folder.file("a.xyz", "1 2 3\n");
+    let options = SourceOptions { keep_class: vec![2], ..flat() };
+    assert_fails(Input::open(&[path], &options), ErrorKind::Usage, &["a.xyz", "classes are unknown"]);
+}
+
+#[test]
+fn systems_are_named_compared_and_shared() {
+    let name = |file| crs_name(&Input::open(&[sample(file)], &flat()).unwrap().description().crs);
+    assert_eq!(name("autzen.laz").as_deref(), Some("EPSG:2994"));
+    assert_eq!(
+        name("autzen.copc.laz").as_deref(),
+        Some("NAD83 / Oregon GIC Lambert (ft) + NAVD88 height (ftUS)")
+    );
+    assert_eq!(name("hextest.las"), None);
+    let wkt =
+        r#"PROJCS["UTM (zone 10)",GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]],AUTHORITY["EPSG","32610"]]"#;
+    assert_eq!(crs_name(&Crs::Wkt(wkt.into())).as_deref(), Some("EPSG:32610"));
+    let newer = r#"PROJCRS["x",BASEGEOGCRS["y",ID["EPSG",4326]],ID["EPSG",32610]]"#;
+    assert_eq!(crs_name(&Crs::Wkt(newer.into())).as_deref(), Some("EPSG:32610"));
+
+    let folder = Folder::new();
+    let file = |name: &str, projection| {
+        folder.file(name, LasFile { projection, ..LasFile::of(&[[1, 1, 1]]) }.bytes())
+    };
+    let keys = file("keys.las", vec![geo_keys(32610)]);
+    let text = file("text.las", vec![(2112, wkt.as_bytes().to_vec())]);
+    let other = file("other.las", vec![geo_keys(26910)]);
+    let none = file("none.las", vec![]);
+    let input = Input::open(&[none, keys.clone(), text], &flat()).unwrap();
+    assert!(matches!(input.description().crs, Crs::GeoKeys { .. }));
+    assert!(input.notices()[0].contains("none.las: states no coordinate reference system"));
+    assert_fails(
+        Input::open(&[keys, other], &flat()),
+        ErrorKind::Usage,
+        &["keys.las", "other.las", "EPSG:32610", "EPSG:26910"],
+    );
+}
+
+#[test]
+fn truncated_files_are_errors_with_a_position() {
+    assert_fails(
+        Input::open(&[sample("truncated.las")], &flat()),
+        ErrorKind::Malformed,
+        &["truncated.las", "record 0 at byte 229", "1065 points"],
+    );
+    let laz = std::fs::read(sample("point10.laz")).unwrap();
+    assert_fails(points_of(&laz[..laz.len() / 2]), ErrorKind::Malformed, &["record", "end"]);
+}
+
+#[test]
+fn pipes_are_spooled_and_the_notice_says_so() {
+    let folder = Folder::new();
+    let path = folder.0.path().join("pipe.laz");
+    let name = CString::new(path.as_os_str().as_bytes()).unwrap();
+    // SAFETY: `name` is a string that ends with a zero and lives through the call.
+    assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0);
+    let content = std::fs::read(sample("point10.laz")).unwrap();
+    let writer = std::thread::spawn({
+        let path = path.clone();
+        move || std::fs::write(path, content).unwrap()
+    });
+    let options = SourceOptions { temp_dir: Some(folder.0.path().to_path_buf()), ..flat() };
+    let input = Input::open(&[path], &options).unwrap();
+    writer.join().unwrap();
+    assert_eq!(pass(&input).unwrap(), points(&[sample("point10.laz")], &flat()).unwrap());
+    assert_eq!(pass(&input).unwrap().len(), 1065);
+    assert!(input.notices()[0].contains("spooled"), "{:?}", input.notices());
+    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 1, "the spool has no name");
+}
+
+#[test]
+fn files_of_several_kinds_are_one_input() {
+    let folder = Folder::new();
+    let text = folder.file("a.xyz", "0.5 0.25 3\n");
+    let las = folder.file("b.las", LasFile::of(&[[100, 200, 300]]).bytes());
+    let input = Input::open(&[text, las], &flat()).unwrap();
+    assert_eq!(input.description().coordinates, Coordinates::F64);
+    assert!(input.description().has_elevation);
+    assert_eq!(pass(&input).unwrap(), [[0.5, 0.25, 3.0], [1.0, 2.0, 3.0]]);
+}
+
+#[test]
+fn wrong_kinds_of_files_get_advice() {
+    assert_fails(points_of(b"\x1f\x8b\x08\0\0\0"), ErrorKind::Malformed, &["gzip", "zcat"]);
+    assert_fails(points_of(b""), ErrorKind::Malformed, &["empty"]);
+    assert_fails(points_of(b"abc\0"), ErrorKind::Malformed, &["zero byte at byte 3"]);
+    let folder = Folder::new();
+    assert_fails(Input::open(&[folder.0.path().to_path_buf()], &flat()), ErrorKind::Usage, &["folder"]);
+    assert_fails(Input::open(&["no/such.laz".into()], &flat()), ErrorKind::Io, &["no/such.laz"]);
+    assert_fails(Input::open(&["-".into(), "-".into()], &flat()), ErrorKind::Usage, &["more than once"]);
+}
