@@ -1,5 +1,6 @@
 //! Conversion between formats: what goes round comes back, and what is damaged is refused.
 
+mod command;
 mod corruption;
 mod historical;
 mod independent;

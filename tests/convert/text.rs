@@ -85,3 +85,22 @@ fn lines_and_patches_have_a_maximum() {
     let error = converted(patch.as_bytes(), Format::Text, Format::Spm).unwrap_err();
     assert!(error.to_string().contains("longer than a block"), "{error}");
 }
+
+#[test]
+fn twins_of_the_vectors_are_those_of_the_specification() {
+    for vector in crate::vectors::load("pass", "txt") {
+        assert_eq!(text_of(&vector.bytes), vector.expected, "{}", vector.name);
+        let back = converted(vector.expected.as_bytes(), Format::Text, Format::Spm).unwrap();
+        assert_eq!(text_of(&back), vector.expected, "{}", vector.name);
+    }
+}
+
+#[test]
+fn the_python_reader_prints_the_same_twins() {
+    for stream in samples::all() {
+        let Some(python) = crate::vectors::run_python("scripts/spmesh_reader.py", &["-"], &stream) else {
+            return;
+        };
+        assert_eq!(String::from_utf8(python.stdout).unwrap(), text_of(&stream));
+    }
+}

@@ -1,0 +1,81 @@
+//! The tool as its users meet it: exit codes, messages, and files that are whole or not there.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use super::samples;
+
+fn spconvert(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_spconvert"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    // A tool that refuses its flags does not read.
+    let _ = stdin.write_all(input);
+    drop(stdin);
+    child.wait_with_output().unwrap()
+}
+
+fn files_in(folder: &Path) -> usize {
+    std::fs::read_dir(folder).unwrap().count()
+}
+
+#[test]
+fn a_pipe_goes_round() {
+    let stream = samples::mesh(samples::grids()[1]);
+    let text = spconvert(&["--to", "text"], &stream);
+    assert!(text.status.success() && text.stderr.is_empty());
+    let back = spconvert(&["-", "-o", "-", "--to", "spm", "--from", "text"], &text.stdout);
+    assert!(back.status.success() && back.stdout == stream);
+}
+
+#[test]
+fn the_format_comes_from_the_name_of_the_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mesh.smb");
+    let result = spconvert(&["-o", path.to_str().unwrap()], &samples::mesh(samples::grids()[1]));
+    assert!(result.status.success());
+    let notices = String::from_utf8(result.stderr).unwrap();
+    assert!(notices.contains("spconvert: stdin: SMB holds no CRS"), "{notices}");
+    assert_eq!(std::fs::read(&path).unwrap()[..4], [0, 0, 0, 0]);
+    let quiet = spconvert(&[path.to_str().unwrap(), "--to", "obj", "--quiet"], b"");
+    assert!(quiet.status.success() && quiet.stderr.is_empty() && quiet.stdout.starts_with(b"# OBJ"));
+}
+
+#[test]
+fn a_cut_input_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let stream = samples::mesh(samples::grids()[0]);
+    for name in ["mesh.ply", "mesh.txt", "mesh.sma", "mesh.spm"] {
+        let path = folder.path().join(name);
+        let result = spconvert(&["-o", path.to_str().unwrap()], &stream[..stream.len() - 20]);
+        assert_eq!(result.status.code(), Some(3));
+        let message = String::from_utf8(result.stderr).unwrap();
+        assert!(message.starts_with("spconvert: stdin: block 13 at byte "), "{message}");
+        assert_eq!(files_in(folder.path()), 0);
+    }
+}
+
+#[test]
+fn wrong_requests_are_told_apart() {
+    let points = samples::points(2, true, false);
+    let cases: [(&[&str], &[u8], i32, &str); 6] = [
+        (&[], &points, 2, "--to"),
+        (&["--to", "dxf"], &points, 2, "possible values"),
+        (&["--to", "sma"], &points, 2, "cannot be written as SMA, which holds triangle mesh"),
+        (&["--to", "spm", "--from", "ply"], &points, 2, "not read"),
+        (&["--to", "spm"], b"no mesh at all\n", 2, "--from"),
+        (&["--to", "spm"], b"", 3, "the input is empty"),
+    ];
+    for (arguments, input, code, expected) in cases {
+        let result = spconvert(arguments, input);
+        let message = String::from_utf8(result.stderr).unwrap();
+        assert_eq!(result.status.code(), Some(code), "{message}");
+        assert!(message.contains(expected), "{message}");
+    }
+}
