@@ -52,8 +52,7 @@ pub struct Flags {
     #[arg(long, value_name = "K")]
     level: Option<u8>,
 
-    /// Divide cells that hold more points than this [default: 20000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", help = format!("Divide cells that hold more points than this [default: {CELL_POINTS}]"), value_parser = clap::value_parser!(u64).range(1..))]
     cell_points: Option<u64>,
 
     /// Keep the order of the points and only insert tags
