@@ -166,7 +166,7 @@ fn cell_of(index: i32, tree: &CellTree) -> Result<CellCode> {
     let mut rest = u64::try_from(index).map_err(|_| unknown())?;
     let (mut code, mut shift) = (0, 0);
     while rest > 0 {
-        code |= ((rest - 1) % children ^ flip) << shift;
+        code |= (((rest - 1) % children) ^ flip) << shift;
         rest = (rest - 1) / children;
         shift += tree.dims();
     }
