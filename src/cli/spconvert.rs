@@ -24,7 +24,8 @@ Examples:
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
 The format of the input is recognized by its content, or its name; that of the output by its name.
-OBJ, PLY, SMA and SMB hold no CRS; SMB rounds coordinates to 32 bits. A notice says what is lost.
+Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB rounded to
+32 bits. A notice says what is lost.
 Meshes of OBJ do not say when vertices are final: all of them are at the end.";
 
 /// Convert streams of points and meshes to and from other formats

@@ -124,8 +124,11 @@ fn meshes_survive_smb_but_for_what_it_says() {
     assert!(finals.len() as u64 >= samples::SIDE * (samples::SIDE - 1));
 }
 
+/// Bytes of a number in one of the byte orders.
+type BytesOf = fn(u32) -> [u8; 4];
+
 /// Two triangles in SMB by hand: four vertices, f 1 -3 -2 after the third, f -4 -2 -1 at the end.
-fn smb_by_hand(flag: u8, bytes_of: fn(u32) -> [u8; 4]) -> Vec<u8> {
+fn smb_by_hand(flag: u8, bytes_of: BytesOf) -> Vec<u8> {
     let point = |x: f32, y: f32| [x.to_bits(), y.to_bits(), 250f32.to_bits()];
     let triangle = |corners: [i32; 3]| corners.map(|corner| corner as u32);
     let mut words = vec![0, u32::MAX, u32::MAX];
@@ -143,7 +146,7 @@ fn smb_by_hand(flag: u8, bytes_of: fn(u32) -> [u8; 4]) -> Vec<u8> {
 
 #[test]
 fn smb_is_read_in_either_byte_order_whatever_its_flag() {
-    let files: [(u8, fn(u32) -> [u8; 4]); 4] =
+    let files: [(u8, BytesOf); 4] =
         [(0, u32::to_le_bytes), (1, u32::to_be_bytes), (1, u32::to_le_bytes), (0, u32::to_be_bytes)];
     for (flag, bytes_of) in files {
         let file = smb_by_hand(flag, bytes_of);
