@@ -52,7 +52,13 @@ fn readme_manifest_and_bin_name_the_same_tools() {
 
 #[test]
 fn few_points_are_a_valid_mesh_with_a_warning() {
-    let inputs = ["# a header, and no points\n", "1 2 3\n", "1 2 3\n4 5 6\n", "0 0 0\n1 1 0\n2 2 0\n3 3 9\n", "5 5 1\n5 5 2\n5 5 3\n"];
+    let inputs = [
+        "# a header, and no points\n",
+        "1 2 3\n",
+        "1 2 3\n4 5 6\n",
+        "0 0 0\n1 1 0\n2 2 0\n3 3 9\n",
+        "5 5 1\n5 5 2\n5 5 3\n",
+    ];
     for input in inputs {
         let points = run("spfinalize", &["--from-text", "-"], input.as_bytes());
         let points =

@@ -18,7 +18,7 @@ use crate::stream::{Coordinates, Crs};
 
 /// One pass over the points of one file.
 pub(super) trait Pass: Send {
-    /// Puts the next points into `batch`, about [`BATCH_POINTS`] of them; none may be left after filters.
+    /// Puts the next points into `batch`, about `BATCH_POINTS` of them; none may be left after filters.
     /// Returns false at the end of the file, with nothing put.
     fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool>;
 }
