@@ -67,10 +67,10 @@ fn spool(mut from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>)
         .map_err(|e| Error::io(format!("creating a temporary file in {place}"), e))?;
     let bytes = io::copy(&mut from, &mut file)
         .map_err(|e| Error::io(format!("spooling to a temporary file in {place}"), e))?;
-    let mb = bytes as f64 / 1e6;
-    notices.push(format!(
-        "{name}: spooled {mb:.1} MB to an unlinked temporary file in {place} for the second pass"
-    ));
+    let size =
+        if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
+    notices
+        .push(format!("{name}: spooled {size} to an unlinked temporary file in {place} for the second pass"));
     Ok(Origin::Open(Arc::new(file)))
 }
 
