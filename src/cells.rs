@@ -4,6 +4,7 @@
 //! named by its *location code*: a leading 1 bit, then the interleaved bits of its integer coordinates, so
 //! that the root is 1, and the children of `c` are `c * 2^dims + 0 ..`.
 
+use crate::bits::{gather2, gather3, spread2, spread3};
 use crate::bounds::{Bounds, Point};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 
@@ -230,42 +231,6 @@ fn exponent(x: f64) -> i32 {
 
 fn mantissa(x: f64) -> u64 {
     x.to_bits() & ((1 << 52) - 1)
-}
-
-fn spread2(x: u32) -> u64 {
-    let mut x = u64::from(x);
-    x = (x | x << 16) & 0x0000_ffff_0000_ffff;
-    x = (x | x << 8) & 0x00ff_00ff_00ff_00ff;
-    x = (x | x << 4) & 0x0f0f_0f0f_0f0f_0f0f;
-    x = (x | x << 2) & 0x3333_3333_3333_3333;
-    (x | x << 1) & 0x5555_5555_5555_5555
-}
-
-fn gather2(x: u64) -> u32 {
-    let mut x = x & 0x5555_5555_5555_5555;
-    x = (x | x >> 1) & 0x3333_3333_3333_3333;
-    x = (x | x >> 2) & 0x0f0f_0f0f_0f0f_0f0f;
-    x = (x | x >> 4) & 0x00ff_00ff_00ff_00ff;
-    x = (x | x >> 8) & 0x0000_ffff_0000_ffff;
-    (x | x >> 16) as u32
-}
-
-fn spread3(x: u32) -> u64 {
-    let mut x = u64::from(x) & 0x1f_ffff;
-    x = (x | x << 32) & 0x001f_0000_0000_ffff;
-    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
-    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
-    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
-    (x | x << 2) & 0x1249_2492_4924_9249
-}
-
-fn gather3(x: u64) -> u32 {
-    let mut x = x & 0x1249_2492_4924_9249;
-    x = (x | x >> 2) & 0x10c3_0c30_c30c_30c3;
-    x = (x | x >> 4) & 0x100f_00f0_0f00_f00f;
-    x = (x | x >> 8) & 0x001f_0000_ff00_00ff;
-    x = (x | x >> 16) & 0x001f_0000_0000_ffff;
-    (x | x >> 32) as u32
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! The tools in `bin/` are thin; everything they do is here. `ARCHITECTURE.md` has the module map.
 
 pub mod audit;
+pub mod bits;
 pub mod bounds;
 pub mod cells;
 pub mod cli;

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::process::Stdio;
 
 use crate::programs::{cloud, outcome, run, sample, start, tool};
+use crate::vectors::run_python;
 
 /// A chunked stream of a cloud that is much longer than a pipe holds.
 fn long_stream() -> Vec<u8> {
@@ -31,6 +32,19 @@ fn a_real_tile_becomes_an_audited_mesh() {
     let report: serde_json::Value = serde_json::from_slice(&audit.stdout).unwrap();
     assert_eq!(report["counts"]["points"], 59_712);
     assert_eq!(report["counts"]["vertices"], 59_712 - 51);
+}
+
+#[test]
+fn the_python_reader_accepts_what_the_pipeline_writes() {
+    let tile = sample("lareunion.laz");
+    let points = run("spfinalize", &["--cell-points", "3000", &tile], &[]).stdout;
+    let preserved = run("spfinalize", &["--preserve", &tile], &[]).stdout;
+    let mesh = mesh_of(&points, &[]);
+    let part = mesh_of(&points, &["--partial", "--cell", "1/0/0"]);
+    for stream in [points, preserved, mesh, part] {
+        let Some(python) = run_python("scripts/spmesh_reader.py", &["-q", "-"], &stream) else { return };
+        assert!(python.status.success(), "{:?}", outcome(&python));
+    }
 }
 
 /// The triangles of a mesh by their coordinates, sorted, from its text twin.

@@ -1,12 +1,13 @@
 //! Morton keys: the bits of two quantised coordinates, interleaved.
 
+use crate::bits::spread2;
 use crate::predicates::{Extent, Point2};
 
 /// Monotone map of the coordinates of an extent to `u32`, the same scale for both axes.
 ///
-/// Monotone means: if p is at most q on an axis, so is the cell of p at most that of q. So two points whose cells differ on
-/// an axis differ on that axis, in the same direction: cells of the Morton trie are separated by axis-parallel
-/// lines, exactly, whatever was rounded.
+/// Monotone means: if p is at most q on an axis, so is the cell of p at most that of q. So two points whose
+/// cells differ on an axis differ on that axis, in the same direction: cells of the Morton trie are separated by
+/// axis-parallel lines, exactly, whatever was rounded.
 #[derive(Debug, Clone, Copy)]
 pub struct Quantisation {
     lower: Point2,
@@ -56,18 +57,7 @@ impl Quantisation {
 #[inline(always)]
 #[must_use]
 pub fn morton_key(x: u32, y: u32) -> u64 {
-    spread(x) << 1 | spread(y)
-}
-
-/// Moves bit i to bit 2i.
-#[inline(always)]
-fn spread(value: u32) -> u64 {
-    let mut bits = u64::from(value);
-    bits = (bits | bits << 16) & 0x0000_ffff_0000_ffff;
-    bits = (bits | bits << 8) & 0x00ff_00ff_00ff_00ff;
-    bits = (bits | bits << 4) & 0x0f0f_0f0f_0f0f_0f0f;
-    bits = (bits | bits << 2) & 0x3333_3333_3333_3333;
-    (bits | bits << 1) & 0x5555_5555_5555_5555
+    spread2(x) << 1 | spread2(y)
 }
 
 #[cfg(test)]

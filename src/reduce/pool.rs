@@ -1,6 +1,7 @@
 //! Leaves are triangulated ahead by workers, and come back in the order in which they were submitted.
 
 use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::{Scope, ScopedJoinHandle};
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
@@ -118,7 +119,11 @@ impl<'scope> Pool<'scope> {
 fn work(jobs: &Receiver<Job>, done: &Sender<Done>, rules: Rules) -> PredicateCounts {
     let mut solver = Solver::default();
     for Job { number, points, region } in jobs {
-        if done.send((number, solver.solve(points, &region, &rules))).is_err() {
+        // A panic must reach the coordinator, which would wait for this leaf forever.
+        let solve = AssertUnwindSafe(|| solver.solve(points, &region, &rules));
+        let solved = catch_unwind(solve).unwrap_or_else(|_| Err(workers_gone()));
+        let is_lost = solved.is_err();
+        if done.send((number, solved)).is_err() || is_lost {
             break;
         }
     }

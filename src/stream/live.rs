@@ -1,6 +1,6 @@
 //! The vertices of a mesh stream that a later patch may still use.
 
-use std::collections::HashMap;
+use foldhash::{HashMap, HashMapExt};
 
 use super::event::Patch;
 use crate::bounds::Point;

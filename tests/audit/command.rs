@@ -1,7 +1,6 @@
 //! The command `spinfo`: exit codes, text and JSON.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use serde_json::Value;
 use spmesh::stream::{Crs, Header, Kind, StreamWriter};
@@ -9,18 +8,7 @@ use spmesh::stream::{Crs, Header, Kind, StreamWriter};
 use super::{Mesh, grid, point};
 
 fn spinfo(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_spinfo"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    // A tool that refuses its arguments does not read its input.
-    let _ = stdin.write_all(input);
-    drop(stdin);
-    child.wait_with_output().unwrap()
+    crate::programs::run("spinfo", arguments, input)
 }
 
 fn square(triangles: &[[usize; 3]]) -> Vec<u8> {

@@ -1,24 +1,12 @@
 //! The tool as its users meet it: exit codes, messages, and files that are whole or not there.
 
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 use super::samples;
 
 fn spconvert(arguments: &[&str], input: &[u8]) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_spconvert"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut stdin = child.stdin.take().unwrap();
-    // A tool that refuses its flags does not read.
-    let _ = stdin.write_all(input);
-    drop(stdin);
-    child.wait_with_output().unwrap()
+    crate::programs::run("spconvert", arguments, input)
 }
 
 fn files_in(folder: &Path) -> usize {
