@@ -120,8 +120,5 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        self.cause.as_ref().map(|cause| cause as _)
-    }
-}
+/// The cause is part of the message, so there is no source to be printed a second time.
+impl std::error::Error for Error {}

@@ -73,6 +73,11 @@ impl Output {
         committed.map_err(|e| Error::io("finishing the output", e).of_input(self.name))
     }
 
+    /// Puts the name of the output before the reason, for whoever prints the error.
+    fn named(&self, error: io::Error) -> io::Error {
+        io::Error::new(error.kind(), format!("{}: {error}", self.name))
+    }
+
     fn writer(&mut self) -> &mut dyn Write {
         match &mut self.sink {
             Sink::InPlace(file) | Sink::Unnamed { file, .. } => file,
@@ -83,11 +88,11 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.writer().write(bytes)
+        self.writer().write(bytes).map_err(|e| self.named(e))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.writer().flush()
+        self.writer().flush().map_err(|e| self.named(e))
     }
 }
 

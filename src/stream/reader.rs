@@ -11,7 +11,7 @@ use super::event::{Event, Totals};
 use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
 use super::payload;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
 
 /// Reads one stream.
@@ -82,8 +82,12 @@ impl<R: Read> StreamReader<R> {
         self.offset
     }
 
-    /// Adds input and position to an error about the block that was read last.
+    /// Adds input and position to an error about the block that was read last. Errors that are not about the
+    /// input, like a full disk where the output goes, stay as they are.
     pub fn locate(&self, error: Error) -> Error {
+        if !matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Audit) {
+            return error;
+        }
         let block = self.block.saturating_sub(1);
         error.at(format!("block {block} at byte {}", self.block_start)).of_input(&self.name)
     }
