@@ -5,20 +5,25 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::os::fd::{AsFd, AsRawFd};
 use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 
 const BUFFER_LEN: usize = 1 << 18;
 
+/// Start of the name of a file that is not complete, where it has to have a name.
+const TEMPORARY_PREFIX: &str = ".spmesh-";
+
 /// An output that is committed or was never there.
 ///
 /// Invariant: the final name exists only after [`Output::commit`]. The data go to an unnamed file
-/// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind; where the file
-/// system cannot do that, to a temporary name that is removed on every exit but a kill.
+/// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind; where the system
+/// cannot do that, to a temporary name that is removed on every exit but a kill.
 pub struct Output {
     name: String,
     sink: Sink,
+    written: u64,
 }
 
 enum Sink {
@@ -35,7 +40,8 @@ enum Sink {
 }
 
 impl Output {
-    /// Opens stdout for `-`, otherwise a file that will get the name `path`.
+    /// Opens stdout for `-`, otherwise a file that will get the name `path`. A symbolic link stays one: the
+    /// file that it leads to is replaced.
     ///
     /// # Errors
     /// Usage, if `binary` data would go to a terminal; I/O, if the folder cannot be written to.
@@ -50,14 +56,20 @@ impl Output {
             // Past the line buffering of `Stdout`, which would look for line ends in binary data.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
-            return Ok(Output { name: "stdout".into(), sink });
+            return Ok(Output { name: "stdout".into(), sink, written: 0 });
         }
         let name = path.display().to_string();
         let sink = create_file(path).map_err(|e| Error::io("creating the output", e).of_input(&name))?;
-        Ok(Output { name, sink })
+        Ok(Output { name, sink, written: 0 })
     }
 
-    /// Flushes, and gives a file its final name, replacing one that has it.
+    /// Bytes written so far.
+    #[must_use]
+    pub fn bytes_written(&self) -> u64 {
+        self.written
+    }
+
+    /// Flushes, and gives a file its final name, replacing one that has it, when its data are on the disk.
     ///
     /// # Errors
     /// If the last bytes cannot be written or the name cannot be given; then nothing is left behind.
@@ -65,10 +77,7 @@ impl Output {
         let committed = match self.sink {
             Sink::InPlace(mut file) => file.flush(),
             Sink::Unnamed { file, target } => commit_unnamed(file, &target),
-            Sink::Named { file, target } => file.into_inner().map_err(|e| e.into_error()).and_then(|file| {
-                let made = file.persist(&target).map_err(|e| e.error)?;
-                give_default_mode(&made)
-            }),
+            Sink::Named { file, target } => commit_named(file, &target),
         };
         committed.map_err(|e| Error::io("finishing the output", e).of_input(self.name))
     }
@@ -88,7 +97,9 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.writer().write(bytes).map_err(|e| self.named(e))
+        let written = self.writer().write(bytes).map_err(|e| self.named(e))?;
+        self.written += written as u64;
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -96,63 +107,73 @@ impl Write for Output {
     }
 }
 
-fn create_file(target: &Path) -> io::Result<Sink> {
-    if fs::metadata(target).is_ok_and(|metadata| !metadata.is_file()) {
+fn create_file(path: &Path) -> io::Result<Sink> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
         let file = fs::OpenOptions::new().write(true).open(target)?;
         return Ok(Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, file)));
     }
-    let target = target.to_path_buf();
-    match open_unnamed(folder_of(&target)) {
-        Ok(file) => Ok(Sink::Unnamed { file: BufWriter::with_capacity(BUFFER_LEN, file), target }),
-        Err(_) => {
-            let file = tempfile::Builder::new().prefix(".spmesh-").tempfile_in(folder_of(&target))?;
-            Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target })
-        }
+    if let Some(file) = open_unnamed(folder_of(&target)) {
+        return Ok(Sink::Unnamed { file: BufWriter::with_capacity(BUFFER_LEN, file), target });
     }
+    // The mode of a plain file, which the process's mask still narrows.
+    let mode = fs::Permissions::from_mode(0o666);
+    let mut builder = tempfile::Builder::new();
+    let file = builder.prefix(TEMPORARY_PREFIX).permissions(mode).tempfile_in(folder_of(&target))?;
+    Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target })
 }
 
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn open_unnamed(folder: &Path) -> io::Result<File> {
-    use std::os::unix::fs::OpenOptionsExt;
-    fs::OpenOptions::new().write(true).custom_flags(libc::O_TMPFILE).mode(0o666).open(folder)
+/// A file without a name that can be given one later; `None` where the system or the file system cannot.
+#[cfg(target_os = "linux")]
+fn open_unnamed(folder: &Path) -> Option<File> {
+    let mut options = fs::OpenOptions::new();
+    let file = options.write(true).custom_flags(libc::O_TMPFILE).mode(0o666).open(folder).ok()?;
+    // The name is given through /proc, which may not be mounted: better to know before the work.
+    descriptor_path(&file).exists().then_some(file)
 }
 
-/// Links the unnamed file to a temporary name and renames that, because a link cannot replace a file.
+/// A file without a name that can be given one later; `None` where the system or the file system cannot.
+#[cfg(not(target_os = "linux"))]
+fn open_unnamed(_folder: &Path) -> Option<File> {
+    None
+}
+
+fn descriptor_path(file: &File) -> PathBuf {
+    PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
+}
+
+/// Links the unnamed file to its name. A link cannot replace a file: if there is one, it is linked to a
+/// temporary name, and that is renamed.
 fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
-    let source = CString::new(format!("/proc/self/fd/{}", file.as_raw_fd()))?;
-    let link = |name: &Path| {
-        let name = CString::new(name.as_os_str().as_bytes())?;
-        // SAFETY: both paths are NUL-terminated strings that outlive the call, which keeps neither.
-        let status = unsafe {
-            libc::linkat(
-                libc::AT_FDCWD,
-                source.as_ptr(),
-                libc::AT_FDCWD,
-                name.as_ptr(),
-                libc::AT_SYMLINK_FOLLOW,
-            )
-        };
-        if status == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
-    };
-    match link(target) {
+    file.sync_all()?;
+    match link(&file, target) {
         Err(e) if e.kind() == io::ErrorKind::AlreadyExists => {
-            let mut name = std::ffi::OsString::from(".spmesh-");
-            name.push(std::process::id().to_string());
-            name.push(target.file_name().unwrap_or_default());
-            let temporary = folder_of(target).join(name);
-            link(&temporary)?;
-            fs::rename(&temporary, target).inspect_err(|_| drop(fs::remove_file(&temporary)))
+            let mut builder = tempfile::Builder::new();
+            let linked =
+                builder.prefix(TEMPORARY_PREFIX).make_in(folder_of(target), |name| link(&file, name))?;
+            linked.into_temp_path().persist(target).map_err(|e| e.error)
         }
         other => other,
     }
 }
 
-/// A named temporary file is private; the output gets the mode that a plain file would have.
-fn give_default_mode(file: &File) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(fs::Permissions::from_mode(0o644))
+fn link(file: &File, name: &Path) -> io::Result<()> {
+    let source = CString::new(descriptor_path(file).as_os_str().as_bytes())?;
+    let name = CString::new(name.as_os_str().as_bytes())?;
+    // SAFETY: both paths are NUL-terminated strings that outlive the call, which keeps neither.
+    let status = unsafe {
+        libc::linkat(libc::AT_FDCWD, source.as_ptr(), libc::AT_FDCWD, name.as_ptr(), libc::AT_SYMLINK_FOLLOW)
+    };
+    if status == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+}
+
+fn commit_named(file: BufWriter<tempfile::NamedTempFile>, target: &Path) -> io::Result<()> {
+    let file = file.into_inner().map_err(|e| e.into_error())?;
+    file.as_file().sync_all()?;
+    file.persist(target).map(drop).map_err(|e| e.error)
 }

@@ -8,6 +8,7 @@ mod convert;
 mod finalize;
 mod kernel;
 mod kernel_predicates;
+mod output;
 mod pipelines;
 mod programs;
 mod reduction;

@@ -7,6 +7,7 @@ pub mod spfinalize;
 pub mod spinfo;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -32,7 +33,7 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
         Err(error) => {
             let code = error.downcast_ref::<Error>().map_or(1, Error::exit_code);
             if code != ErrorKind::ClosedPipe.exit_code() {
-                eprintln!("{tool}: {error:#}");
+                say(&format!("{tool}: {error:#}\n"));
             }
             ExitCode::from(code)
         }
@@ -40,12 +41,15 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
 }
 
 /// Makes `--stats json` one argument. For clap the format must be joined to its flag (`--stats=json`), or
-/// `--stats FILE` would take the file for a format.
+/// `--stats FILE` would take the file for a format. Behind `--` there are only files.
 fn join_stats_format(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
+    let mut only_files = false;
     for argument in arguments {
+        only_files |= argument == "--";
+        let is_format = !only_files && (argument == "text" || argument == "json");
         match joined.last_mut() {
-            Some(last) if last == "--stats" && (argument == "text" || argument == "json") => {
+            Some(last) if is_format && last == "--stats" => {
                 last.push("=");
                 last.push(argument);
             }
@@ -70,8 +74,13 @@ pub struct Common {
 /// Prints a message for the user on stderr, with the tool's name before it.
 pub fn notice(tool: &str, common: &Common, message: &str) {
     if !common.quiet {
-        eprintln!("{tool}: {message}");
+        say(&format!("{tool}: {message}\n"));
     }
+}
+
+/// Prints on stderr. That nobody listens there is no reason to fail, unlike for `eprint!`.
+pub(crate) fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// How `--stats` is printed.

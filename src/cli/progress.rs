@@ -17,14 +17,14 @@ pub enum When {
     Json,
 }
 
-/// Progress of one task, counted in points.
+/// Progress of one pass, counted in points.
 pub struct Progress {
     bar: ProgressBar,
     json: Option<(String, Option<u64>, Instant)>,
 }
 
 impl Progress {
-    /// Starts to show the task `name`, of `total` points where that is known.
+    /// Starts to show the pass `name`, of `total` points where that is known.
     #[must_use]
     pub fn new(common: &Common, name: &str, total: Option<u64>) -> Self {
         let show = common.progress == When::Auto && !common.quiet;
@@ -51,7 +51,7 @@ impl Progress {
             && last.elapsed() >= Duration::from_secs(1)
         {
             *last = Instant::now();
-            eprintln!("{}", serde_json::json!({"task": name, "points": done, "total": total}));
+            super::say(&format!("{}\n", serde_json::json!({"pass": name, "points": done, "total": total})));
         }
     }
 }

@@ -5,12 +5,15 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::{Common, StatsFormat, notice, open_input, peak_memory, progress::Progress};
+use super::{Common, StatsFormat, notice, open_input, peak_memory, progress::Progress, say};
 use crate::bounds::Region;
 use crate::error::Error;
 use crate::output::Output;
 use crate::reduce::{self, Duplicates, Options, Part, Stats};
 use crate::stream::StreamReader;
+
+/// Leaves are triangulated ahead on every thread: more of them cost memory that only `--threads` may ask for.
+const THREADS_DEFAULT_MAX: usize = 8;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -44,7 +47,7 @@ pub struct Flags {
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
 
-    /// Threads [default: one per core]
+    /// Threads; memory grows with them [default: one per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -106,15 +109,17 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let part = part(&flags)?;
     let started = Instant::now();
     let (output, stats) = if flags.merge { merge(&flags, part)? } else { triangulate(&flags, part)? };
+    let output_bytes = output.bytes_written();
     output.commit()?;
+    let report = Report { stats, output_bytes, seconds: started.elapsed().as_secs_f64() };
     if stats.triangles == 0 && part.is_none() {
         let reason =
             if stats.vertices < 3 { "fewer than three different points" } else { "all points on a line" };
         notice("spdelaunay2d", &flags.common, &format!("no triangles: {reason} ({} points)", stats.points));
     }
     match flags.stats {
-        Some(StatsFormat::Text) => eprint!("{}", text_report(&stats, started.elapsed().as_secs_f64())),
-        Some(StatsFormat::Json) => eprintln!("{}", json_report(&stats, started.elapsed().as_secs_f64())),
+        Some(StatsFormat::Text) => say(&text_report(&report)),
+        Some(StatsFormat::Json) => say(&format!("{}\n", json_report(&report))),
         None => {}
     }
     Ok(())
@@ -141,12 +146,15 @@ fn triangulate(flags: &Flags, part: Option<Part>) -> anyhow::Result<(Output, Sta
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "triangulating", reader.header().points);
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = flags.threads.map_or(cores, usize::from);
+    let threads = flags.threads.map_or(cores.min(THREADS_DEFAULT_MAX), usize::from);
     let options = Options { duplicates: flags.duplicates.into(), threads, part };
     Ok(reduce::triangulate(reader, output, &options, |points| progress.set(points))?)
 }
 
 fn merge(flags: &Flags, part: Option<Part>) -> anyhow::Result<(Output, Stats)> {
+    if flags.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
+        return Err(Error::usage("stdin can be given once").into());
+    }
     let readers = flags.inputs.iter().map(open_stream).collect::<Result<Vec<_>, Error>>()?;
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "merging", None);
@@ -179,13 +187,25 @@ fn parse_cell(text: &str) -> Result<Part, String> {
     }
 }
 
-/// Rows of the report: a label for people, a key for programs, the value. The first rows are the columns of
-/// thesis table 5.2.
-fn rows(stats: &Stats) -> [(&'static str, &'static str, u64); 21] {
+/// What `--stats` tells.
+struct Report {
+    stats: Stats,
+    output_bytes: u64,
+    seconds: f64,
+}
+
+/// Rows of the report: a label for people, a key for programs, the value. With the time, the first rows are
+/// the columns of thesis table 5.2.
+fn rows(report: &Report) -> [(&'static str, &'static str, u64); 25] {
+    let stats = &report.stats;
     [
         ("points", "points", stats.points),
-        ("triangles", "triangles", stats.triangles),
+        ("input (bytes)", "input_bytes", stats.input_bytes),
+        ("levels of the tree", "level", stats.level),
+        ("most triangles active", "active_max", stats.active_max),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+        ("triangles", "triangles", stats.triangles),
+        ("output (bytes)", "output_bytes", report.output_bytes),
         ("vertices", "vertices", stats.vertices),
         ("merged duplicates", "merged", stats.merged),
         ("outside of the region", "outside", stats.outside),
@@ -207,20 +227,20 @@ fn rows(stats: &Stats) -> [(&'static str, &'static str, u64); 21] {
     ]
 }
 
-fn text_report(stats: &Stats, seconds: f64) -> String {
-    let mut report = format!("{:<30} {seconds:>15.3}\n", "time (s)");
-    for (label, _, value) in rows(stats) {
-        report += &format!("{label:<30} {value:>15}\n");
+fn text_report(report: &Report) -> String {
+    let mut text = format!("{:<30} {:>15.3}\n", "time (s)", report.seconds);
+    for (label, _, value) in rows(report) {
+        text += &format!("{label:<30} {value:>15}\n");
     }
-    if stats.untagged > 0 {
-        report += "note: points without a final cell were held until the end; spfinalize bounds the memory\n";
+    if report.stats.untagged > 0 {
+        text += "note: points without a final cell were held until the end; spfinalize bounds the memory\n";
     }
-    report
+    text
 }
 
-fn json_report(stats: &Stats, seconds: f64) -> String {
+fn json_report(report: &Report) -> String {
     let mut object = serde_json::Map::new();
-    object.insert("seconds".into(), seconds.into());
-    object.extend(rows(stats).into_iter().map(|(_, key, value)| (key.to_string(), value.into())));
+    object.insert("seconds".into(), report.seconds.into());
+    object.extend(rows(report).into_iter().map(|(_, key, value)| (key.to_string(), value.into())));
     serde_json::Value::Object(object).to_string()
 }

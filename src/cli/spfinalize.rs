@@ -132,8 +132,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     match flags.stats {
-        Some(StatsFormat::Text) => eprint!("{}", stats_text(&stats)),
-        Some(StatsFormat::Json) => eprintln!("{}", stats_json(&stats)),
+        Some(StatsFormat::Text) => super::say(&stats_text(&stats)),
+        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats))),
         None => {}
     }
     Ok(())

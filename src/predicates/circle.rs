@@ -29,7 +29,8 @@
 //!
 //! Underflow would break relative errors: where one of `n_d`, `n_x`, `n_y`, `p`, `q` is below 2^-900 nothing
 //! is claimed, and above it an underflowing product errs by less than 2^-1074, which is below `u` times the
-//! sum. Overflow makes an infinity or a NaN, for which every comparison below is false.
+//! sum. Overflow makes an infinity or a NaN, for which every comparison below is false; where only `2 d`
+//! overflows, the products in `m` have long done so.
 
 use crate::bounds::Region;
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::residual::{Residual, UNWRITTEN};
+use super::residual::Residual;
 use crate::bounds::{Point, Region};
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
@@ -79,9 +79,9 @@ impl Arrivals {
         let mut points = Residual::with_capacity(self.current.len(), 0);
         for points_of_bucket in buckets.iter().filter_map(|key| self.buckets.remove(key)) {
             self.in_buckets -= points_of_bucket.len();
-            points_of_bucket.into_iter().for_each(|point| points.push(point, UNWRITTEN));
+            points_of_bucket.into_iter().for_each(|point| points.push_raw(point));
         }
-        self.current.drain(..).for_each(|point| points.push(point, UNWRITTEN));
+        self.current.drain(..).for_each(|point| points.push_raw(point));
         self.accepted += points.len() as u64;
         Ok((points, is_whole))
     }
@@ -90,10 +90,10 @@ impl Arrivals {
     pub(super) fn rest(&mut self) -> Residual {
         let mut points = Residual::with_capacity(self.current.len() + self.in_buckets, 0);
         for point in std::mem::take(&mut self.buckets).into_values().flatten() {
-            points.push(point, UNWRITTEN);
+            points.push_raw(point);
         }
         self.in_buckets = 0;
-        self.current.drain(..).for_each(|point| points.push(point, UNWRITTEN));
+        self.current.drain(..).for_each(|point| points.push_raw(point));
         self.accepted += points.len() as u64;
         points
     }

@@ -65,13 +65,16 @@ impl Duplicates {
     }
 }
 
+/// Mean of a sorted group.
 fn mean(group: &[f64], coordinates: &Coordinates) -> f64 {
     let n = group.len() as f64;
-    match coordinates {
-        // Sums of 32-bit integers are exact; the halves of finite numbers cannot overflow.
+    let mean = match coordinates {
         Coordinates::I32 { .. } => (group.iter().sum::<f64>() / n).round(),
+        // Divided before the sum, which could overflow otherwise.
         Coordinates::F64 => group.iter().map(|z| z / n).sum(),
-    }
+    };
+    // Rounding must not carry the mean out of its group: it could leave the bounding box.
+    mean.clamp(group[0], group[group.len() - 1])
 }
 
 #[cfg(test)]
@@ -95,6 +98,16 @@ mod tests {
         assert_eq!(settled(Duplicates::Mean, &elevations).unwrap(), 5.0);
         let message = settled(Duplicates::Error, &elevations).unwrap_err().to_string();
         assert!(message.contains("several points at x 3 y 4"), "{message}");
+    }
+
+    #[test]
+    fn the_mean_stays_within_its_group() {
+        for count in 1..50 {
+            let group = vec![858.59; count];
+            assert_eq!(mean(&group, &Coordinates::F64), 858.59);
+        }
+        let huge = mean(&[f64::MAX; 3], &Coordinates::F64);
+        assert_eq!(huge, f64::MAX);
     }
 
     #[test]

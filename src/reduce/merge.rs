@@ -11,7 +11,7 @@ use super::run::write_residual;
 use super::stats::Stats;
 use crate::bounds::{Bounds, Point, Region};
 use crate::error::{Error, Result};
-use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter};
+use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter, Totals};
 
 /// Merges the results of partial runs over regions that do not overlap; `progress` is told how many vertices
 /// are read. Without `part`, the regions must cover all points, and the result is the whole mesh: the set of
@@ -142,17 +142,21 @@ fn copy_through<R: Read, W: Write>(
                 part.walls.extend(walls);
                 Ok(())
             }
-            Event::End(totals) => {
-                stats.points += totals.points;
-                stats.merged += totals.merged;
-                all_retired(&live)
-            }
+            Event::End(totals) => add_totals(stats, &totals).and_then(|()| all_retired(&live)),
             Event::Points(_) | Event::Cells(_) => unreachable!("the reader refuses these blocks in a mesh"),
         };
         taken.map_err(|e| reader.locate(e))?;
         progress(patches.stream().totals().vertices);
     }
+    stats.input_bytes += reader.bytes_read();
     residual.append(&part);
+    Ok(())
+}
+
+fn add_totals(stats: &mut Stats, totals: &Totals) -> Result<()> {
+    let sum = |a: u64, b: u64| a.checked_add(b).ok_or_else(|| Error::malformed("END: totals beyond 64 bits"));
+    stats.points = sum(stats.points, totals.points)?;
+    stats.merged = sum(stats.merged, totals.merged)?;
     Ok(())
 }
 

@@ -1,7 +1,7 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
 use super::duplicates::Duplicates;
-use super::residual::{Residual, UNWRITTEN};
+use super::residual::Residual;
 use crate::bounds::Region;
 use crate::delaunay2::{Kernel, NONE, Triangulation};
 use crate::error::{Error, Result};
@@ -60,6 +60,8 @@ pub(super) struct Solved {
     pub(super) triangles: Vec<[u32; 3]>,
     /// Walls of the residual, as indices into `points`.
     pub(super) walls: Vec<[u32; 2]>,
+    /// Number of triangles that are not final.
+    pub(super) active: usize,
     /// Number of points merged into others.
     pub(super) merged: u64,
 }
@@ -77,6 +79,7 @@ impl Solved {
             }
         }
         residual.walls.extend(self.walls.iter().map(|wall| wall.map(|end| index_above[end as usize])));
+        residual.active = self.active;
         residual
     }
 }
@@ -101,10 +104,8 @@ impl Solver {
     pub(super) fn solve(&mut self, mut points: Residual, region: &Region, rules: &Rules) -> Result<Solved> {
         self.kernel.triangulate(&points.xy, &mut self.triangulation)?;
         let duplicates = &mut self.triangulation.duplicates;
-        if let Some(&[point, vertex]) = duplicates.iter().find(|pair| {
-            pair.iter().any(|&i| points.ids[i as usize] != UNWRITTEN) || !points.walls.is_empty()
-        }) {
-            return Err(overlap(&points, point, vertex));
+        if let Some(pair) = duplicates.iter().find(|pair| pair.iter().any(|&i| i as usize >= points.raw)) {
+            return Err(overlap(&points, pair[0], pair[1]));
         }
         rules.duplicates.settle(&mut points, duplicates, &rules.coordinates)?;
         self.find_holes(&points.walls)?;
@@ -176,7 +177,10 @@ impl Solver {
         let mut solved = Solved { merged: duplicates.len() as u64, ..Solved::default() };
         for (t, triangle) in triangles.iter().enumerate() {
             match self.fates[t] {
-                Fate::Active => triangle.iter().for_each(|&v| fates[v as usize] = PointFate::Residual),
+                Fate::Active => {
+                    solved.active += 1;
+                    triangle.iter().for_each(|&v| fates[v as usize] = PointFate::Residual);
+                }
                 Fate::Final => {
                     solved.triangles.push(*triangle);
                     self.collect_walls(triangle, &neighbours[t], everything, &mut solved.walls);

@@ -39,13 +39,14 @@ impl Part {
     }
 }
 
-/// A world box in stored coordinates. The map is monotone, so boxes that share a side still do.
+/// A world box in stored coordinates. The map is monotone, so boxes that share a side still do. A side that
+/// names a grid point up to rounding lies on it, so that the point is on the border.
 fn stored_region(region: &Region, coordinates: &Coordinates) -> Result<Region> {
     let stored = |corner: [f64; 2]| -> [f64; 2] {
         match coordinates {
             Coordinates::F64 => corner,
             Coordinates::I32 { scale, offset } => {
-                std::array::from_fn(|axis| (corner[axis] - offset[axis]) / scale[axis])
+                std::array::from_fn(|axis| on_grid((corner[axis] - offset[axis]) / scale[axis]))
             }
         }
     };
@@ -55,6 +56,12 @@ fn stored_region(region: &Region, coordinates: &Coordinates) -> Result<Region> {
     } else {
         Err(Error::usage("the region is empty: give min x, min y, max x, max y"))
     }
+}
+
+/// The nearest integer if `side` is within a millionth of it, else `side`.
+fn on_grid(side: f64) -> f64 {
+    let nearest = side.round();
+    if (side - nearest).abs() <= 1e-6 { nearest } else { side }
 }
 
 fn cell_region(tree: &CellTree, level: u8, column: u32, row: u32) -> Result<Region> {

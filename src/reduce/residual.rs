@@ -19,6 +19,10 @@ pub(super) struct Residual {
     pub(super) ids: Vec<u64>,
     /// Directed edges between the points: left of each lies a final triangle, right of it none.
     pub(super) walls: Vec<[u32; 2]>,
+    /// Number of points, first of all, that come right from the stream. Only these may coincide.
+    pub(super) raw: usize,
+    /// Triangles that were not final at the node that left this residual.
+    pub(super) active: usize,
 }
 
 impl Residual {
@@ -28,6 +32,8 @@ impl Residual {
             elevation: Vec::with_capacity(points),
             ids: Vec::with_capacity(points),
             walls: Vec::with_capacity(walls),
+            raw: 0,
+            active: 0,
         }
     }
 
@@ -46,18 +52,27 @@ impl Residual {
         self.ids.push(id);
     }
 
+    /// Adds a point right from the stream; none may have come in another way before.
+    pub(super) fn push_raw(&mut self, point: Point) {
+        debug_assert_eq!(self.raw, self.len());
+        self.push(point, UNWRITTEN);
+        self.raw += 1;
+    }
+
     pub(super) fn point(&self, index: usize) -> Point {
         let [x, y] = self.xy[index];
         [x, y, self.elevation[index]]
     }
 
-    /// Takes over the points and walls of `other`.
+    /// Takes over the points and walls of `other`, which a node has left.
     pub(super) fn append(&mut self, other: &Residual) {
+        debug_assert_eq!(other.raw, 0);
         let first = self.len() as u32;
         self.xy.extend_from_slice(&other.xy);
         self.elevation.extend_from_slice(&other.elevation);
         self.ids.extend_from_slice(&other.ids);
         self.walls.extend(other.walls.iter().map(|wall| wall.map(|end| end + first)));
+        self.active += other.active;
     }
 }
 

@@ -59,6 +59,7 @@ pub fn triangulate<R: Read, W: Write>(
             run.take(event).map_err(|e| reader.locate(e))?;
             progress(reader.totals().points);
         }
+        run.stats.input_bytes = reader.bytes_read();
         run.finish()
     })
 }
@@ -108,7 +109,7 @@ impl<'scope, W: Write> Run<'scope, W> {
             pool,
             patches: PatchWriter::new(stream),
             is_partial: part.is_some(),
-            stats: Stats::default(),
+            stats: Stats { level: header.tree.map_or(0, |tree| u64::from(tree.depth())), ..Stats::default() },
         }
     }
 
@@ -153,7 +154,7 @@ impl<'scope, W: Write> Run<'scope, W> {
     /// Writes the leaves that are done, in their order, and the nodes that they complete.
     fn finish_leaves(&mut self, all: bool) -> Result<()> {
         while let Some((cell, solved)) = self.pool.next(all)? {
-            self.finish_node(cell, solved?)?;
+            self.finish_node(cell, solved.map_err(|e| e.at(format!("cell {}", cell.0)))?)?;
             self.climb(cell)?;
         }
         Ok(())
@@ -177,7 +178,8 @@ impl<'scope, W: Write> Run<'scope, W> {
     fn finish_node_of(&mut self, cell: CellCode, points: Residual) -> Result<()> {
         self.stats.inner_nodes += u64::from(!points.is_empty());
         self.stats.inner_node_max = self.stats.inner_node_max.max(points.len() as u64);
-        let solved = self.pool.solve(points, &self.boxes.region(cell))?;
+        let solved = self.pool.solve(points, &self.boxes.region(cell));
+        let solved = solved.map_err(|e| e.at(format!("cell {}", cell.0)))?;
         self.finish_node(cell, solved)
     }
 
@@ -198,6 +200,7 @@ impl<'scope, W: Write> Run<'scope, W> {
         self.stats.outside = self.arrivals.outside();
         self.stats.held_max = self.arrivals.held_max() as u64;
         self.stats.residual_max = self.pending.points_max() as u64;
+        self.stats.active_max = self.pending.active_max() as u64;
         self.stats.width = self.patches.live_max();
         let stream = self.patches.into_stream();
         self.stats.vertices = stream.totals().vertices;

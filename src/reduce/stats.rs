@@ -27,6 +27,12 @@ pub struct Stats {
     pub inner_node_max: u64,
     /// Most points held at once because their cell was not final.
     pub held_max: u64,
+    /// Levels of the input's finalization tree below its root.
+    pub level: u64,
+    /// Length of the input streams.
+    pub input_bytes: u64,
+    /// Most triangles, at the nodes that waited at once, that were not final.
+    pub active_max: u64,
     /// Most residual points that waited at once for their parent.
     pub residual_max: u64,
     /// Points that were never covered by a tag and were held until the end.

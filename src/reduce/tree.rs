@@ -15,17 +15,21 @@ pub(super) struct Pending {
     waiting: BTreeMap<u64, (CellCode, Residual)>,
     points: usize,
     points_max: usize,
+    active: usize,
+    active_max: usize,
 }
 
 impl Pending {
     pub(super) fn new(tree: Option<CellTree>) -> Self {
-        Pending { tree, waiting: BTreeMap::new(), points: 0, points_max: 0 }
+        Pending { tree, waiting: BTreeMap::new(), points: 0, points_max: 0, active: 0, active_max: 0 }
     }
 
     /// Lets the residual of `cell` wait.
     pub(super) fn insert(&mut self, cell: CellCode, residual: Residual) {
         self.points += residual.len();
         self.points_max = self.points_max.max(self.points);
+        self.active += residual.active;
+        self.active_max = self.active_max.max(self.active);
         let before = self.waiting.insert(self.first(cell), (cell, residual));
         debug_assert!(before.is_none(), "{cell:?} waits already");
     }
@@ -45,6 +49,7 @@ impl Pending {
             keys.iter().filter_map(|key| self.waiting.remove(key)).map(|(_, residual)| residual).collect();
         let all = union(&parts);
         self.points -= all.len();
+        self.active -= all.active;
         all
     }
 
@@ -56,6 +61,11 @@ impl Pending {
     /// Most residual points that waited at once.
     pub(super) fn points_max(&self) -> usize {
         self.points_max
+    }
+
+    /// Most triangles that were not final at the nodes that waited at once.
+    pub(super) fn active_max(&self) -> usize {
+        self.active_max
     }
 
     fn range(&self, cell: CellCode) -> std::ops::Range<u64> {

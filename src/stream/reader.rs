@@ -253,7 +253,9 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
         return Err(Error::malformed("the input is empty, expected a spmesh stream"));
     }
     if !MAGIC.starts_with(&bytes[..found.min(MAGIC.len())]) {
-        return Err(Error::malformed("the first bytes are not those of a spmesh stream"));
+        return Err(Error::malformed(
+            "the first bytes are not those of a spmesh stream; other formats go through spfinalize or spconvert",
+        ));
     }
     if found < PREAMBLE_LEN {
         return Err(Error::malformed(format!("truncated: found {found} of the first {PREAMBLE_LEN} bytes")));

@@ -4,7 +4,7 @@ use spmesh::bounds::{Bounds, Point, Region};
 use spmesh::cells::{CellCode, CellTree};
 use spmesh::error::ErrorKind;
 use spmesh::reduce::{self, Duplicates, Options, Part};
-use spmesh::stream::{Header, Kind, StreamReader, StreamWriter};
+use spmesh::stream::{Coordinates, Header, Kind, StreamReader, StreamWriter};
 
 use super::streams::{GRID, Tagging, read_mesh, stream, threads, triangulate};
 use crate::reference::sets::Random;
@@ -20,7 +20,8 @@ fn the_policy_chooses_the_elevation() {
         (Duplicates::Highest, 9.0),
         (Duplicates::Mean, 7.0),
     ] {
-        for tagging in [Tagging::None, Tagging::Chunked(3), Tagging::Preserved(2)] {
+        let taggings = [Tagging::None, Tagging::Never, Tagging::Chunked(3), Tagging::Preserved(2)];
+        for tagging in taggings {
             let input = stream(&points, GRID, tagging, &mut Random::new(5));
             let options = Options { duplicates, ..threads(2) };
             let (bytes, stats) = triangulate(&input, &options).unwrap();
@@ -33,6 +34,29 @@ fn the_policy_chooses_the_elevation() {
     let input = stream(&points, GRID, Tagging::None, &mut Random::new(5));
     let options = Options { duplicates: Duplicates::Error, ..threads(1) };
     assert_eq!(triangulate(&input, &options).unwrap_err().kind(), ErrorKind::Malformed);
+}
+
+#[test]
+fn coinciding_points_may_come_late_and_meet_residuals() {
+    for seed in 0..30 {
+        let mut random = Random::new(seed);
+        let points: Vec<Point> = (0..600)
+            .map(|i| [random.integer(0, 15) as f64, random.integer(0, 15) as f64, f64::from(i)])
+            .collect();
+        let reference = stream(&points, GRID, Tagging::None, &mut random);
+        let lowest = Options { duplicates: Duplicates::Lowest, ..threads(2) };
+        let reference = read_mesh(&triangulate(&reference, &lowest).unwrap().0);
+        for tagging in [Tagging::Ragged, Tagging::Forgetful(3), Tagging::Never] {
+            let input = stream(&points, GRID, tagging, &mut random);
+            let mesh = read_mesh(&triangulate(&input, &lowest).unwrap().0);
+            assert_eq!(mesh.triangles, reference.triangles, "{tagging:?}, seed {seed}");
+            let sorted = |mut vertices: Vec<Point>| {
+                vertices.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap());
+                vertices
+            };
+            assert_eq!(sorted(mesh.vertices), sorted(reference.vertices.clone()));
+        }
+    }
 }
 
 fn tagged_points() -> StreamWriter<Vec<u8>> {
@@ -89,6 +113,22 @@ fn tile(points: &[Point], region: Region) -> Vec<u8> {
 fn merge(parts: &[&[u8]]) -> spmesh::error::Result<Vec<u8>> {
     let readers = parts.iter().map(|part| StreamReader::new(*part, "part")).collect::<Result<_, _>>()?;
     reduce::merge(readers, Vec::new(), None, |_| ()).map(|(bytes, _)| bytes)
+}
+
+#[test]
+fn a_point_on_a_border_belongs_to_the_upper_tile() {
+    // -2345602.11 / 0.01 is not the integer it should be.
+    let scale = [0.01; 3];
+    let grid = Coordinates::I32 { scale, offset: [0.0; 3] };
+    let x = -234_560_211.0;
+    let points: Vec<Point> = [[x, 0.0], [x - 5.0, 3.0], [x + 5.0, 7.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
+    let input = stream(&points, grid, Tagging::None, &mut Random::new(1));
+    let upper = Region { min: [-2_345_602.11, -100.0], max: [f64::INFINITY, 100.0] };
+    let lower = Region { min: [f64::NEG_INFINITY, -100.0], max: [-2_345_602.11, 100.0] };
+    for (region, expected) in [(upper, 2), (lower, 1)] {
+        let options = Options { part: Some(Part::Region(region)), ..threads(1) };
+        assert_eq!(triangulate(&input, &options).unwrap().1.points, expected);
+    }
 }
 
 #[test]
