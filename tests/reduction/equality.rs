@@ -75,6 +75,29 @@ fn degenerate_sets_do_not_depend_on_cells() {
     }
 }
 
+/// A hundred sets of each sort, cut up at random, against the independent reference.
+fn assert_hundred_sets(make: impl Fn(&mut Random, usize, usize) -> Vec<[i64; 2]>) {
+    for set in 0..100 {
+        let mut random = Random::new(9000 + set as u64);
+        let count = if set % 20 == 19 { 5000 } else { 3 + 8 * set };
+        let points = make(&mut random, set, count);
+        let tagging = [Tagging::Ragged, Tagging::Chunked(4), Tagging::Forgetful(3)][set % 3];
+        let input = stream(&elevated(&points), GRID, tagging, &mut random);
+        let (mesh, _) = triangulate(&input, &threads(2)).unwrap();
+        assert_eq!(read_mesh(&mesh).triangles, expected(&points), "set {set}, {tagging:?}");
+    }
+}
+
+#[test]
+fn a_hundred_random_sets_equal_the_reference() {
+    assert_hundred_sets(|random, set, count| uniform(random, count, [40, 1000, 1 << 20, 1 << 29][set % 4]));
+}
+
+#[test]
+fn a_hundred_degenerate_sets_equal_the_reference() {
+    assert_hundred_sets(|random, set, count| degenerate(random, set % DEGENERATE_FAMILIES, count));
+}
+
 /// The parts of a run over `tiles x tiles` half-open tiles, merged.
 fn tiled(points: &[Point], input: &[u8], borders: &[Vec<f64>; 2], in_rows: bool) -> Mesh {
     let partial = |region: Region| {
