@@ -25,7 +25,7 @@ pub enum Check {
     Euler,
     /// Counts of points add up.
     Counts,
-    /// The bounding box of the header is tight.
+    /// The bounding box of the header holds all points.
     Bounds,
     /// The positions of the vertices are those of the given points.
     Points,
@@ -85,8 +85,8 @@ impl Check {
             Check::Hull => ("hull", "the boundary is one convex cycle"),
             Check::Euler => ("euler", "triangles = 2 vertices - 2 - hull edges"),
             Check::Counts => ("counts", "vertices, merged and unwritten points are all points"),
-            Check::Bounds => ("bounds", "the bounding box is tight"),
-            Check::Points => ("points", "the vertices are the given points"),
+            Check::Bounds => ("bounds", "the bounding box holds all points"),
+            Check::Points => ("points", "the vertices are the given points in x and y"),
             Check::Region => ("region", "every point lies in the region of the stream"),
             Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
             Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),

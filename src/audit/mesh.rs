@@ -58,8 +58,7 @@ impl MeshAudit {
             self.check_euler(ledger)?;
         }
         self.check_counts(totals, ledger)?;
-        let axes = if totals.merged == 0 { 3 } else { 2 };
-        self.extent.check_tight(axes, ledger)
+        self.extent.check_holds(ledger)
     }
 
     pub(super) fn triangles(&self) -> &Triangles {

@@ -22,9 +22,11 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
     let flags = match Flags::try_parse_from(join_stats_format(std::env::args_os())) {
         Ok(flags) => flags,
         Err(message) => {
-            // Help and version go to stdout; a reader that leaves early is not an error worth words.
-            let _ = message.print();
-            return ExitCode::from(message.exit_code() as u8);
+            let code = match message.print() {
+                Ok(()) => message.exit_code() as u8,
+                Err(error) => Error::io("printing", error).exit_code(),
+            };
+            return ExitCode::from(code);
         }
     };
     let tool = Flags::command().get_name().to_string();

@@ -31,7 +31,8 @@ pub fn merge<R: Read, W: Write>(
 ) -> Result<(W, Stats)> {
     let header = merged_header(&readers, part)?;
     let region = header.region.unwrap_or(Region::PLANE);
-    let rules = Rules { coordinates: header.coordinates, duplicates: Duplicates::Error };
+    let is_partial = part.is_some();
+    let rules = Rules { coordinates: header.coordinates, duplicates: Duplicates::Error, is_partial };
     let mut patches = PatchWriter::new(StreamWriter::new(output, header)?);
     let mut stats = Stats::default();
     let mut residual = Residual::default();
@@ -87,8 +88,11 @@ fn merged_header<R: Read>(readers: &[StreamReader<R>], part: Option<Part>) -> Re
 fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Result<()> {
     let (a, b) = (first.header(), reader.header());
     if b.kind != Kind::PartialTriangleMesh {
-        return Err(Error::usage(format!("this is a {}, --merge takes results of --partial", b.kind.name()))
-            .of_input(reader.name()));
+        return Err(Error::usage(format!(
+            "this is a stream of kind {}, --merge takes results of --partial",
+            b.kind.name()
+        ))
+        .of_input(reader.name()));
     }
     let differs = |what: &str, remedy: &str| {
         Err(Error::usage(format!("{} and {} differ in {what}{remedy}", first.name(), reader.name())))

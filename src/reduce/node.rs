@@ -14,6 +14,8 @@ use crate::stream::Coordinates;
 pub(super) struct Rules {
     pub(super) coordinates: Coordinates,
     pub(super) duplicates: Duplicates,
+    /// Whether the run leaves a residual, to be merged with others.
+    pub(super) is_partial: bool,
 }
 
 impl Rules {
@@ -41,6 +43,8 @@ enum Fate {
 /// What becomes of a point of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PointFate {
+    /// Not met yet outside of the holes.
+    Hidden,
     /// No triangle above this node uses it.
     Done,
     /// Belongs to the residual.
@@ -109,8 +113,9 @@ impl Solver {
         }
         rules.duplicates.settle(&mut points, duplicates, &rules.coordinates)?;
         self.find_holes(&points.walls)?;
-        self.find_final(&points, region, rules.circle_bounds());
-        Ok(self.collect(points, *region == Region::PLANE))
+        let everything = *region == Region::PLANE && !rules.is_partial;
+        self.find_final(&points, region, everything, rules.circle_bounds());
+        self.collect(points, everything)
     }
 
     /// Decisions of the predicates so far.
@@ -154,9 +159,8 @@ impl Solver {
         Ok(())
     }
 
-    /// Decides the triangles that are not in holes.
-    fn find_final(&mut self, points: &Residual, region: &Region, bounds: CircleBounds) {
-        let everything = *region == Region::PLANE;
+    /// Decides the triangles that are not in holes. Where no other point exists, `everything` is final.
+    fn find_final(&mut self, points: &Residual, region: &Region, everything: bool, bounds: CircleBounds) {
         for (fate, &triangle) in self.fates.iter_mut().zip(&self.triangulation.triangles) {
             if *fate == Fate::Open {
                 let [a, b, c] = triangle.map(|v| points.xy[v as usize]);
@@ -166,14 +170,16 @@ impl Solver {
         }
     }
 
-    /// Gathers final triangles, the fates of the points, and the walls. Where the region is the whole plane
-    /// (`everything`), the infinite triangles are final too.
-    fn collect(&self, points: Residual, everything: bool) -> Solved {
+    /// Gathers final triangles, the fates of the points, and the walls. If `everything` is final, the
+    /// infinite triangles are, too.
+    ///
+    /// # Errors
+    /// If a point has no triangle outside of the holes: no node leaves such a point.
+    fn collect(&self, points: Residual, everything: bool) -> Result<Solved> {
         let Triangulation { triangles, neighbours, hull, duplicates, .. } = &self.triangulation;
-        let mut fates = vec![PointFate::Done; points.len()];
-        if !everything {
-            hull.iter().for_each(|&v| fates[v as usize] = PointFate::Residual);
-        }
+        let mut fates = vec![PointFate::Hidden; points.len()];
+        let on_hull = if everything { PointFate::Done } else { PointFate::Residual };
+        hull.iter().for_each(|&v| fates[v as usize] = on_hull);
         let mut solved = Solved { merged: duplicates.len() as u64, ..Solved::default() };
         for (t, triangle) in triangles.iter().enumerate() {
             match self.fates[t] {
@@ -182,6 +188,11 @@ impl Solver {
                     triangle.iter().for_each(|&v| fates[v as usize] = PointFate::Residual);
                 }
                 Fate::Final => {
+                    for &v in triangle {
+                        if fates[v as usize] == PointFate::Hidden {
+                            fates[v as usize] = PointFate::Done;
+                        }
+                    }
                     solved.triangles.push(*triangle);
                     self.collect_walls(triangle, &neighbours[t], everything, &mut solved.walls);
                 }
@@ -189,7 +200,13 @@ impl Solver {
             }
         }
         duplicates.iter().for_each(|&[point, _]| fates[point as usize] = PointFate::Merged);
-        Solved { points, fates, ..solved }
+        if let Some(hidden) = fates.iter().position(|&fate| fate == PointFate::Hidden) {
+            let point = points.point(hidden);
+            return Err(Error::malformed(format!(
+                "residual point {point:?} lies inside of a final triangle"
+            )));
+        }
+        Ok(Solved { points, fates, ..solved })
     }
 
     /// Adds the edges of a triangle that is done beyond which lies one that is not.

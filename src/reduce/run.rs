@@ -51,7 +51,11 @@ pub fn triangulate<R: Read, W: Write>(
     check_input(reader.header()).map_err(|e| e.of_input(reader.name()))?;
     let part = options.part.map(|part| part.region(reader.header())).transpose()?;
     let stream = StreamWriter::new(output, mesh_header(reader.header(), part))?;
-    let rules = Rules { coordinates: reader.header().coordinates, duplicates: options.duplicates };
+    let rules = Rules {
+        coordinates: reader.header().coordinates,
+        duplicates: options.duplicates,
+        is_partial: part.is_some(),
+    };
     std::thread::scope(|scope| {
         let pool = Pool::start(scope, options.threads.max(1), rules);
         let mut run = Run::new(reader.header(), part, pool, stream);
@@ -73,7 +77,7 @@ fn check_input(header: &Header) -> Result<()> {
         (Kind::PartialTriangleMesh, _) => {
             Err(Error::usage("this is a partial triangle mesh: use --merge to finish it"))
         }
-        (kind, _) => Err(Error::usage(format!("this is a {}, expected points", kind.name()))),
+        (kind, _) => Err(Error::usage(format!("this is a stream of kind {}, expected points", kind.name()))),
     }
 }
 

@@ -1,9 +1,9 @@
 //! Whole meshes by hand: each kind of fault is found and named.
 
-use spmesh::audit::{Check, PointSet, Standard};
+use spmesh::audit::{Audit, Check, PointSet, Standard};
 use spmesh::bounds::Bounds;
 use spmesh::error::ErrorKind;
-use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamWriter};
+use spmesh::stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::reference::Random;
 use super::{Mesh, Verdict, assert_violates, audit, grid, mesh_header, point};
@@ -263,15 +263,18 @@ fn moved_vertex() {
 }
 
 #[test]
-fn bounds_must_be_tight() {
-    let bounds = Bounds { min: [0.0; 3], max: [11.0, 12.0, 0.0] };
-    let header = Header { bounds: Some(bounds), ..mesh_header() };
-    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
-    let (new, simplices) = (KITE.iter().map(point).collect(), vec![0, 1, 3, 1, 2, 3]);
-    writer.patch(&Patch { new, simplices, finalized: vec![0, 1, 2, 3], ..Patch::default() }).unwrap();
-    let stream = writer.end(4, 0).unwrap();
-    let violation = assert_violates(audit(&stream, CANONICAL, None), Check::Bounds, &[]);
-    assert!(violation.message.contains("states y from 0 to 12"));
+fn bounds_must_hold_the_vertices() {
+    let (new, simplices): (Vec<_>, _) = (KITE.iter().map(point).collect(), vec![0, 1, 3, 1, 2, 3]);
+    let patch = Patch { new, simplices, finalized: vec![0, 1, 2, 3], ..Patch::default() };
+    let end = Totals { points: 4, vertices: 4, simplices: 2, ..Totals::default() };
+    for (height, holds) in [(1000.0, true), (1.0, false)] {
+        let bounds = Bounds { min: [-1000.0, -1000.0, 0.0], max: [1000.0, height, 0.0] };
+        let header = Header { bounds: Some(bounds), ..mesh_header() };
+        let mut audit = Audit::new(&header, CANONICAL, None);
+        audit.event(&Event::Patch(patch.clone())).unwrap();
+        let verdict = audit.event(&Event::End(end));
+        assert_eq!(verdict.err().map(|violation| violation.check), (!holds).then_some(Check::Bounds));
+    }
 }
 
 /// Coordinates at the end of the range of i32, where differences have 33 bits, and f64 without any grid.

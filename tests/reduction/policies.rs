@@ -4,7 +4,7 @@ use spmesh::bounds::{Bounds, Point, Region};
 use spmesh::cells::{CellCode, CellTree};
 use spmesh::error::ErrorKind;
 use spmesh::reduce::{self, Duplicates, Options, Part};
-use spmesh::stream::{Coordinates, Header, Kind, StreamReader, StreamWriter};
+use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use super::streams::{GRID, Tagging, read_mesh, stream, threads, triangulate};
 use crate::reference::sets::Random;
@@ -102,6 +102,34 @@ fn other_kinds_are_refused_with_a_remedy() {
         assert_eq!(error.kind(), ErrorKind::Usage);
         assert!(error.to_string().contains(remedy), "{error}");
     }
+}
+
+#[test]
+fn a_residual_point_in_a_hole_is_refused() {
+    let region = Region { min: [-100.0; 2], max: [100.0; 2] };
+    let mut header = Header::new(Kind::PartialTriangleMesh, GRID, 2, false);
+    header.region = Some(region);
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let corners = vec![[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]];
+    let patch = Patch { new: corners.clone(), simplices: vec![0, 1, 2], ..Patch::default() };
+    writer.patch(&patch).unwrap();
+    let mut residual: Vec<_> = corners.iter().enumerate().map(|(i, &p)| (Some(i as u64), p)).collect();
+    residual.push((None, [2.0, 2.0, 0.0]));
+    writer.residual_points(&residual).unwrap();
+    writer.walls(&[[0, 1], [1, 2], [2, 0]]).unwrap();
+    let error = merge(&[&writer.end(4, 0).unwrap()]).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+    assert!(error.to_string().contains("inside of a final triangle"), "{error}");
+}
+
+#[test]
+fn the_plane_as_the_region_is_a_partial_run_too() {
+    let points: Vec<Point> = (0..60).map(|i| [f64::from(i % 8), f64::from(i * i % 61), 0.0]).collect();
+    let part = tile(&points, Region::PLANE);
+    assert!(read_mesh(&part).residual > 2);
+    let whole = stream(&points, GRID, Tagging::None, &mut Random::new(1));
+    let whole = read_mesh(&triangulate(&whole, &threads(1)).unwrap().0);
+    assert_eq!(read_mesh(&merge(&[&part]).unwrap()).triangles, whole.triangles);
 }
 
 fn tile(points: &[Point], region: Region) -> Vec<u8> {

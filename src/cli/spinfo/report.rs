@@ -18,15 +18,20 @@ pub(super) struct Summary<'a> {
     pub(super) bytes: u64,
 }
 
+/// Text of a stream without what would command a terminal or look like a line of its own.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
+}
+
 impl Summary<'_> {
     /// Lines of a name and its value; the audit has a line per check.
     pub(super) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.name, self.header.kind.name());
         let mut line = |name: &str, value: String| text += &format!("  {name:<12} {value}\n");
-        line("producer", self.header.producer.clone());
+        line("producer", printable(&self.header.producer));
         line("coordinates", self.coordinates_text());
         line("bounds", self.world_bounds().map_or("none".into(), |bounds| self.bounds_text(&bounds)));
-        line("CRS", crs_text(&self.header.crs));
+        line("CRS", printable(&crs_text(&self.header.crs)));
         if let Some(tree) = &self.header.tree {
             let shape = if tree.dims() == 2 { "quadtree" } else { "octree" };
             let origin = words(&tree.origin()[..usize::from(tree.dims())]);
