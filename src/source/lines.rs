@@ -25,7 +25,7 @@ impl<R: BufRead> LineReader<R> {
     /// The next line without white space around it, whatever its end is; `None` at the end.
     ///
     /// # Errors
-    /// If reading fails, the line is too long, or it has a zero byte.
+    /// If reading fails, the line is too long, or has a zero byte or a carriage return in it.
     pub(super) fn next_line(&mut self) -> Result<Option<&[u8]>> {
         self.number += 1;
         self.line.clear();
@@ -45,7 +45,12 @@ impl<R: BufRead> LineReader<R> {
             1 => self.line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.line),
             _ => &self.line,
         };
-        Ok(Some(line.trim_ascii()))
+        let line = line.trim_ascii();
+        if line.contains(&b'\r') {
+            let reason = "carriage return inside of a line: lines must end with LF or CR LF";
+            return Err(Error::malformed(reason).at(self.position()));
+        }
+        Ok(Some(line))
     }
 
     /// Where the reader is, for messages.

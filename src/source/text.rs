@@ -26,14 +26,27 @@ pub(super) struct Columns {
     axes: Vec<usize>,
     /// Line of the column names, if there is one.
     names_line: Option<u64>,
+    /// Whether a third column would be one that the first line of points did not show.
+    only_two: bool,
+}
+
+/// A line that holds no number, before all points.
+struct Names {
+    line: u64,
+    delimiter: Delimiter,
+    fields: Vec<Vec<u8>>,
 }
 
 /// Finds the columns from the first line that is neither blank nor comment, and from the next one if that
-/// holds the names of the columns. Whether the lines are good is for the pass to tell.
+/// holds the names of the columns. Whether the other lines are good is for the pass to tell.
+///
+/// # Errors
+/// If the first line is neither a point nor can be the names of the columns, or if those do not tell which
+/// columns are x and y.
 pub(super) fn state(file: FileView) -> Result<(Columns, Stated)> {
     let mut lines = LineReader::new(BufReader::new(file));
-    let mut found: Option<Columns> = None;
-    let mut has_points = false;
+    let mut names: Option<Names> = None;
+    let mut columns = None;
     while let Some(line) = lines.next_line()? {
         let line = without_comment(line);
         if line.is_empty() {
@@ -41,32 +54,68 @@ pub(super) fn state(file: FileView) -> Result<(Columns, Stated)> {
         }
         let delimiter = delimiter_of(line);
         let fields: Vec<&[u8]> = fields(line, delimiter).collect();
-        if found.is_some() || fields.iter().any(|field| number(field).is_some()) {
-            has_points = true;
-            found.get_or_insert(Columns { delimiter, axes: first_axes(&fields), names_line: None });
+        if names.is_some() || fields.iter().any(|field| number(field).is_some()) {
+            columns = Some(columns_of(delimiter, &fields, names.as_ref())?);
             break;
         }
-        let axes = named_axes(&fields).unwrap_or_else(|| first_axes(&fields));
-        found = Some(Columns { delimiter, axes, names_line: Some(lines.number()) });
+        let fields = fields.into_iter().map(<[u8]>::to_vec).collect();
+        names = Some(Names { line: lines.number(), delimiter, fields });
     }
-    let columns =
-        found.unwrap_or(Columns { delimiter: Delimiter::WhiteSpace, axes: vec![0, 1], names_line: None });
-    let has_z = has_points.then_some(columns.axes.len() == 3);
+    let has_z = columns.as_ref().map(|columns| columns.axes.len() == 3);
+    let columns = match (columns, names) {
+        (Some(columns), _) => columns,
+        (None, Some(names)) if named_axes(&names.fields).is_none() => {
+            return Err(no_text_of_points(names.line));
+        }
+        (None, _) => Columns {
+            delimiter: Delimiter::WhiteSpace,
+            axes: vec![0, 1],
+            names_line: Some(0),
+            only_two: false,
+        },
+    };
     let stated =
         Stated { coordinates: Coordinates::F64, has_z, crs: Crs::Unknown, bounds: None, points: None };
     Ok((columns, stated))
 }
 
-/// The first two or three columns.
-fn first_axes(fields: &[&[u8]]) -> Vec<usize> {
-    (0..fields.len().clamp(2, 3)).collect()
+/// The columns from the first line of points and the names above it.
+fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> Result<Columns> {
+    let axes = (0..fields.len().clamp(2, 3)).collect();
+    let only_two = fields.len() == 2;
+    let Some(names) = names else {
+        return Ok(Columns { delimiter, axes, names_line: None, only_two });
+    };
+    let names_line = Some(names.line);
+    if let Some(axes) = named_axes(&names.fields) {
+        return Ok(Columns { delimiter: names.delimiter, axes, names_line, only_two: false });
+    }
+    if names.fields.len() != fields.len() {
+        return Err(no_text_of_points(names.line));
+    }
+    if fields.len() > 3 {
+        let reason = "cannot tell which columns are the coordinates: call them x, y and z";
+        return Err(Error::malformed(reason).at(format!("line {}", names.line)));
+    }
+    Ok(Columns { delimiter, axes, names_line, only_two })
 }
 
-/// The columns that are called x, y and z, if x and y are there.
-fn named_axes(names: &[&[u8]]) -> Option<Vec<usize>> {
-    let column = |axis: &[u8]| names.iter().position(|name| name.eq_ignore_ascii_case(axis));
-    let mut axes = vec![column(b"x")?, column(b"y")?];
-    axes.extend(column(b"z"));
+fn no_text_of_points(line: u64) -> Error {
+    Error::malformed("expected a point, or the names of the columns").at(format!("line {line}"))
+}
+
+/// The columns that are called x, y and z, or by other usual names, if x and y are there.
+fn named_axes<Name: AsRef<[u8]>>(names: &[Name]) -> Option<Vec<usize>> {
+    let column = |usual: &[&str]| {
+        let is_usual =
+            |name: &Name| usual.iter().any(|usual| name.as_ref().eq_ignore_ascii_case(usual.as_bytes()));
+        names.iter().position(is_usual)
+    };
+    let mut axes = vec![
+        column(&["x", "easting", "lon", "long", "longitude"])?,
+        column(&["y", "northing", "lat", "latitude"])?,
+    ];
+    axes.extend(column(&["z", "elevation", "height", "altitude"]));
     Some(axes)
 }
 
@@ -144,9 +193,18 @@ fn parse(line: &[u8], columns: &Columns) -> Result<Point> {
             Error::malformed(format!("found {} in column {}, expected a number", quote(field), column + 1))
         })?;
         found += 1;
-        if found == columns.axes.len() {
+        if found == columns.axes.len() && !columns.only_two {
             return Ok(point);
         }
+    }
+    if columns.only_two && count == 2 {
+        return Ok(point);
+    }
+    if columns.only_two && count > 2 {
+        return Err(Error::malformed(format!(
+            "found {count} columns in {}, but two in the first line of points",
+            quote(line)
+        )));
     }
     let needed = columns.axes.iter().max().map_or(0, |column| column + 1);
     Err(Error::malformed(format!(

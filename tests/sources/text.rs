@@ -20,6 +20,7 @@ fn every_separator_comment_and_line_end_is_understood() {
         "id,Z,\"X\",y\n7,0.003,\"1.5\",-2\n8,6,4,5\n",
         "point id\ty\tx\tz\na b\t-2\t1.5\t0.003\nc\t5\t4\t6\n",
         "east north up\n1.5 -2 0.003\n4 5 6\n",
+        "id,Easting,Northing,Elevation\n7,1.5,-2,0.003\n8,4,5,6\n",
     ];
     for text in texts {
         assert_eq!(points_of(text).unwrap(), expected, "{text:?}");
@@ -59,12 +60,18 @@ fn numbers_are_read_exactly() {
 
 #[test]
 fn bad_lines_are_named_and_shown() {
-    let cases: [(&str, &[&str]); 6] = [
+    let cases: [(&str, &[&str]); 12] = [
         ("1 2 3\n1 2\n", &["line 2", "2 columns", "at least 3"]),
         ("1 2 3\n\n# \n1 2 three\n", &["line 4", "\"three\"", "column 3"]),
         ("1,5;2,5;3\n", &["line 1", "\"1,5\""]),
         ("1\n", &["line 1", "1 column ", "at least 2"]),
-        ("names\nmore names\n1 2\n", &["line 2", "\"more\""]),
+        ("names\nmore names\n1 2\n", &["line 1", "names of the columns"]),
+        ("a name\nmore names\n1 2\n", &["line 2", "\"more\""]),
+        ("LAS", &["line 1", "expected a point"]),
+        ("OFF\n3 1 0\n0 0 0\n", &["line 1", "expected a point"]),
+        ("id,e,n,up\n7,1,2,3\n", &["line 1", "call them x, y and z"]),
+        ("1 2\n1 2 3\n", &["line 2", "3 columns", "two in the first"]),
+        ("1 2 3\r4 5 6\r", &["line 1", "carriage return"]),
         ("1 2 3\n1 nan 3\n", &["line 2", "not finite"]),
     ];
     for (text, parts) in cases {
