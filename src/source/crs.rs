@@ -70,9 +70,8 @@ fn wkt_code(text: &str) -> Option<String> {
             '[' | '(' => depth += 1,
             ']' | ')' => depth -= 1,
             'A' | 'I' | 'a' | 'i' if depth == 1 && text[..at].trim_end().ends_with(',') => {
-                let word = &text[at..text[at..].find(['[', '(']).map_or(text.len(), |end| at + end)];
-                if word.eq_ignore_ascii_case("AUTHORITY") || word.eq_ignore_ascii_case("ID") {
-                    let inside = text[at + word.len() + 1..].split([']', ')']).next()?;
+                let inside = ["AUTHORITY", "ID"].iter().find_map(|word| arguments(&text[at..], word));
+                if let Some(inside) = inside {
                     let mut parts = inside.split(',').map(|part| part.trim().trim_matches('"'));
                     return Some(format!("{}:{}", parts.next()?, parts.next()?));
                 }
@@ -81,6 +80,13 @@ fn wkt_code(text: &str) -> Option<String> {
         }
     }
     None
+}
+
+/// What the brackets hold that follow `word` at the start of `text`.
+fn arguments<'t>(text: &'t str, word: &str) -> Option<&'t str> {
+    let found = text.get(..word.len())?;
+    let rest = text[found.len()..].trim_start().strip_prefix(['[', '('])?;
+    if found.eq_ignore_ascii_case(word) { rest.split([']', ')']).next() } else { None }
 }
 
 /// The entries of a key directory: key, location, count, value.

@@ -127,6 +127,27 @@ fn systems_are_named_compared_and_shared() {
 }
 
 #[test]
+fn any_text_may_stand_for_a_system() {
+    let wkt = "PROJCS[\"Zône 10\u{1F30D}\",GEOGCS[\"y\",AUTHORITY[\"EPSG\",\"4326\"]], ID (\"EPSG\",32610)]";
+    for text in [wkt.to_string(), wkt.replace("ID ", "AUTHORITY"), wkt.replace("ID ", "AUTHÖRITY")] {
+        for (start, _) in text.char_indices() {
+            for (end, _) in text.char_indices().filter(|&(end, _)| end >= start) {
+                let _ = crs_name(&Crs::Wkt(text[start..end].into()));
+            }
+        }
+        for junk in ["ID", "\u{e9}", "[", "\""] {
+            for (at, _) in text.char_indices() {
+                let _ = crs_name(&Crs::Wkt(format!("{}{junk}{}", &text[..at], &text[at..])));
+            }
+        }
+    }
+    assert_eq!(crs_name(&Crs::Wkt(wkt.into())).as_deref(), Some("EPSG:32610"));
+    for text in ["PROJCS[\"x\",ID", "PROJCS[\"x\",AUTHORITY", "PROJCS[\"x\",ID[", "PROJCS[\"x\",I\u{e9}"] {
+        assert_eq!(crs_name(&Crs::Wkt(text.into())).as_deref().unwrap_or("x"), "x", "{text}");
+    }
+}
+
+#[test]
 fn truncated_files_are_errors_with_a_position() {
     assert_fails(
         Input::open(&[sample("truncated.las")], &flat()),
