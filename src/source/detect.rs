@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use super::lines::number;
 use super::origin::FileView;
 use crate::error::{Error, Result};
 
@@ -15,6 +16,8 @@ pub(super) enum Format {
     Las,
     /// A stream of this project.
     Stream,
+    /// The text twin of such a stream.
+    Twin,
     /// Streaming points as text, by Isenburg.
     Spa,
     /// Streaming points as bytes, by Isenburg.
@@ -23,15 +26,26 @@ pub(super) enum Format {
     Text,
 }
 
+const PLY: &str = "a PLY file: convert it first, for example with pdal translate";
+const PCD: &str = "a PCD file: convert it first, for example with pdal translate";
+const OBJ: &str = "an OBJ file: give its vertices as lines of x y z, for example with sed -n 's/^v //p'";
+
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 7] = [
+const MISTAKEN: [(&[u8], &str); 14] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
     (b"BZh", "bzip2 data: decompress it first, for example with bzcat"),
     (b"\xfd7zXZ\x00", "xz data: decompress it first, for example with xzcat"),
     (b"\xff\xfe", "text in UTF-16: convert it first, for example with iconv -f utf-16 -t utf-8"),
-    (b"ply\n", "a PLY file: convert it first, for example with pdal translate"),
+    (b"ply\n", PLY),
+    (b"ply\r", PLY),
+    (b"# .PCD", PCD),
+    (b"VERSION .7", PCD),
+    (b"VERSION 0.7", PCD),
+    (b"OFF\n", "an OFF file, a mesh: give its vertices as lines of x y z"),
+    (b"solid ", "an STL file, a mesh: give its vertices as lines of x y z"),
+    (b"# OBJ", OBJ),
 ];
 
 /// What `file` is.
@@ -51,6 +65,9 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
     if head.starts_with(b"\x89SPM") {
         return Ok(Format::Stream);
     }
+    if head.starts_with(b"#spmesh ") {
+        return Ok(Format::Twin);
+    }
     if let Some((_, what)) = MISTAKEN.iter().find(|(magic, _)| head.starts_with(magic)) {
         return Err(Error::malformed(format!("is {what}")));
     }
@@ -66,7 +83,24 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
             "zero byte at byte {at}: not text, and neither LAS, LAZ, SPB nor a spmesh stream"
         )));
     }
+    if is_mesh(&head) {
+        return Err(Error::usage(format!("has statements of a mesh; if it is {OBJ}")));
+    }
     Ok(if is_spa(&head) { Format::Spa } else { Format::Text })
+}
+
+/// Whether lines of vertices have others beside them that only meshes have: faces, normals, materials, groups.
+fn is_mesh(head: &[u8]) -> bool {
+    let (mut has_vertex, mut has_more) = (false, false);
+    for line in head.split(|&byte| byte == b'\n') {
+        let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        match words.next() {
+            Some(b"v") => has_vertex |= words.next().and_then(number).is_some(),
+            Some(b"f" | b"vn" | b"vt" | b"mtllib" | b"usemtl" | b"o" | b"g" | b"s") => has_more = true,
+            _ => {}
+        }
+    }
+    has_vertex && has_more
 }
 
 /// Whether text is SPA: by its first event, or by the fields of its header.
@@ -82,10 +116,10 @@ fn is_spa(head: &[u8]) -> bool {
                 || field.starts_with(b"bb_max");
             continue;
         }
-        let second = words.next().and_then(|word| std::str::from_utf8(word).ok()).unwrap_or_default();
+        let second = words.next().unwrap_or_default();
         return match first {
-            b"v" | b"p" => second.parse::<f64>().is_ok(),
-            b"x" => second == "cell",
+            b"v" | b"p" => number(second).is_some(),
+            b"x" => second == b"cell",
             _ => false,
         };
     }

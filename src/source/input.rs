@@ -49,6 +49,7 @@ pub(super) struct Source {
 enum Content {
     Las(Box<LasHeader>),
     Stream,
+    Twin,
     Spa,
     Spb,
     Text(Columns),
@@ -149,7 +150,8 @@ impl Source {
         let view = self.origin.view()?;
         Ok(match &self.content {
             Content::Las(header) => Box::new(RecordPass::new(view, header, options)?),
-            Content::Stream => Box::new(stream::StreamPass::new(view, &self.name)?),
+            Content::Stream => Box::new(stream::pass(view, &self.name)?),
+            Content::Twin => Box::new(stream::pass_of_twin(view, &self.name)?),
             Content::Spa => Box::new(spa::pass(view)?),
             Content::Spb => Box::new(spb::pass(view)?),
             Content::Text(columns) => Box::new(text::TextPass::new(view, columns.clone())),
@@ -173,6 +175,7 @@ impl Content {
                 (Content::Las(Box::new(header)), stated)
             }
             detect::Format::Stream => (Content::Stream, stream::state(view, name)?),
+            detect::Format::Twin => (Content::Twin, stream::state_of_twin(view, name)?),
             detect::Format::Spa => (Content::Spa, spa::state(view)?),
             detect::Format::Spb => (Content::Spb, spb::state(view)?),
             detect::Format::Text => {

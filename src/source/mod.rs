@@ -1,4 +1,5 @@
-//! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams, SPA and SPB.
+//! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
+//! twins, SPA and SPB.
 
 mod crs;
 mod detect;

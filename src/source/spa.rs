@@ -81,8 +81,8 @@ impl<R: BufRead> SpReader for SpaReader<R> {
     }
 }
 
-/// The event of a line, if it has one: comments, faces and tetrahedra of other formats of the family, and
-/// tags of vertices, are passed over.
+/// The event of a line, if it has one: comments and tags of vertices are passed over. Faces and tetrahedra
+/// belong to meshes of the family, which are no points.
 fn parse(line: &[u8]) -> Result<Option<SpEvent>> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let bad = || Error::malformed(format!("found {}, expected a line of SPA", quote(line)));
@@ -98,7 +98,10 @@ fn parse(line: &[u8]) -> Result<Option<SpEvent>> {
             let index = words.nth(1).and_then(|word| std::str::from_utf8(word).ok()?.parse().ok());
             Ok(Some(SpEvent::FinalizedCell(index.ok_or_else(bad)?)))
         }
-        None | Some(b"x" | b"f" | b"c") => Ok(None),
+        None | Some(b"x") => Ok(None),
+        Some(b"f" | b"c") => {
+            Err(Error::usage(format!("found {}: a mesh, expected points alone", quote(line))))
+        }
         Some(word) if word.starts_with(b"#") => Ok(None),
         Some(_) => Err(bad()),
     }

@@ -8,7 +8,8 @@ use spmesh::source::{Input, SourceOptions};
 use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
 
 use super::las_file::LasFile;
-use super::{Folder, assert_fails, flat, pass, points};
+use super::{Folder, assert_fails, flat, pass, points, sample};
+use crate::programs::run;
 
 /// Opens files with these scales and offsets and the same positions.
 fn open(
@@ -121,4 +122,32 @@ fn streams_are_sources_with_their_own_coordinates() {
     assert_eq!(pass(&input).unwrap(), expected);
     let cut = folder.file("cut.spm", &bytes[..bytes.len() - 1]);
     assert_fails(points(&[cut], &flat()), ErrorKind::Malformed, &["cut.spm", "truncated"]);
+}
+
+#[test]
+fn text_twins_are_streams_too() {
+    let folder = Folder::new();
+    let tile = sample("hextest.las");
+    let stream = run("spfinalize", &["--cell-points", "3", tile.to_str().unwrap()], &[]).stdout;
+    let twin = String::from_utf8(run("spconvert", &["--to", "text"], &stream).stdout).unwrap();
+    assert!(twin.starts_with("#spmesh version 1\n"), "{twin}");
+    let (stream, whole) = (folder.file("a.spm", &stream), folder.file("a.txt", &twin));
+    let [a, b] = [&stream, &whole].map(|path| Input::open(std::slice::from_ref(path), &flat()).unwrap());
+    assert_eq!(a.description().coordinates, b.description().coordinates);
+    assert_eq!(a.description().crs, b.description().crs);
+    assert_eq!(a.description().stated_points, b.description().stated_points);
+    assert_eq!(pass(&a).unwrap(), pass(&b).unwrap());
+    for (at, _) in twin.match_indices('\n').filter(|&(at, _)| at + 1 < twin.len()) {
+        let cut = folder.file("cut.txt", &twin[..=at]);
+        assert_fails(points(&[cut], &flat()), ErrorKind::Malformed, &["cut.txt"]);
+    }
+    let mesh = run("spdelaunay2d", &[stream.to_str().unwrap()], &[]).stdout;
+    for format in ["text", "obj", "sma", "ply"] {
+        let mesh = folder.file("mesh", run("spconvert", &["--to", format], &mesh).stdout);
+        let error = points(&[mesh], &flat()).expect_err(format).to_string();
+        assert!(
+            ["mesh: is a", "mesh: has statements of a mesh"].iter().any(|e| error.contains(e)),
+            "{error}"
+        );
+    }
 }

@@ -162,7 +162,7 @@ fn damaged_binary_files_are_errors() {
 #[test]
 fn text_has_header_points_and_tags() {
     let text = "# made by hand\n# npoints 2\n# bb_min_d 0 1 2\n# bb_max_d 3 4 5\n# datatype SP_DOUBLE\n\
-                # finalizemethod SP_CLARKSON_2D\nv 0 1 2\nx cell 7\nf 1 2 3\n# in between\nx 1\np 3 4 5\nx cell 12\n";
+                # finalizemethod SP_CLARKSON_2D\nv 0 1 2\nx cell 7\n# in between\nx 1\np 3 4 5\nx cell 12\n";
     let mut reader = SpaReader::new(text.as_bytes()).unwrap();
     assert_eq!(reader.header().comments, ["made by hand"]);
     assert_eq!(reader.header().points, Some(2));
