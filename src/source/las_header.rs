@@ -5,6 +5,7 @@ use std::io::BufReader;
 use las::raw;
 use laz::LazVlr;
 
+use super::laz_chunks;
 use super::origin::FileView;
 use crate::bounds::{Bounds, Point};
 use crate::error::{Error, Result};
@@ -84,37 +85,52 @@ impl LasHeader {
             bounds: stored_bounds(&raw, &coordinates),
             crs: records.crs(raw.global_encoding & GLOBAL_ENCODING_WKT != 0, notices),
         };
-        header.check_len(file, notices)?;
+        let evlrs_start = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0).map(|e| e.start_of_first_evlr);
+        let points_end = evlrs_start.filter(|&start| start > header.points_start).unwrap_or(u64::MAX);
+        header.check_len(file, points_end.min(file.len()), notices)?;
         Ok(header)
     }
 
-    /// Refuses a file that ends before its last stated point, before any of them is used.
-    fn check_len(&self, file: &FileView, notices: &mut Vec<String>) -> Result<()> {
+    /// Refuses a file that ends before its last stated point, before any of them is used, and tells of bytes
+    /// before `points_end` that could be points, but are not stated.
+    ///
+    /// A header that passes has fewer bytes of records than `u64` can count.
+    fn check_len(&self, file: &FileView, points_end: u64, notices: &mut Vec<String>) -> Result<()> {
         let room = file.len().saturating_sub(self.points_start);
-        if self.laz.is_some() {
-            if self.points > 0 && room == 0 {
-                return Err(Error::malformed(format!(
-                    "truncated: the header states {} points from byte {} on, the file ends at byte {}",
-                    self.points,
-                    self.points_start,
-                    file.len()
-                )));
-            }
-            return Ok(());
-        }
-        let whole = room / self.record_len as u64;
-        if whole < self.points {
-            return Err(Error::malformed(format!(
-                "truncated: the header states {} points of {} bytes from byte {} on, the file ends at byte {}",
+        let record_len = self.record_len as u64;
+        let truncated = || {
+            Error::malformed(format!(
+                "truncated: the header states {} points of {record_len} bytes from byte {} on, the file ends at \
+                 byte {}",
                 self.points,
-                self.record_len,
                 self.points_start,
                 file.len()
             ))
-            .at(format!("record {whole} at byte {}", self.points_start + whole * self.record_len as u64)));
+        };
+        if self.points.checked_mul(record_len).is_none() {
+            return Err(Error::malformed(format!(
+                "the header states {} points of {record_len} bytes, more than any file can hold",
+                self.points
+            )));
         }
-        if self.points == 0 && whole > 0 {
-            notices.push(format!("the header states no points, although {room} bytes follow it"));
+        if self.points == 0 {
+            let unused = match self.laz {
+                Some(_) => laz_chunks::room(file, self.points_start, points_end)?,
+                None => points_end.saturating_sub(self.points_start),
+            };
+            // Compressed points start with a whole record too.
+            if unused >= record_len {
+                notices.push(format!("the header states no points, although {unused} bytes follow it"));
+            }
+            return Ok(());
+        }
+        if self.laz.is_some() {
+            return if room == 0 { Err(truncated()) } else { Ok(()) };
+        }
+        let whole = room / record_len;
+        if whole < self.points {
+            let position = format!("record {whole} at byte {}", self.points_start + whole * record_len);
+            return Err(truncated().at(position));
         }
         Ok(())
     }

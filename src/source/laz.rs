@@ -185,16 +185,20 @@ impl LazRecords {
         let group_max = (GROUP_LEN_PER_THREAD * rayon::current_num_threads()).min(GROUP_LEN_MAX) as u64;
         let record_len = self.codec.record_len as u64;
         let mut group = Vec::new();
-        let mut len = 0;
+        let mut len = 0u64;
         while let Some(chunk) = self.chunks.peek() {
             // Compressed data may be a little longer than the records, never by much.
-            let is_long = chunk.points * record_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX;
+            let records_len = chunk.points.checked_mul(record_len).ok_or_else(|| {
+                Error::malformed(format!("more points of {record_len} bytes than any file can hold"))
+                    .at(chunk.describe(self.done))
+            })?;
+            let is_long = records_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX;
             if is_long && group.is_empty() {
                 self.streamed = Some(Streamed::new(&self.file, &self.codec, chunk, None)?);
                 self.chunks.next();
                 break;
             }
-            len += (chunk.points * record_len).max(chunk.len);
+            len = len.saturating_add(records_len.max(chunk.len));
             if is_long || (len > group_max && !group.is_empty()) {
                 break;
             }

@@ -63,7 +63,7 @@ impl Chunks {
             return Ok(Chunks::Unknown { start: header.points_start, points_per_chunk });
         }
         let start = header.points_start + TABLE_POSITION_LEN;
-        let Some(table) = table_position(file, header)? else {
+        let Some(table) = table_position(file, header.points_start)? else {
             let points_per_chunk = match laszip.vlr.uses_variable_size_chunks() {
                 false => PointsPerChunk::Fixed(u64::from(laszip.vlr.chunk_size())),
                 true if header.format >= 6 => PointsPerChunk::Stated,
@@ -82,11 +82,22 @@ impl Chunks {
     }
 }
 
+/// Bytes between the position of the chunk table, which stands at `points_start`, and the table; without a
+/// table, those up to `points_end`.
+pub(super) fn room(file: &FileView, points_start: u64, points_end: u64) -> Result<u64> {
+    let start = points_start.saturating_add(TABLE_POSITION_LEN);
+    if start > file.len() {
+        return Ok(0);
+    }
+    let end = table_position(file, points_start)?.unwrap_or(points_end);
+    Ok(end.saturating_sub(start))
+}
+
 /// The position of the chunk table, from before the points or, if the writer could not go back, from the end
 /// of the file. `None` if neither lies between the points and the end.
-fn table_position(file: &FileView, header: &LasHeader) -> Result<Option<u64>> {
-    let start = header.points_start + TABLE_POSITION_LEN;
-    for at in [header.points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {
+fn table_position(file: &FileView, points_start: u64) -> Result<Option<u64>> {
+    let start = points_start + TABLE_POSITION_LEN;
+    for at in [points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {
         let mut bytes = [0; TABLE_POSITION_LEN as usize];
         file.read_at(at, &mut bytes)
             .map_err(|e| Error::io("reading the position of the chunk table", e).at(format!("byte {at}")))?;

@@ -159,6 +159,36 @@ fn truncated_files_are_errors_with_a_position() {
 }
 
 #[test]
+fn more_points_than_any_file_holds_are_refused() {
+    let mut laz = std::fs::read(sample("autzen.copc.laz")).unwrap();
+    for count in [u64::MAX, u64::MAX / 36 + 1, u64::MAX / 36 - 1, 1 << 40] {
+        laz[247..255].copy_from_slice(&count.to_le_bytes());
+        assert_fails(points_of(&laz), ErrorKind::Malformed, &[&count.to_string()]);
+    }
+}
+
+#[test]
+fn points_that_the_header_does_not_state_are_told_of() {
+    let notices = |bytes: &[u8]| {
+        let folder = Folder::new();
+        let input = Input::open(&[folder.file("a.laz", bytes)], &flat()).unwrap();
+        assert!(pass(&input).unwrap().is_empty());
+        input.notices().to_vec()
+    };
+    for (name, count_at) in [("point10.las", 107), ("point10.laz", 107), ("pointwise.laz", 107)] {
+        let mut bytes = std::fs::read(sample(name)).unwrap();
+        bytes[count_at..count_at + 4].fill(0);
+        assert!(notices(&bytes)[0].contains("states no points, although"), "{name}");
+        let points_start = u32::from_le_bytes(bytes[96..100].try_into().unwrap()) as usize;
+        bytes.truncate(points_start);
+        assert_eq!(notices(&bytes), [""; 0], "{name}");
+        bytes.extend((points_start as u64 + 8).to_le_bytes());
+        bytes.extend([0; 8]);
+        assert_eq!(notices(&bytes), [""; 0], "{name}");
+    }
+}
+
+#[test]
 fn pipes_are_spooled_and_the_notice_says_so() {
     let folder = Folder::new();
     let path = folder.0.path().join("pipe.laz");
