@@ -3,6 +3,10 @@
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
 
+/// Longest coordinate reference system that is taken from an input, in bytes: a header body has to hold it
+/// beside its fixed fields and the producer.
+pub const CRS_LEN_MAX: usize = HEADER_BODY_MAX - (1 << 12);
+
 /// Longest payload of a stream block, in bytes.
 pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 

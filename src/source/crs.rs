@@ -2,6 +2,7 @@
 
 use super::input::Source;
 use crate::error::{Error, Result};
+use crate::limits::CRS_LEN_MAX;
 use crate::stream::Crs;
 
 /// GeoTIFF keys of a projected and a geographic system, and of citations in the order of preference.
@@ -21,6 +22,22 @@ pub fn crs_name(crs: &Crs) -> Option<String> {
         Crs::GeoKeys { directory, ascii, .. } => geo_keys_code(directory)
             .or_else(|| CITATIONS.iter().find_map(|&citation| geo_keys_text(directory, ascii, citation))),
     }
+}
+
+/// `crs`, unless it is too long for the header of a stream: then nothing, with a notice.
+pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
+    let len = match &crs {
+        Crs::Unknown => 0,
+        Crs::Wkt(text) => text.len(),
+        Crs::GeoKeys { directory, doubles, ascii } => directory.len() + doubles.len() + ascii.len(),
+    };
+    if len <= CRS_LEN_MAX {
+        return crs;
+    }
+    notices.push(format!(
+        "the coordinate reference system is {len} bytes long, a stream can hold {CRS_LEN_MAX}: leaving it out"
+    ));
+    Crs::Unknown
 }
 
 /// The system that all sources share. A file that states none takes that of the others.

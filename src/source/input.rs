@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::crs::common_crs;
+use super::crs::{self, common_crs};
 use super::detect::{self, detect};
 use super::grid::{self, Member};
 use super::las_header::LasHeader;
@@ -122,8 +122,9 @@ impl Source {
         let origin = Origin::new(path, &temp_dir, notices)?;
         let name = if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() };
         let mut own_notices = Vec::new();
-        let (content, stated) =
+        let (content, mut stated) =
             Content::read(&origin, &name, &mut own_notices).map_err(|e| e.of_input(&name))?;
+        stated.crs = crs::fitting(stated.crs, &mut own_notices);
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
         let source = Source { name, origin, content, stated };
         source.check(options).map_err(|e| e.of_input(&source.name))?;

@@ -205,7 +205,7 @@ impl Records {
         let points_start = u64::from(raw.offset_to_point_data).min(file.len());
         let mut at = u64::from(raw.header_size);
         for index in 0..raw.number_of_variable_length_records {
-            let Some(next) = records.read_one(file, at, points_start, false)? else {
+            let Some(next) = records.read_one(file, at, points_start, false, notices)? else {
                 notices.push(format!(
                     "the header states {} variable length records, only {index} fit before the points",
                     raw.number_of_variable_length_records
@@ -217,7 +217,7 @@ impl Records {
         let Some(extended) = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0) else { return Ok(records) };
         let mut at = extended.start_of_first_evlr;
         for index in 0..extended.number_of_evlrs {
-            let Some(next) = records.read_one(file, at, file.len(), true)? else {
+            let Some(next) = records.read_one(file, at, file.len(), true, notices)? else {
                 notices.push(format!(
                     "the header states {} extended variable length records, only {index} fit into the file",
                     extended.number_of_evlrs
@@ -230,7 +230,14 @@ impl Records {
     }
 
     /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before `end`.
-    fn read_one(&mut self, file: &FileView, at: u64, end: u64, extended: bool) -> Result<Option<u64>> {
+    fn read_one(
+        &mut self,
+        file: &FileView,
+        at: u64,
+        end: u64,
+        extended: bool,
+        notices: &mut Vec<String>,
+    ) -> Result<Option<u64>> {
         let header_len = if extended { EVLR_HEADER_LEN } else { VLR_HEADER_LEN };
         if at.checked_add(header_len).is_none_or(|after| after > end) {
             return Ok(None);
@@ -248,9 +255,15 @@ impl Records {
         let data = at + header_len;
         let Some(after) = data.checked_add(len).filter(|&after| after <= end) else { return Ok(None) };
         let user = header[2..18].split(|&byte| byte == 0).next().unwrap_or_default();
-        if let Some(slot) = self.slot(user, u16::from_le_bytes([header[18], header[19]]))
-            && len <= HEADER_BODY_MAX as u64
-        {
+        let number = u16::from_le_bytes([header[18], header[19]]);
+        let Some(slot) = self.slot(user, number) else { return Ok(Some(after)) };
+        if len > HEADER_BODY_MAX as u64 {
+            notices.push(format!(
+                "record {number} of {} at byte {at} is {len} bytes long, the maximum is {HEADER_BODY_MAX}: \
+                 leaving it out",
+                String::from_utf8_lossy(user)
+            ));
+        } else {
             let mut bytes = vec![0; len as usize];
             read(data, &mut bytes)?;
             slot.get_or_insert(bytes);

@@ -5,6 +5,7 @@ use std::os::unix::ffi::OsStrExt;
 
 use spmesh::bounds::Bounds;
 use spmesh::error::ErrorKind;
+use spmesh::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
 use spmesh::source::{Input, SourceOptions, crs_name};
 use spmesh::stream::{Coordinates, Crs};
 
@@ -124,6 +125,36 @@ fn systems_are_named_compared_and_shared() {
         ErrorKind::Usage,
         &["keys.las", "other.las", "EPSG:32610", "EPSG:26910"],
     );
+}
+
+#[test]
+fn systems_too_long_for_a_stream_are_left_out_and_the_notice_says_so() {
+    let open = |len: usize| {
+        let mut bytes = LasFile { format: 6, ..LasFile::of(&[[1, 2, 3]]) }.bytes();
+        let start = bytes.len() as u64;
+        bytes[235..243].copy_from_slice(&start.to_le_bytes());
+        bytes[243..247].copy_from_slice(&1u32.to_le_bytes());
+        bytes.extend([0, 0]);
+        bytes.extend(b"LASF_Projection\0");
+        bytes.extend(2112u16.to_le_bytes());
+        bytes.extend((len as u64).to_le_bytes());
+        bytes.extend([0; 32]);
+        bytes.extend(vec![b'x'; len]);
+        let folder = Folder::new();
+        let path = folder.file("a.las", bytes);
+        let input = Input::open(std::slice::from_ref(&path), &flat()).unwrap();
+        let run = crate::programs::run("spfinalize", &[path.to_str().unwrap()], &[]);
+        assert!(run.status.success(), "{len}: {:?}", crate::programs::outcome(&run));
+        (input.description().crs.clone(), input.notices().to_vec())
+    };
+    for len in [70_000, CRS_LEN_MAX] {
+        assert_eq!(open(len), (Crs::Wkt("x".repeat(len)), Vec::new()));
+    }
+    for len in [CRS_LEN_MAX + 1, HEADER_BODY_MAX, HEADER_BODY_MAX + 1] {
+        let (crs, notices) = open(len);
+        assert_eq!(crs, Crs::Unknown);
+        assert!(notices[0].contains(&format!("is {len} bytes long")), "{notices:?}");
+    }
 }
 
 #[test]
