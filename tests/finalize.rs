@@ -10,12 +10,15 @@ use spmesh::finalize::{Budget, Leaves, Observer, Options, Order, Passes, Stats, 
 use spmesh::source::{Description, PointReader};
 use spmesh::stream::{Coordinates, Crs, Event, Header, StreamReader};
 
+use crate::programs::{outcome, run as run_tool, sample};
+
 /// Points in memory as an input; `changed` are what later passes see instead.
 struct Memory {
     description: Description,
     points: Vec<Point>,
     changed: Option<Vec<Point>>,
     passes: Cell<u32>,
+    name: Option<String>,
 }
 
 impl Memory {
@@ -28,7 +31,7 @@ impl Memory {
             stated_bounds: None,
             stated_points: None,
         };
-        Memory { description, points: set.points.clone(), changed: None, passes: Cell::new(0) }
+        Memory { description, points: set.points.clone(), changed: None, passes: Cell::new(0), name: None }
     }
 }
 
@@ -44,6 +47,10 @@ impl Passes for Memory {
             _ => &self.points,
         };
         Ok(Box::new(MemoryReader { rest: points }))
+    }
+
+    fn name(&self) -> Option<String> {
+        self.name.clone()
     }
 }
 
@@ -469,11 +476,13 @@ fn an_input_that_changes_between_passes_is_malformed() {
         for order in [Order::Chunked, Order::Preserved] {
             let mut input = Memory::new(&set("random", 2, GRID, points.clone()));
             input.changed = Some(changed.clone());
+            input.name = Some("a.laz and 2 more".into());
             let mut stream = Vec::new();
             let result = run(&input, &options(Leaves::Level(4), order), &mut (), &mut stream);
             let error = result.expect_err("the third pass differs");
             assert_eq!(error.kind(), ErrorKind::Malformed);
-            assert!(error.to_string().contains("changed between"), "{error}");
+            let message = error.to_string();
+            assert!(message.starts_with("a.laz and 2 more: the input changed between"), "{message}");
             let mut reader = StreamReader::new(&stream[..], "partial").expect("a header");
             let end = std::iter::from_fn(|| reader.next_event().transpose()).find(Result::is_err);
             assert!(end.is_some(), "a stream that failed has no END");
@@ -494,7 +503,7 @@ fn requests_that_cannot_be_met_are_refused() {
     let too_many_leaves = Options { budget, ..options(Leaves::Level(20), Order::Chunked) };
     assert_eq!(refused(&too_many_leaves).kind(), ErrorKind::Memory);
     assert_eq!(Budget::of_engine(1000).expect_err("too small").kind(), ErrorKind::Memory);
-    assert_eq!(Budget::of_process(1 << 20).expect_err("too small").kind(), ErrorKind::Memory);
+    assert_eq!(Budget::of_process(1 << 20, 1).expect_err("too small").kind(), ErrorKind::Memory);
     let temp_dir = Some("/nonexistent/folder".into());
     let nowhere = Options { budget, temp_dir, ..options(Leaves::Level(0), Order::Chunked) };
     let many = Set { points: integer_points(20_000, 1, 1000), ..set };
@@ -519,7 +528,7 @@ fn the_tool_writes_a_whole_file_and_nothing_when_the_disk_is_full() {
         let mut command = std::process::Command::new("sh");
         command.args(["-c", &script, env!("CARGO_BIN_EXE_spfinalize")]).arg(&input);
         command.arg("-o").arg(&output).arg("--temp-dir").arg(folder.path());
-        command.args(["--memory", &Budget::process_min().to_string()]);
+        command.args(["--threads", "1", "--memory", &Budget::process_min(1).to_string()]);
         command.output().expect("sh runs")
     };
     let full = run("ulimit -f 64;");
@@ -532,6 +541,30 @@ fn the_tool_writes_a_whole_file_and_nothing_when_the_disk_is_full() {
     assert!(String::from_utf8_lossy(&done.stderr).contains("waited in a temporary file"));
     let decoded = decode(&std::fs::read(&output).expect("the output"));
     assert_eq!(decoded.points.len(), 40_000);
+}
+
+#[test]
+fn threads_show_neither_in_the_result_nor_beyond_the_budget() {
+    let tile = sample("lareunion.laz");
+    let reference = run_tool("spfinalize", &["--threads", "1", &tile], &[]).stdout;
+    assert_eq!(decode(&reference).points.len(), 59_712);
+    for threads in [2, 7] {
+        let stream = run_tool("spfinalize", &["--threads", &threads.to_string(), &tile], &[]).stdout;
+        assert!(stream == reference, "{threads} threads");
+        assert!(Budget::process_min(threads) > Budget::process_min(threads - 1));
+        let memory = Budget::process_min(threads - 1).to_string();
+        let arguments = ["--threads", &threads.to_string(), "--memory", &memory, &tile];
+        let (code, message) = outcome(&run_tool("spfinalize", &arguments, &[]));
+        assert_eq!(code, Some(5), "{message}");
+        assert!(message.contains(&format!("with {threads} threads")), "{message}");
+    }
+}
+
+#[test]
+fn the_tool_tells_its_figures_to_people() {
+    let output = run_tool("spfinalize", &["--stats", "-"], b"1 2 3\n4 5 6\n");
+    let figures = String::from_utf8(output.stderr).expect("text");
+    assert!(figures.contains("time of pass count  ") && !figures.contains('"'), "{figures}");
 }
 
 #[test]

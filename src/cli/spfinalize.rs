@@ -17,15 +17,16 @@ const TOOL: &str = "spfinalize";
 const EXAMPLES: &str = "\
 Examples:
   Triangulate a tile in bounded memory:
-      spfinalize tile.laz | spdelaunay2d -o tile.sp
+      spfinalize tile.laz | spdelaunay2d -o tile.spm
   Ground and water of many files as one input, keeping within 256 MB:
-      spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.sp
+      spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
   A grid of 2^6 x 2^6 cells, points in their own order, with the figures of the run:
-      spfinalize --level 6 --preserve --stats text tile.laz -o tile.sp
+      spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Points of space from text on stdin:
       zcat scan.xyz.gz | spfinalize --octree - | spinfo -
 
-Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept.";
+Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
+141 output closed by its reader.";
 
 /// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
 ///
@@ -63,13 +64,18 @@ pub struct Flags {
     #[arg(long)]
     octree: bool,
 
-    /// Memory of the process; points beyond it wait in a temporary file
+    /// Memory of the process; points beyond it wait in a temporary file (see --temp-dir)
     #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
     memory: u64,
 
-    /// Folder for temporary files [default: the system's]
+    /// Folder for temporary files [default: the system's]. That one may be in RAM (tmpfs): name a folder on
+    /// disk for big input without order
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
+
+    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
 
     /// Keep only points of these classes
     #[arg(long, value_name = "CLASS", value_delimiter = ',')]
@@ -123,7 +129,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let mut output = Output::create(&flags.output, true)?;
     let mut watch = Watch { common: &flags.common, progress: None };
-    let stats = finalize::run(&input, &options, &mut watch, &mut output)?;
+    // Whatever decodes in parallel stays in the pool that it is called from.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(flags.threads());
+    let pool = pool.build().context("starting threads")?;
+    let stats = pool.install(|| finalize::run(&input, &options, &mut watch, &mut output))?;
     drop(watch);
     output.commit()?;
     if stats.spilled_points > 0 {
@@ -150,9 +159,14 @@ impl Flags {
         Ok(Options {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
-            budget: Budget::of_process(self.memory)?,
+            budget: Budget::of_process(self.memory, self.threads())?,
             temp_dir: self.temp_dir.clone(),
         })
+    }
+
+    fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.map_or_else(cores, usize::from)
     }
 
     fn source_options(&self) -> SourceOptions {
@@ -230,7 +244,7 @@ fn stats_text(stats: &Stats) -> String {
     row("points", stats.points.to_string());
     row("invalid points skipped", stats.invalid.to_string());
     for (pass, time) in &stats.passes {
-        row(&format!("time of pass {pass:?}"), format!("{:.2} s", time.as_secs_f64()));
+        row(&format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
     }
     row("peak memory", format!("{:.1} MB", peak_memory() as f64 / 1e6));
     row("most points buffered", stats.buffered_points_max.to_string());

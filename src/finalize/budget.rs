@@ -23,27 +23,27 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// What is left of the memory `total` of the whole process.
+    /// What is left of the memory `total` of a whole process that decodes its input with `threads` threads.
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if that is too little to work with.
-    pub fn of_process(total: u64) -> Result<Budget> {
-        Budget::of_engine(total.saturating_sub(process_reserve())).map_err(|_| {
+    pub fn of_process(total: u64, threads: usize) -> Result<Budget> {
+        Budget::of_engine(total.saturating_sub(process_reserve(threads))).map_err(|_| {
             Error::new(
                 ErrorKind::Memory,
                 format!(
-                    "a memory budget of {} MiB cannot be kept, the least is {} MiB",
+                    "a memory budget of {} MiB cannot be kept, the least with {threads} threads is {} MiB",
                     total >> 20,
-                    Budget::process_min().div_ceil(1 << 20)
+                    Budget::process_min(threads).div_ceil(1 << 20)
                 ),
             )
         })
     }
 
-    /// Least memory that a process on this machine can be told to keep to, in bytes.
+    /// Least memory that a process with `threads` threads can be told to keep to, in bytes.
     #[must_use]
-    pub fn process_min() -> u64 {
-        process_reserve() + ENGINE_MIN
+    pub fn process_min(threads: usize) -> u64 {
+        process_reserve(threads) + ENGINE_MIN
     }
 
     /// A budget for counters, leaves and waiting points alone.
@@ -82,7 +82,6 @@ impl Budget {
     }
 }
 
-fn process_reserve() -> u64 {
-    let threads = std::thread::available_parallelism().map_or(1, |threads| threads.get() as u64);
-    PROCESS_RESERVE + THREAD_RESERVE * threads.min(THREADS_MAX)
+fn process_reserve(threads: usize) -> u64 {
+    PROCESS_RESERVE + THREAD_RESERVE * (threads as u64).min(THREADS_MAX)
 }

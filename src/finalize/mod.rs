@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 pub use budget::Budget;
 
 use crate::bounds::Point;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 use crate::source::{Description, Input, PointReader};
 use crate::stream::{Header, Kind, StreamWriter};
@@ -45,6 +45,11 @@ pub trait Passes {
     /// # Errors
     /// If the input cannot be opened.
     fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+
+    /// What messages call the input, if it has a name.
+    fn name(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Which cells are leaves of the finalization tree.
@@ -200,21 +205,11 @@ pub fn run<P: Passes + ?Sized, W: Write>(
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
     let mut work = Work { input, observer, stats: Stats::default() };
-    let survey = work.survey(options)?;
-    let header = header_of(input.description(), &survey, options);
-    match survey.grid {
-        Some(grid) => {
-            let plan = Plan::new(grid, options.leaves, &options.budget)?;
-            work.note_plan(&plan);
-            let header = Header { tree: Some(plan.tree()), ..header };
-            let writer = StreamWriter::new(output, header)?;
-            match options.order {
-                Order::Chunked => work.write_chunked(plan, options, writer)?,
-                Order::Preserved => work.write_preserved(plan, writer)?,
-            }
-        }
-        None => work.write_untagged(StreamWriter::new(output, header)?)?,
-    }
+    work.write(options, output).map_err(|error| match input.name() {
+        // What has no name by now and breaks promises is the input as a whole.
+        Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
+        _ => error,
+    })?;
     Ok(work.stats)
 }
 
@@ -237,6 +232,22 @@ struct Work<'a, P: Passes + ?Sized> {
 }
 
 impl<P: Passes + ?Sized> Work<'_, P> {
+    /// Makes all passes.
+    fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
+        let survey = self.survey(options)?;
+        let header = header_of(self.input.description(), &survey, options);
+        let Some(grid) = survey.grid else {
+            return self.write_untagged(StreamWriter::new(output, header)?);
+        };
+        let plan = Plan::new(grid, options.leaves, &options.budget)?;
+        self.note_plan(&plan);
+        let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
+        match options.order {
+            Order::Chunked => self.write_chunked(plan, options, writer),
+            Order::Preserved => self.write_preserved(plan, writer),
+        }
+    }
+
     /// Makes one pass over the input, handing every batch to `consume`; the number of invalid points dropped.
     fn read_all(&mut self, pass: Pass, mut consume: impl FnMut(&[Point]) -> Result<()>) -> Result<u64> {
         let start = Instant::now();
@@ -276,5 +287,9 @@ impl Passes for Input {
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
         Input::read(self)
+    }
+
+    fn name(&self) -> Option<String> {
+        Some(Input::name(self))
     }
 }

@@ -96,6 +96,16 @@ impl Input {
         &self.notices
     }
 
+    /// What messages about all files call them: the first one, and the number of the others.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let first = &self.sources[0].name;
+        match self.sources.len() - 1 {
+            0 => first.clone(),
+            others => format!("{first} and {others} more"),
+        }
+    }
+
     /// Starts a pass over all points, file by file in the given order.
     ///
     /// Memory: one batch, and for compressed files one group of chunks.
