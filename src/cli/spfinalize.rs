@@ -30,9 +30,10 @@ Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budge
 
 /// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
 ///
-/// Reads LAS, LAZ, COPC, text, spmesh streams, SPA or SPB, and writes a stream of points in which tags say
-/// which cells no later point lies in. Points of a cell are held back and written together (chunked), unless
-/// --preserve is given. The input is read two or three times; what cannot be read again is spooled.
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA or SPB, and writes a stream of points in
+/// which tags say which cells no later point lies in. Points of a cell are held back and written together
+/// (chunked), unless --preserve is given. The input is read two times or more: again where headers do not state
+/// its bounding box, and where cells are crowded. What cannot be read again is spooled.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {

@@ -1,19 +1,16 @@
 //! One grid for files of integer coordinates.
 //!
 //! Axes that geometry mixes (x and y; all three in three dimensions) need one quantum, so that the exact
-//! predicates can work on the integers themselves. Files are brought to a common grid only where that is
-//! exact.
+//! predicates can work on the integers themselves. Files are brought to a common grid only where that rounds
+//! nothing.
 
-use super::placement::whole_steps;
+use super::placement::{RATIO_TOLERANCE, whole_steps};
 use crate::bounds::{Bounds, Point};
 use crate::error::{Error, Result};
 use crate::stream::Coordinates;
 
 /// Largest denominator, and largest number of quanta, that a scale may have to count as a multiple.
 const MULTIPLIER_MAX: f64 = 10_000.0;
-
-/// Largest deviation of a ratio of scales from a fraction, relative.
-const RATIO_TOLERANCE: f64 = 1e-9;
 
 /// What the grid must serve: the coordinates of one file.
 pub(super) struct Member {
@@ -23,7 +20,7 @@ pub(super) struct Member {
     pub(super) bounds: Option<Bounds>,
 }
 
-/// Coordinates that all members can be converted to without loss; world coordinates if one has no grid,
+/// Coordinates that all members can be converted to without rounding; world coordinates if one has no grid,
 /// or if the scales of its axes have no common measure.
 ///
 /// # Errors

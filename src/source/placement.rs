@@ -4,8 +4,12 @@ use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::stream::Coordinates;
 
-/// Largest deviation of a scale ratio from a whole number, relative.
-const RATIO_TOLERANCE: f64 = 1e-9;
+/// Largest deviation of a ratio of scales from the fraction that it is taken for, relative: 2^-40. Division and
+/// decimal notation of scales cost some 2^-51. Over 32 bits a coordinate moves by 2^-9 of its file's step at most.
+pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Largest factor between steps: stored integers times the factor, and a shift beside them, are exact in f64.
+const FACTOR_MAX: f64 = (1u64 << 21) as f64;
 
 /// Largest deviation of an offset from a whole number of quanta, and of a coordinate from a side of the
 /// bounds filter, in quanta.
@@ -25,7 +29,9 @@ pub(super) struct Placement {
 #[derive(Debug)]
 enum Step {
     Same,
-    /// Exact: both are integers, of which the file's count whole multiples of the input's.
+    /// Both are integers, of which the file's count whole multiples of the input's. Nothing is rounded, and
+    /// equal points stay equal; where scales are equal but for their notation, the world may move by
+    /// [`RATIO_TOLERANCE`].
     Integers {
         factor: Point,
         shift: Point,
@@ -107,7 +113,8 @@ impl Placement {
     }
 }
 
-/// Factor and shift per axis that turn stored integers of `from` into those of `to` exactly, if there are any.
+/// Factor and shift per axis that turn stored integers of `from` into those of `to`, if there are any. In the
+/// world, a point moves by no more than 2^-9 steps of `from` and 10^-6 steps of `to`.
 pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
     let (Coordinates::I32 { scale, offset }, Coordinates::I32 { scale: to_scale, offset: to_offset }) =
         (from, to)
@@ -118,7 +125,7 @@ pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point
     for axis in 0..3 {
         factor[axis] = whole(scale[axis] / to_scale[axis], RATIO_TOLERANCE * scale[axis] / to_scale[axis])?;
         shift[axis] = whole((offset[axis] - to_offset[axis]) / to_scale[axis], QUANTA_TOLERANCE)?;
-        if factor[axis] < 1.0 {
+        if !(1.0..=FACTOR_MAX).contains(&factor[axis]) {
             return None;
         }
     }

@@ -95,6 +95,19 @@ fn files_without_a_common_grid_are_named() {
 }
 
 #[test]
+fn scales_count_as_equal_only_if_no_point_moves_for_it() {
+    let grids = |error: f64| [([0.01; 3], [0.0; 3]), ([0.01 * (1.0 + error); 3], [0.0; 3])];
+    let far = [[i32::MAX, i32::MIN, 7]];
+    let (coordinates, found) = open(&grids(1e-13), &far, &flat()).unwrap();
+    assert_eq!(found[0], found[1]);
+    assert!((coordinates.to_world(found[1])[0] - f64::from(i32::MAX) * grids(1e-13)[1].0[0]).abs() < 1e-4);
+    assert_fails(open(&grids(1e-11), &far, &flat()), ErrorKind::Usage, &["0.las", "1.las", "--scale"]);
+    let uneven = [0.01, 0.01 * (1.0 + 1e-11), 0.01];
+    let (coordinates, _) = open(&[(uneven, [0.0; 3])], &far, &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::F64);
+}
+
+#[test]
 fn a_given_grid_rounds_to_nearest_and_refuses_what_it_cannot_hold() {
     let folder = Folder::new();
     let path = folder.file("a.xyz", "1.24 -1.26 3\n5e9 0 0\n");
