@@ -2,10 +2,10 @@
 //! the input allows, which cells of the plane or of space no later point lies in.
 //!
 //! Pass 1 finds the bounding box, or takes it from the headers of the input. Pass 2 counts points per cell
-//! ([`count`]), on a grid as fine as the memory for counters allows; crowded cells are counted again, finer
-//! ([`survey`]). The counts decide the leaves of the finalization tree ([`plan`]). Pass 3 writes the points and
-//! tags a leaf when its counter reaches zero ([`emit`]): either in input order, or chunked, and then points
-//! wait in pages ([`pages`]) within the memory budget, and beyond it in a temporary file ([`spill`]).
+//! (`count`), on a grid as fine as the memory for counters allows; crowded cells are counted again, finer
+//! (`survey`). The counts decide the leaves of the finalization tree (`plan`). Pass 3 writes the points and
+//! tags a leaf when its counter reaches zero (`emit`): either in input order, or chunked, and then points
+//! wait in pages (`pages`) within the memory budget, and beyond it in a temporary file (`spill`).
 //!
 //! How many points wait in memory and how many on disk does not show in the result. Counters are 64 bits wide.
 

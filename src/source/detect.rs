@@ -31,7 +31,7 @@ const PCD: &str = "a PCD file: convert it first, for example with pdal translate
 const OBJ: &str = "an OBJ file: give its vertices as lines of x y z, for example with sed -n 's/^v //p'";
 
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 14] = [
+const MISTAKEN: [(&[u8], &str); 12] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
@@ -43,8 +43,6 @@ const MISTAKEN: [(&[u8], &str); 14] = [
     (b"# .PCD", PCD),
     (b"VERSION .7", PCD),
     (b"VERSION 0.7", PCD),
-    (b"OFF\n", "an OFF file, a mesh: give its vertices as lines of x y z"),
-    (b"solid ", "an STL file, a mesh: give its vertices as lines of x y z"),
     (b"# OBJ", OBJ),
 ];
 
@@ -84,7 +82,7 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
         )));
     }
     if is_mesh(&head) {
-        return Err(Error::usage(format!("has statements of a mesh; if it is {OBJ}")));
+        return Err(Error::malformed(format!("has statements of a mesh; if it is {OBJ}")));
     }
     Ok(if is_spa(&head) { Format::Spa } else { Format::Text })
 }

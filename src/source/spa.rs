@@ -100,7 +100,7 @@ fn parse(line: &[u8]) -> Result<Option<SpEvent>> {
         }
         None | Some(b"x") => Ok(None),
         Some(b"f" | b"c") => {
-            Err(Error::usage(format!("found {}: a mesh, expected points alone", quote(line))))
+            Err(Error::malformed(format!("found {}: a mesh, expected points alone", quote(line))))
         }
         Some(word) if word.starts_with(b"#") => Ok(None),
         Some(_) => Err(bad()),

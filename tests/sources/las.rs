@@ -259,10 +259,10 @@ fn wrong_kinds_of_files_get_advice() {
     assert_fails(points_of(b"# .PCD v0.7\nVERSION .7\n"), ErrorKind::Malformed, &["PCD", "pdal"]);
     assert_fails(points_of(b"# OBJ of x\nv 1 2 3\n"), ErrorKind::Malformed, &["OBJ", "sed"]);
     for mesh in ["o cube\nv 1 2 3\n", "v 1 2 3\nvn 0 0 1\n", "# x\nv 1 2 3\nv 2 2 3\nv 1 1 1\nf 1 2 3\n"] {
-        assert_fails(points_of(mesh), ErrorKind::Usage, &["mesh", "OBJ", "sed"]);
+        assert_fails(points_of(mesh), ErrorKind::Malformed, &["mesh", "OBJ", "sed"]);
     }
     let late = format!("{}f 1 2 3\n", "v 1 2 3\n".repeat(10_000));
-    assert_fails(points_of(late), ErrorKind::Usage, &["line 10001", "mesh"]);
+    assert_fails(points_of(late), ErrorKind::Malformed, &["line 10001", "mesh"]);
     assert_eq!(points_of(b"v 1 2 3\nv 4 5 6\n").unwrap().len(), 2);
     assert_fails(points_of(b"abc\0"), ErrorKind::Malformed, &["zero byte at byte 3"]);
     let folder = Folder::new();
