@@ -5,6 +5,7 @@ mod corruption;
 mod historical;
 mod independent;
 mod peers;
+mod ply;
 mod samples;
 mod text;
 

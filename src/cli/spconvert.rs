@@ -14,7 +14,7 @@ use crate::output::Output;
 const EXAMPLES: &str = "\
 Formats:
   spm   binary stream                     text  its text twin, lossless both ways
-  obj   Wavefront OBJ                     ply   Stanford PLY (write only)
+  obj   Wavefront OBJ                     ply   Stanford PLY
   spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
 
 Examples:
@@ -26,7 +26,10 @@ Examples:
 The format of the input is recognized by its content, or its name; that of the output by its name.
 Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB rounded to
 32 bits. A notice says what is lost.
-Meshes of OBJ do not say when vertices are final: all of them are at the end.";
+Meshes of OBJ and PLY do not say when vertices are final: all of them are at the end.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
+141 output closed by its reader.";
 
 /// Convert streams of points and meshes to and from other formats
 #[derive(Debug, Parser)]

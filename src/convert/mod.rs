@@ -14,7 +14,7 @@ use crate::sink::{
     EventSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink, SpmSink, TwinSink,
 };
 use crate::source::{
-    EventSource, ObjSource, SmaSource, SmbSource, SpEvents, SpaReader, SpbReader, TwinSource,
+    EventSource, ObjSource, SmaSource, SmbSource, SpEvents, SpaReader, SpbReader, TwinSource, open_ply,
 };
 use crate::stream::StreamReader;
 
@@ -94,7 +94,7 @@ pub fn open_source(
             let reader = SpbReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
             Box::new(SpEvents::new(reader, name, dims))
         }
-        Format::Ply => return Err(Error::usage("PLY can be written, but not read").of_input(name)),
+        Format::Ply => open_ply(input, name, dims)?,
     })
 }
 

@@ -6,6 +6,7 @@ use std::io::Read;
 use super::events::EventSource;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
+use super::polygon::fan;
 use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
 use crate::error::{Error, Result};
 use crate::stream::{Event, Header};
@@ -108,13 +109,4 @@ impl<R: Read> Elements for ObjElements<R> {
 fn parse_corner(field: &[u8], vertices: u64) -> Result<u64> {
     let vertex = field.split(|&byte| byte == b'/').next().unwrap_or_default();
     resolve(parse_signed(vertex)?, vertices)
-}
-
-fn fan(corners: &[u64]) -> Result<VecDeque<[u64; 3]>> {
-    match corners {
-        [first, rest @ ..] if rest.len() >= 2 => {
-            Ok(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]).collect())
-        }
-        _ => Err(Error::malformed(format!("face of {} vertices, expected at least 3", corners.len()))),
-    }
 }

@@ -55,6 +55,11 @@ impl<R: Read> Lines<R> {
         Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
     }
 
+    /// What follows the line that was read last, for formats whose header alone is text.
+    pub(super) fn input(&mut self) -> &mut impl Read {
+        &mut self.input
+    }
+
     /// The line that was read last.
     pub(super) fn current(&self) -> &[u8] {
         &self.line

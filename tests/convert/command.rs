@@ -56,7 +56,7 @@ fn wrong_requests_are_told_apart() {
         (&[], &points, 2, "--to"),
         (&["--to", "dxf"], &points, 2, "possible values"),
         (&["--to", "sma"], &points, 2, "cannot be written as SMA, which holds triangle mesh"),
-        (&["--to", "spm", "--from", "ply"], &points, 2, "not read"),
+        (&["--to", "spm", "--from", "ply"], &points, 3, "expected \"ply\""),
         (&["--to", "spm"], b"no mesh at all\n", 2, "--from"),
         (&["--to", "spm"], b"", 3, "the input is empty"),
     ];

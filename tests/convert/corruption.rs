@@ -10,10 +10,10 @@ fn files() -> Vec<(Format, Vec<u8>)> {
     let mesh = samples::mesh(samples::grids()[1]);
     let points = samples::points(2, true, false);
     let mut files = vec![];
-    for format in [Format::Spm, Format::Text, Format::Obj, Format::Sma, Format::Smb] {
+    for format in [Format::Spm, Format::Text, Format::Obj, Format::Ply, Format::Sma, Format::Smb] {
         files.push((format, converted(&mesh, Format::Spm, format).unwrap()));
     }
-    for format in [Format::Spm, Format::Text, Format::Spa, Format::Spb] {
+    for format in [Format::Spm, Format::Text, Format::Ply, Format::Spa, Format::Spb] {
         files.push((format, converted(&points, Format::Spm, format).unwrap()));
     }
     files.push((Format::Spm, samples::partial()));
@@ -60,7 +60,8 @@ fn cut_files_are_an_error_or_a_mesh() {
         for _ in 0..200 {
             let end = random.below(file.len() as u64 - 1) as usize;
             let is_accepted = accepts(&file[..end], format);
-            assert!(!is_accepted || !matches!(format, Format::Spm | Format::Text), "{format:?} cut at {end}");
+            let must_be_whole = matches!(format, Format::Spm | Format::Text | Format::Ply);
+            assert!(!is_accepted || !must_be_whole, "{format:?} cut at {end}");
         }
     }
 }

@@ -1,0 +1,253 @@
+//! Reads PLY, text and bytes of either order: a triangle mesh if it has faces, else points.
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use super::events::EventSource;
+use super::mesh_events::{Element, Elements, MeshEvents};
+use super::patches::Order;
+use super::ply_header::{Encoding, PlyHeader, Property, Role, Scalar, Sort};
+use super::polygon::fan;
+use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::stream::{Coordinates, Event, Header, Kind, Totals};
+
+/// Points per event.
+const BATCH_POINTS: usize = 1 << 12;
+
+/// Longest list of a row: polygons and strips of any use are shorter, and a damaged length ends here.
+const LIST_MAX: u64 = 1 << 16;
+
+/// Reads PLY: a triangle mesh, in which polygons become fans around their first vertex, or points of `dims`
+/// dimensions; `name` is what messages call the input.
+///
+/// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input and place. Memory: one
+/// patch or batch, and triangles that come before their vertices.
+///
+/// # Errors
+/// If the header is damaged or states no vertices with x, y and z.
+pub fn open_ply<R: Read + 'static>(
+    input: R,
+    name: impl Into<String>,
+    dims: u8,
+) -> Result<Box<dyn EventSource>> {
+    let mut lines = Lines::new(input, name);
+    let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
+    let has_faces = header.rows(Sort::Face) > 0;
+    let rows = Rows { lines, header, table: 0, row: 0 };
+    if has_faces {
+        return Ok(Box::new(MeshEvents::new(PlyElements { rows, triangles: VecDeque::new() })));
+    }
+    let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
+    header.points = Some(rows.header.rows(Sort::Vertex));
+    Ok(Box::new(PlyPoints { rows, header, points: 0, ended: false }))
+}
+
+/// The vertices of a PLY without faces, as points.
+struct PlyPoints<R: Read> {
+    rows: Rows<R>,
+    header: Header,
+    points: u64,
+    ended: bool,
+}
+
+impl<R: Read> EventSource for PlyPoints<R> {
+    fn header(&self) -> &Header {
+        &self.header
+    }
+
+    fn next_event(&mut self) -> Result<Option<Event>> {
+        let mut batch: Vec<Point> = Vec::new();
+        while batch.len() < BATCH_POINTS {
+            match self.rows.next().map_err(|e| self.rows.locate(e))? {
+                Some(Row::Vertex(point)) => batch.push(point),
+                Some(Row::Face(_)) => {}
+                None => break,
+            }
+        }
+        self.points += batch.len() as u64;
+        if !batch.is_empty() {
+            return Ok(Some(Event::Points(batch)));
+        }
+        let totals = Totals { points: self.points, ..Totals::default() };
+        Ok((!std::mem::replace(&mut self.ended, true)).then_some(Event::End(totals)))
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.rows.locate(error)
+    }
+}
+
+struct PlyElements<R: Read> {
+    rows: Rows<R>,
+    /// The rest of the polygon that was read last.
+    triangles: VecDeque<[u64; 3]>,
+}
+
+impl<R: Read> Elements for PlyElements<R> {
+    fn order(&self) -> Order {
+        Order::AtEnd
+    }
+
+    fn next_element(&mut self, _vertices: u64) -> Result<Option<Element>> {
+        loop {
+            if let Some(triangle) = self.triangles.pop_front() {
+                return Ok(Some(Element::Triangle(triangle, [false; 3])));
+            }
+            match self.rows.next()? {
+                None => return Ok(None),
+                Some(Row::Vertex(point)) => return Ok(Some(Element::Vertex(point))),
+                Some(Row::Face(corners)) => {
+                    let vertices = self.rows.header.rows(Sort::Vertex);
+                    if let Some(corner) = corners.iter().find(|&&corner| corner >= vertices) {
+                        return Err(Error::malformed(format!("face with vertex {corner} of {vertices}")));
+                    }
+                    self.triangles = fan(&corners)?;
+                }
+            }
+        }
+    }
+
+    fn check_counts(&self, _: u64, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.rows.locate(error)
+    }
+}
+
+/// A row that matters here.
+enum Row {
+    Vertex(Point),
+    Face(Vec<u64>),
+}
+
+/// The rows behind the header, in the order of the file.
+struct Rows<R: Read> {
+    lines: Lines<R>,
+    header: PlyHeader,
+    table: usize,
+    row: u64,
+}
+
+impl<R: Read> Rows<R> {
+    /// The next vertex or face; rows of other elements are read over.
+    fn next(&mut self) -> Result<Option<Row>> {
+        while let Some(table) = self.header.tables.get(self.table) {
+            if self.row == table.rows {
+                (self.table, self.row) = (self.table + 1, 0);
+                continue;
+            }
+            self.row += 1;
+            let (point, corners) = match self.header.encoding {
+                Encoding::Ascii => read_text_row(&mut self.lines, &table.properties)?,
+                encoding => read_binary_row(self.lines.input(), &table.properties, encoding)?,
+            };
+            match table.sort {
+                Sort::Vertex => return Ok(Some(Row::Vertex(point))),
+                Sort::Face => return Ok(Some(Row::Face(corners))),
+                Sort::Other => {}
+            }
+        }
+        Ok(None)
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        match self.header.encoding {
+            Encoding::Ascii => self.lines.locate(error),
+            _ => self.lines.locate(error.at(format!("element {}, row {}", self.table + 1, self.row))),
+        }
+    }
+}
+
+/// What a row says, property by property.
+#[derive(Default)]
+struct RowValues {
+    point: Point,
+    corners: Vec<u64>,
+}
+
+impl RowValues {
+    fn add(&mut self, role: Role, value: f64) -> Result<()> {
+        match role {
+            Role::Axis(_) if !value.is_finite() => Err(Error::malformed(format!("coordinate {value}"))),
+            Role::Axis(axis) => {
+                self.point[axis] = value;
+                Ok(())
+            }
+            Role::Corners if value >= 0.0 && value.fract() == 0.0 => {
+                self.corners.push(value as u64);
+                Ok(())
+            }
+            Role::Corners => Err(Error::malformed(format!("vertex number {value}"))),
+            Role::Other => Ok(()),
+        }
+    }
+
+    /// Values of a property, each from `next`.
+    fn property(&mut self, property: &Property, mut next: impl FnMut(Scalar) -> Result<f64>) -> Result<()> {
+        let Some(length) = property.length else { return self.add(property.role, next(property.scalar)?) };
+        let length = next(length)?;
+        if !(length >= 0.0 && length <= LIST_MAX as f64 && length.fract() == 0.0) {
+            return Err(Error::malformed(format!("list of {length} values, the maximum is {LIST_MAX}")));
+        }
+        (0..length as u64).try_for_each(|_| self.add(property.role, next(property.scalar)?))
+    }
+}
+
+fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Result<(Point, Vec<u64>)> {
+    let mut values = RowValues::default();
+    let line = lines.next_line()?.ok_or_else(truncated)?;
+    let mut fields = fields(line);
+    for property in properties {
+        values.property(property, |_| parse_decimal(next_field(&mut fields)?))?;
+    }
+    expect_no_field(&mut fields)?;
+    Ok((values.point, values.corners))
+}
+
+fn read_binary_row(
+    input: &mut impl Read,
+    properties: &[Property],
+    encoding: Encoding,
+) -> Result<(Point, Vec<u64>)> {
+    let mut values = RowValues::default();
+    for property in properties {
+        values.property(property, |scalar| {
+            let mut bytes = [0; 8];
+            let bytes = &mut bytes[..scalar.width()];
+            input.read_exact(bytes).map_err(|e| match e.kind() {
+                std::io::ErrorKind::UnexpectedEof => truncated(),
+                _ => Error::io("reading", e),
+            })?;
+            if encoding == Encoding::BigEndian {
+                bytes.reverse();
+            }
+            Ok(number(scalar, bytes))
+        })?;
+    }
+    Ok((values.point, values.corners))
+}
+
+/// The number of a type in its little-endian bytes, as many as its width.
+fn number(scalar: Scalar, bytes: &[u8]) -> f64 {
+    let mut wide = [0; 8];
+    wide[..bytes.len()].copy_from_slice(bytes);
+    let bits = u64::from_le_bytes(wide);
+    match scalar {
+        Scalar::I8 => f64::from(bits as i8),
+        Scalar::U8 => f64::from(bits as u8),
+        Scalar::I16 => f64::from(bits as i16),
+        Scalar::U16 => f64::from(bits as u16),
+        Scalar::I32 => f64::from(bits as i32),
+        Scalar::U32 => f64::from(bits as u32),
+        Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
+        Scalar::F64 => f64::from_bits(bits),
+    }
+}
+
+fn truncated() -> Error {
+    Error::malformed("truncated: the header states more rows")
+}

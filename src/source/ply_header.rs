@@ -1,0 +1,195 @@
+//! The header of PLY: encoding, elements, and the properties of each.
+
+use std::io::Read;
+
+use super::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
+use crate::error::{Error, Result};
+
+/// Elements and properties that a header may have: far more than any has, and no memory to speak of.
+const ITEMS_MAX: usize = 1000;
+
+/// How the values are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// Type of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    /// Bytes of a number.
+    pub(super) fn width(self) -> usize {
+        match self {
+            Scalar::I8 | Scalar::U8 => 1,
+            Scalar::I16 | Scalar::U16 => 2,
+            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
+            Scalar::F64 => 8,
+        }
+    }
+
+    fn from_name(name: &[u8]) -> Result<Scalar> {
+        Ok(match name {
+            b"char" | b"int8" => Scalar::I8,
+            b"uchar" | b"uint8" => Scalar::U8,
+            b"short" | b"int16" => Scalar::I16,
+            b"ushort" | b"uint16" => Scalar::U16,
+            b"int" | b"int32" => Scalar::I32,
+            b"uint" | b"uint32" => Scalar::U32,
+            b"float" | b"float32" => Scalar::F32,
+            b"double" | b"float64" => Scalar::F64,
+            other => return Err(unexpected(other, "a type of PLY")),
+        })
+    }
+}
+
+/// What a property of an element means here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Coordinate of a vertex: 0, 1 or 2.
+    Axis(usize),
+    /// Vertices of a face.
+    Corners,
+    /// Anything else: read over.
+    Other,
+}
+
+/// A property of an element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Property {
+    pub(super) role: Role,
+    /// For a list, the type of its length.
+    pub(super) length: Option<Scalar>,
+    pub(super) scalar: Scalar,
+}
+
+/// What the rows of an element are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sort {
+    Vertex,
+    Face,
+    Other,
+}
+
+/// A sort of rows.
+#[derive(Debug, Clone)]
+pub(super) struct ElementTable {
+    pub(super) sort: Sort,
+    pub(super) rows: u64,
+    pub(super) properties: Vec<Property>,
+}
+
+/// Encoding, and the elements in the order of the file.
+#[derive(Debug, Clone)]
+pub(super) struct PlyHeader {
+    pub(super) encoding: Encoding,
+    pub(super) tables: Vec<ElementTable>,
+}
+
+impl PlyHeader {
+    /// Reads up to `end_header`.
+    pub(super) fn read<R: Read>(lines: &mut Lines<R>) -> Result<PlyHeader> {
+        match lines.next_line()? {
+            Some(b"ply") => {}
+            found => return Err(unexpected(found.unwrap_or_default(), "\"ply\"")),
+        }
+        let (mut encoding, mut tables, mut items) = (None, Vec::new(), 0);
+        loop {
+            let Some(line) = lines.next_line()? else {
+                return Err(Error::malformed("truncated: the header ends without end_header"));
+            };
+            items += 1;
+            let mut fields = fields(line);
+            match fields.next().unwrap_or_default() {
+                b"comment" | b"obj_info" => continue,
+                b"format" => encoding = Some(parse_encoding(next_field(&mut fields)?)?),
+                b"element" => tables.push(parse_element(&mut fields)?),
+                b"property" => {
+                    let table =
+                        tables.last_mut().ok_or_else(|| Error::malformed("property of no element"))?;
+                    let property = parse_property(&mut fields, table.sort)?;
+                    table.properties.push(property);
+                }
+                b"end_header" => break,
+                other => return Err(unexpected(other, "a statement of a PLY header")),
+            }
+            if items > ITEMS_MAX {
+                return Err(Error::malformed(format!("header of more than {ITEMS_MAX} lines")));
+            }
+        }
+        let encoding = encoding.ok_or_else(|| Error::malformed("the header does not state the format"))?;
+        let header = PlyHeader { encoding, tables };
+        header.check()?;
+        Ok(header)
+    }
+
+    /// Number of rows of a sort.
+    pub(super) fn rows(&self, sort: Sort) -> u64 {
+        self.tables
+            .iter()
+            .filter(|table| table.sort == sort)
+            .fold(0, |sum, table| sum.saturating_add(table.rows))
+    }
+
+    fn check(&self) -> Result<()> {
+        let vertices: Vec<&ElementTable> =
+            self.tables.iter().filter(|table| table.sort == Sort::Vertex).collect();
+        let [vertex] = vertices[..] else {
+            return Err(Error::malformed(format!("{} elements called vertex, expected 1", vertices.len())));
+        };
+        let has = |role: Role| vertex.properties.iter().filter(|property| property.role == role).count() == 1;
+        if !(0..3).all(|axis| has(Role::Axis(axis))) {
+            return Err(Error::malformed("vertices without properties x, y and z"));
+        }
+        Ok(())
+    }
+}
+
+fn parse_encoding(name: &[u8]) -> Result<Encoding> {
+    match name {
+        b"ascii" => Ok(Encoding::Ascii),
+        b"binary_little_endian" => Ok(Encoding::LittleEndian),
+        b"binary_big_endian" => Ok(Encoding::BigEndian),
+        other => Err(unexpected(other, "a format of PLY")),
+    }
+}
+
+fn parse_element<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<ElementTable> {
+    let sort = match next_field(fields)? {
+        b"vertex" => Sort::Vertex,
+        b"face" => Sort::Face,
+        _ => Sort::Other,
+    };
+    let rows = parse_integer(next_field(fields)?)?;
+    expect_no_field(fields)?;
+    Ok(ElementTable { sort, rows, properties: Vec::new() })
+}
+
+fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -> Result<Property> {
+    let first = next_field(fields)?;
+    let is_list = first == b"list";
+    let length = is_list.then(|| Scalar::from_name(next_field(fields)?)).transpose()?;
+    let scalar = Scalar::from_name(if is_list { next_field(fields)? } else { first })?;
+    let name = next_field(fields)?;
+    expect_no_field(fields)?;
+    let role = match (sort, is_list, name) {
+        (Sort::Vertex, false, b"x") => Role::Axis(0),
+        (Sort::Vertex, false, b"y") => Role::Axis(1),
+        (Sort::Vertex, false, b"z") => Role::Axis(2),
+        (Sort::Face, true, b"vertex_indices" | b"vertex_index") => Role::Corners,
+        _ => Role::Other,
+    };
+    Ok(Property { role, length, scalar })
+}
