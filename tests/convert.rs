@@ -22,7 +22,7 @@ fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
 fn with_notices(input: &[u8], from: Format, to: Format) -> Result<(Vec<u8>, Vec<String>)> {
     let options = Options { from: Some(from), ..Options::default() };
     let mut output = Vec::new();
-    let notices = convert(Cursor::new(input.to_vec()), "test", to, &mut output, &options)?;
+    let notices = convert(Cursor::new(input.to_vec()), "test", to, &mut output, &options, |_| ())?;
     Ok((output, notices))
 }
 

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::{Common, notice, open_input};
+use super::{Common, notice, open_input, progress::Progress};
 use crate::convert::{Format, Options, convert};
 use crate::error::Error;
 use crate::output::Output;
@@ -85,7 +85,9 @@ pub fn run(flags: Flags) -> Result<()> {
     let (input, name) = open_input(&flags.input)?;
     let is_binary = to.is_binary() && !(to == Format::Ply && options.ascii);
     let mut output = Output::create(&flags.output, is_binary)?;
-    let notices = convert(input, &name, to, &mut output, &options)?;
+    let mut progress = Progress::new(&flags.common, "converting", None);
+    let notices = convert(input, &name, to, &mut output, &options, |points| progress.set(points))?;
+    drop(progress);
     output.commit()?;
     for message in &notices {
         notice("spconvert", &flags.common, &format!("{name}: {message}"));

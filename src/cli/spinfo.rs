@@ -27,7 +27,8 @@ Examples:
   spinfo --audit --points a.laz mesh.spm  and it has exactly these points
   spinfo --json mesh.spm | jq .counts     for programs
 
-Exit codes: 0 fine, 3 the stream is malformed or truncated, 4 the audit found a violation.";
+Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
+4 the audit found a violation, 141 output closed by its reader.";
 
 /// Says what a spmesh stream holds, and proves that it keeps its promises
 #[derive(Debug, Parser)]

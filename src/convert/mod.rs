@@ -16,7 +16,7 @@ use crate::sink::{
 use crate::source::{
     EventSource, ObjSource, SmaSource, SmbSource, SpEvents, SpaReader, SpbReader, TwinSource, open_ply,
 };
-use crate::stream::StreamReader;
+use crate::stream::{Event, StreamReader};
 
 /// What a conversion may choose.
 #[derive(Debug, Clone, Default)]
@@ -32,7 +32,7 @@ pub struct Options {
 }
 
 /// Reads `input`, whose name is `name`, and writes it to `output` as `to`. What the user should know of
-/// losses is returned as sentences.
+/// losses is returned as sentences; `progress` is told how many points or vertices are done.
 ///
 /// The output is complete only if this succeeds. Memory: bounded, but for meshes that do not say when
 /// vertices are final.
@@ -45,7 +45,9 @@ pub fn convert(
     to: Format,
     output: &mut dyn Write,
     options: &Options,
+    mut progress: impl FnMut(u64),
 ) -> Result<Vec<String>> {
+    let mut done = 0;
     let mut source = open_source(input, name, options)?;
     let mut sink = open_sink(to, output, source.as_ref(), options)?;
     while let Some(event) = source.next_event()? {
@@ -53,6 +55,12 @@ pub fn convert(
             ErrorKind::Malformed | ErrorKind::Usage => source.locate(error),
             _ => error,
         })?;
+        done += match &event {
+            Event::Points(points) => points.len() as u64,
+            Event::Patch(patch) => patch.new.len() as u64,
+            _ => 0,
+        };
+        progress(done);
     }
     let mut notices = source.notices();
     notices.extend(sink.notices());

@@ -20,7 +20,7 @@ fn obj_and_ply_hold_the_mesh() {
         assert_eq!(ply(&converted(&stream, Format::Spm, Format::Ply).unwrap()), expected);
         let options = Options { ascii: true, ..Options::default() };
         let mut ascii = Vec::new();
-        convert(Cursor::new(stream), "test", Format::Ply, &mut ascii, &options).unwrap();
+        convert(Cursor::new(stream), "test", Format::Ply, &mut ascii, &options, |_| ()).unwrap();
         assert_eq!(ply(&ascii), expected);
     }
 }
@@ -89,12 +89,12 @@ fn formats_are_recognized_by_content() {
         for &format in formats {
             let input = converted(stream, Format::Spm, format).unwrap();
             let mut output = Vec::new();
-            convert(Cursor::new(input), "-", Format::Text, &mut output, &Options::default()).unwrap();
+            convert(Cursor::new(input), "-", Format::Text, &mut output, &Options::default(), |_| ()).unwrap();
         }
     }
     let plain = b"v 0 0 0\nv 1 0 0\n".to_vec();
     let guess = |name: &str| {
-        convert(Cursor::new(plain.clone()), name, Format::Spm, &mut Vec::new(), &Options::default())
+        convert(Cursor::new(plain.clone()), name, Format::Spm, &mut Vec::new(), &Options::default(), |_| ())
     };
     assert_eq!(guess("stdin").unwrap_err().kind(), ErrorKind::Usage);
     guess("mesh.OBJ").unwrap();
