@@ -14,7 +14,7 @@ use crate::sink::{
     EventSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink, SpmSink, TwinSink,
 };
 use crate::source::{
-    EventSource, ObjSource, SmaSource, SmbSource, SpEvents, SpaReader, SpbReader, TwinSource, open_ply,
+    EventSource, SpEvents, SpaReader, SpbReader, TwinSource, open_obj, open_ply, open_sma, open_smb,
 };
 use crate::stream::{Event, StreamReader};
 
@@ -91,9 +91,9 @@ pub fn open_source(
     Ok(match format {
         Format::Spm => Box::new(StreamReader::new(BufReader::with_capacity(1 << 18, input), name)?),
         Format::Text => Box::new(TwinSource::new(input, name)?),
-        Format::Obj => Box::new(ObjSource::new(input, name)),
-        Format::Sma => Box::new(SmaSource::new(input, name)?),
-        Format::Smb => Box::new(SmbSource::new(BufReader::new(input), name)?),
+        Format::Obj => open_obj(input, name),
+        Format::Sma => open_sma(input, name)?,
+        Format::Smb => open_smb(BufReader::new(input), name)?,
         Format::Spa => {
             let reader = SpaReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
             Box::new(SpEvents::new(reader, name, dims))

@@ -19,6 +19,9 @@ const VLR_HEADER_LEN: u64 = 54;
 const EVLR_HEADER_LEN: u64 = 60;
 const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
 
+/// Length of the shortest header, that of LAS 1.0 to 1.2.
+const HEADER_LEN_MIN: u16 = 227;
+
 /// What reading the points needs.
 #[derive(Debug, Clone)]
 pub(super) struct LasHeader {
@@ -71,6 +74,12 @@ impl LasHeader {
         if record_len < least {
             return Err(Error::malformed(format!(
                 "point records of {record_len} bytes, format {format} needs {least}"
+            )));
+        }
+        if raw.header_size < HEADER_LEN_MIN || raw.offset_to_point_data < u32::from(raw.header_size) {
+            return Err(Error::malformed(format!(
+                "header of {} bytes with points from byte {} on: they overlap",
+                raw.header_size, raw.offset_to_point_data
             )));
         }
         let records = Records::read(file, &raw, notices)?;

@@ -9,7 +9,6 @@ use super::patches::Order;
 use super::polygon::fan;
 use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
 use crate::error::{Error, Result};
-use crate::stream::{Event, Header};
 
 /// Statements of OBJ that say nothing of vertices and triangles.
 const PASSED_OVER: [&[u8]; 17] = [
@@ -32,36 +31,14 @@ const PASSED_OVER: [&[u8]; 17] = [
     b"trace_obj",
 ];
 
-/// Reads OBJ as a triangle mesh; polygons become fans around their first vertex.
+/// Reads OBJ as a triangle mesh; polygons become fans around their first vertex. `name` is what messages call
+/// the input.
 ///
 /// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input and line. Memory: one
 /// patch, and the triangles that come before their vertices.
-pub struct ObjSource<R: Read>(MeshEvents<ObjElements<R>>);
-
-impl<R: Read> ObjSource<R> {
-    /// Starts to read; `name` is what messages call the input.
-    pub fn new(input: R, name: impl Into<String>) -> Self {
-        let lines = Lines::new(input, name);
-        ObjSource(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
-    }
-}
-
-impl<R: Read> EventSource for ObjSource<R> {
-    fn header(&self) -> &Header {
-        self.0.header()
-    }
-
-    fn next_event(&mut self) -> Result<Option<Event>> {
-        self.0.next_event()
-    }
-
-    fn locate(&self, error: Error) -> Error {
-        self.0.locate(error)
-    }
-
-    fn notices(&self) -> Vec<String> {
-        self.0.notices()
-    }
+pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn EventSource> {
+    let lines = Lines::new(input, name);
+    Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
 }
 
 struct ObjElements<R> {

@@ -9,45 +9,22 @@ use super::statements::{
     Lines, expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected,
 };
 use crate::error::{Error, Result};
-use crate::stream::{Event, Header};
 
-/// Reads an SMA mesh, pre-order or post-order.
+/// Reads an SMA mesh, pre-order or post-order: now up to the first element. `name` is what messages call the
+/// input.
 ///
 /// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input and line. The counts of
 /// the header are verified where it has them; without them a mesh that is cut off behind a whole line
 /// cannot be told from a short one.
-pub struct SmaSource<R: Read>(MeshEvents<SmaElements<R>>);
-
-impl<R: Read> SmaSource<R> {
-    /// Reads up to the first element; `name` is what messages call the input.
-    ///
-    /// # Errors
-    /// If the lines before the first element are no header of SMA.
-    pub fn new(input: R, name: impl Into<String>) -> Result<Self> {
-        let lines = Lines::new(input, name);
-        let mut elements =
-            SmaElements { lines, order: Order::Stated, held: false, vertices: None, triangles: None };
-        elements.read_header().map_err(|e| elements.locate(e))?;
-        Ok(SmaSource(MeshEvents::new(elements)))
-    }
-}
-
-impl<R: Read> EventSource for SmaSource<R> {
-    fn header(&self) -> &Header {
-        self.0.header()
-    }
-
-    fn next_event(&mut self) -> Result<Option<Event>> {
-        self.0.next_event()
-    }
-
-    fn locate(&self, error: Error) -> Error {
-        self.0.locate(error)
-    }
-
-    fn notices(&self) -> Vec<String> {
-        self.0.notices()
-    }
+///
+/// # Errors
+/// If the lines before the first element are no header of SMA.
+pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
+    let lines = Lines::new(input, name);
+    let mut elements =
+        SmaElements { lines, order: Order::Stated, held: false, vertices: None, triangles: None };
+    elements.read_header().map_err(|e| elements.locate(e))?;
+    Ok(Box::new(MeshEvents::new(elements)))
 }
 
 struct SmaElements<R> {

@@ -9,64 +9,41 @@ use super::sma::check_count;
 use super::smb_header::{ByteOrder, ELEMENT_LEN, ELEMENTS_PER_BLOCK, SmbHeader, read_header};
 use crate::error::{Error, Result};
 use crate::limits::HEADER_BODY_MAX;
-use crate::stream::{Event, Header};
 
-/// Reads an SMB mesh, pre-order or post-order, of either byte order.
+/// Reads an SMB mesh, pre-order or post-order, of either byte order: now the header, deciding the byte order
+/// from what header and first block say in each, because the flag in the file is often wrong. `name` is what
+/// messages call the input.
 ///
 /// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input and byte. The counts of
 /// the header are verified where it has them; without them a mesh that is cut off behind a whole element
 /// cannot be told from a short one.
-pub struct SmbSource<R: Read>(MeshEvents<SmbElements<R>>);
-
-impl<R: Read> SmbSource<R> {
-    /// Reads the header, and decides the byte order from what header and first block say in each, because
-    /// the flag in the file is often wrong; `name` is what messages call the input.
-    ///
-    /// # Errors
-    /// If the header makes sense in neither byte order.
-    pub fn new(mut input: R, name: impl Into<String>) -> Result<Self> {
-        let name = name.into();
-        let mut head = Vec::new();
-        let read = (&mut input).take(HEADER_BODY_MAX as u64).read_to_end(&mut head);
-        read.map_err(|e| Error::io("reading", e).of_input(&name))?;
-        let header = read_header(&head).map_err(|e| e.at("header at byte 0").of_input(&name))?;
-        let mut rest = Cursor::new(head);
-        rest.set_position(header.len as u64);
-        let mut elements = SmbElements {
-            input: rest.chain(input),
-            name,
-            offset: header.len as u64,
-            header,
-            order: Order::Stated,
-            descriptor: 0,
-            block: Vec::new(),
-            used: 0,
-            ended: false,
-        };
-        elements.read_block().map_err(|e| elements.locate(e))?;
-        if !elements.block.is_empty() && elements.descriptor & 1 == 0 {
-            elements.order = Order::OnArrival;
-        }
-        Ok(SmbSource(MeshEvents::new(elements)))
+///
+/// # Errors
+/// If the header makes sense in neither byte order.
+pub fn open_smb<R: Read + 'static>(mut input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
+    let name = name.into();
+    let mut head = Vec::new();
+    let read = (&mut input).take(HEADER_BODY_MAX as u64).read_to_end(&mut head);
+    read.map_err(|e| Error::io("reading", e).of_input(&name))?;
+    let header = read_header(&head).map_err(|e| e.at("header at byte 0").of_input(&name))?;
+    let mut rest = Cursor::new(head);
+    rest.set_position(header.len as u64);
+    let mut elements = SmbElements {
+        input: rest.chain(input),
+        name,
+        offset: header.len as u64,
+        header,
+        order: Order::Stated,
+        descriptor: 0,
+        block: Vec::new(),
+        used: 0,
+        ended: false,
+    };
+    elements.read_block().map_err(|e| elements.locate(e))?;
+    if !elements.block.is_empty() && elements.descriptor & 1 == 0 {
+        elements.order = Order::OnArrival;
     }
-}
-
-impl<R: Read> EventSource for SmbSource<R> {
-    fn header(&self) -> &Header {
-        self.0.header()
-    }
-
-    fn next_event(&mut self) -> Result<Option<Event>> {
-        self.0.next_event()
-    }
-
-    fn locate(&self, error: Error) -> Error {
-        self.0.locate(error)
-    }
-
-    fn notices(&self) -> Vec<String> {
-        self.0.notices()
-    }
+    Ok(Box::new(MeshEvents::new(elements)))
 }
 
 struct SmbElements<R> {

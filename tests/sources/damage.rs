@@ -2,6 +2,7 @@
 
 use super::{Folder, flat, sample};
 use crate::allocation::largest_during;
+use spmesh::error::ErrorKind;
 use spmesh::source::Input;
 
 /// Largest single allocation that a damaged small file may cause: a group of chunks.
@@ -76,4 +77,21 @@ fn files_cut_anywhere_are_errors() {
             }
         }
     }
+}
+
+#[test]
+fn points_in_the_header_are_refused() {
+    let folder = Folder::new();
+    let whole = std::fs::read(sample("hextest.las")).unwrap();
+    // Offset to point data at byte 96, length of the header at byte 94.
+    for (at, value) in [(96, 0u32), (96, 100), (96, 226)] {
+        let mut damaged = whole.clone();
+        damaged[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        let path = folder.file("damaged", &damaged);
+        super::assert_fails(Input::open(&[path], &flat()), ErrorKind::Malformed, &["they overlap"]);
+    }
+    let mut short = whole;
+    short[94..96].copy_from_slice(&1u16.to_le_bytes());
+    let path = folder.file("short", &short);
+    super::assert_fails(Input::open(&[path], &flat()), ErrorKind::Malformed, &["header of 1 bytes"]);
 }
