@@ -1,0 +1,80 @@
+//! Points in memory as an input of the engine.
+
+use std::cell::Cell;
+
+use spmesh::bounds::Point;
+use spmesh::error::Result;
+use spmesh::finalize::{Observer, Passes};
+use spmesh::source::{Description, PointReader};
+use spmesh::stream::Crs;
+
+use super::sets::Set;
+
+/// Points in memory as an input; `changed` are what later passes see instead.
+pub(super) struct Memory {
+    pub(super) description: Description,
+    pub(super) points: Vec<Point>,
+    pub(super) changed: Option<Vec<Point>>,
+    pub(super) passes: Cell<u32>,
+    pub(super) name: Option<String>,
+}
+
+impl Memory {
+    pub(super) fn new(set: &Set) -> Memory {
+        let description = Description {
+            coordinates: set.coordinates,
+            dims: set.dims,
+            has_elevation: set.dims == 2,
+            crs: Crs::Wkt("LOCAL_CS[\"test\"]".into()),
+            stated_bounds: None,
+            stated_points: None,
+        };
+        Memory { description, points: set.points.clone(), changed: None, passes: Cell::new(0), name: None }
+    }
+}
+
+impl Passes for Memory {
+    fn description(&self) -> &Description {
+        &self.description
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        self.passes.set(self.passes.get() + 1);
+        let points = match &self.changed {
+            Some(changed) if self.passes.get() > 2 => changed,
+            _ => &self.points,
+        };
+        Ok(Box::new(MemoryReader { rest: points }))
+    }
+
+    fn name(&self) -> Option<String> {
+        self.name.clone()
+    }
+}
+
+pub(super) struct MemoryReader<'a> {
+    pub(super) rest: &'a [Point],
+}
+
+impl PointReader for MemoryReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        let (now, later) = self.rest.split_at(self.rest.len().min(977));
+        batch.clear();
+        batch.extend_from_slice(now);
+        self.rest = later;
+        Ok(())
+    }
+
+    fn invalid(&self) -> u64 {
+        0
+    }
+}
+
+#[derive(Default)]
+pub(super) struct Notices(pub(super) Vec<String>);
+
+impl Observer for Notices {
+    fn notice(&mut self, message: &str) {
+        self.0.push(message.into());
+    }
+}
