@@ -26,7 +26,7 @@ const LIST_MAX: u64 = 1 << 16;
 /// patch or batch, and triangles that come before their vertices.
 ///
 /// # Errors
-/// If the header is damaged or states no vertices with x, y and z.
+/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips.
 pub fn open_ply<R: Read + 'static>(
     input: R,
     name: impl Into<String>,
@@ -148,10 +148,33 @@ impl<R: Read> Rows<R> {
             match table.sort {
                 Sort::Vertex => return Ok(Some(Row::Vertex(point))),
                 Sort::Face => return Ok(Some(Row::Face(corners))),
-                Sort::Other => {}
+                Sort::Strip | Sort::Other => {}
             }
         }
+        self.expect_end_of_input()?;
         Ok(None)
+    }
+
+    /// That nothing follows: a count that is too low would lose the rest without a word.
+    fn expect_end_of_input(&mut self) -> Result<()> {
+        let goes_on = match self.header.encoding {
+            Encoding::Ascii => loop {
+                match self.lines.next_line()? {
+                    None => break false,
+                    Some(line) if line.trim_ascii().is_empty() => {}
+                    Some(_) => break true,
+                }
+            },
+            _ => {
+                let mut rest = self.lines.input().take(1);
+                std::io::copy(&mut rest, &mut std::io::sink()).map_err(|e| Error::io("reading", e))? > 0
+            }
+        };
+        if goes_on {
+            Err(Error::malformed("the file goes on after the rows that the header states"))
+        } else {
+            Ok(())
+        }
     }
 
     fn locate(&self, error: Error) -> Error {
@@ -182,18 +205,23 @@ impl RowValues {
                 Ok(())
             }
             Role::Corners => Err(Error::malformed(format!("vertex number {value}"))),
-            Role::Other => Ok(()),
+            Role::Length | Role::Other => Ok(()),
         }
     }
 
     /// Values of a property, each from `next`.
-    fn property(&mut self, property: &Property, mut next: impl FnMut(Scalar) -> Result<f64>) -> Result<()> {
-        let Some(length) = property.length else { return self.add(property.role, next(property.scalar)?) };
-        let length = next(length)?;
+    fn property(
+        &mut self,
+        property: &Property,
+        mut next: impl FnMut(Role, Scalar) -> Result<f64>,
+    ) -> Result<()> {
+        let &Property { role, length, scalar } = property;
+        let Some(length) = length else { return self.add(role, next(role, scalar)?) };
+        let length = next(Role::Length, length)?;
         if !(length >= 0.0 && length <= LIST_MAX as f64 && length.fract() == 0.0) {
             return Err(Error::malformed(format!("list of {length} values, the maximum is {LIST_MAX}")));
         }
-        (0..length as u64).try_for_each(|_| self.add(property.role, next(property.scalar)?))
+        (0..length as u64).try_for_each(|_| self.add(role, next(role, scalar)?))
     }
 }
 
@@ -202,7 +230,11 @@ fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Resu
     let line = lines.next_line()?.ok_or_else(truncated)?;
     let mut fields = fields(line);
     for property in properties {
-        values.property(property, |_| parse_decimal(next_field(&mut fields)?))?;
+        values.property(property, |role, _| match role {
+            // What is read over may be no finite number.
+            Role::Other => next_field(&mut fields).map(|_| 0.0),
+            _ => parse_decimal(next_field(&mut fields)?),
+        })?;
     }
     expect_no_field(&mut fields)?;
     Ok((values.point, values.corners))
@@ -215,7 +247,7 @@ fn read_binary_row(
 ) -> Result<(Point, Vec<u64>)> {
     let mut values = RowValues::default();
     for property in properties {
-        values.property(property, |scalar| {
+        values.property(property, |_, scalar| {
             let mut bytes = [0; 8];
             let bytes = &mut bytes[..scalar.width()];
             input.read_exact(bytes).map_err(|e| match e.kind() {

@@ -62,6 +62,8 @@ pub(super) enum Role {
     Axis(usize),
     /// Vertices of a face.
     Corners,
+    /// How many values a list has.
+    Length,
     /// Anything else: read over.
     Other,
 }
@@ -80,6 +82,8 @@ pub(super) struct Property {
 pub(super) enum Sort {
     Vertex,
     Face,
+    /// Triangle strips, which are not read.
+    Strip,
     Other,
 }
 
@@ -153,6 +157,19 @@ impl PlyHeader {
         if !(0..3).all(|axis| has(Role::Axis(axis))) {
             return Err(Error::malformed("vertices without properties x, y and z"));
         }
+        if self.rows(Sort::Strip) > 0 {
+            return Err(Error::usage("triangle strips of PLY are not read: write them as faces"));
+        }
+        for table in self.tables.iter().filter(|table| table.rows > 0) {
+            let lists = table.properties.iter().filter(|property| property.role == Role::Corners).count();
+            if table.sort == Sort::Face && lists != 1 {
+                return Err(Error::malformed(format!("faces with {lists} lists vertex_indices, expected 1")));
+            }
+            // Rows of no bytes would never come to an end that a count of 2^64 - 1 states.
+            if table.properties.is_empty() {
+                return Err(Error::malformed(format!("{} rows of no properties", table.rows)));
+            }
+        }
         Ok(())
     }
 }
@@ -170,6 +187,7 @@ fn parse_element<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Elem
     let sort = match next_field(fields)? {
         b"vertex" => Sort::Vertex,
         b"face" => Sort::Face,
+        b"tristrips" => Sort::Strip,
         _ => Sort::Other,
     };
     let rows = parse_integer(next_field(fields)?)?;

@@ -81,10 +81,46 @@ fn bad_headers_and_rows_are_refused() {
         (TEXT.replace(face, "2 0 1 0\n"), "face of 2 vertices"),
         (TEXT.replace(face, "99999999 0 1 0\n"), "list of 99999999 values"),
         (TEXT.replace("1 0 0 5\n", "1 nan 0 5\n"), "finite number"),
+        (TEXT.replace("face 3", "face 2"), "goes on after the rows"),
+        (TEXT.replace("vertex_indices", "corners"), "faces with 0 lists"),
+        (
+            TEXT.replace("end_header", "element void 18446744073709551615\nend_header"),
+            "rows of no properties",
+        ),
     ];
     for (text, expected) in cases {
         let error = converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
         assert!(error.to_string().contains(expected), "{error}");
     }
+}
+
+#[test]
+fn binary_files_end_with_their_rows() {
+    for is_big in [false, true] {
+        let bytes = binary(is_big);
+        let longer = [&bytes[..], &[0]].concat();
+        let start = bytes.len() - 100;
+        for damaged in (start..bytes.len()).map(|end| &bytes[..end]).chain([&longer[..]]) {
+            let error = converted(damaged, Format::Ply, Format::Spm).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
+            assert!(error.to_string().starts_with("test: element "), "{error}");
+        }
+    }
+}
+
+#[test]
+fn what_is_read_over_may_be_no_number() {
+    let text = TEXT.replace("1 0 0 5\n", "nan 0 0 5\n").replace("2 3 1 0.5", "2 3 1 inf");
+    assert_eq!(
+        text_of(&converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap()),
+        text_of(&converted(TEXT.as_bytes(), Format::Ply, Format::Spm).unwrap())
+    );
+}
+
+#[test]
+fn triangle_strips_are_not_lost_without_a_word() {
+    let text = TEXT.replace("element face", "element tristrips");
+    let error = converted(text.as_bytes(), Format::Ply, Format::Spm).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
 }
