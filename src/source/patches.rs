@@ -209,20 +209,7 @@ impl PatchBuilder {
         let finals = if self.triangles.is_empty() { FINALIZED_MAX } else { 0 };
         let finalized = drain_at_most(&mut self.finalized, finals);
         self.first_id += new.len() as u64;
-        let used = triangles.iter().flatten().chain(&finalized);
-        let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();
-        imported.sort_unstable();
-        imported.dedup();
-        let local = |id: &u64| -> u32 {
-            match id.checked_sub(first_id) {
-                Some(new) => new as u32,
-                None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
-            }
-        };
-        let simplices = triangles.iter().flatten().map(local).collect();
-        let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
-        finalized.sort_unstable();
-        Patch { first_id, new, imported, simplices, finalized }
+        patch_of_ids(first_id, new, &triangles, &finalized)
     }
 
     /// One triangle that used the vertex no longer waits.
@@ -239,6 +226,27 @@ impl PatchBuilder {
             self.finalized.push(id);
         }
     }
+}
+
+/// The patch of vertices from `first_id` on, with ids below the end of those in triangles and finalizations.
+pub(super) fn patch_of_ids(
+    first_id: u64,
+    new: Vec<Point>,
+    triangles: &[[u64; 3]],
+    finalized: &[u64],
+) -> Patch {
+    let used = triangles.iter().flatten().chain(finalized);
+    let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();
+    imported.sort_unstable();
+    imported.dedup();
+    let local = |id: &u64| match id.checked_sub(first_id) {
+        Some(new) => new as u32,
+        None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
+    };
+    let simplices = triangles.iter().flatten().map(local).collect();
+    let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
+    finalized.sort_unstable();
+    Patch { first_id, new, imported, simplices, finalized }
 }
 
 fn drain_at_most<T>(items: &mut Vec<T>, most: usize) -> Vec<T> {

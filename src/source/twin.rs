@@ -3,6 +3,7 @@
 use std::io::Read;
 
 use super::events::EventSource;
+use super::patches::patch_of_ids;
 use super::statements::{
     Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
 };
@@ -11,7 +12,7 @@ use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
 use crate::limits::BLOCK_PAYLOAD_MAX;
-use crate::stream::{ChunkCheck, Coordinates, Event, Header, Kind, Patch, Totals, check_place};
+use crate::stream::{Coordinates, Event, Header, Kind, Patch, Tally, Totals, check_place};
 
 /// Lines of one sort that become one event at most.
 const BATCH_MAX: usize = 4096;
@@ -61,10 +62,7 @@ pub struct TwinSource<R> {
     header: Header,
     held: Option<Statement>,
     group: Group,
-    totals: Totals,
-    finalized: u64,
-    named_residual_points: u64,
-    chunks: Option<ChunkCheck>,
+    tally: Tally,
     ended: bool,
 }
 
@@ -91,18 +89,8 @@ impl<R: Read> TwinSource<R> {
             }
         }
         let header = header.finish().map_err(|e| lines.locate(e))?;
-        let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
-        let mut source = TwinSource {
-            lines,
-            header,
-            held: None,
-            group: Group::Empty,
-            totals: Totals::default(),
-            finalized: 0,
-            named_residual_points: 0,
-            chunks,
-            ended: false,
-        };
+        let tally = Tally::new(&header);
+        let mut source = TwinSource { lines, header, held: None, group: Group::Empty, tally, ended: false };
         if is_first_content {
             source.held =
                 parse_statement(source.lines.current(), &source.header).map_err(|e| source.locate(e))?;
@@ -132,7 +120,7 @@ impl<R: Read> TwinSource<R> {
                 return self.take_group();
             }
             if let Statement::End(stated) = statement {
-                self.check_end(stated)?;
+                self.tally.check_end(&self.header, &stated)?;
                 self.expect_end_of_input()?;
                 self.ended = true;
                 return Ok(Event::End(stated));
@@ -145,7 +133,7 @@ impl<R: Read> TwinSource<R> {
     fn push(&mut self, statement: Statement) -> Result<()> {
         let is_mesh = self.header.kind != Kind::Points;
         let is_partial = self.header.kind == Kind::PartialTriangleMesh;
-        let residual_points = self.totals.residual_points;
+        let Totals { residual_points, walls, .. } = *self.tally.totals();
         match (&mut self.group, statement) {
             (Group::Points(points), Statement::Vertex(point)) => points.push(point),
             (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
@@ -153,17 +141,15 @@ impl<R: Read> TwinSource<R> {
             (Group::Patch(patch), Statement::Triangle(triangle)) => patch.triangles.push(triangle),
             (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
-            (Group::Walls(walls), Statement::Wall(wall)) => walls.push(check_wall(wall, residual_points)?),
+            (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
             (Group::Empty, statement) => {
                 self.group = match statement {
                     Statement::Vertex(_) if !is_mesh => Group::Points(Vec::new()),
                     Statement::Cell(_) if !is_mesh => Group::Cells(Vec::new()),
-                    Statement::Patch if is_mesh && self.totals.residual_points == 0 => {
+                    Statement::Patch if is_mesh && residual_points == 0 => {
                         Group::Patch(PatchLines::default())
                     }
-                    Statement::Residual(..) if is_partial && self.totals.walls == 0 => {
-                        Group::Residual(Vec::new())
-                    }
+                    Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
                     _ => {
                         let kind = self.header.kind.name();
@@ -184,96 +170,43 @@ impl<R: Read> TwinSource<R> {
 
     /// The event of the group, checked by the rules of the stream.
     fn take_group(&mut self) -> Result<Event> {
-        Ok(match std::mem::replace(&mut self.group, Group::Empty) {
+        let vertices = self.tally.totals().vertices;
+        let event = match std::mem::replace(&mut self.group, Group::Empty) {
             Group::Empty => unreachable!("the empty group takes every statement"),
-            Group::Points(points) => {
-                self.totals.points += points.len() as u64;
-                if let Some(chunks) = &mut self.chunks {
-                    chunks.points(&points)?;
-                }
-                Event::Points(points)
-            }
-            Group::Cells(cells) => {
-                self.totals.cells += cells.len() as u64;
-                if let Some(chunks) = &mut self.chunks {
-                    chunks.cells(&cells);
-                }
-                Event::Cells(cells)
-            }
-            Group::Patch(lines) => Event::Patch(self.patch_of(lines)?),
+            Group::Points(points) => Event::Points(points),
+            Group::Cells(cells) => Event::Cells(cells),
+            Group::Patch(lines) => Event::Patch(self.patch_of(vertices, lines)?),
             Group::Residual(points) => {
-                let named = || points.iter().filter_map(|&(id, _)| id);
-                if let Some(id) = named().find(|&id| id >= self.totals.vertices) {
+                let mut named = points.iter().filter_map(|&(id, _)| id);
+                if let Some(id) = named.find(|&id| id >= vertices) {
                     return Err(Error::malformed(format!(
                         "residual point is vertex {}, which is none",
                         id + 1
                     )));
                 }
-                self.totals.residual_points += points.len() as u64;
-                self.named_residual_points += named().count() as u64;
                 Event::ResidualPoints(points)
             }
-            Group::Walls(walls) => {
-                self.totals.walls += walls.len() as u64;
-                Event::Walls(walls)
-            }
-        })
+            Group::Walls(walls) => Event::Walls(walls),
+        };
+        self.tally.count(&event)?;
+        Ok(event)
     }
 
-    fn patch_of(&mut self, lines: PatchLines) -> Result<Patch> {
-        let first_id = self.totals.vertices;
+    fn patch_of(&self, first_id: u64, lines: PatchLines) -> Result<Patch> {
         let len_min = lines.len_min(&self.header);
         let PatchLines { new, triangles, finalized } = lines;
-        let used = || triangles.iter().flatten().chain(&finalized).copied();
         let end = first_id + new.len() as u64;
-        if let Some(id) = used().find(|&id| id >= end) {
+        if let Some(id) = triangles.iter().flatten().chain(&finalized).find(|&&id| id >= end) {
             return Err(Error::malformed(format!("vertex {} of {end}", id + 1)));
         }
-        let mut imported: Vec<u64> = used().filter(|&id| id < first_id).collect();
-        imported.sort_unstable();
-        imported.dedup();
-        if len_min + imported.len() * 8 > BLOCK_PAYLOAD_MAX {
+        let patch = patch_of_ids(first_id, new, &triangles, &finalized);
+        if len_min + patch.imported.len() * 8 > BLOCK_PAYLOAD_MAX {
             return Err(too_long());
         }
-        let local = |id: &u64| match id.checked_sub(first_id) {
-            Some(new) => new as u32,
-            None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
-        };
-        let simplices: Vec<u32> = triangles.iter().flatten().map(local).collect();
-        let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
-        finalized.sort_unstable();
-        if finalized.windows(2).any(|pair| pair[0] == pair[1]) {
+        if patch.finalized.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(Error::malformed("the patch finalizes a vertex twice"));
         }
-        self.totals.vertices = end;
-        self.totals.simplices += triangles.len() as u64;
-        self.finalized += finalized.len() as u64;
-        Ok(Patch { first_id, new, imported, simplices, finalized })
-    }
-
-    /// The rules of END (`formats/spmesh.md` 4.7).
-    fn check_end(&self, stated: Totals) -> Result<()> {
-        let mut counted = self.totals;
-        if self.header.kind != Kind::Points {
-            counted.merged = stated.merged;
-            let waiting = counted.residual_points - self.named_residual_points;
-            let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
-            counted.points = points.ok_or_else(|| Error::malformed("end: points are beyond counting"))?;
-            let retired = self.finalized + self.named_residual_points;
-            if retired != counted.vertices {
-                return Err(Error::malformed(format!(
-                    "end: {retired} of {} vertices were finalized or handed to the residual",
-                    counted.vertices
-                )));
-            }
-        }
-        if stated != counted {
-            return Err(Error::malformed(format!("end states {stated:?}, but the text holds {counted:?}")));
-        }
-        if self.header.points.is_some_and(|points| points != stated.points) {
-            return Err(Error::malformed("end: the header states another number of points"));
-        }
-        self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
+        Ok(patch)
     }
 
     fn expect_end_of_input(&mut self) -> Result<()> {

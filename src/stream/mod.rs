@@ -11,9 +11,9 @@ mod kind;
 mod live;
 mod payload;
 mod reader;
+mod tally;
 mod writer;
 
-pub(crate) use chunks::ChunkCheck;
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use header::{Coordinates, Crs, Header};
@@ -21,5 +21,6 @@ pub use kind::Kind;
 pub use live::LiveVertices;
 pub(crate) use payload::check_place;
 pub use reader::StreamReader;
+pub(crate) use tally::Tally;
 pub use writer::StreamWriter;
 pub(crate) use writer::encode_point;

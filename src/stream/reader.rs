@@ -6,11 +6,11 @@ use std::io::Read;
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
-use super::chunks::ChunkCheck;
 use super::event::{Event, Totals};
 use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
 use super::payload;
+use super::tally::Tally;
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
 
@@ -28,10 +28,7 @@ pub struct StreamReader<R: Read> {
     offset: u64,
     block_start: u64,
     last_tag: Option<Tag>,
-    totals: Totals,
-    finalized: u64,
-    named_residual_points: u64,
-    chunks: Option<ChunkCheck>,
+    tally: Tally,
     ended: bool,
 }
 
@@ -44,7 +41,7 @@ impl<R: Read> StreamReader<R> {
         let name = name.into();
         let (header, offset) =
             read_header(&mut input).map_err(|e| e.at("header at byte 0").of_input(&name))?;
-        let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
+        let tally = Tally::new(&header);
         Ok(StreamReader {
             input,
             name,
@@ -54,10 +51,7 @@ impl<R: Read> StreamReader<R> {
             offset,
             block_start: 0,
             last_tag: None,
-            totals: Totals::default(),
-            finalized: 0,
-            named_residual_points: 0,
-            chunks,
+            tally,
             ended: false,
         })
     }
@@ -74,7 +68,7 @@ impl<R: Read> StreamReader<R> {
 
     /// What was read so far.
     pub fn totals(&self) -> Totals {
-        self.totals
+        *self.tally.totals()
     }
 
     /// Bytes read so far.
@@ -157,84 +151,24 @@ impl<R: Read> StreamReader<R> {
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {
-        let (header, payload) = (&self.header, &self.payload[..]);
+        let (header, payload, totals) = (&self.header, &self.payload[..], self.tally.totals());
         let event = match tag {
             Tag::Points => Event::Points(payload::points(header, payload)?),
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
-            Tag::Patch => Event::Patch(payload::patch(header, self.totals.vertices, payload)?),
+            Tag::Patch => Event::Patch(payload::patch(header, totals.vertices, payload)?),
             Tag::ResidualPoints => {
-                Event::ResidualPoints(payload::residual_points(header, self.totals.vertices, payload)?)
+                Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
             }
-            Tag::Walls => Event::Walls(payload::walls(self.totals.residual_points, payload)?),
-            Tag::End => Event::End(self.decode_end()?),
+            Tag::Walls => Event::Walls(payload::walls(totals.residual_points, payload)?),
+            Tag::End => Event::End(payload::totals(payload)?),
         };
-        self.count(&event)?;
+        self.tally.count(&event)?;
+        if let Event::End(stated) = &event {
+            self.tally.check_end(&self.header, stated)?;
+            self.expect_end_of_input()?;
+            self.ended = true;
+        }
         Ok(event)
-    }
-
-    /// Brings the totals up to date, with the rules that span blocks.
-    fn count(&mut self, event: &Event) -> Result<()> {
-        match event {
-            Event::Points(points) => {
-                self.totals.points += points.len() as u64;
-                if let Some(chunks) = &mut self.chunks {
-                    chunks.points(points)?;
-                }
-            }
-            Event::Cells(cells) => {
-                self.totals.cells += cells.len() as u64;
-                if let Some(chunks) = &mut self.chunks {
-                    chunks.cells(cells);
-                }
-            }
-            Event::Patch(patch) => {
-                let per_simplex = self.header.kind.vertices_per_simplex();
-                self.totals.vertices += patch.new.len() as u64;
-                self.totals.simplices += (patch.simplices.len() / per_simplex) as u64;
-                self.finalized += patch.finalized.len() as u64;
-            }
-            Event::ResidualPoints(points) => {
-                self.totals.residual_points += points.len() as u64;
-                self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
-            }
-            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
-            Event::End(_) => {
-                self.expect_end_of_input()?;
-                self.ended = true;
-            }
-        }
-        Ok(())
-    }
-
-    /// The totals that END states, if they are those of the blocks before. A mesh counts the points of the
-    /// input that it was made from: each is a vertex, was merged, or waits in the residual.
-    fn decode_end(&self) -> Result<Totals> {
-        let stated = payload::totals(&self.payload)?;
-        let kind = self.header.kind;
-        let mut counted = self.totals;
-        if kind.vertices_per_simplex() > 0 {
-            counted.merged = stated.merged;
-            let waiting = counted.residual_points - self.named_residual_points;
-            let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
-            counted.points = points.ok_or_else(|| Error::malformed("END: points are beyond counting"))?;
-            let retired = self.finalized + self.named_residual_points;
-            if retired != counted.vertices {
-                return Err(Error::malformed(format!(
-                    "END: {retired} of {} vertices were finalized or handed to the residual",
-                    counted.vertices
-                )));
-            }
-        }
-        if stated != counted {
-            return Err(Error::malformed(format!("END states {stated:?}, but the stream holds {counted:?}")));
-        }
-        if self.header.points.is_some_and(|points| points != stated.points) {
-            return Err(Error::malformed("END: the header states another number of points"));
-        }
-        if let Some(chunks) = &self.chunks {
-            chunks.end()?;
-        }
-        Ok(stated)
     }
 
     /// Nothing follows END, so END is handed out only when the input ends there.

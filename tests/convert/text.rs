@@ -59,7 +59,7 @@ fn errors_name_the_line() {
         ("w 1 3", "w 1 4", "wall between no two"),
         ("w 3 2", "# patch", "cannot have this line here"),
         ("r 2 ", "r 7 ", "residual point is vertex 7"),
-        ("simplices 1", "simplices 2", "end states"),
+        ("simplices 1", "simplices 2", "END states"),
         ("#spmesh dims 2\n", "", "does not say the dims"),
         ("#spmesh dims 2", "#spmesh dims 4", "expected 2 or 3"),
         ("version 1", "version 2", "expected 1"),

@@ -1,0 +1,92 @@
+//! Counts what a stream holds, and compares it at the end with what the end states.
+
+use super::chunks::ChunkCheck;
+use super::event::{Event, Totals};
+use super::header::Header;
+use crate::error::{Error, Result};
+
+/// What was read so far of a stream, in whatever form it is written, with the rules that span its events.
+#[derive(Debug)]
+pub(crate) struct Tally {
+    totals: Totals,
+    finalized: u64,
+    named_residual_points: u64,
+    per_simplex: usize,
+    chunks: Option<ChunkCheck>,
+}
+
+impl Tally {
+    pub(crate) fn new(header: &Header) -> Self {
+        let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
+        let per_simplex = header.kind.vertices_per_simplex();
+        Tally { totals: Totals::default(), finalized: 0, named_residual_points: 0, per_simplex, chunks }
+    }
+
+    /// What was counted. A mesh has no count of points before its end.
+    pub(crate) fn totals(&self) -> &Totals {
+        &self.totals
+    }
+
+    /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
+    ///
+    /// # Errors
+    /// If points of a chunked stream are not those of one cell.
+    pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => {
+                self.totals.points += points.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.points(points)?;
+                }
+            }
+            Event::Cells(cells) => {
+                self.totals.cells += cells.len() as u64;
+                if let Some(chunks) = &mut self.chunks {
+                    chunks.cells(cells);
+                }
+            }
+            Event::Patch(patch) => {
+                self.totals.vertices += patch.new.len() as u64;
+                self.totals.simplices += (patch.simplices.len() / self.per_simplex) as u64;
+                self.finalized += patch.finalized.len() as u64;
+            }
+            Event::ResidualPoints(points) => {
+                self.totals.residual_points += points.len() as u64;
+                self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
+            }
+            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::End(_) => {}
+        }
+        Ok(())
+    }
+
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.7). A mesh
+    /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
+    /// residual.
+    ///
+    /// # Errors
+    /// If they are not, or if vertices are neither final nor in the residual.
+    pub(crate) fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
+        let mut counted = self.totals;
+        if self.per_simplex > 0 {
+            counted.merged = stated.merged;
+            let waiting = counted.residual_points - self.named_residual_points;
+            let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
+            counted.points = points.ok_or_else(|| Error::malformed("END: points are beyond counting"))?;
+            let retired = self.finalized + self.named_residual_points;
+            if retired != counted.vertices {
+                return Err(Error::malformed(format!(
+                    "END: {retired} of {} vertices were finalized or handed to the residual",
+                    counted.vertices
+                )));
+            }
+        }
+        if *stated != counted {
+            return Err(Error::malformed(format!("END states {stated:?}, but the stream holds {counted:?}")));
+        }
+        if header.points.is_some_and(|points| points != stated.points) {
+            return Err(Error::malformed("END: the header states another number of points"));
+        }
+        self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
+    }
+}
