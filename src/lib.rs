@@ -5,6 +5,7 @@
 pub mod audit;
 pub mod bits;
 pub mod bounds;
+mod cell_index;
 pub mod cells;
 pub mod cli;
 pub mod convert;

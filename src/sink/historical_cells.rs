@@ -1,12 +1,9 @@
 //! Finalization tags of the historical point formats: cells by level and quadrant, in a box.
 
 use crate::bounds::{Bounds, Point};
+use crate::cell_index::{index_of, level_max};
 use crate::cells::{CellCode, CellTree};
 use crate::stream::{Coordinates, Header};
-
-/// Deepest level of which all cells have an index of 31 bits.
-const QUADTREE_LEVEL_MAX: u8 = 15;
-const OCTREE_LEVEL_MAX: u8 = 10;
 
 /// The tree of a stream, as a box of world coordinates whose halves are the cells.
 ///
@@ -28,7 +25,7 @@ impl HistoricalCells {
         let tree = header.tree?;
         let (mut min, mut max) = tree.corners(CellCode::ROOT);
         if let Coordinates::I32 { .. } = header.coordinates {
-            let finest = tree.side() / 2f64.powi(i32::from(tree.depth().min(level_max(&tree))));
+            let finest = tree.side() / 2f64.powi(i32::from(tree.depth().min(level_max(tree.dims()))));
             if finest < 1.0 || min.iter().any(|x| x.fract() != 0.0) {
                 return None;
             }
@@ -61,19 +58,9 @@ impl HistoricalCells {
     /// Index of a cell; `None`, and counted, if it is too deep to have one.
     pub(super) fn index(&mut self, cell: CellCode) -> Option<i32> {
         self.is_complete |= cell == CellCode::ROOT;
-        let level = self.tree.level(cell);
-        if level > level_max(&self.tree) {
-            self.skipped += 1;
-            return None;
-        }
-        let dims = self.tree.dims();
-        let children = 1u64 << dims;
-        // The lowest bit of a quadrant says "lower x", then "upper y", then "lower z".
-        let flip = if dims == 2 { 0b01 } else { 0b101 };
-        let code = cell.0;
-        let path = (0..level).rev().map(|step| code >> (step * dims) & (children - 1));
-        let index = path.fold(0, |parent, child| parent * children + 1 + (child ^ flip));
-        Some(index as i32)
+        let index = index_of(&self.tree, cell);
+        self.skipped += u64::from(index.is_none());
+        index
     }
 
     /// Index of the root, if the stream did not say that it is final: readers of old wait for that.
@@ -95,27 +82,5 @@ impl HistoricalCells {
             _ => (0.0, 0.0),
         };
         (self.min[2], self.max[2]) = (low, high);
-    }
-}
-
-fn level_max(tree: &CellTree) -> u8 {
-    if tree.dims() == 2 { QUADTREE_LEVEL_MAX } else { OCTREE_LEVEL_MAX }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::stream::Kind;
-
-    #[test]
-    fn quadrants_are_numbered_lower_x_then_upper_y() {
-        let mut header = Header::new(Kind::Points, Coordinates::F64, 2, false);
-        let tree = CellTree::new(2, 3, [0.0; 3], 8.0).unwrap();
-        header.tree = Some(tree);
-        let mut cells = HistoricalCells::of(&header).unwrap();
-        let mut at = |x: f64, y: f64, level| cells.index(tree.cell_of([x, y, 0.0], level)).unwrap();
-        assert_eq!(at(0.0, 0.0, 0), 0);
-        assert_eq!([at(7.0, 0.0, 1), at(0.0, 0.0, 1), at(7.0, 7.0, 1), at(0.0, 7.0, 1)], [1, 2, 3, 4]);
-        assert_eq!([at(7.0, 0.0, 2), at(0.0, 7.0, 2)], [5, 20]);
     }
 }

@@ -3,16 +3,13 @@
 use super::events::EventSource;
 use super::sp::{SpEvent, SpFinalization, SpHeader, SpReader};
 use crate::bounds::{Bounds, Point};
+use crate::cell_index;
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
 use crate::stream::{Coordinates, Event, FinalizedCells, Header, Kind, check_place};
 
 /// Points of one event at most.
 const BATCH_MAX: usize = 4096;
-
-/// Levels that have indices of 31 bits.
-const QUADTREE_DEPTH: u8 = 15;
-const OCTREE_DEPTH: u8 = 10;
 
 /// An SPA or SPB file as a points stream, in world coordinates.
 ///
@@ -145,9 +142,9 @@ impl<S: SpReader> EventSource for SpEvents<S> {
 /// The tree whose cells the tags of a file are, if it is exact.
 fn tree_of(header: &SpHeader) -> Option<CellTree> {
     let Bounds { min, max } = header.bounds?;
-    let (dims, depth) = match header.finalization {
-        SpFinalization::QuadTree => (2, QUADTREE_DEPTH),
-        SpFinalization::OctTree => (3, OCTREE_DEPTH),
+    let dims = match header.finalization {
+        SpFinalization::QuadTree => 2,
+        SpFinalization::OctTree => 3,
         _ => return None,
     };
     let axes = usize::from(dims);
@@ -155,21 +152,11 @@ fn tree_of(header: &SpHeader) -> Option<CellTree> {
     let is_cube = (0..axes).all(|axis| max[axis] - min[axis] == side && min[axis] + side == max[axis]);
     let mut origin = [0.0; 3];
     origin[..axes].copy_from_slice(&min[..axes]);
-    if is_cube { CellTree::new(dims, depth, origin, side) } else { None }
+    if is_cube { CellTree::new(dims, cell_index::level_max(dims), origin, side) } else { None }
 }
 
-/// The cell of an index: children of cell i are 2^dims i + 1 and on; the lowest bit of a child says "lower x",
-/// then "upper y", then "lower z".
+/// The cell of a tag, which the tree must have.
 fn cell_of(index: i32, tree: &CellTree) -> Result<CellCode> {
-    let (children, flip) = if tree.dims() == 2 { (4, 0b01) } else { (8, 0b101) };
     let unknown = || Error::malformed(format!("finalized cell {index}, which the tree does not have"));
-    let mut rest = u64::try_from(index).map_err(|_| unknown())?;
-    let (mut code, mut shift) = (0, 0);
-    while rest > 0 {
-        code |= (((rest - 1) % children) ^ flip) << shift;
-        rest = (rest - 1) / children;
-        shift += tree.dims();
-    }
-    let cell = CellCode(code | 1 << shift);
-    if tree.is_valid(cell) { Ok(cell) } else { Err(unknown()) }
+    cell_index::cell_of(tree, index).ok_or_else(unknown)
 }
