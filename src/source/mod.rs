@@ -1,6 +1,7 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
 //! twins, SPA and SPB.
 
+mod byte_order;
 mod crs;
 mod detect;
 mod events;

@@ -2,11 +2,12 @@
 
 use std::io::{Chain, Cursor, Read};
 
+use super::byte_order::ByteOrder;
 use super::events::EventSource;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
 use super::sma::check_count;
-use super::smb_header::{ByteOrder, ELEMENT_LEN, ELEMENTS_PER_BLOCK, SmbHeader, read_header};
+use super::smb_header::{ELEMENT_LEN, ELEMENTS_PER_BLOCK, SmbHeader, point, read_header};
 use crate::error::{Error, Result};
 use crate::limits::HEADER_BODY_MAX;
 
@@ -123,7 +124,7 @@ impl<R: Read> Elements for SmbElements<R> {
 }
 
 fn vertex(order: ByteOrder, bytes: &[u8]) -> Result<Element> {
-    let point = order.point(bytes);
+    let point = point(order, bytes);
     match point.iter().find(|x| !x.is_finite()) {
         Some(x) => Err(Error::malformed(format!("coordinate {x}"))),
         None => Ok(Element::Vertex(point)),

@@ -1,5 +1,6 @@
 //! The header of SMB, and the byte order that its content has.
 
+use super::byte_order::{ByteOrder, parse_in_either};
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 
@@ -9,24 +10,9 @@ pub(super) const ELEMENT_LEN: usize = 12;
 
 const VERSION: u8 = 0;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ByteOrder {
-    Little,
-    Big,
-}
-
-impl ByteOrder {
-    pub(super) fn u32(self, bytes: &[u8]) -> u32 {
-        let bytes = bytes[..4].try_into().expect("four bytes");
-        match self {
-            ByteOrder::Little => u32::from_le_bytes(bytes),
-            ByteOrder::Big => u32::from_be_bytes(bytes),
-        }
-    }
-
-    pub(super) fn point(self, bytes: &[u8]) -> Point {
-        std::array::from_fn(|axis| f64::from(f32::from_bits(self.u32(&bytes[axis * 4..]))))
-    }
+/// Three floats, 12 bytes.
+pub(super) fn point(order: ByteOrder, bytes: &[u8]) -> Point {
+    std::array::from_fn(|axis| f64::from(f32::from_bits(order.u32(&bytes[axis * 4..]))))
 }
 
 /// What the header states.
@@ -44,14 +30,11 @@ pub(super) struct SmbHeader {
 /// Reads the header from the first bytes of a file, in the byte order in which they make most sense; the one
 /// that the file is flagged with, if both make the same.
 pub(super) fn read_header(head: &[u8]) -> Result<SmbHeader> {
-    let flagged = if head.get(1) == Some(&0) { ByteOrder::Little } else { ByteOrder::Big };
-    let other = if flagged == ByteOrder::Little { ByteOrder::Big } else { ByteOrder::Little };
-    let score = |header: &SmbHeader| plausibility(header, &head[header.len..]);
-    match (parse_header(head, flagged), parse_header(head, other)) {
-        (Ok(flagged), Ok(other)) => Ok(if score(&other) > score(&flagged) { other } else { flagged }),
-        (Ok(one), Err(_)) | (Err(_), Ok(one)) => Ok(one),
-        (Err(error), Err(_)) => Err(error),
-    }
+    parse_in_either(
+        head,
+        |order| parse_header(head, order),
+        |header| plausibility(header, &head[header.len..]),
+    )
 }
 
 fn parse_header(head: &[u8], order: ByteOrder) -> Result<SmbHeader> {
@@ -82,7 +65,7 @@ fn parse_header(head: &[u8], order: ByteOrder) -> Result<SmbHeader> {
     let bounds = match take(1)?[0] {
         0 => None,
         _ => {
-            let (min, max) = (order.point(take(ELEMENT_LEN)?), order.point(take(ELEMENT_LEN)?));
+            let (min, max) = (point(order, take(ELEMENT_LEN)?), point(order, take(ELEMENT_LEN)?));
             if !(0..3).all(|axis| min[axis] <= max[axis]) {
                 return Err(Error::malformed(format!("bounding box from {min:?} to {max:?}")));
             }
@@ -109,7 +92,7 @@ fn plausibility(header: &SmbHeader, body: &[u8]) -> u32 {
     let mut vertices = 0;
     for (index, element) in elements.chunks_exact(ELEMENT_LEN).take(ELEMENTS_PER_BLOCK).enumerate() {
         if descriptor >> index & 1 == 1 {
-            let point = order.point(element);
+            let point = point(order, element);
             let is_inside = |[min, max]: [Point; 2]| (0..3).all(|i| min[i] <= point[i] && point[i] <= max[i]);
             score += ordinary(point) + 3 * u32::from(header.bounds.is_some_and(is_inside));
             vertices += 1;

@@ -2,6 +2,7 @@
 
 use std::io::{BufReader, Cursor, Read};
 
+use super::byte_order::{ByteOrder, parse_in_either};
 use super::input::Stated;
 use super::origin::FileView;
 use super::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
@@ -15,42 +16,21 @@ const VERSION: u8 = 7;
 /// Elements of a full block: one bit each in its descriptor.
 const BLOCK_ELEMENTS: usize = 32;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ByteOrder {
-    Little,
-    Big,
-}
-
-impl ByteOrder {
-    fn u32(self, bytes: &[u8]) -> u32 {
-        let bytes = bytes[..4].try_into().expect("four bytes");
-        match self {
-            ByteOrder::Little => u32::from_le_bytes(bytes),
-            ByteOrder::Big => u32::from_be_bytes(bytes),
-        }
-    }
-
-    fn coordinate(self, datatype: SpDatatype, bytes: &[u8]) -> f64 {
-        match datatype {
-            SpDatatype::Float => f64::from(f32::from_bits(self.u32(bytes))),
-            SpDatatype::Int => f64::from(self.u32(bytes) as i32),
-            SpDatatype::Double => {
-                let bytes = bytes[..8].try_into().expect("eight bytes");
-                match self {
-                    ByteOrder::Little => f64::from_le_bytes(bytes),
-                    ByteOrder::Big => f64::from_be_bytes(bytes),
-                }
-            }
-        }
-    }
-}
-
 impl SpDatatype {
     /// Bytes of a coordinate.
     fn width(self) -> usize {
         match self {
             SpDatatype::Float | SpDatatype::Int => 4,
             SpDatatype::Double => 8,
+        }
+    }
+
+    /// The coordinate in the first bytes.
+    fn coordinate(self, order: ByteOrder, bytes: &[u8]) -> f64 {
+        match self {
+            SpDatatype::Float => f64::from(f32::from_bits(order.u32(bytes))),
+            SpDatatype::Int => f64::from(order.u32(bytes) as i32),
+            SpDatatype::Double => order.f64(bytes),
         }
     }
 }
@@ -80,19 +60,10 @@ impl<R: Read> SpbReader<R> {
         let mut head = Vec::new();
         let read = (&mut input).take(HEADER_BODY_MAX as u64).read_to_end(&mut head);
         read.map_err(|e| Error::io("reading", e))?;
-        let flagged = if head.get(1) == Some(&0) { ByteOrder::Little } else { ByteOrder::Big };
-        let other = if flagged == ByteOrder::Little { ByteOrder::Big } else { ByteOrder::Little };
-        let parsed = [flagged, other].map(|order| parse_header(&head, order).map(|found| (order, found)));
-        let (order, (header, len)) = match parsed {
-            [Ok(flagged), Ok(other)] => {
-                let score = |(order, (header, len)): &(ByteOrder, (SpHeader, usize))| {
-                    plausibility(*order, header, &head[*len..])
-                };
-                if score(&other) > score(&flagged) { other } else { flagged }
-            }
-            [Ok(one), Err(_)] | [Err(_), Ok(one)] => one,
-            [Err(error), Err(_)] => return Err(error.at("header at byte 0")),
-        };
+        let parse = |order| parse_header(&head, order).map(|(header, len)| (order, header, len));
+        let score = |(order, header, len): &(_, _, usize)| plausibility(*order, header, &head[*len..]);
+        let found = parse_in_either(&head, parse, score);
+        let (order, header, len) = found.map_err(|e| e.at("header at byte 0"))?;
         let mut rest = Cursor::new(head);
         rest.set_position(len as u64);
         Ok(SpbReader {
@@ -164,7 +135,7 @@ impl<R: Read> SpReader for SpbReader<R> {
 
 fn point(order: ByteOrder, datatype: SpDatatype, bytes: &[u8]) -> Point {
     let width = datatype.width();
-    std::array::from_fn(|axis| order.coordinate(datatype, &bytes[axis * width..]))
+    std::array::from_fn(|axis| datatype.coordinate(order, &bytes[axis * width..]))
 }
 
 /// Reads the header from the first bytes of a file, and tells its length.
