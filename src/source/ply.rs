@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::io::Read;
 
+use super::byte_order::ByteOrder;
 use super::events::EventSource;
 use super::mesh_events::{Element, Elements, MeshEvents};
 use super::patches::Order;
@@ -143,7 +144,7 @@ impl<R: Read> Rows<R> {
             self.row += 1;
             let (point, corners) = match self.header.encoding {
                 Encoding::Ascii => read_text_row(&mut self.lines, &table.properties)?,
-                encoding => read_binary_row(self.lines.input(), &table.properties, encoding)?,
+                Encoding::Binary(order) => read_binary_row(self.lines.input(), &table.properties, order)?,
             };
             match table.sort {
                 Sort::Vertex => return Ok(Some(Row::Vertex(point))),
@@ -165,7 +166,7 @@ impl<R: Read> Rows<R> {
                     Some(_) => break true,
                 }
             },
-            _ => {
+            Encoding::Binary(_) => {
                 let mut rest = self.lines.input().take(1);
                 std::io::copy(&mut rest, &mut std::io::sink()).map_err(|e| Error::io("reading", e))? > 0
             }
@@ -180,7 +181,9 @@ impl<R: Read> Rows<R> {
     fn locate(&self, error: Error) -> Error {
         match self.header.encoding {
             Encoding::Ascii => self.lines.locate(error),
-            _ => self.lines.locate(error.at(format!("element {}, row {}", self.table + 1, self.row))),
+            Encoding::Binary(_) => {
+                self.lines.locate(error.at(format!("element {}, row {}", self.table + 1, self.row)))
+            }
         }
     }
 }
@@ -243,7 +246,7 @@ fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Resu
 fn read_binary_row(
     input: &mut impl Read,
     properties: &[Property],
-    encoding: Encoding,
+    order: ByteOrder,
 ) -> Result<(Point, Vec<u64>)> {
     let mut values = RowValues::default();
     for property in properties {
@@ -254,7 +257,7 @@ fn read_binary_row(
                 std::io::ErrorKind::UnexpectedEof => truncated(),
                 _ => Error::io("reading", e),
             })?;
-            if encoding == Encoding::BigEndian {
+            if order == ByteOrder::Big {
                 bytes.reverse();
             }
             Ok(number(scalar, bytes))

@@ -2,6 +2,7 @@
 
 use std::io::Read;
 
+use super::byte_order::ByteOrder;
 use super::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
 use crate::error::{Error, Result};
 
@@ -12,8 +13,7 @@ const ITEMS_MAX: usize = 1000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
-    LittleEndian,
-    BigEndian,
+    Binary(ByteOrder),
 }
 
 /// Type of a number.
@@ -177,8 +177,8 @@ impl PlyHeader {
 fn parse_encoding(name: &[u8]) -> Result<Encoding> {
     match name {
         b"ascii" => Ok(Encoding::Ascii),
-        b"binary_little_endian" => Ok(Encoding::LittleEndian),
-        b"binary_big_endian" => Ok(Encoding::BigEndian),
+        b"binary_little_endian" => Ok(Encoding::Binary(ByteOrder::Little)),
+        b"binary_big_endian" => Ok(Encoding::Binary(ByteOrder::Big)),
         other => Err(unexpected(other, "a format of PLY")),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read};
 
+use super::lines::{number, quote};
 use crate::error::{Error, Result};
 use crate::limits::{TEXT_HEADER_LINE_MAX, TEXT_LINE_MAX};
 
@@ -83,8 +84,7 @@ pub(super) fn fields(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// A finite number in any decimal notation.
 pub(super) fn parse_decimal(field: &[u8]) -> Result<f64> {
-    let number = std::str::from_utf8(field).ok().and_then(|text| text.parse::<f64>().ok());
-    number.filter(|number| number.is_finite()).ok_or_else(|| unexpected(field, "a finite number"))
+    number(field).filter(|number| number.is_finite()).ok_or_else(|| unexpected(field, "a finite number"))
 }
 
 /// An integer without sign.
@@ -123,6 +123,5 @@ pub(super) fn expect_no_field<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -
 
 /// An error that quotes the beginning of what was found.
 pub(super) fn unexpected(found: &[u8], expected: &str) -> Error {
-    let shown = String::from_utf8_lossy(&found[..found.len().min(40)]);
-    Error::malformed(format!("found {shown:?}, expected {expected}"))
+    Error::malformed(format!("found {}, expected {expected}", quote(found)))
 }
