@@ -198,3 +198,23 @@ fn a_full_disk_is_an_error_with_its_reason() {
         assert!(message.contains("No space left on device"), "{name}: {message}");
     }
 }
+
+#[test]
+fn generated_flight_lines_go_through() {
+    let examples = std::path::Path::new(env!("CARGO_BIN_EXE_spinfo")).with_file_name("examples");
+    let generator = examples.join("gen_lidar");
+    if !generator.exists() {
+        eprintln!("SKIPPED: the example gen_lidar is not built (a plain `cargo test` builds it)");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("lines.laz");
+    let file = file.to_str().unwrap();
+    let made =
+        std::process::Command::new(generator).args(["--points", "20000", "--seed", "1", "-o", file]).output();
+    assert!(made.as_ref().is_ok_and(|output| output.status.success()), "{made:?}");
+    let points = run("spfinalize", &["--cell-points", "1000", file], &[]);
+    assert!(points.status.success(), "{:?}", outcome(&points));
+    let audit = run("spinfo", &["--audit", "--points", file, "-"], &mesh_of(&points.stdout, &[]));
+    assert!(audit.status.success(), "{:?}", outcome(&audit));
+}

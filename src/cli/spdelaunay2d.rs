@@ -22,7 +22,7 @@ Examples:
   Keep the lowest of coinciding points, and show what the run did:
     spfinalize --keep-class 2 a.laz | spdelaunay2d --duplicates lowest --stats -o ground.spm
   One tile of many, to be finished later or elsewhere:
-    spfinalize a.laz | spdelaunay2d --partial --region 1000,2000,2000,3000 -o tile7.spm
+    spfinalize a.laz b.laz | spdelaunay2d --partial --region 1000,2000,2000,3000 -o tile7.spm
     spdelaunay2d --merge tile*.spm -o whole.spm
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
@@ -116,6 +116,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         let reason =
             if stats.vertices < 3 { "fewer than three different points" } else { "all points on a line" };
         notice("spdelaunay2d", &flags.common, &format!("no triangles: {reason} ({} points)", stats.points));
+    }
+    if stats.outside > 0 {
+        let message =
+            format!("{} of {} points lie outside of the region", stats.outside, stats.outside + stats.points);
+        notice("spdelaunay2d", &flags.common, &format!("{message}: left to other regions"));
     }
     match flags.stats {
         Some(StatsFormat::Text) => say(&text_report(&report)),

@@ -136,6 +136,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let stats = pool.install(|| finalize::run(&input, &options, &mut watch, &mut output))?;
     drop(watch);
     output.commit()?;
+    if stats.points == 0 {
+        notice(TOOL, &flags.common, "no points: the input has none, or the filters keep none");
+    }
     if stats.spilled_points > 0 {
         let message =
             format!("{} points waited in a temporary file, for lack of --memory", stats.spilled_points);

@@ -23,7 +23,7 @@ pub use spm::SpmSink;
 pub use twin::TwinSink;
 
 use crate::error::{Error, Result};
-use crate::stream::{Crs, Event, Header, Kind};
+use crate::stream::{Coordinates, Crs, Event, Header, Kind};
 use historical_cells::HistoricalCells;
 
 /// An output that takes the events of a stream, whatever its format.
@@ -57,8 +57,14 @@ fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
 
 /// What a format loses that has no room for all of the header.
 fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
-    let lost = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
-    lost.into_iter().collect()
+    let crs = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
+    let is_grid = header.coordinates != Coordinates::F64;
+    let grid = is_grid.then(|| {
+        format!(
+            "{format} holds no integer grid: coordinates are rounded to the nearest number of 64 bits or less"
+        )
+    });
+    crs.into_iter().chain(grid).collect()
 }
 
 /// What a historical points format loses.

@@ -26,7 +26,7 @@ pub(super) enum Format {
     Text,
 }
 
-const PLY: &str = "a PLY file: convert it first, for example with pdal translate";
+const PLY: &str = "a PLY file: convert it first with spconvert";
 const PCD: &str = "a PCD file: convert it first, for example with pdal translate";
 const OBJ: &str = "an OBJ file: give its vertices as lines of x y z, for example with sed -n 's/^v //p'";
 

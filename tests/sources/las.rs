@@ -255,7 +255,7 @@ fn files_of_several_kinds_are_one_input() {
 fn wrong_kinds_of_files_get_advice() {
     assert_fails(points_of(b"\x1f\x8b\x08\0\0\0"), ErrorKind::Malformed, &["gzip", "zcat"]);
     assert_fails(points_of(b""), ErrorKind::Malformed, &["empty"]);
-    assert_fails(points_of(b"ply\r\nformat ascii 1.0\n"), ErrorKind::Malformed, &["PLY", "pdal"]);
+    assert_fails(points_of(b"ply\r\nformat ascii 1.0\n"), ErrorKind::Malformed, &["PLY", "spconvert"]);
     assert_fails(points_of(b"# .PCD v0.7\nVERSION .7\n"), ErrorKind::Malformed, &["PCD", "pdal"]);
     assert_fails(points_of(b"# OBJ of x\nv 1 2 3\n"), ErrorKind::Malformed, &["OBJ", "sed"]);
     for mesh in ["o cube\nv 1 2 3\n", "v 1 2 3\nvn 0 0 1\n", "# x\nv 1 2 3\nv 2 2 3\nv 1 1 1\nf 1 2 3\n"] {
