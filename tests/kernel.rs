@@ -127,15 +127,16 @@ fn huge_and_tiny_coordinates() {
         let unit = if lattice { 1.0 } else { (1u64 << 38) as f64 };
         let points: Vec<[f64; 2]> =
             points.iter().map(|p| p.map(|c| (c as f64 / unit - 2.0) * scale)).collect();
-        let kept: Vec<[f64; 2]> = distinct(&points)
-            .iter()
-            .zip(0..)
-            .filter(|(r, i)| *r == i)
-            .map(|(_, i)| points[i as usize])
-            .collect();
+        let kept = first_of_each(&points);
         let expected = exhaustive::triangles(&kept);
         assert_triangles(&mut kernel, &kept, &expected);
     }
+}
+
+/// The points without later ones that equal them.
+fn first_of_each(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let representatives = distinct(points);
+    (0..).zip(points).filter(|&(i, _)| representatives[i as usize] == i).map(|(_, &point)| point).collect()
 }
 
 #[test]
@@ -159,12 +160,7 @@ fn decimal_grids_are_nearly_cocircular() {
         let points: Vec<[f64; 2]> = (0..30)
             .map(|i| [f64::from(i % width) * step + shift[0], f64::from(i / width) * step + shift[1]])
             .collect();
-        let kept: Vec<[f64; 2]> = distinct(&points)
-            .iter()
-            .zip(0..)
-            .filter(|(r, i)| *r == i)
-            .map(|(_, i)| points[i as usize])
-            .collect();
+        let kept = first_of_each(&points);
         assert_triangles(&mut kernel, &kept, &exhaustive::triangles(&kept));
     }
 }

@@ -1,6 +1,5 @@
 //! Writes what is final: patches of triangles, vertices with their first triangle and finalized with their last.
 
-use std::collections::VecDeque;
 use std::io::Write;
 
 use super::node::{PointFate, Solved};
@@ -61,19 +60,17 @@ impl<W: Write> PatchWriter<W> {
     /// get their ids.
     pub(super) fn write(&mut self, solved: &mut Solved) -> Result<()> {
         self.prepare(solved);
-        let mut unused = self.unused(solved);
-        for (number, triangles) in solved.triangles.chunks(PATCH_TRIANGLES).enumerate() {
+        let unused = self.unused(solved);
+        for (number, triangles) in (0..).zip(solved.triangles.chunks(PATCH_TRIANGLES)) {
             let corners = triangles.iter().flatten().copied();
-            let patch = self.build(&mut solved.points, &solved.fates, number as u32, corners, triangles);
+            let patch = self.build(&mut solved.points, &solved.fates, number, corners, triangles);
             self.forward(&patch)?;
         }
-        let mut number = solved.triangles.len().div_ceil(PATCH_TRIANGLES) as u32;
-        while !unused.is_empty() {
-            let vertices: Vec<u32> = unused.drain(..unused.len().min(PATCH_VERTICES)).collect();
+        let next = solved.triangles.len().div_ceil(PATCH_TRIANGLES) as u32;
+        for (number, vertices) in (next..).zip(unused.chunks(PATCH_VERTICES)) {
             vertices.iter().for_each(|&v| self.last_use[v as usize] = number);
             let patch = self.build(&mut solved.points, &solved.fates, number, vertices.iter().copied(), &[]);
             self.forward(&patch)?;
-            number += 1;
         }
         Ok(())
     }
@@ -92,7 +89,7 @@ impl<W: Write> PatchWriter<W> {
 
     /// Points that are done but in no triangle written here: vertices of the hull whose triangles were all
     /// written below, and at the root the points of an input without triangles.
-    fn unused(&self, solved: &Solved) -> VecDeque<u32> {
+    fn unused(&self, solved: &Solved) -> Vec<u32> {
         let done = |&v: &usize| solved.fates[v] == PointFate::Done && self.last_use[v] == NONE;
         (0..solved.points.len()).filter(done).map(|v| v as u32).collect()
     }
