@@ -32,13 +32,13 @@ impl Cut {
 /// A range of points is cut where the highest bit changes in which its keys differ: at an axis-parallel line.
 /// Points with equal keys are in lexicographic order and are cut in the middle. The depth is at most 64 cuts of the
 /// first kind and 32 of the second.
-pub(super) struct Division<'a> {
+pub(super) struct Division<'a, 'e> {
     pub(super) points: &'a [Point2],
     pub(super) keys: &'a [u64],
-    pub(super) edges: &'a mut Edges,
+    pub(super) edges: &'a mut Edges<'e>,
 }
 
-impl WithPredicates2 for Division<'_> {
+impl WithPredicates2 for Division<'_, '_> {
     type Output = Hull;
 
     fn with(self, predicates: &mut impl Predicates2) -> Hull {

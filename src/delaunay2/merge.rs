@@ -23,9 +23,9 @@ impl Hull {
 }
 
 /// What merging works on.
-pub(super) struct Stitch<'a, P> {
+pub(super) struct Stitch<'a, 'e, P> {
     pub(super) points: &'a [Point2],
-    pub(super) edges: &'a mut Edges,
+    pub(super) edges: &'a mut Edges<'e>,
     pub(super) predicates: &'a mut P,
 }
 
@@ -36,16 +36,24 @@ struct Tip {
     edge: u32,
 }
 
-impl<P: Predicates2> Stitch<'_, P> {
+/// An end of the base, or the end of a candidate.
+#[derive(Clone, Copy)]
+struct Vertex {
+    id: u32,
+    at: Point2,
+}
+
+/// An edge from an end of the base to the first point above it, on the same side.
+#[derive(Clone, Copy)]
+struct Candidate {
+    edge: u32,
+    vertex: Vertex,
+}
+
+impl<P: Predicates2> Stitch<'_, '_, P> {
     #[inline(always)]
     fn orientation(&mut self, u: u32, v: u32, w: u32) -> Sign {
         self.predicates.orient2d(self.points[u as usize], self.points[v as usize], self.points[w as usize])
-    }
-
-    #[inline(always)]
-    fn circle_contains(&mut self, u: u32, v: u32, w: u32, x: u32) -> bool {
-        let [u, v, w, x] = [u, v, w, x].map(|v| self.points[v as usize]);
-        self.predicates.incircle_perturbed(u, v, w, x) == Sign::Positive
     }
 
     /// Merges `left` and `right`, which `cut` separates. "Left", "right", "low" and "up" are meant after the quarter
@@ -121,68 +129,81 @@ impl<P: Predicates2> Stitch<'_, P> {
     }
 
     /// Fills the gap above `base`, an edge from left to right, and returns its last edge, the upper common tangent.
-    ///
-    /// Each round joins the base to the first point that a circle through its ends meets when it grows upwards.
-    /// Edges of either side that this point cuts off are deleted.
-    fn rise(&mut self, mut base: u32) -> u32 {
-        loop {
-            let (u, v) = (self.edges.origin(base), self.edges.destination(base));
-            let left = self.left_candidate(base, u, v);
-            let right = self.right_candidate(base, u, v);
-            let right_wins = match (left, right) {
-                (NIL, NIL) => return base,
-                (_, NIL) => false,
-                (NIL, _) => true,
-                _ => {
-                    let (l, r) = (self.edges.destination(left), self.edges.destination(right));
-                    self.circle_contains(u, v, l, r)
-                }
-            };
-            base = if right_wins {
-                self.edges.connect(u, base, self.edges.destination(right), right ^ 1)
-            } else {
-                self.edges.connect(self.edges.destination(left), left ^ 1, v, base ^ 1)
-            };
-        }
+    fn rise(&mut self, base: u32) -> u32 {
+        let Stitch { points, edges, predicates } = self;
+        edges.locally(|edges| rise(points, edges, *predicates, base))
     }
+}
 
-    /// The edge from `u` to the left side's first point above the base, or [`NIL`].
-    ///
-    /// A point that is not above the base is never in the circle, perturbed or not, so that a second edge needs no
-    /// test of its own; it only must not be the base itself.
-    #[inline(always)]
-    fn left_candidate(&mut self, base: u32, u: u32, v: u32) -> u32 {
-        let mut candidate = self.edges.onext(base);
-        if candidate == base || self.orientation(u, v, self.edges.destination(candidate)) != Sign::Positive {
-            return NIL;
-        }
-        loop {
-            let next = self.edges.onext(candidate);
-            let (w, x) = (self.edges.destination(candidate), self.edges.destination(next));
-            if next == base || !self.circle_contains(u, v, w, x) {
-                return candidate;
-            }
-            self.edges.delete(candidate);
-            candidate = next;
-        }
+/// [`Stitch::rise`]. Each round joins the base to the first point that a circle through its ends meets when it grows
+/// upwards. Edges of either side that this point cuts off are deleted.
+#[inline(always)]
+fn rise<P: Predicates2>(points: &[Point2], edges: &mut Edges, predicates: &mut P, mut base: u32) -> u32 {
+    let vertex = |id: u32| Vertex { id, at: points[id as usize] };
+    let (mut u, mut v) = (vertex(edges.origin(base)), vertex(edges.destination(base)));
+    loop {
+        let left = candidate::<true, P>(points, edges, predicates, base, u, v);
+        let right = candidate::<false, P>(points, edges, predicates, base ^ 1, u, v);
+        let right_wins = match (left, right) {
+            (None, None) => return base,
+            (Some(_), None) => false,
+            (None, Some(_)) => true,
+            (Some(left), Some(right)) => is_in_circle(predicates, [u, v, left.vertex], right.vertex),
+        };
+        base = if right_wins {
+            let Some(right) = right else { return base };
+            v = right.vertex;
+            edges.connect(u.id, base, v.id, right.edge ^ 1)
+        } else {
+            let Some(left) = left else { return base };
+            u = left.vertex;
+            edges.connect(u.id, left.edge ^ 1, v.id, base ^ 1)
+        };
     }
+}
 
-    /// The edge from `v` to the right side's first point above the base, or [`NIL`].
-    #[inline(always)]
-    fn right_candidate(&mut self, base: u32, u: u32, v: u32) -> u32 {
-        let twin = base ^ 1;
-        let mut candidate = self.edges.oprev(twin);
-        if candidate == twin || self.orientation(u, v, self.edges.destination(candidate)) != Sign::Positive {
-            return NIL;
-        }
-        loop {
-            let next = self.edges.oprev(candidate);
-            let (w, x) = (self.edges.destination(candidate), self.edges.destination(next));
-            if next == twin || !self.circle_contains(u, v, w, x) {
-                return candidate;
-            }
-            self.edges.delete(candidate);
-            candidate = next;
-        }
+/// The edge to the first point above the base from u, its left end, or from v. `base` is its half that leaves that
+/// end.
+///
+/// A point that is not above the base is never in the circle, perturbed or not, so that a second edge needs no
+/// test of its own; it only must not be the base itself.
+#[inline(always)]
+fn candidate<const FROM_LEFT: bool, P: Predicates2>(
+    points: &[Point2],
+    edges: &mut Edges,
+    predicates: &mut P,
+    base: u32,
+    u: Vertex,
+    v: Vertex,
+) -> Option<Candidate> {
+    let to = |edges: &Edges, edge: u32| {
+        let id = edges.destination(edge);
+        Candidate { edge, vertex: Vertex { id, at: points[id as usize] } }
+    };
+    let upwards = |edges: &Edges, e: u32| if FROM_LEFT { edges.onext(e) } else { edges.oprev(e) };
+    let first = upwards(edges, base);
+    if first == base {
+        return None;
     }
+    let mut found = to(edges, first);
+    if predicates.orient2d(u.at, v.at, found.vertex.at) != Sign::Positive {
+        return None;
+    }
+    loop {
+        let next = upwards(edges, found.edge);
+        if next == base {
+            return Some(found);
+        }
+        let second = to(edges, next);
+        if !is_in_circle(predicates, [u, v, found.vertex], second.vertex) {
+            return Some(found);
+        }
+        edges.delete(found.edge);
+        found = second;
+    }
+}
+
+#[inline(always)]
+fn is_in_circle<P: Predicates2>(predicates: &mut P, [u, v, w]: [Vertex; 3], x: Vertex) -> bool {
+    predicates.incircle_perturbed(u.at, v.at, w.at, x.at) == Sign::Positive
 }

@@ -16,9 +16,10 @@ pub use distinct::distinct;
 pub use triangulation::{Corner, NONE, Triangulation};
 
 use crate::error::{Error, Result};
+use crate::huge_pages;
 use crate::order::MortonOrder;
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
-use edges::Edges;
+use edges::EdgeMemory;
 
 /// Greatest number of points: corners of triangles, up to six per point, are numbered in 32 bits.
 pub const MAX_POINTS: usize = 700_000_000;
@@ -33,9 +34,9 @@ pub struct Kernel {
     indices: Vec<u32>,
     /// The distinct points, in Morton order.
     points: Vec<Point2>,
-    edges: Edges,
-    /// For each distinct point, a half-edge that leaves it.
-    leaving: Vec<u32>,
+    edges: EdgeMemory,
+    /// For each distinct point, a triangle at it.
+    triangle_at: Vec<u32>,
     counts: PredicateCounts,
 }
 
@@ -71,14 +72,14 @@ impl Kernel {
         }
         triangulation.clear();
         self.take_sorted(points, &extent, &mut triangulation.duplicates);
-        self.edges.clear();
-        let division = divide::Division { points: &self.points, keys: &self.keys, edges: &mut self.edges };
-        let hull = Arithmetic::of(&extent).run(division, &mut self.counts);
+        let mut edges = self.edges.edges(self.points.len());
+        let division = divide::Division { points: &self.points, keys: &self.keys, edges: &mut edges };
+        let hull = Arithmetic::of(&extent).run(&extent, division, &mut self.counts);
         extract::Extraction {
             points: &self.points,
             indices: &self.indices,
-            edges: &mut self.edges,
-            leaving: &mut self.leaving,
+            edges: &mut edges,
+            triangle_at: &mut self.triangle_at,
         }
         .run(hull, points.len(), triangulation);
         Ok(())
@@ -92,12 +93,14 @@ impl Kernel {
 
     /// Fills `keys`, `indices` and `points` with the distinct points in Morton order.
     fn take_sorted(&mut self, points: &[Point2], extent: &Extent, duplicates: &mut Vec<[u32; 2]>) {
-        self.keys.clear();
-        self.indices.clear();
-        self.points.clear();
+        huge_pages::reserve(&mut self.keys, points.len());
+        huge_pages::reserve(&mut self.indices, points.len());
+        huge_pages::reserve(&mut self.points, points.len());
         for item in self.order.sort(points, extent) {
             let point = points[item.index as usize];
-            if self.points.last().is_some_and(|&last| lexicographic(last, point).is_eq()) {
+            if self.keys.last() == Some(&item.key)
+                && self.points.last().is_some_and(|&last| lexicographic(last, point).is_eq())
+            {
                 duplicates.push([item.index, self.indices[self.indices.len() - 1]]);
                 continue;
             }

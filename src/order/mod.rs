@@ -23,17 +23,12 @@ impl MortonOrder {
     /// Domain: finite coordinates, at most 2^32 points. Cost: O(n) unless keys collide, O(n log n) at worst.
     pub fn sort(&mut self, points: &[Point2], extent: &Extent) -> &[Keyed] {
         let quantisation = Quantisation::of(extent);
-        let items = self.sort.items();
-        items.clear();
+        let items = self.sort.items(points.len());
         items.extend(
             (0u32..).zip(points).map(|(index, point)| Keyed { key: quantisation.key(*point), index }),
         );
-        let sorted = self.sort.sort();
-        for group in sorted.chunk_by_mut(|a, b| a.key == b.key).filter(|group| group.len() > 1) {
-            group.sort_unstable_by(|a, b| {
-                lexicographic(points[a.index as usize], points[b.index as usize]).then(a.index.cmp(&b.index))
-            });
-        }
-        sorted
+        self.sort.sort(|a, b| {
+            lexicographic(points[a.index as usize], points[b.index as usize]).then(a.index.cmp(&b.index))
+        })
     }
 }

@@ -9,7 +9,7 @@ pub struct Extent {
     pub lower: Point2,
     /// Greatest x and y; `NEG_INFINITY` if there is no point.
     pub upper: Point2,
-    /// Every coordinate is an integer.
+    /// Every coordinate is an integer, of a magnitude up to 2^63.
     pub integral: bool,
     /// Least magnitude among the coordinates that are not zero; `INFINITY` if all are.
     pub least_magnitude: f64,
@@ -34,7 +34,7 @@ impl Extent {
                 extent.upper[axis] = extent.upper[axis].max(coordinate);
                 let magnitude = if coordinate == 0.0 { f64::INFINITY } else { coordinate.abs() };
                 extent.least_magnitude = extent.least_magnitude.min(magnitude);
-                extent.integral &= coordinate.trunc() == coordinate;
+                extent.integral &= coordinate as i64 as f64 == coordinate;
                 extent.finite &= coordinate.is_finite();
             }
         }

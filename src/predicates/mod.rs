@@ -9,13 +9,15 @@ mod big;
 pub mod circle;
 mod counts;
 mod extent;
+mod filtered;
 mod integer;
 mod perturbation;
 
-pub use adaptive::{ExpansionPredicates, TotalPredicates};
+pub use adaptive::{Expansions, TotalPredicates};
 pub use counts::PredicateCounts;
 pub use extent::Extent;
-pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
+pub use filtered::{ExactStage, FilteredPredicates};
+pub use integer::{Int64, Int128, IntPair, Integers, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;
 
 /// A point of the plane: x, y; both finite. Integer coordinates are stored as integer-valued `f64`.
@@ -122,30 +124,38 @@ impl Arithmetic {
             } else {
                 Arithmetic::IntegerPair
             }
-        } else if ExpansionPredicates::covers(extent) {
+        } else if Expansions::covers(extent) {
             Arithmetic::Expansion
         } else {
             Arithmetic::Total
         }
     }
 
-    /// Runs `algorithm` in this arithmetic and adds its decisions to `counts`.
-    pub fn run<A: WithPredicates2>(self, algorithm: A, counts: &mut PredicateCounts) -> A::Output {
-        fn counted<A: WithPredicates2, P: Predicates2>(
+    /// Runs `algorithm` in this arithmetic, on points within `extent`, and adds its decisions to `counts`.
+    pub fn run<A: WithPredicates2>(
+        self,
+        extent: &Extent,
+        algorithm: A,
+        counts: &mut PredicateCounts,
+    ) -> A::Output {
+        fn counted<A: WithPredicates2>(
             algorithm: A,
-            mut predicates: P,
+            mut predicates: impl Predicates2,
             counts: &mut PredicateCounts,
         ) -> A::Output {
             let output = algorithm.with(&mut predicates);
             counts.merge(predicates.counts());
             output
         }
+        fn filtered<E: ExactStage>(extent: &Extent) -> FilteredPredicates<E> {
+            FilteredPredicates::new(extent)
+        }
         match self {
             Arithmetic::SmallInteger => counted(algorithm, SmallIntegerPredicates::default(), counts),
-            Arithmetic::Integer64 => counted(algorithm, IntegerPredicates::<Int64>::default(), counts),
-            Arithmetic::Integer128 => counted(algorithm, IntegerPredicates::<Int128>::default(), counts),
-            Arithmetic::IntegerPair => counted(algorithm, IntegerPredicates::<IntPair>::default(), counts),
-            Arithmetic::Expansion => counted(algorithm, ExpansionPredicates::default(), counts),
+            Arithmetic::Integer64 => counted(algorithm, filtered::<Integers<Int64>>(extent), counts),
+            Arithmetic::Integer128 => counted(algorithm, filtered::<Integers<Int128>>(extent), counts),
+            Arithmetic::IntegerPair => counted(algorithm, filtered::<Integers<IntPair>>(extent), counts),
+            Arithmetic::Expansion => counted(algorithm, filtered::<Expansions>(extent), counts),
             Arithmetic::Total => counted(algorithm, TotalPredicates::default(), counts),
         }
     }
