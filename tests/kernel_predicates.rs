@@ -43,8 +43,8 @@ fn compare(points: &[[f64; 2]], expected: Arithmetic) -> PredicateCounts {
     let arithmetic = Arithmetic::of(&Extent::of(points));
     assert_eq!(arithmetic, expected);
     let mut counts = PredicateCounts::default();
-    arithmetic.run(&Extent::of(points), Compare(points), &mut counts);
-    Arithmetic::Total.run(&Extent::of(points), Compare(points), &mut counts);
+    arithmetic.run(Compare(points), &mut counts);
+    Arithmetic::Total.run(Compare(points), &mut counts);
     counts
 }
 
@@ -101,7 +101,7 @@ fn random_integers_of_every_size() {
         let points: Vec<[f64; 2]> =
             (0..400).map(|_| [0, 1].map(|_| random.integer(0, (1 << bits) - 1) as f64)).collect();
         let mut counts = PredicateCounts::default();
-        Arithmetic::of(&Extent::of(&points)).run(&Extent::of(&points), Compare(&points), &mut counts);
+        Arithmetic::of(&Extent::of(&points)).run(Compare(&points), &mut counts);
     }
 }
 
@@ -130,8 +130,8 @@ fn floats_near_degeneracy_at_every_scale() {
         };
         let points = near_degenerate(&mut random, scale);
         let mut counts = PredicateCounts::default();
-        Arithmetic::of(&Extent::of(&points)).run(&Extent::of(&points), Compare(&points), &mut counts);
-        Arithmetic::Total.run(&Extent::of(&points), Compare(&points), &mut counts);
+        Arithmetic::of(&Extent::of(&points)).run(Compare(&points), &mut counts);
+        Arithmetic::Total.run(Compare(&points), &mut counts);
         assert!(counts.total() > 0);
     }
 }

@@ -1,6 +1,6 @@
 //! Points with equal coordinates, found without a triangulation.
 
-use crate::order::MortonOrder;
+use crate::order::HilbertOrder;
 use crate::predicates::{Extent, Point2, lexicographic};
 
 /// For each point, the least index of a point with equal coordinates: its own, if it is the first.
@@ -8,16 +8,15 @@ use crate::predicates::{Extent, Point2, lexicographic};
 /// Domain: finite coordinates; `-0.0` equals `0.0`. Cost: a sort.
 #[must_use]
 pub fn distinct(points: &[Point2]) -> Vec<u32> {
-    let mut order = MortonOrder::default();
+    let mut order = HilbertOrder::default();
     let mut representatives = vec![0; points.len()];
     let mut first: Option<u32> = None;
-    for item in order.sort(points, &Extent::of(points)) {
-        let point = points[item.index as usize];
+    for index in order.sort(points, &Extent::of(points)) {
         let representative = match first {
-            Some(index) if lexicographic(points[index as usize], point).is_eq() => index,
-            _ => item.index,
+            Some(first) if lexicographic(points[first as usize], points[index as usize]).is_eq() => first,
+            _ => index,
         };
-        representatives[item.index as usize] = representative;
+        representatives[index as usize] = representative;
         first = Some(representative);
     }
     representatives

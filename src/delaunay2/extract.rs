@@ -1,97 +1,102 @@
-//! From half-edges to the arrays of a [`Triangulation`].
+//! From the triangulated sphere to the arrays of a [`Triangulation`].
 
-use super::edges::{Edges, NIL, OUTER};
-use super::merge::Hull;
+use super::sphere::{HalfEdge, Sphere, previous, triangle, triangle_of};
 use super::triangulation::{NONE, Triangulation};
 use crate::huge_pages;
-use crate::predicates::{Point2, lexicographic};
 
-/// Reads the finished half-edges. Vertices of half-edges are positions in Morton order.
-pub(super) struct Extraction<'a, 'e> {
-    pub(super) points: &'a [Point2],
-    /// Input index of each point.
+/// Reads the finished sphere.
+pub(super) struct Extraction<'a> {
+    pub(super) sphere: Sphere<'a>,
+    /// The end of its triangles.
+    pub(super) end: HalfEdge,
+    /// Input index of each vertex.
     pub(super) indices: &'a [u32],
-    pub(super) edges: &'a mut Edges<'e>,
-    /// For each point, a triangle at it; overwritten.
-    pub(super) triangle_at: &'a mut Vec<u32>,
+    /// For each vertex, a number; overwritten.
+    pub(super) numbers: &'a mut Vec<u32>,
 }
 
-impl Extraction<'_, '_> {
+impl Extraction<'_> {
     /// Fills the empty `out`; `count` is the number of input points, duplicates included.
-    pub(super) fn run(mut self, hull: Hull, count: usize, out: &mut Triangulation) {
+    pub(super) fn run(mut self, count: usize, out: &mut Triangulation) {
+        let Some(hull_side) = self.number_triangles() else { return };
+        self.emit_triangles(out);
         huge_pages::reserve(&mut out.triangle_of_vertex, count);
         out.triangle_of_vertex.resize(count, NONE);
-        let hull_edges = if hull.start == NIL { Vec::new() } else { self.walk_hull(hull.start) };
-        // Around collinear points the walk passes all but the first and the last twice.
-        if self.points.len() < 3 || hull_edges.len() > self.points.len() {
-            out.hull.extend(0..self.points.len() as u32);
-            out.hull
-                .sort_unstable_by(|&u, &v| lexicographic(self.points[u as usize], self.points[v as usize]));
-            out.hull.iter_mut().for_each(|v| *v = self.indices[*v as usize]);
-            return;
-        }
-        self.emit_triangles(hull_edges.len(), out);
-        self.emit_neighbours(out);
-        for &e in &hull_edges {
-            let v = self.edges.origin(e) as usize;
-            out.hull.push(self.indices[v]);
-            // The first triangle counterclockwise.
-            self.triangle_at[v] = self.edges.corner(e) / 3;
-        }
-        for (&index, &triangle) in self.indices.iter().zip(self.triangle_at.iter()) {
+        for (&index, &triangle) in self.indices.iter().zip(self.numbers.iter()).skip(1) {
             out.triangle_of_vertex[index as usize] = triangle;
         }
+        self.walk_hull(hull_side, out);
     }
 
-    /// The half-edges of the hull, counterclockwise. Their twins become those of no triangle.
-    fn walk_hull(&mut self, start: u32) -> Vec<u32> {
-        let mut hull = Vec::new();
-        let mut e = start;
-        loop {
-            hull.push(e);
-            let next = self.edges.hull_next(e);
-            self.edges.exclude(e ^ 1);
-            e = next;
-            if e == start {
-                return hull;
-            }
-        }
+    fn triangles(&self) -> impl Iterator<Item = HalfEdge> + use<> {
+        (0..self.end).step_by(triangle(1) as usize)
     }
 
-    /// Emits each triangle at the first of its half-edges, and numbers its corners.
+    /// Numbers the finite triangles in the order of their least vertex; infinite ones get [`NONE`].
     ///
-    /// Half-edges lie in memory as the recursion made them: what is close in the plane is close here. Which is the
-    /// first can be told without a look at the others, so that one iteration need not wait for another.
-    fn emit_triangles(&mut self, hull: usize, out: &mut Triangulation) {
-        let count = 2 * self.points.len() - 2 - hull;
-        huge_pages::reserve(&mut out.triangles, count);
-        huge_pages::reserve(self.triangle_at, self.points.len());
-        self.triangle_at.resize(self.points.len(), NONE);
-        for e in 0..self.edges.half_edges().len() as u32 {
-            let (second, third) = self.edges.left_face(e);
-            if e < second && e < third {
-                let triangle = out.triangles.len() as u32;
-                let vertices = [self.edges.origin(e), self.edges.destination(e), self.edges.origin(third)];
-                self.edges.set_corner(second, 3 * triangle);
-                self.edges.set_corner(third, 3 * triangle + 1);
-                self.edges.set_corner(e, 3 * triangle + 2);
-                vertices.iter().for_each(|&v| self.triangle_at[v as usize] = triangle);
-                out.triangles.push(vertices.map(|v| self.indices[v as usize]));
+    /// Returns the outer half-edge of an edge of the hull.
+    fn number_triangles(&mut self) -> Option<HalfEdge> {
+        huge_pages::reserve(self.numbers, self.indices.len());
+        self.numbers.resize(self.indices.len(), 0);
+        let least = |sphere: &Sphere, t| {
+            let [a, b, c] = sphere.vertices(t);
+            a.min(b).min(c) as usize
+        };
+        for t in self.triangles() {
+            self.numbers[least(&self.sphere, t)] += 1;
+        }
+        self.numbers[0] = 0;
+        let mut number = 0;
+        for count in self.numbers.iter_mut() {
+            number += std::mem::replace(count, number);
+        }
+        let mut hull_side = None;
+        for t in self.triangles() {
+            let vertex = least(&self.sphere, t);
+            if vertex == 0 {
+                self.sphere.set_number(t, NONE);
+                hull_side = self.sphere.hull_side(t);
+            } else {
+                self.sphere.set_number(t, self.numbers[vertex]);
+                self.numbers[vertex] += 1;
             }
         }
-        debug_assert_eq!(out.triangles.len(), count);
+        hull_side
     }
 
-    /// Links triangles across their sides.
-    fn emit_neighbours(&mut self, out: &mut Triangulation) {
-        huge_pages::reserve(&mut out.neighbours, out.triangles.len());
-        out.neighbours.resize(out.triangles.len(), [NONE; 3]);
-        let across = out.neighbours.as_flattened_mut();
-        let (pairs, _) = self.edges.half_edges().as_chunks::<2>();
-        for [one, two] in pairs {
-            if one.corner != OUTER && two.corner != OUTER {
-                across[one.corner as usize] = two.corner / 3;
-                across[two.corner as usize] = one.corner / 3;
+    /// Writes each triangle at its number, and notes one for each vertex.
+    fn emit_triangles(&mut self, out: &mut Triangulation) {
+        let count = self.numbers.last().copied().unwrap_or_default() as usize;
+        huge_pages::reserve(&mut out.triangles, count);
+        huge_pages::reserve(&mut out.neighbours, count);
+        out.triangles.resize(count, [NONE; 3]);
+        out.neighbours.resize(count, [NONE; 3]);
+        for t in self.triangles() {
+            let number = self.sphere.number(t);
+            if number == NONE {
+                continue;
+            }
+            let vertices = self.sphere.vertices(t);
+            out.triangles[number as usize] = vertices.map(|v| self.indices[v as usize]);
+            let beyond = |h| self.sphere.number(triangle_of(self.sphere.across(h)));
+            out.neighbours[number as usize] = [beyond(t), beyond(t + 1), beyond(t + 2)];
+            vertices.iter().for_each(|&v| self.numbers[v as usize] = number);
+        }
+    }
+
+    /// Lists the hull, and makes the triangle at each of its vertices the first one counterclockwise.
+    fn walk_hull(&mut self, hull_side: HalfEdge, out: &mut Triangulation) {
+        let mut side = hull_side;
+        loop {
+            // From outside the edge is seen clockwise.
+            let origin = self.indices[self.sphere.opposite(previous(side)) as usize];
+            out.hull.push(origin);
+            let inside = triangle_of(self.sphere.across(side));
+            out.triangle_of_vertex[origin as usize] = self.sphere.number(inside);
+            // Across the edge from the end of this one to infinity is the next one.
+            side = previous(self.sphere.across(previous(side)));
+            if side == hull_side {
+                break;
             }
         }
     }

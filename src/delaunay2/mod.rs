@@ -1,15 +1,16 @@
 //! The bulk kernel in 2D: the canonical Delaunay triangulation of an array of points.
 //!
-//! Divide and conquer (Guibas and Stolfi, "Primitives for the manipulation of general subdivisions and the
-//! computation of Voronoi diagrams", 1985) with alternating cuts (Dwyer, 1987). The points are put in Morton order,
-//! copied, and divided along the Morton trie: `divide` has the recursion, `merge` the stitching, `edges` the data
-//! structure, `extract` what comes out.
+//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
+//! along the curve (`rounds`), so that the next point is near and finds small triangles around it. `sphere` is the
+//! data structure, `locate` the walk to the next point, `insertion` what it changes, `extract` what comes out.
 
+mod build;
 mod distinct;
-mod divide;
-mod edges;
 mod extract;
-mod merge;
+mod insertion;
+mod locate;
+mod rounds;
+mod sphere;
 mod triangulation;
 
 pub use distinct::distinct;
@@ -17,26 +18,30 @@ pub use triangulation::{Corner, NONE, Triangulation};
 
 use crate::error::{Error, Result};
 use crate::huge_pages;
-use crate::order::MortonOrder;
+use crate::order::HilbertOrder;
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
-use edges::EdgeMemory;
+use build::Build;
+use extract::Extraction;
+use insertion::Cavity;
+use sphere::{INFINITE, SphereMemory};
 
-/// Greatest number of points: corners of triangles, up to six per point, are numbered in 32 bits.
-pub const MAX_POINTS: usize = 700_000_000;
+/// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.
+pub const MAX_POINTS: usize = 268_000_000;
 
 /// The kernel with its buffers. One that is used again touches no new page: faster than a fresh one.
 #[derive(Debug, Default)]
 pub struct Kernel {
-    order: MortonOrder,
-    /// Morton keys of the distinct points, in Morton order.
-    keys: Vec<u64>,
-    /// Input indices of the distinct points, in Morton order.
+    order: HilbertOrder,
+    /// Input index of each vertex.
     indices: Vec<u32>,
-    /// The distinct points, in Morton order.
+    /// The vertices: one at infinity, then the distinct points, in order along the curve.
     points: Vec<Point2>,
-    edges: EdgeMemory,
-    /// For each distinct point, a triangle at it.
-    triangle_at: Vec<u32>,
+    /// The vertices in the order of insertion.
+    sequence: Vec<u32>,
+    triangles: SphereMemory,
+    cavity: Cavity,
+    /// For each vertex, a number.
+    numbers: Vec<u32>,
     counts: PredicateCounts,
 }
 
@@ -55,8 +60,8 @@ impl Kernel {
     ///
     /// Errors: a coordinate that is not finite, too many points.
     ///
-    /// Cost: O(n) expected for points that are spread evenly, O(n) per level at worst, of which there are at most 96;
-    /// about 160 bytes per point in the kernel and 52 in the triangulation.
+    /// Cost: O(n) for points that are spread evenly, or clustered evenly; about 110 bytes per point in the kernel and
+    /// 52 in the triangulation.
     pub fn triangulate(&mut self, points: &[Point2], triangulation: &mut Triangulation) -> Result<()> {
         if points.len() > MAX_POINTS {
             return Err(Error::usage(format!(
@@ -72,16 +77,20 @@ impl Kernel {
         }
         triangulation.clear();
         self.take_sorted(points, &extent, &mut triangulation.duplicates);
-        let mut edges = self.edges.edges(self.points.len());
-        let division = divide::Division { points: &self.points, keys: &self.keys, edges: &mut edges };
-        let hull = Arithmetic::of(&extent).run(&extent, division, &mut self.counts);
-        extract::Extraction {
+        rounds::fill(&mut self.sequence, self.points.len() - 1);
+        let build = Build {
             points: &self.points,
-            indices: &self.indices,
-            edges: &mut edges,
-            triangle_at: &mut self.triangle_at,
+            room: self.triangles.room(self.points.len()),
+            sequence: &self.sequence,
+            cavity: &mut self.cavity,
+        };
+        match Arithmetic::of(&extent).run(build, &mut self.counts) {
+            Some((sphere, end)) => {
+                let (indices, numbers) = (&self.indices, &mut self.numbers);
+                Extraction { sphere, end, indices, numbers }.run(points.len(), triangulation);
+            }
+            None => self.extract_line(points, triangulation),
         }
-        .run(hull, points.len(), triangulation);
         Ok(())
     }
 
@@ -91,23 +100,31 @@ impl Kernel {
         &self.counts
     }
 
-    /// Fills `keys`, `indices` and `points` with the distinct points in Morton order.
+    /// Fills `indices` and `points` with the distinct points in order along the curve, after the vertex at infinity.
     fn take_sorted(&mut self, points: &[Point2], extent: &Extent, duplicates: &mut Vec<[u32; 2]>) {
-        huge_pages::reserve(&mut self.keys, points.len());
-        huge_pages::reserve(&mut self.indices, points.len());
-        huge_pages::reserve(&mut self.points, points.len());
-        for item in self.order.sort(points, extent) {
-            let point = points[item.index as usize];
-            if self.keys.last() == Some(&item.key)
-                && self.points.last().is_some_and(|&last| lexicographic(last, point).is_eq())
-            {
-                duplicates.push([item.index, self.indices[self.indices.len() - 1]]);
+        const _: () = assert!(INFINITE == 0);
+        huge_pages::reserve(&mut self.indices, points.len() + 1);
+        huge_pages::reserve(&mut self.points, points.len() + 1);
+        self.indices.push(NONE);
+        self.points.push([f64::NAN; 2]);
+        let mut last = ([f64::NAN; 2], NONE);
+        for index in self.order.sort(points, extent) {
+            let point = points[index as usize];
+            if point == last.0 {
+                duplicates.push([index, last.1]);
                 continue;
             }
-            self.keys.push(item.key);
-            self.indices.push(item.index);
+            last = (point, index);
+            self.indices.push(index);
             self.points.push(point);
         }
+    }
+
+    /// What comes out if all points are on one line.
+    fn extract_line(&self, points: &[Point2], out: &mut Triangulation) {
+        out.triangle_of_vertex.resize(points.len(), NONE);
+        out.hull.extend(&self.indices[1..]);
+        out.hull.sort_unstable_by(|&u, &v| lexicographic(points[u as usize], points[v as usize]));
     }
 }
 

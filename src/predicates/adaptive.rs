@@ -5,13 +5,12 @@
 //! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with every
 //! product replaced by its magnitude, provided that nothing over- or underflows.
 
-use super::filtered::ExactStage;
-use super::{Extent, Point2, PredicateCounts, Predicates2, Sign, big};
+use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big};
 use robust::Coord;
 
 const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
-pub(super) const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
-pub(super) const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
+const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
+pub(crate) const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
 
 /// A determinant evaluated in `f64`, with the sum of the magnitudes of its products.
 pub(super) struct Estimate {
@@ -86,9 +85,11 @@ fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
 /// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
 ///   multiplies it by 2^27 + 1, and the result stays below 2^996.
 #[derive(Debug, Default)]
-pub struct Expansions;
+pub struct ExpansionPredicates {
+    counts: PredicateCounts,
+}
 
-impl Expansions {
+impl ExpansionPredicates {
     /// Least magnitude of a coordinate other than zero: 2^-170.
     pub const LEAST_MAGNITUDE: f64 = f64::from_bits((1023 - 170) << 52);
     /// Greatest magnitude of a coordinate: 2^240.
@@ -109,29 +110,39 @@ impl Expansions {
     }
 }
 
-impl ExactStage for Expansions {
-    #[inline(never)]
-    fn orient2d([a, b, c]: [Point2; 3], counts: &mut PredicateCounts) -> Sign {
+impl Predicates2 for ExpansionPredicates {
+    const NUMBERS: Numbers = Numbers::Floats;
+
+    #[inline(always)]
+    fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
         let estimate = Estimate::orient2d(difference(a, c), difference(b, c));
         if estimate.is_certain() {
-            counts.filter += 1;
+            self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            counts.expansion += 1;
+            self.counts.expansion += 1;
             expansion_orient2d(a, b, c)
         }
     }
 
-    #[inline(never)]
-    fn incircle([a, b, c, d]: [Point2; 4], counts: &mut PredicateCounts) -> Sign {
+    #[inline(always)]
+    fn incircle(&mut self, a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
         let estimate = Estimate::incircle(difference(a, d), difference(b, d), difference(c, d));
         if estimate.is_certain() {
-            counts.filter += 1;
+            self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            counts.expansion += 1;
+            self.counts.expansion += 1;
             expansion_incircle(a, b, c, d)
         }
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
     }
 }
 
@@ -140,7 +151,7 @@ impl ExactStage for Expansions {
 /// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two is
 /// then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a lift
 /// at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
-/// [`Expansions`], arbitrary precision for the rest.
+/// [`ExpansionPredicates`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
 pub struct TotalPredicates {
     counts: PredicateCounts,
@@ -158,13 +169,15 @@ impl TotalPredicates {
 }
 
 impl Predicates2 for TotalPredicates {
+    const NUMBERS: Numbers = Numbers::Any;
+
     fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
         let differences = [difference(a, c), difference(b, c)];
         let estimate = Estimate::orient2d(differences[0], differences[1]);
         if differences.iter().all(Self::trusts) && estimate.is_certain() {
             self.counts.filter += 1;
             Sign::of(estimate.value)
-        } else if [a, b, c].iter().all(Expansions::covers_point) {
+        } else if [a, b, c].iter().all(ExpansionPredicates::covers_point) {
             self.counts.expansion += 1;
             expansion_orient2d(a, b, c)
         } else {
@@ -179,7 +192,7 @@ impl Predicates2 for TotalPredicates {
         if differences.iter().all(Self::trusts) && estimate.is_certain() {
             self.counts.filter += 1;
             Sign::of(estimate.value)
-        } else if [a, b, c, d].iter().all(Expansions::covers_point) {
+        } else if [a, b, c, d].iter().all(ExpansionPredicates::covers_point) {
             self.counts.expansion += 1;
             expansion_incircle(a, b, c, d)
         } else {

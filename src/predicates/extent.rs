@@ -21,6 +21,12 @@ impl Extent {
     /// Extent of `points`. Cost: one pass.
     #[must_use]
     pub fn of(points: &[Point2]) -> Extent {
+        Extent::of_each(points.iter().copied())
+    }
+
+    /// Extent of all points that `points` gives.
+    #[must_use]
+    pub fn of_each(points: impl Iterator<Item = Point2>) -> Extent {
         let mut extent = Extent {
             lower: [f64::INFINITY; 2],
             upper: [f64::NEG_INFINITY; 2],

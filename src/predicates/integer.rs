@@ -10,8 +10,7 @@
 //! and below 2^53 it is representable, so the rounded difference is the exact one.
 
 use super::adaptive::{Estimate, difference};
-use super::filtered::ExactStage;
-use super::{Point2, PredicateCounts, Predicates2, Sign};
+use super::{Numbers, Point2, PredicateCounts, Predicates2, Sign};
 use std::marker::PhantomData;
 
 /// Above this, integers are not all representable in `f64`: 2^53.
@@ -31,6 +30,8 @@ impl SmallIntegerPredicates {
 }
 
 impl Predicates2 for SmallIntegerPredicates {
+    const NUMBERS: Numbers = Numbers::Integers;
+
     #[inline(always)]
     fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
         self.counts.integer += 1;
@@ -126,36 +127,50 @@ impl Width for IntPair {
     }
 }
 
-/// Filter with the magnitudes of the test at hand, then integers of the given width.
+/// Filter in `f64`, then integers of the given width.
 ///
 /// The sum of magnitudes that the filter needs anyway is a sum of non-negative integers; if it comes out below
 /// 2^53 no intermediate of it, and so none of the determinant, was rounded: the value is exact, zero included.
-/// This decides nearly all ties between neighbours, however wide the chunk is.
+/// This decides nearly all tests between neighbours, however wide the chunk is.
 #[derive(Debug, Default)]
-pub struct Integers<W> {
+pub struct IntegerPredicates<W> {
+    counts: PredicateCounts,
     width: PhantomData<W>,
 }
 
-fn decide(estimate: Estimate, counts: &mut PredicateCounts, exact: impl FnOnce() -> Sign) -> Sign {
-    if estimate.is_certain() {
-        counts.filter += 1;
-        Sign::of(estimate.value)
-    } else {
-        counts.integer += 1;
-        if estimate.magnitude < EXACT_F64 { Sign::of(estimate.value) } else { exact() }
+impl<W: Width> IntegerPredicates<W> {
+    #[inline(always)]
+    fn decide(&mut self, estimate: Estimate, exact: impl FnOnce() -> Sign) -> Sign {
+        if estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else {
+            self.counts.integer += 1;
+            if estimate.magnitude < EXACT_F64 { Sign::of(estimate.value) } else { exact() }
+        }
     }
 }
 
-impl<W: Width> ExactStage for Integers<W> {
-    #[inline(never)]
-    fn orient2d([a, b, c]: [Point2; 3], counts: &mut PredicateCounts) -> Sign {
+impl<W: Width> Predicates2 for IntegerPredicates<W> {
+    const NUMBERS: Numbers = Numbers::Integers;
+
+    #[inline(always)]
+    fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
         let (ac, bc) = (difference(a, c), difference(b, c));
-        decide(Estimate::orient2d(ac, bc), counts, || W::orient2d(ac, bc))
+        self.decide(Estimate::orient2d(ac, bc), || W::orient2d(ac, bc))
     }
 
-    #[inline(never)]
-    fn incircle([a, b, c, d]: [Point2; 4], counts: &mut PredicateCounts) -> Sign {
+    #[inline(always)]
+    fn incircle(&mut self, a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
         let (ad, bd, cd) = (difference(a, d), difference(b, d), difference(c, d));
-        decide(Estimate::incircle(ad, bd, cd), counts, || W::incircle(ad, bd, cd))
+        self.decide(Estimate::incircle(ad, bd, cd), || W::incircle(ad, bd, cd))
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
     }
 }

@@ -9,15 +9,14 @@ mod big;
 pub mod circle;
 mod counts;
 mod extent;
-mod filtered;
 mod integer;
 mod perturbation;
 
-pub use adaptive::{Expansions, TotalPredicates};
+pub(crate) use adaptive::INCIRCLE_BOUND;
+pub use adaptive::{ExpansionPredicates, TotalPredicates};
 pub use counts::PredicateCounts;
 pub use extent::Extent;
-pub use filtered::{ExactStage, FilteredPredicates};
-pub use integer::{Int64, Int128, IntPair, Integers, SmallIntegerPredicates, Width};
+pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;
 
 /// A point of the plane: x, y; both finite. Integer coordinates are stored as integer-valued `f64`.
@@ -49,8 +48,22 @@ impl Sign {
     }
 }
 
+/// What the coordinates are that an arithmetic is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Numbers {
+    /// Integers with differences of at most 2^41.
+    Integers,
+    /// Numbers whose products of four neither over- nor underflow.
+    Floats,
+    /// Finite numbers.
+    Any,
+}
+
 /// The predicates of 2D Delaunay triangulation in one arithmetic. Implementations count their decisions.
 pub trait Predicates2 {
+    /// The numbers that this arithmetic is for: a caller may have a filter of its own for some.
+    const NUMBERS: Numbers;
+
     /// Orientation of the triangle abc: positive if counterclockwise, zero if collinear.
     fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign;
 
@@ -124,38 +137,30 @@ impl Arithmetic {
             } else {
                 Arithmetic::IntegerPair
             }
-        } else if Expansions::covers(extent) {
+        } else if ExpansionPredicates::covers(extent) {
             Arithmetic::Expansion
         } else {
             Arithmetic::Total
         }
     }
 
-    /// Runs `algorithm` in this arithmetic, on points within `extent`, and adds its decisions to `counts`.
-    pub fn run<A: WithPredicates2>(
-        self,
-        extent: &Extent,
-        algorithm: A,
-        counts: &mut PredicateCounts,
-    ) -> A::Output {
-        fn counted<A: WithPredicates2>(
+    /// Runs `algorithm` in this arithmetic and adds its decisions to `counts`.
+    pub fn run<A: WithPredicates2>(self, algorithm: A, counts: &mut PredicateCounts) -> A::Output {
+        fn counted<A: WithPredicates2, P: Predicates2>(
             algorithm: A,
-            mut predicates: impl Predicates2,
+            mut predicates: P,
             counts: &mut PredicateCounts,
         ) -> A::Output {
             let output = algorithm.with(&mut predicates);
             counts.merge(predicates.counts());
             output
         }
-        fn filtered<E: ExactStage>(extent: &Extent) -> FilteredPredicates<E> {
-            FilteredPredicates::new(extent)
-        }
         match self {
             Arithmetic::SmallInteger => counted(algorithm, SmallIntegerPredicates::default(), counts),
-            Arithmetic::Integer64 => counted(algorithm, filtered::<Integers<Int64>>(extent), counts),
-            Arithmetic::Integer128 => counted(algorithm, filtered::<Integers<Int128>>(extent), counts),
-            Arithmetic::IntegerPair => counted(algorithm, filtered::<Integers<IntPair>>(extent), counts),
-            Arithmetic::Expansion => counted(algorithm, filtered::<Expansions>(extent), counts),
+            Arithmetic::Integer64 => counted(algorithm, IntegerPredicates::<Int64>::default(), counts),
+            Arithmetic::Integer128 => counted(algorithm, IntegerPredicates::<Int128>::default(), counts),
+            Arithmetic::IntegerPair => counted(algorithm, IntegerPredicates::<IntPair>::default(), counts),
+            Arithmetic::Expansion => counted(algorithm, ExpansionPredicates::default(), counts),
             Arithmetic::Total => counted(algorithm, TotalPredicates::default(), counts),
         }
     }

@@ -1,0 +1,48 @@
+//! The first triangle, then point after point.
+
+use super::insertion::{Cavity, Insertion};
+use super::locate::Start;
+use super::sphere::{HalfEdge, Sphere, triangle};
+use crate::predicates::{Point2, Predicates2, Sign, WithPredicates2};
+
+/// Triangulates distinct points, all in one arithmetic.
+pub(super) struct Build<'s, 'a> {
+    /// The vertices, that at infinity first.
+    pub(super) points: &'s [Point2],
+    /// Memory for their triangles.
+    pub(super) room: &'s mut [u32],
+    /// The finite vertices in the order of insertion.
+    pub(super) sequence: &'a [u32],
+    pub(super) cavity: &'a mut Cavity,
+}
+
+impl<'s> WithPredicates2 for Build<'s, '_> {
+    /// The triangulation and the end of its triangles; `None` if all points are on one line.
+    type Output = Option<(Sphere<'s>, HalfEdge)>;
+
+    fn with(self, predicates: &mut impl Predicates2) -> Self::Output {
+        let third = self.first_off_line(predicates)?;
+        let [mut a, mut b, c] = [0, 1, third].map(|place| self.sequence[place]);
+        let [p, q, r] = [a, b, c].map(|v| self.points[v as usize]);
+        if predicates.orient2d(p, q, r) == Sign::Negative {
+            (a, b) = (b, a);
+        }
+        let sphere = Sphere::new(self.points, self.room, [a, b, c]);
+        let mut insertion = Insertion::new(sphere, predicates, self.cavity);
+        let mut start = Start { triangle: triangle(0), is_seen: false };
+        for place in (2..self.sequence.len()).filter(|&place| place != third) {
+            let after = self.sequence.get(place + 1).unwrap_or(&self.sequence[place]);
+            start = insertion.insert(self.sequence[place], start, self.points[*after as usize]);
+        }
+        Some(insertion.finish())
+    }
+}
+
+impl Build<'_, '_> {
+    /// Place in the sequence of the first point that is not on the line through the first two.
+    fn first_off_line(&self, predicates: &mut impl Predicates2) -> Option<usize> {
+        let point = |place: usize| self.points[self.sequence[place] as usize];
+        (2..self.sequence.len())
+            .find(|&place| predicates.orient2d(point(0), point(1), point(place)) != Sign::Zero)
+    }
+}

@@ -1,0 +1,208 @@
+//! Insertion of points: the triangles in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
+//! 1981).
+
+use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly};
+use super::sphere::{HalfEdge, Sphere, next, previous, triangle, triangle_of};
+use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
+
+/// With lifts k, l, m of three points around the new one, the rounded in-circle determinant differs from the exact one
+/// by at most this times k l + l m + m k.
+///
+/// The bound of the filter ([`crate::predicates`]) is [`INCIRCLE_BOUND`] times the sum of magnitudes, of which each
+/// term is a lift times the magnitudes of the two products of a cross product, which are together at most the product
+/// of two distances, so at most half the sum of two lifts. The margin is for the rounding of the bound.
+const ERROR: f64 = INCIRCLE_BOUND * (1.0 + 1e-6);
+
+/// If the bound of integers is below this, their sum of magnitudes is below 2^53, and so is every intermediate:
+/// nothing was rounded.
+const ROUNDED: f64 = ERROR * 9_007_199_254_740_992.0;
+
+/// A vertex as the new point sees it.
+#[derive(Debug, Clone, Copy)]
+struct Sight {
+    vertex: u32,
+    /// Difference to the new point.
+    at: Point2,
+    /// Square of the distance.
+    lift: f64,
+}
+
+impl Sight {
+    #[inline(always)]
+    fn new(sphere: &Sphere, vertex: u32, from: Point2) -> Sight {
+        let at = difference(sphere.point(vertex), from);
+        Sight { vertex, at, lift: at[0] * at[0] + at[1] * at[1] }
+    }
+}
+
+/// An edge around the part of the cavity that is known: whether the triangle beyond is in conflict will be asked.
+#[derive(Debug, Clone, Copy)]
+struct Pending {
+    beyond: HalfEdge,
+    /// The end of the edge, counterclockwise.
+    end: Sight,
+    /// Cross product of the ends of the edge.
+    cross: f64,
+}
+
+/// The triangulation of the points inserted so far, and what inserting needs.
+pub(super) struct Insertion<'s, 'a, P> {
+    sphere: Sphere<'s>,
+    predicates: &'a mut P,
+    cavity: &'a mut Cavity,
+    /// The first triangle that was never written.
+    fresh: HalfEdge,
+    /// In-circle tests, and those among them that the filter did not decide.
+    tests: u64,
+    unfiltered: u64,
+}
+
+/// Buffers of one insertion, to be used again.
+#[derive(Debug, Default)]
+pub(super) struct Cavity {
+    pending: Vec<Pending>,
+    /// Triangles to be written: two fresh ones, then those in conflict, as they are found.
+    slots: Vec<HalfEdge>,
+}
+
+impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
+    /// Nothing inserted but the corners of the four triangles of `sphere`.
+    pub(super) fn new(sphere: Sphere<'s>, predicates: &'a mut P, cavity: &'a mut Cavity) -> Self {
+        Insertion { sphere, predicates, cavity, fresh: triangle(4), tests: 0, unfiltered: 0 }
+    }
+
+    /// The triangulation, and the end of its triangles. Adds the decisions made here to the counts of the predicates.
+    pub(super) fn finish(self) -> (Sphere<'s>, HalfEdge) {
+        self.predicates.counts_mut().filter += self.tests - self.unfiltered;
+        (self.sphere, self.fresh)
+    }
+
+    /// Inserts vertex `q`, which is no vertex yet; says where to start for a point at `then`.
+    ///
+    /// The cavity is passed counterclockwise, depth first: its triangles form a tree, since no vertex lies inside, so
+    /// that none is met twice and no marks are needed. Each edge of its border makes a triangle with `q`, linked
+    /// to the one before.
+    #[inline(always)]
+    pub(super) fn insert(&mut self, q: u32, start: Start, then: Point2) -> Start {
+        let at = self.sphere.point(q);
+        let then = difference(then, at);
+        let (t, corners, crosses) = self.find_conflict(start, at);
+        let first = self.fresh;
+        self.fresh += triangle(2);
+        let Cavity { pending, slots } = &mut *self.cavity;
+        slots.clear();
+        slots.extend([first, first + triangle(1), t]);
+        let side = |corner: u32, end: Sight, cross: f64| Pending {
+            beyond: self.sphere.across(t + corner),
+            end,
+            cross,
+        };
+        pending.clear();
+        pending.extend([side(1, corners[0], crosses[1]), side(0, corners[2], crosses[0])]);
+        let mut edge = side(2, corners[1], crosses[2]);
+        let mut start_of_edge = corners[0];
+        let mut is_left_of_then = cross(start_of_edge.at, then) >= 0.0;
+        let mut written = 0;
+        let mut last = first;
+        let mut hint = Start { triangle: first, is_seen: false };
+        loop {
+            let apex = Sight::new(&self.sphere, self.sphere.opposite(edge.beyond), at);
+            let left = cross(start_of_edge.at, apex.at);
+            let right = cross(apex.at, edge.end.at);
+            let value = edge.end.lift * left + start_of_edge.lift * right - apex.lift * edge.cross;
+            let error = ERROR
+                * (apex.lift * (start_of_edge.lift + edge.end.lift) + start_of_edge.lift * edge.end.lift);
+            let is_inside = if P::NUMBERS != Numbers::Any && value.abs() > error {
+                value > 0.0
+            } else {
+                self.unfiltered += 1;
+                if P::NUMBERS == Numbers::Integers && error < ROUNDED {
+                    settle(
+                        value,
+                        apex.at,
+                        (start_of_edge.at, left),
+                        (edge.end.at, right),
+                        self.predicates.counts_mut(),
+                    )
+                } else {
+                    is_in_conflict(&self.sphere, triangle_of(edge.beyond), at, self.predicates)
+                }
+            };
+            if is_inside {
+                slots.push(triangle_of(edge.beyond));
+                let beyond = self.sphere.across(previous(edge.beyond));
+                pending.push(Pending { beyond, cross: right, ..edge });
+                let beyond = self.sphere.across(next(edge.beyond));
+                edge = Pending { beyond, end: apex, cross: left };
+                continue;
+            }
+            let slot = slots[written];
+            let vertices = [q, start_of_edge.vertex, edge.end.vertex];
+            self.sphere.write(slot, vertices, [edge.beyond, slot, last + 1]);
+            self.sphere.set_across(edge.beyond, slot);
+            self.sphere.set_across(last + 1, slot + 2);
+            written += 1;
+            last = slot;
+            let end_is_left = cross(edge.end.at, then) >= 0.0;
+            if is_left_of_then && !end_is_left {
+                hint = Start { triangle: slot, is_seen: true };
+            }
+            is_left_of_then = end_is_left;
+            start_of_edge = edge.end;
+            match pending.pop() {
+                Some(before) => edge = before,
+                None => break,
+            }
+        }
+        self.sphere.set_across(last + 1, first + 2);
+        self.sphere.set_across(first + 2, last + 1);
+        self.tests += 2 * slots.len() as u64 - 3;
+        hint
+    }
+
+    /// A triangle in conflict with a point, what the point sees of its corners, and the cross product of the ends
+    /// of the side opposite to each.
+    #[inline(always)]
+    fn find_conflict(&mut self, start: Start, at: Point2) -> (HalfEdge, [Sight; 3], [f64; 3]) {
+        let look = |sphere: &Sphere, t| {
+            let corners = sphere.vertices(t).map(|v| Sight::new(sphere, v, at));
+            let side = |i: usize, j: usize| cross(corners[i].at, corners[j].at);
+            (t, corners, [side(1, 2), side(2, 0), side(0, 1)])
+        };
+        if P::NUMBERS != Numbers::Any {
+            let t = walk(&self.sphere, start, at);
+            let (t, corners, crosses) = look(&self.sphere, t);
+            let [k, l, m] = corners.map(|corner| corner.lift);
+            let value = k * crosses[0] + l * crosses[1] + m * crosses[2];
+            if value > ERROR * (k * (l + m) + l * m) {
+                return (t, corners, crosses);
+            }
+        }
+        let t = walk_exactly(&self.sphere, start.triangle, at, self.predicates);
+        look(&self.sphere, t)
+    }
+}
+
+/// Decides by a value that was not rounded, ties by the canonical perturbation: whether the new point, the origin, is
+/// in the circle of w, b, a. The point of greatest rank decides; orientations about the origin are at hand.
+#[inline(always)]
+fn settle(
+    value: f64,
+    w: Point2,
+    (a, aw): (Point2, f64),
+    (b, wb): (Point2, f64),
+    counts: &mut PredicateCounts,
+) -> bool {
+    counts.integer += 1;
+    if value != 0.0 {
+        return value > 0.0;
+    }
+    counts.perturbed += 1;
+    let is_above = |p: Point2, q: Point2| p[0] > q[0] || (p[0] == q[0] && p[1] > q[1]);
+    let origin = [0.0; 2];
+    if is_above(a, b) {
+        is_above(a, w) && is_above(a, origin) && wb > 0.0
+    } else {
+        is_above(b, w) && is_above(b, origin) && aw > 0.0
+    }
+}
