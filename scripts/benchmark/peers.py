@@ -85,7 +85,10 @@ class Installer:
     def compile(self, name, *flags):
         """A program of native/NAME.cpp."""
         program = self.folder / name
-        call(*CXX, NATIVE / f"{name}.cpp", "-o", program, *flags)
+        sources = [NATIVE / f"{name}.cpp", NATIVE / "points.hpp", HERE / "peers.py"]
+        if program.exists() and program.stat().st_mtime > max(source.stat().st_mtime for source in sources):
+            return program
+        call(*CXX, sources[0], "-o", program, *flags)
         return program
 
     def cgal(self):

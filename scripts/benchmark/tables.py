@@ -10,8 +10,11 @@ def table(head, rows):
     return "\n".join(lines) + "\n"
 
 
-def number(value, digits=2):
-    return "" if value is None else f"{value:.{digits}f}"
+def number(value, digits=None):
+    """With the digits said, or two, and three below one."""
+    if value is None:
+        return ""
+    return f"{value:.{(3 if value < 1 else 2) if digits is None else digits}f}"
 
 
 def megabytes(peaks):
@@ -22,7 +25,7 @@ def megabytes(peaks):
 
 def spread(contestant, value):
     values = [value(run) for run in contestant.runs]
-    return f"{min(values):.2f}-{max(values):.2f}"
+    return f"{number(min(values))}-{number(max(values))}"
 
 
 def triangles(contest, contestant):
@@ -35,7 +38,7 @@ def triangles(contest, contestant):
 def ratio(contest, contestant):
     ours = contest.get(OURS)
     value = contest.seconds(contestant)
-    return number(value / contest.seconds(ours)) if ours and value is not None else ""
+    return number(value / contest.seconds(ours), 2) if ours and value is not None else ""
 
 
 def kernel_row(contest, c):
