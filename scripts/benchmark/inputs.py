@@ -1,0 +1,66 @@
+"""Makes input files, once each, in the folder of the benchmark."""
+
+import os
+import subprocess
+
+from machine import ROOT
+
+UNITS = {"k": 10**3, "M": 10**6}
+# Inputs above this are not kept, unless asked for.
+KEPT_POINTS_MAX = 10**7
+
+
+def count_of(text):
+    """The number that texts like 300, 100k and 10M say."""
+    return int(text[:-1]) * UNITS[text[-1]] if text[-1] in UNITS else int(text)
+
+
+class Inputs:
+    """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz, permuted-10M.las."""
+
+    def __init__(self, folder, helpers):
+        self.folder = folder / "inputs"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.helpers = helpers
+
+    def file(self, name):
+        path = self.folder / name
+        if path.exists():
+            return path
+        kind, size = path.stem.split("-")
+        # Under another name until it is whole.
+        part = path.with_name("part-" + name)
+        if kind == "flight":
+            self.make(ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)
+        elif kind == "permuted":
+            self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
+        else:
+            self.make(self.helpers / "inputs", kind, count_of(size), part)
+        os.replace(part, path)
+        return path
+
+    def finalized(self, las):
+        """The stream that spfinalize, as it is now, makes of a file."""
+        path = las.with_suffix(".spm")
+        self.make(program("spfinalize"), las, "-o", path)
+        return path
+
+    def make(self, *command):
+        subprocess.run([str(word) for word in command], check=True, stderr=subprocess.DEVNULL)
+
+    def remove_big(self):
+        for path in self.folder.iterdir():
+            if count_of(path.stem.split("-")[-1]) > KEPT_POINTS_MAX:
+                path.unlink()
+
+
+def program(name):
+    """A program of this project, as `cargo build --release` makes it."""
+    target = os.environ.get("CARGO_TARGET_DIR", ROOT / "target")
+    return ROOT / target / "release" / name
+
+
+def build():
+    """Builds what is measured."""
+    command = ["cargo", "build", "--release", "--locked", "--quiet", "--bins", "--example", "kernel_time"]
+    subprocess.run([*command, "--example", "gen_lidar"], cwd=ROOT, check=True)

@@ -1,0 +1,44 @@
+"""Says where and of what figures are."""
+
+import datetime
+import os
+import pathlib
+import platform
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def line_of(*command):
+    """First line that `command` prints, or nothing."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, check=True)
+        return (done.stdout.splitlines() or [""])[0]
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def field_of(path, key):
+    for line in pathlib.Path(path).read_text().splitlines():
+        if line.startswith(key):
+            return line.split(":", 1)[1].strip()
+    return ""
+
+
+def commit():
+    changed = "" if line_of("git", "status", "--porcelain") == "" else " with changes"
+    return (line_of("git", "rev-parse", "--short=12", "HEAD") or "unknown") + changed
+
+
+def describe():
+    memory_kb = int(field_of("/proc/meminfo", "MemTotal").split()[0])
+    return {
+        "date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
+        "commit": commit(),
+        "cpu": field_of("/proc/cpuinfo", "model name"),
+        "cores": len(os.sched_getaffinity(0)),
+        "memory_GiB": round(memory_kb / 2**20),
+        "kernel": f"{platform.system()} {platform.release()}",
+        "rustc": line_of("rustc", "--version"),
+        "c++": line_of("g++", "--version"),
+    }
