@@ -4,7 +4,7 @@
 //! half a million pages. The system gives pages of 2 MiB to those who ask.
 
 /// Arrays of fewer bytes stay in small pages, so that a process takes no more memory than it uses.
-const LEAST_BYTES: usize = 16 << 20;
+const LEAST_BYTES: usize = 4 << 20;
 
 /// Empties `array`, makes room for `capacity` elements, and asks for large pages if they are many.
 pub(crate) fn reserve<T>(array: &mut Vec<T>, capacity: usize) {

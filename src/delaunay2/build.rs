@@ -2,7 +2,7 @@
 
 use super::insertion::{Cavity, Insertion};
 use super::locate::Start;
-use super::sphere::{HalfEdge, Sphere, triangle};
+use super::sphere::Sphere;
 use crate::predicates::{Point2, Predicates2, Sign, WithPredicates2};
 
 /// Triangulates distinct points, all in one arithmetic.
@@ -17,8 +17,8 @@ pub(super) struct Build<'s, 'a> {
 }
 
 impl<'s> WithPredicates2 for Build<'s, '_> {
-    /// The triangulation and the end of its triangles; `None` if all points are on one line.
-    type Output = Option<(Sphere<'s>, HalfEdge)>;
+    /// The triangulation; `None` if all points are on one line.
+    type Output = Option<Sphere<'s>>;
 
     fn with(self, predicates: &mut impl Predicates2) -> Self::Output {
         let third = self.first_off_line(predicates)?;
@@ -29,7 +29,7 @@ impl<'s> WithPredicates2 for Build<'s, '_> {
         }
         let sphere = Sphere::new(self.points, self.room, [a, b, c]);
         let mut insertion = Insertion::new(sphere, predicates, self.cavity);
-        let mut start = Start { triangle: triangle(0), is_seen: false };
+        let mut start = Start { triangle: 0, is_seen: false };
         for place in (2..self.sequence.len()).filter(|&place| place != third) {
             let after = self.sequence.get(place + 1).unwrap_or(&self.sequence[place]);
             start = insertion.insert(self.sequence[place], start, self.points[*after as usize]);

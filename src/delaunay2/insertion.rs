@@ -2,7 +2,7 @@
 //! 1981).
 
 use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly};
-use super::sphere::{HalfEdge, Sphere, next, previous, triangle, triangle_of};
+use super::sphere::{HalfEdge, Sphere, next, previous, triangle_of, triangles_of};
 use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
 
 /// With lifts k, l, m of three points around the new one, the rounded in-circle determinant differs from the exact one
@@ -50,8 +50,6 @@ pub(super) struct Insertion<'s, 'a, P> {
     sphere: Sphere<'s>,
     predicates: &'a mut P,
     cavity: &'a mut Cavity,
-    /// The first triangle that was never written.
-    fresh: HalfEdge,
     /// In-circle tests, and those among them that the filter did not decide.
     tests: u64,
     unfiltered: u64,
@@ -61,20 +59,20 @@ pub(super) struct Insertion<'s, 'a, P> {
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
     pending: Vec<Pending>,
-    /// Triangles to be written: two fresh ones, then those in conflict, as they are found.
+    /// Triangles to be written: the two that are new, then those in conflict, as they are found.
     slots: Vec<HalfEdge>,
 }
 
 impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     /// Nothing inserted but the corners of the four triangles of `sphere`.
     pub(super) fn new(sphere: Sphere<'s>, predicates: &'a mut P, cavity: &'a mut Cavity) -> Self {
-        Insertion { sphere, predicates, cavity, fresh: triangle(4), tests: 0, unfiltered: 0 }
+        Insertion { sphere, predicates, cavity, tests: 0, unfiltered: 0 }
     }
 
-    /// The triangulation, and the end of its triangles. Adds the decisions made here to the counts of the predicates.
-    pub(super) fn finish(self) -> (Sphere<'s>, HalfEdge) {
+    /// The triangulation. Adds the decisions made here to the counts of the predicates.
+    pub(super) fn finish(self) -> Sphere<'s> {
         self.predicates.counts_mut().filter += self.tests - self.unfiltered;
-        (self.sphere, self.fresh)
+        self.sphere
     }
 
     /// Inserts vertex `q`, which is no vertex yet; says where to start for a point at `then`.
@@ -87,11 +85,10 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         let at = self.sphere.point(q);
         let then = difference(then, at);
         let (t, corners, crosses) = self.find_conflict(start, at);
-        let first = self.fresh;
-        self.fresh += triangle(2);
+        let [first, second] = triangles_of(q);
         let Cavity { pending, slots } = &mut *self.cavity;
         slots.clear();
-        slots.extend([first, first + triangle(1), t]);
+        slots.extend([first, second, t]);
         let side = |corner: u32, end: Sight, cross: f64| Pending {
             beyond: self.sphere.across(t + corner),
             end,

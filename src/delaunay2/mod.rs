@@ -40,8 +40,8 @@ pub struct Kernel {
     sequence: Vec<u32>,
     triangles: SphereMemory,
     cavity: Cavity,
-    /// For each vertex, a number.
-    numbers: Vec<u32>,
+    /// For each vertex, a triangle at it.
+    triangle_at: Vec<u32>,
     counts: PredicateCounts,
 }
 
@@ -85,9 +85,9 @@ impl Kernel {
             cavity: &mut self.cavity,
         };
         match Arithmetic::of(&extent).run(build, &mut self.counts) {
-            Some((sphere, end)) => {
-                let (indices, numbers) = (&self.indices, &mut self.numbers);
-                Extraction { sphere, end, indices, numbers }.run(points.len(), triangulation);
+            Some(sphere) => {
+                let (indices, triangle_at) = (&self.indices, &mut self.triangle_at);
+                Extraction { sphere, indices, triangle_at }.run(points.len(), triangulation);
             }
             None => self.extract_line(points, triangulation),
         }

@@ -16,10 +16,13 @@ const ACROSS: u32 = 4;
 /// A half-edge is the word of the vertex opposite to it; its triangle is the word of its first vertex.
 pub(super) type HalfEdge = u32;
 
-/// Triangle number `t` of the array, counting from 0.
+/// The two triangles that vertex `v` brings: there are always twice as many triangles as vertices, but for four.
+///
+/// Vertices are numbered along a curve, so that what is close in the plane is close in memory.
 #[inline(always)]
-pub(super) fn triangle(t: u32) -> HalfEdge {
-    t * WORDS as u32
+pub(super) fn triangles_of(v: u32) -> [HalfEdge; 2] {
+    let first = 2 * v * WORDS as u32;
+    [first, first + WORDS as u32]
 }
 
 /// The triangle of a half-edge.
@@ -53,7 +56,7 @@ pub(super) struct SphereMemory {
 }
 
 impl SphereMemory {
-    /// Room for the triangles of `vertices` points, to be written before they are read.
+    /// Room for the triangles of `vertices` vertices, that at infinity among them, to be written before they are read.
     ///
     /// Fresh memory is zeroed by the system when it is touched, not here.
     pub(super) fn room(&mut self, vertices: usize) -> &mut [u32] {
@@ -61,14 +64,15 @@ impl SphereMemory {
         #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
         #[repr(C, align(32))]
         struct Triangle([u32; WORDS]);
-        let words = (2 * vertices + 1) * WORDS;
-        if self.words.len() < words {
+        let words = 2 * vertices * WORDS;
+        // Up to one triangle is lost to alignment.
+        if self.words.len() < words + WORDS {
             self.words = Vec::new();
-            self.words = vec![0; words];
+            self.words = vec![0; words + WORDS];
             huge_pages::ask(&mut self.words);
         }
         let (_, triangles, _) = bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words);
-        bytemuck::cast_slice_mut(triangles)
+        &mut bytemuck::cast_slice_mut(triangles)[..words]
     }
 }
 
@@ -79,20 +83,23 @@ pub(super) struct Sphere<'a> {
 }
 
 impl<'a> Sphere<'a> {
-    /// The triangle of three points, which are counterclockwise, and the three infinite ones around it: triangles 0
-    /// to 3 of `room`.
+    /// The triangle of three points, which are counterclockwise, and the three infinite ones around it.
     pub(super) fn new(points: &'a [Point2], room: &'a mut [u32], [a, b, c]: [u32; 3]) -> Sphere<'a> {
         let mut sphere = Sphere { points, words: room };
-        let rows = [
-            ([a, b, c], [(1, 0), (2, 0), (3, 0)]),
-            ([INFINITE, c, b], [(0, 0), (3, 2), (2, 1)]),
-            ([INFINITE, a, c], [(0, 1), (1, 2), (3, 1)]),
-            ([INFINITE, b, a], [(0, 2), (2, 2), (1, 1)]),
-        ];
-        for (t, (vertices, across)) in (0..).zip(rows) {
-            sphere.write(triangle(t), vertices, across.map(|(t, corner)| triangle(t) + corner));
+        let ([inside, at_a], [at_b, at_c]) = (triangles_of(INFINITE), triangles_of(a));
+        sphere.write(inside, [a, b, c], [at_a, at_b, at_c]);
+        sphere.write(at_a, [INFINITE, c, b], [inside, at_c + 2, at_b + 1]);
+        sphere.write(at_b, [INFINITE, a, c], [inside + 1, at_a + 2, at_c + 1]);
+        sphere.write(at_c, [INFINITE, b, a], [inside + 2, at_b + 2, at_a + 1]);
+        for t in triangles_of(b).into_iter().chain(triangles_of(c)) {
+            sphere.write(t, [INFINITE; 3], [t; 3]);
         }
         sphere
+    }
+
+    /// All triangles, and those that are left blank, with no finite vertex.
+    pub(super) fn triangles(&self) -> impl Iterator<Item = HalfEdge> + use<> {
+        (0..self.words.len() as u32).step_by(WORDS)
     }
 
     #[inline(always)]

@@ -15,8 +15,7 @@ pub struct Corner {
 /// A Delaunay triangulation. Vertices are indices into the array of input points.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Triangulation {
-    /// Vertices of each triangle, counterclockwise. Triangles are in the order of the first of their vertices
-    /// along a Hilbert curve.
+    /// Vertices of each triangle, counterclockwise. Triangles are about in the order of a Hilbert curve.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle, the triangle across the edge opposite to each corner, or [`NONE`] on the hull.
     pub neighbours: Vec<[u32; 3]>,
