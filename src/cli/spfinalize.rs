@@ -1,5 +1,6 @@
 //! The command line of `spfinalize`.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -130,10 +131,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let mut output = Output::create(&flags.output, true)?;
     let mut watch = Watch { common: &flags.common, progress: None };
-    // Whatever decodes in parallel stays in the pool that it is called from.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(flags.threads());
-    let pool = pool.build().context("starting threads")?;
-    let stats = pool.install(|| finalize::run(&input, &options, &mut watch, &mut output))?;
+    let stats = finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
     if stats.points == 0 {
@@ -184,6 +182,7 @@ impl Flags {
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             temp_dir: self.temp_dir.clone(),
+            threads: NonZeroUsize::new(self.threads()),
         }
     }
 

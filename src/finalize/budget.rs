@@ -80,6 +80,11 @@ impl Budget {
     pub(super) fn leaves(&self) -> u64 {
         self.bytes / 2
     }
+
+    /// For the table that tells the leaf of a point.
+    pub(super) fn table(&self) -> u64 {
+        self.bytes / 64
+    }
 }
 
 fn process_reserve(threads: usize) -> u64 {

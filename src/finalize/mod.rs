@@ -9,10 +9,12 @@
 //!
 //! How many points wait in memory and how many on disk does not show in the result. Counters are 64 bits wide.
 
+mod ahead;
 mod budget;
 mod buffer;
 mod count;
 mod emit;
+mod locate;
 mod pages;
 mod plan;
 mod spill;
@@ -29,6 +31,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 use crate::source::{Description, Input, PointReader};
 use crate::stream::{Header, Kind, StreamWriter};
+use ahead::read_ahead;
 use plan::Plan;
 use survey::Survey;
 
@@ -248,8 +251,13 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         }
     }
 
-    /// Makes one pass over the input, handing every batch to `consume`; the number of invalid points dropped.
-    fn read_all(&mut self, pass: Pass, mut consume: impl FnMut(&[Point]) -> Result<()>) -> Result<u64> {
+    /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then `consume`.
+    fn read_all<T: Default + Send>(
+        &mut self,
+        pass: Pass,
+        prepare: impl FnMut(&[Point], &mut T) -> Result<()> + Send,
+        mut consume: impl FnMut(&[Point], &mut T) -> Result<()>,
+    ) -> Result<()> {
         let start = Instant::now();
         let total = match self.stats.points {
             0 => self.input.description().stated_points,
@@ -257,19 +265,16 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         };
         self.observer.pass(pass, total);
         let mut reader = self.input.read()?;
-        let mut batch = Vec::new();
         let mut done = 0;
-        loop {
-            reader.next_batch(&mut batch)?;
-            if batch.is_empty() {
-                break;
-            }
-            consume(&batch)?;
+        read_ahead(&mut *reader, prepare, |batch, prepared| {
+            consume(batch, prepared)?;
             done += batch.len() as u64;
             self.observer.done(done);
-        }
+            Ok(())
+        })?;
+        self.stats.invalid = reader.invalid();
         self.stats.passes.push((pass.name(), start.elapsed()));
-        Ok(reader.invalid())
+        Ok(())
     }
 
     fn note_plan(&mut self, plan: &Plan) {

@@ -23,4 +23,4 @@ pub(crate) use payload::check_place;
 pub use reader::StreamReader;
 pub(crate) use tally::Tally;
 pub use writer::StreamWriter;
-pub(crate) use writer::encode_point;
+pub(crate) use writer::encode_points;
