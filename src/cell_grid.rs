@@ -38,7 +38,7 @@ impl CellGrid {
     fn index(&self, axis: usize, x: f64) -> u32 {
         let index = ((x - self.origin[axis]) * self.cells_per_unit) as i32;
         let border = self.origin[axis] + f64::from(index) * self.step;
-        (index - i32::from(x < border)) as u32
+        index.wrapping_sub(i32::from(x < border)) as u32
     }
 
     /// The cell that holds `point`, which must lie in the cube; any code otherwise.

@@ -21,3 +21,4 @@ pub mod reduce;
 pub mod sink;
 pub mod source;
 pub mod stream;
+pub mod system;

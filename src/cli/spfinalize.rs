@@ -9,7 +9,7 @@ use clap::Parser;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_size, peak_memory};
 use crate::error::Error;
-use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Stats};
+use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use crate::output::Output;
 use crate::source::{Input, SourceOptions};
 
@@ -34,7 +34,8 @@ Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budge
 /// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA or SPB, and writes a stream of points in
 /// which tags say which cells no later point lies in. Points of a cell are held back and written together
 /// (chunked), unless --preserve is given. The input is read two times or more: again where headers do not state
-/// its bounding box, and where cells are crowded. What cannot be read again is spooled.
+/// its bounding box, and where cells are crowded. What cannot be read again is spooled, and decoded points are
+/// where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -74,6 +75,11 @@ pub struct Flags {
     /// disk for big input without order
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
+
+    /// Keep points that the first pass decoded in a temporary file for later passes (see --temp-dir): where
+    /// decoding again would cost more and there is room on a disk, always, or never
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
+    spool: Spool,
 
     /// Threads that decode LAZ [default: one per core]; each takes a part of --memory
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -117,6 +123,14 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+}
+
+/// When decoded points are kept for later passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Spool {
+    Auto,
+    Always,
+    Never,
 }
 
 /// Runs the tool.
@@ -163,6 +177,11 @@ impl Flags {
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
             temp_dir: self.temp_dir.clone(),
+            spooling: match self.spool {
+                Spool::Auto => Spooling::Auto,
+                Spool::Always => Spooling::Always,
+                Spool::Never => Spooling::Never,
+            },
         })
     }
 
@@ -259,6 +278,8 @@ fn stats_text(stats: &Stats) -> String {
     row("points per cell, most", stats.cell_points_max.to_string());
     row("points spilled", stats.spilled_points.to_string());
     row("bytes spilled", stats.spilled_bytes.to_string());
+    row("points spooled", stats.spooled_points.to_string());
+    row("bytes spooled", stats.spooled_bytes.to_string());
     rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
 }
 
@@ -278,5 +299,6 @@ fn stats_json(stats: &Stats) -> serde_json::Value {
         "cells": {"occupied": stats.occupied_cells, "empty": stats.empty_cells},
         "points_per_cell": {"avg": stats.cell_points_avg(), "max": stats.cell_points_max},
         "spilled": {"points": stats.spilled_points, "bytes": stats.spilled_bytes},
+        "spooled": {"points": stats.spooled_points, "bytes": stats.spooled_bytes},
     })
 }

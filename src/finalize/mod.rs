@@ -18,6 +18,7 @@ mod locate;
 mod pages;
 mod plan;
 mod spill;
+mod spool;
 mod survey;
 
 use std::io::Write;
@@ -25,6 +26,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 pub use budget::Budget;
+pub use spool::Spooling;
 
 use crate::bounds::Point;
 use crate::error::{Error, ErrorKind, Result};
@@ -33,6 +35,7 @@ use crate::source::{Description, Input, PointReader};
 use crate::stream::{Header, Kind, StreamWriter};
 use ahead::read_ahead;
 use plan::Plan;
+use spool::{Spool, SpoolPlan, Tee};
 use survey::Survey;
 
 /// Points that a leaf holds about, unless the user says otherwise.
@@ -48,6 +51,11 @@ pub trait Passes {
     /// # Errors
     /// If the input cannot be opened.
     fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+
+    /// Whether decoding costs more than writing decoded points to disk and reading them back.
+    fn is_costly(&self) -> bool {
+        false
+    }
 
     /// What messages call the input, if it has a name.
     fn name(&self) -> Option<String> {
@@ -88,8 +96,11 @@ pub struct Options {
     pub order: Order,
     /// Memory for counters, leaves and waiting points.
     pub budget: Budget,
-    /// Where waiting points go when the budget is used up; the system's folder for temporary files if `None`.
+    /// Where waiting points go when the budget is used up, and points that are kept for later passes; the
+    /// system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
+    /// When decoded points are kept for later passes.
+    pub spooling: Spooling,
 }
 
 impl Options {
@@ -179,6 +190,10 @@ pub struct Stats {
     pub spilled_points: u64,
     /// Bytes written to the temporary file.
     pub spilled_bytes: u64,
+    /// Points that were kept for later passes.
+    pub spooled_points: u64,
+    /// Bytes of the temporary file for those.
+    pub spooled_bytes: u64,
 }
 
 impl Stats {
@@ -207,7 +222,10 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     output: W,
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
-    let mut work = Work { input, observer, stats: Stats::default() };
+    let spooling =
+        SpoolPlan::new(options.spooling, input.is_costly(), options.temp_dir.as_deref(), input.description());
+    let kept = spooling.map_or(Kept::Not, Kept::Next);
+    let mut work = Work { input, observer, stats: Stats::default(), kept };
     work.write(options, output).map_err(|error| match input.name() {
         // What has no name by now and breaks promises is the input as a whole.
         Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
@@ -232,6 +250,15 @@ struct Work<'a, P: Passes + ?Sized> {
     input: &'a P,
     observer: &'a mut dyn Observer,
     stats: Stats,
+    kept: Kept,
+}
+
+/// Where decoded points are kept for later passes.
+enum Kept {
+    Not,
+    /// The next pass, which is the first, keeps them.
+    Next(SpoolPlan),
+    In(Spool),
 }
 
 impl<P: Passes + ?Sized> Work<'_, P> {
@@ -264,17 +291,46 @@ impl<P: Passes + ?Sized> Work<'_, P> {
             known => Some(known),
         };
         self.observer.pass(pass, total);
-        let mut reader = self.input.read()?;
         let mut done = 0;
-        read_ahead(&mut *reader, prepare, |batch, prepared| {
+        let observer = &mut *self.observer;
+        let consume = |batch: &[Point], prepared: &mut T| {
             consume(batch, prepared)?;
             done += batch.len() as u64;
-            self.observer.done(done);
+            observer.done(done);
             Ok(())
-        })?;
-        self.stats.invalid = reader.invalid();
+        };
+        match std::mem::replace(&mut self.kept, Kept::Not) {
+            Kept::Not => {
+                let mut reader = self.input.read()?;
+                read_ahead(&mut *reader, prepare, consume)?;
+                self.stats.invalid = reader.invalid();
+            }
+            Kept::Next(plan) => {
+                let mut tee = Tee::new(self.input.read()?, plan, self.input.description())?;
+                read_ahead(&mut tee, prepare, consume)?;
+                self.stats.invalid = tee.invalid();
+                self.keep(tee.finish());
+            }
+            Kept::In(spool) => {
+                read_ahead(&mut spool.read(), prepare, consume)?;
+                self.kept = Kept::In(spool);
+            }
+        }
         self.stats.passes.push((pass.name(), start.elapsed()));
         Ok(())
+    }
+
+    fn keep(&mut self, spool: Result<Spool>) {
+        match spool {
+            Ok(spool) => {
+                self.stats.spooled_points = spool.points();
+                self.stats.spooled_bytes = spool.bytes();
+                self.kept = Kept::In(spool);
+            }
+            Err(reason) => {
+                self.observer.notice(&format!("{reason}: decoding the input again in each pass"));
+            }
+        }
     }
 
     fn note_plan(&mut self, plan: &Plan) {
@@ -292,6 +348,10 @@ impl Passes for Input {
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
         Input::read(self)
+    }
+
+    fn is_costly(&self) -> bool {
+        Input::is_costly(self)
     }
 
     fn name(&self) -> Option<String> {

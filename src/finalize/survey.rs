@@ -135,7 +135,8 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         if count.outside > 0 || count.bounds != bounds || count.points != points {
             return Err(input_changed());
         }
-        self.finish_survey(tree, count, options)
+        // Of a border at zero that one pass has as -0 and another, from a spool, as 0, the first one counts.
+        self.finish_survey(tree, Count { bounds, ..count }, options)
     }
 
     /// Whether a count over the cube of the stated box can stand.

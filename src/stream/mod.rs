@@ -19,7 +19,7 @@ pub use finalized::FinalizedCells;
 pub use header::{Coordinates, Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;
-pub(crate) use payload::check_place;
+pub(crate) use payload::{check_place, decode_points};
 pub use reader::StreamReader;
 pub(crate) use tally::Tally;
 pub use writer::StreamWriter;
