@@ -19,24 +19,21 @@ mod pages;
 mod plan;
 mod spill;
 mod spool;
+mod stats;
 mod survey;
+mod work;
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 pub use budget::Budget;
 pub use spool::Spooling;
+pub use stats::Stats;
 
-use crate::bounds::Point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 use crate::source::{Description, Input, PointReader};
-use crate::stream::{Header, Kind, StreamWriter};
-use ahead::read_ahead;
-use plan::Plan;
-use spool::{Spool, SpoolPlan, Tee};
-use survey::Survey;
+use work::Work;
 
 /// Points that a leaf holds about, unless the user says otherwise.
 pub const CELL_POINTS: u64 = 20_000;
@@ -165,45 +162,6 @@ pub trait Observer {
 
 impl Observer for () {}
 
-/// What happened: the columns of table 5.1 of the thesis, and more.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Points written.
-    pub points: u64,
-    /// Points dropped because a coordinate is not finite.
-    pub invalid: u64,
-    /// Every pass over the input with its time, in order.
-    pub passes: Vec<(&'static str, Duration)>,
-    /// Level of the deepest leaf.
-    pub level: u8,
-    /// Leaves: occupied cells that are tagged.
-    pub occupied_cells: u64,
-    /// Maximal empty cells, tagged at the start.
-    pub empty_cells: u64,
-    /// Points in the fullest leaf.
-    pub cell_points_max: u64,
-    /// Most points that waited for their cell at once, in memory and on disk.
-    pub buffered_points_max: u64,
-    /// Most bytes of memory that pages of waiting points took up.
-    pub buffered_bytes_max: u64,
-    /// Points that had to wait on disk.
-    pub spilled_points: u64,
-    /// Bytes written to the temporary file.
-    pub spilled_bytes: u64,
-    /// Points that were kept for later passes.
-    pub spooled_points: u64,
-    /// Bytes of the temporary file for those.
-    pub spooled_bytes: u64,
-}
-
-impl Stats {
-    /// Average number of points in a leaf.
-    #[must_use]
-    pub fn cell_points_avg(&self) -> f64 {
-        self.points as f64 / self.occupied_cells.max(1) as f64
-    }
-}
-
 /// Reads `input` two or more times and writes its finalized point stream, END included, to `output`.
 ///
 /// Without points the stream has neither bounds nor tree. Where the extent of the points is so large that no
@@ -222,123 +180,13 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     output: W,
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
-    let spooling =
-        SpoolPlan::new(options.spooling, input.is_costly(), options.temp_dir.as_deref(), input.description());
-    let kept = spooling.map_or(Kept::Not, Kept::Next);
-    let mut work = Work { input, observer, stats: Stats::default(), kept };
+    let mut work = Work::new(input, options, observer);
     work.write(options, output).map_err(|error| match input.name() {
         // What has no name by now and breaks promises is the input as a whole.
         Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
         _ => error,
     })?;
     Ok(work.stats)
-}
-
-fn header_of(description: &Description, survey: &Survey, options: &Options) -> Header {
-    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
-    Header {
-        bounds: survey.bounds,
-        points: Some(survey.points),
-        chunked: survey.grid.is_some() && options.order == Order::Chunked,
-        crs: crs.clone(),
-        ..Header::new(Kind::Points, coordinates, dims, has_elevation)
-    }
-}
-
-/// What all passes share.
-struct Work<'a, P: Passes + ?Sized> {
-    input: &'a P,
-    observer: &'a mut dyn Observer,
-    stats: Stats,
-    kept: Kept,
-}
-
-/// Where decoded points are kept for later passes.
-enum Kept {
-    Not,
-    /// The next pass, which is the first, keeps them.
-    Next(SpoolPlan),
-    In(Spool),
-}
-
-impl<P: Passes + ?Sized> Work<'_, P> {
-    /// Makes all passes.
-    fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
-        let survey = self.survey(options)?;
-        let header = header_of(self.input.description(), &survey, options);
-        let Some(grid) = survey.grid else {
-            return self.write_untagged(StreamWriter::new(output, header)?);
-        };
-        let plan = Plan::new(grid, options.leaves, &options.budget)?;
-        self.note_plan(&plan);
-        let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
-        match options.order {
-            Order::Chunked => self.write_chunked(plan, options, writer),
-            Order::Preserved => self.write_preserved(plan, writer),
-        }
-    }
-
-    /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then `consume`.
-    fn read_all<T: Default + Send>(
-        &mut self,
-        pass: Pass,
-        prepare: impl FnMut(&[Point], &mut T) -> Result<()> + Send,
-        mut consume: impl FnMut(&[Point], &mut T) -> Result<()>,
-    ) -> Result<()> {
-        let start = Instant::now();
-        let total = match self.stats.points {
-            0 => self.input.description().stated_points,
-            known => Some(known),
-        };
-        self.observer.pass(pass, total);
-        let mut done = 0;
-        let observer = &mut *self.observer;
-        let consume = |batch: &[Point], prepared: &mut T| {
-            consume(batch, prepared)?;
-            done += batch.len() as u64;
-            observer.done(done);
-            Ok(())
-        };
-        match std::mem::replace(&mut self.kept, Kept::Not) {
-            Kept::Not => {
-                let mut reader = self.input.read()?;
-                read_ahead(&mut *reader, prepare, consume)?;
-                self.stats.invalid = reader.invalid();
-            }
-            Kept::Next(plan) => {
-                let mut tee = Tee::new(self.input.read()?, plan, self.input.description())?;
-                read_ahead(&mut tee, prepare, consume)?;
-                self.stats.invalid = tee.invalid();
-                self.keep(tee.finish());
-            }
-            Kept::In(spool) => {
-                read_ahead(&mut spool.read(), prepare, consume)?;
-                self.kept = Kept::In(spool);
-            }
-        }
-        self.stats.passes.push((pass.name(), start.elapsed()));
-        Ok(())
-    }
-
-    fn keep(&mut self, spool: Result<Spool>) {
-        match spool {
-            Ok(spool) => {
-                self.stats.spooled_points = spool.points();
-                self.stats.spooled_bytes = spool.bytes();
-                self.kept = Kept::In(spool);
-            }
-            Err(reason) => {
-                self.observer.notice(&format!("{reason}: decoding the input again in each pass"));
-            }
-        }
-    }
-
-    fn note_plan(&mut self, plan: &Plan) {
-        self.stats.level = plan.tree().depth();
-        self.stats.occupied_cells = plan.leaves() as u64;
-        self.stats.empty_cells = plan.empty().len() as u64;
-        self.stats.cell_points_max = plan.count_max();
-    }
 }
 
 impl Passes for Input {

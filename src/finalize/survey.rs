@@ -1,7 +1,8 @@
 //! Passes 1 and 2: where the points are, and how many in which cell.
 
 use super::count::{CellSums, Counters};
-use super::{Leaves, Options, Pass, Passes, Work, depth_max};
+use super::work::Work;
+use super::{Leaves, Options, Pass, Passes, depth_max};
 use crate::bounds::{Bounds, Point};
 use crate::cell_grid::CellGrid;
 use crate::cells::{CellCode, CellTree};
@@ -252,14 +253,14 @@ impl<P: Passes + ?Sized> Work<'_, P> {
 
 /// The box of all `points`, which are finite; a loop without the branches that others need for NaN.
 fn bounds_of(points: &[Point]) -> Option<Bounds> {
-    let mut bounds = Bounds::of_point(*points.first()?);
+    let Bounds { mut min, mut max } = Bounds::of_point(*points.first()?);
     for point in points {
-        for axis in 0..3 {
-            bounds.min[axis] = if point[axis] < bounds.min[axis] { point[axis] } else { bounds.min[axis] };
-            bounds.max[axis] = if point[axis] > bounds.max[axis] { point[axis] } else { bounds.max[axis] };
+        for ((min, max), &value) in min.iter_mut().zip(&mut max).zip(point) {
+            *min = if value < *min { value } else { *min };
+            *max = if value > *max { value } else { *max };
         }
     }
-    Some(bounds)
+    Some(Bounds { min, max })
 }
 
 /// The box that holds both.

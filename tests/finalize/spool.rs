@@ -95,6 +95,6 @@ fn figures_tell_what_was_spooled() {
         let output = run_tool("spfinalize", &arguments, &[]);
         let figures: serde_json::Value = serde_json::from_slice(&output.stderr).expect("one JSON object");
         assert_eq!(figures["spooled"]["points"], points);
-        assert_eq!(figures["spooled"]["bytes"].as_u64() >= Some(12 * points), true);
+        assert!(figures["spooled"]["bytes"].as_u64() >= Some(12 * points));
     }
 }
