@@ -192,13 +192,13 @@ impl CellTree {
 
     /// Lower border of the `i`-th cell of `level` on an axis, exact by the invariant.
     fn border(&self, axis: usize, level: u8, i: u32) -> f64 {
-        self.origin[axis] + f64::from(i) * (self.side / 2f64.powi(i32::from(level)))
+        self.origin[axis] + f64::from(i) * (self.side / cells_per_axis(level))
     }
 
     /// Index of the half-open cell of `level` that holds `x`. The quotient is rounded and can be one off,
     /// the borders are exact and put it right.
     fn index_on_axis(&self, axis: usize, x: f64, level: u8) -> u32 {
-        let cells = 2f64.powi(i32::from(level));
+        let cells = cells_per_axis(level);
         let quotient = (x - self.origin[axis]) / (self.side / cells);
         let mut i = quotient.clamp(0.0, cells - 1.0) as u32;
         if x < self.border(axis, level, i) {
@@ -208,6 +208,11 @@ impl CellTree {
         }
         i
     }
+}
+
+/// Cells per axis at `level`, which is at most 31. (`powi` is a call for a power that is not constant.)
+fn cells_per_axis(level: u8) -> f64 {
+    (1u64 << level) as f64
 }
 
 /// Cells per axis at the finest level whose borders must be exact.

@@ -5,6 +5,7 @@
 pub mod audit;
 pub mod bits;
 pub mod bounds;
+pub mod cell_grid;
 mod cell_index;
 pub mod cells;
 pub mod cli;
@@ -21,3 +22,4 @@ pub mod reduce;
 pub mod sink;
 pub mod source;
 pub mod stream;
+pub mod system;

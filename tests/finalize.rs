@@ -3,10 +3,11 @@
 mod memory;
 mod promises;
 mod sets;
+mod spool;
 
 use spmesh::bounds::{Bounds, Point};
 use spmesh::error::{Error, ErrorKind, Result};
-use spmesh::finalize::{Budget, Leaves, Options, Order, Stats, run};
+use spmesh::finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
 use spmesh::stream::{Coordinates, StreamReader};
 
 use crate::programs::{outcome, run as run_tool, sample};
@@ -16,7 +17,7 @@ use sets::*;
 
 fn options(leaves: Leaves, order: Order) -> Options {
     let budget = Budget::of_engine(64 << 20).expect("enough");
-    Options { leaves, order, budget, temp_dir: None }
+    Options { leaves, order, budget, temp_dir: None, spooling: Spooling::Auto }
 }
 
 fn collapsed(cell_points: u64) -> Leaves {

@@ -2,6 +2,7 @@
 
 mod allocation;
 mod audit;
+mod cell_grid;
 mod circle;
 mod cli;
 mod convert;
@@ -15,4 +16,5 @@ mod reduction;
 mod reference;
 mod sources;
 mod stream;
+mod system;
 mod vectors;

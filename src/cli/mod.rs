@@ -14,6 +14,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 use crate::error::{Error, ErrorKind};
+use crate::system;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
 ///
@@ -29,6 +30,8 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
             return ExitCode::from(code);
         }
     };
+    system::widen_pipe(&std::io::stdin());
+    system::widen_pipe(&std::io::stdout());
     let tool = Flags::command().get_name().to_string();
     match run(flags) {
         Ok(()) => ExitCode::SUCCESS,

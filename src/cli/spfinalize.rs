@@ -1,5 +1,6 @@
 //! The command line of `spfinalize`.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -8,7 +9,7 @@ use clap::Parser;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_size, peak_memory};
 use crate::error::Error;
-use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Stats};
+use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use crate::output::Output;
 use crate::source::{Input, SourceOptions};
 
@@ -33,7 +34,8 @@ Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budge
 /// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA or SPB, and writes a stream of points in
 /// which tags say which cells no later point lies in. Points of a cell are held back and written together
 /// (chunked), unless --preserve is given. The input is read two times or more: again where headers do not state
-/// its bounding box, and where cells are crowded. What cannot be read again is spooled.
+/// its bounding box, and where cells are crowded. What cannot be read again is spooled, and decoded points are
+/// where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -73,6 +75,11 @@ pub struct Flags {
     /// disk for big input without order
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
+
+    /// Keep points that the first pass decoded in a temporary file for later passes (see --temp-dir): where
+    /// decoding again would cost more and there is room on a disk, always, or never
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
+    spool: Spool,
 
     /// Threads that decode LAZ [default: one per core]; each takes a part of --memory
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -118,6 +125,14 @@ pub struct Flags {
     common: Common,
 }
 
+/// When decoded points are kept for later passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Spool {
+    Auto,
+    Always,
+    Never,
+}
+
 /// Runs the tool.
 ///
 /// # Errors
@@ -130,10 +145,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let mut output = Output::create(&flags.output, true)?;
     let mut watch = Watch { common: &flags.common, progress: None };
-    // Whatever decodes in parallel stays in the pool that it is called from.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(flags.threads());
-    let pool = pool.build().context("starting threads")?;
-    let stats = pool.install(|| finalize::run(&input, &options, &mut watch, &mut output))?;
+    let stats = finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
     if stats.points == 0 {
@@ -165,6 +177,11 @@ impl Flags {
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
             temp_dir: self.temp_dir.clone(),
+            spooling: match self.spool {
+                Spool::Auto => Spooling::Auto,
+                Spool::Always => Spooling::Always,
+                Spool::Never => Spooling::Never,
+            },
         })
     }
 
@@ -184,6 +201,7 @@ impl Flags {
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             temp_dir: self.temp_dir.clone(),
+            threads: NonZeroUsize::new(self.threads()),
         }
     }
 
@@ -260,6 +278,8 @@ fn stats_text(stats: &Stats) -> String {
     row("points per cell, most", stats.cell_points_max.to_string());
     row("points spilled", stats.spilled_points.to_string());
     row("bytes spilled", stats.spilled_bytes.to_string());
+    row("points spooled", stats.spooled_points.to_string());
+    row("bytes spooled", stats.spooled_bytes.to_string());
     rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
 }
 
@@ -279,5 +299,6 @@ fn stats_json(stats: &Stats) -> serde_json::Value {
         "cells": {"occupied": stats.occupied_cells, "empty": stats.empty_cells},
         "points_per_cell": {"avg": stats.cell_points_avg(), "max": stats.cell_points_max},
         "spilled": {"points": stats.spilled_points, "bytes": stats.spilled_bytes},
+        "spooled": {"points": stats.spooled_points, "bytes": stats.spooled_bytes},
     })
 }

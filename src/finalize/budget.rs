@@ -13,8 +13,9 @@ const THREADS_MAX: u64 = 16;
 /// Least memory that counters, leaves and waiting points can work with.
 const ENGINE_MIN: u64 = 64 << 10;
 
-/// More memory for counters would only make the finest cells smaller than any leaf.
-const COUNTERS_MAX: u64 = 32 << 20;
+/// More memory for counters would only make the finest cells smaller than any leaf: half a million and more of them
+/// are known, and several grids of them coexist. With 32 MiB 10 million points took 13 MB more.
+const COUNTERS_MAX: u64 = 16 << 20;
 
 /// Memory for counters, leaves and waiting points, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,6 +80,11 @@ impl Budget {
     /// For the leaves of the tree and the state of their buffers.
     pub(super) fn leaves(&self) -> u64 {
         self.bytes / 2
+    }
+
+    /// For the table that tells the leaf of a point.
+    pub(super) fn table(&self) -> u64 {
+        self.bytes / 64
     }
 }
 

@@ -85,20 +85,24 @@ impl CellBuffers {
         })
     }
 
-    /// Appends a record to `cell`.
+    /// Appends whole records to `cell`.
     ///
     /// # Errors
     /// If the temporary file cannot be written.
-    pub(super) fn push(&mut self, cell: usize, record: &[u8]) -> Result<()> {
-        debug_assert_eq!(record.len(), self.record_len);
-        if self.cells[cell].pages == 0 || self.cells[cell].fill as usize == self.pages.page_len() {
-            self.add_page(cell)?;
+    pub(super) fn push(&mut self, cell: usize, mut records: &[u8]) -> Result<()> {
+        debug_assert!(records.len().is_multiple_of(self.record_len));
+        self.waiting += (records.len() / self.record_len) as u64;
+        while !records.is_empty() {
+            if self.cells[cell].pages == 0 || self.cells[cell].fill as usize == self.pages.page_len() {
+                self.add_page(cell)?;
+            }
+            let state = &mut self.cells[cell];
+            let room = &mut self.pages.content_mut(state.last_page)[state.fill as usize..];
+            let (now, later) = records.split_at(records.len().min(room.len()));
+            room[..now.len()].copy_from_slice(now);
+            state.fill += now.len() as u32;
+            records = later;
         }
-        let state = &mut self.cells[cell];
-        let start = state.fill as usize;
-        self.pages.content_mut(state.last_page)[start..start + record.len()].copy_from_slice(record);
-        state.fill += record.len() as u32;
-        self.waiting += 1;
         self.waiting_max = self.waiting_max.max(self.waiting);
         Ok(())
     }

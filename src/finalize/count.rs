@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::bounds::Point;
+use foldhash::fast::FixedState;
+
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, ErrorKind, Result};
 
@@ -25,7 +26,7 @@ pub(super) struct Counters {
     pages_max: usize,
     pages: Vec<[u64; PAGE_CELLS]>,
     /// Page of each key, a key being the location code without its last bits.
-    index: HashMap<u64, usize>,
+    index: HashMap<u64, usize, FixedState>,
     /// Key and page of the last point: the next one is often near.
     last: Option<(u64, usize)>,
 }
@@ -44,7 +45,15 @@ impl Counters {
 
     fn new(tree: CellTree, level: u8, is_fixed: bool, bytes: u64) -> Self {
         let pages_max = (bytes / PAGE_COST).max(1) as usize;
-        Counters { tree, level, is_fixed, pages_max, pages: Vec::new(), index: HashMap::new(), last: None }
+        Counters {
+            tree,
+            level,
+            is_fixed,
+            pages_max,
+            pages: Vec::new(),
+            index: HashMap::default(),
+            last: None,
+        }
     }
 
     /// Level of the grid now.
@@ -52,14 +61,19 @@ impl Counters {
         self.level
     }
 
-    /// Counts `point`, which must lie in the tree.
+    /// Counts points by the cells of the deepest level of the tree that they lie in. A code of 0 is no cell, and
+    /// not counted.
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if the counters of a fixed level do not fit.
-    pub(super) fn add(&mut self, point: Point) -> Result<()> {
-        let cell = self.tree.cell_of(point, self.level);
-        self.add_count(cell, 1);
-        if self.pages.len() > self.pages_max { self.make_room() } else { Ok(()) }
+    pub(super) fn add(&mut self, deepest: &[CellCode]) -> Result<()> {
+        for &CellCode(code) in deepest.iter().filter(|cell| cell.0 > 0) {
+            self.add_count(CellCode(code >> (self.tree.dims() * (self.tree.depth() - self.level))), 1);
+            if self.pages.len() > self.pages_max {
+                self.make_room()?;
+            }
+        }
+        Ok(())
     }
 
     fn add_count(&mut self, cell: CellCode, count: u64) {
@@ -97,15 +111,20 @@ impl Counters {
         Ok(())
     }
 
+    /// Each page becomes a part of one page of the level above.
     fn coarsen(&mut self) {
         let mut coarse = Counters::new(self.tree, self.level - 1, false, 0);
         coarse.pages_max = self.pages_max;
+        let siblings = 1 << self.tree.dims();
+        let part_len = PAGE_CELLS / siblings;
         for (&key, &page) in &self.index {
-            for (cell, &count) in (key << PAGE_BITS..).zip(&self.pages[page]) {
-                if count > 0 {
-                    coarse.add_count(CellCode(cell >> self.tree.dims()), count);
-                }
-            }
+            let coarse_page = coarse.page(key >> self.tree.dims());
+            let part = (key as usize % siblings) * part_len;
+            let sums = self.pages[page].chunks_exact(siblings).map(|cells| cells.iter().sum());
+            coarse.pages[coarse_page][part..]
+                .iter_mut()
+                .zip(sums)
+                .for_each(|(cell, sum): (_, u64)| *cell = sum);
         }
         *self = coarse;
     }
@@ -169,6 +188,7 @@ impl CellSums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bounds::Point;
 
     fn tree(dims: u8) -> CellTree {
         CellTree::new(dims, 20, [0.0; 3], 1024.0).expect("the tree is exact")
@@ -180,12 +200,16 @@ mod tests {
             .collect()
     }
 
+    fn cells(tree: &CellTree, points: &[Point]) -> Vec<CellCode> {
+        points.iter().map(|&point| tree.cell_of(point, tree.depth())).collect()
+    }
+
     #[test]
     fn sums_agree_with_counting_one_by_one_at_every_level() {
         for dims in [2, 3] {
             let tree = tree(dims);
             let mut counters = Counters::fixed(tree, 5, 1 << 24);
-            points().iter().for_each(|&point| counters.add(point).expect("fits"));
+            counters.add(&cells(&tree, &points())).expect("fits");
             let sums = counters.into_sums();
             for level in 0..=5 {
                 let cells = 1u32 << level;
@@ -208,7 +232,7 @@ mod tests {
     fn little_memory_makes_the_grid_coarser_and_loses_nothing() {
         for dims in [2, 3] {
             let mut counters = Counters::adaptive(tree(dims), 20, 20 * PAGE_COST);
-            points().iter().for_each(|&point| counters.add(point).expect("adapts"));
+            counters.add(&cells(&tree(dims), &points())).expect("adapts");
             assert!(counters.level() < 20 && counters.pages.len() <= 10, "{}", counters.pages.len());
             let sums = counters.into_sums();
             assert_eq!(sums.count(CellCode::ROOT), 3000);
@@ -218,7 +242,7 @@ mod tests {
     #[test]
     fn a_fixed_level_that_does_not_fit_is_an_error() {
         let mut counters = Counters::fixed(tree(2), 10, 20 * PAGE_COST);
-        let result = points().iter().try_for_each(|&point| counters.add(point));
+        let result = counters.add(&cells(&tree(2), &points()));
         assert_eq!(result.expect_err("too many pages").kind(), ErrorKind::Memory);
     }
 }

@@ -3,12 +3,40 @@
 use std::io::Write;
 
 use super::buffer::CellBuffers;
+use super::locate::Locator;
 use super::plan::Plan;
 use super::survey::input_changed;
-use super::{Options, Pass, Passes, Work};
+use super::work::Work;
+use super::{Options, Pass, Passes};
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
-use crate::stream::{StreamWriter, encode_point};
+use crate::stream::{Header, StreamWriter, encode_points};
+
+/// A batch of points with the leaf and the record of each.
+#[derive(Default)]
+struct Located {
+    leaves: Vec<u32>,
+    records: Vec<u8>,
+}
+
+impl Located {
+    fn prepare(&mut self, locator: &Locator, header: &Header, points: &[Point]) -> Result<()> {
+        expect_inside(&header.bounds, points)?;
+        locator.locate(points, &mut self.leaves)?;
+        self.records.clear();
+        encode_points(header, points, &mut self.records)
+    }
+
+    /// Every run of points in one leaf: the leaf, and the bytes of their records.
+    fn runs(&self, record_len: usize) -> impl Iterator<Item = (usize, &[u8])> {
+        let mut rest = &self.records[..];
+        self.leaves.chunk_by(|a, b| a == b).map(move |run| {
+            let (records, later) = rest.split_at(run.len() * record_len);
+            rest = later;
+            (run[0] as usize, records)
+        })
+    }
+}
 
 impl<P: Passes + ?Sized> Work<'_, P> {
     /// Holds the points of a leaf back until its counter is zero, then writes them and its tag.
@@ -20,25 +48,23 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     ) -> Result<()> {
         writer.cells(&plan.take_empty())?;
         let header = writer.header().clone();
+        let record_len = header.point_len();
         let bytes = options.budget.bytes() - plan.bytes();
-        let mut buffers =
-            CellBuffers::new(plan.leaves(), header.point_len(), bytes, options.temp_dir.clone())?;
-        let mut record = Vec::with_capacity(header.point_len());
-        self.read_all(Pass::Write, |batch| {
-            expect_inside(&header.bounds, batch)?;
-            for &point in batch {
-                let (leaf, is_last) = plan.expect(point)?;
-                record.clear();
-                encode_point(&header, point, &mut record)?;
-                buffers.push(leaf, &record)?;
-                if is_last {
+        let mut buffers = CellBuffers::new(plan.leaves(), record_len, bytes, options.temp_dir.clone())?;
+        let (locator, mut countdown) = plan.split();
+        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        self.read_all(Pass::Write, prepare, |_, located| {
+            for (leaf, records) in located.runs(record_len) {
+                let is_complete = countdown.take(leaf, records.len() / record_len)?;
+                buffers.push(leaf, records)?;
+                if is_complete {
                     buffers.drain(leaf, |bytes| writer.encoded_points(bytes))?;
-                    writer.cells(&[plan.cell(leaf)])?;
+                    writer.cells(&[locator.leaves()[leaf]])?;
                 }
             }
             Ok(())
         })?;
-        plan.expect_end()?;
+        countdown.expect_end()?;
         buffers.report(&mut self.stats);
         writer.end(0, 0).map(drop)
     }
@@ -50,21 +76,19 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         mut writer: StreamWriter<W>,
     ) -> Result<()> {
         writer.cells(&plan.take_empty())?;
-        let bounds = writer.header().bounds;
-        self.read_all(Pass::Write, |batch| {
-            expect_inside(&bounds, batch)?;
-            let mut written = 0;
-            for (at, &point) in batch.iter().enumerate() {
-                let (leaf, is_last) = plan.expect(point)?;
-                if is_last {
-                    writer.points(&batch[written..=at])?;
-                    writer.cells(&[plan.cell(leaf)])?;
-                    written = at + 1;
+        let header = writer.header().clone();
+        let (locator, mut countdown) = plan.split();
+        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        self.read_all(Pass::Write, prepare, |_, located| {
+            for (leaf, records) in located.runs(header.point_len()) {
+                writer.encoded_points(records)?;
+                if countdown.take(leaf, records.len() / header.point_len())? {
+                    writer.cells(&[locator.leaves()[leaf]])?;
                 }
             }
-            writer.points(&batch[written..])
+            Ok(())
         })?;
-        plan.expect_end()?;
+        countdown.expect_end()?;
         writer.end(0, 0).map(drop)
     }
 
@@ -72,10 +96,8 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     pub(super) fn write_untagged<W: Write>(&mut self, mut writer: StreamWriter<W>) -> Result<()> {
         let header = writer.header().clone();
         if header.points != Some(0) {
-            self.read_all(Pass::Write, |batch| {
-                expect_inside(&header.bounds, batch)?;
-                writer.points(batch)
-            })?;
+            let prepare = |points: &[Point], (): &mut ()| expect_inside(&header.bounds, points);
+            self.read_all(Pass::Write, prepare, |batch, ()| writer.points(batch))?;
         }
         if header.points != Some(writer.totals().points) {
             return Err(input_changed());
@@ -86,6 +108,10 @@ impl<P: Passes + ?Sized> Work<'_, P> {
 
 /// Fails unless all points lie in the box that was found before.
 fn expect_inside(bounds: &Option<Bounds>, points: &[Point]) -> Result<()> {
-    let is_inside = |&point: &Point| bounds.is_some_and(|bounds| bounds.contains(point));
-    if points.iter().all(is_inside) { Ok(()) } else { Err(input_changed()) }
+    let Some(Bounds { min, max }) = bounds else { return Err(input_changed()) };
+    let is_inside = |point: &Point| {
+        (0..3).fold(true, |inside, axis| inside & (min[axis] <= point[axis]) & (point[axis] <= max[axis]))
+    };
+    // Without a way out of the loop it is a few instructions per point.
+    if points.iter().fold(true, |all, point| all & is_inside(point)) { Ok(()) } else { Err(input_changed()) }
 }

@@ -9,28 +9,31 @@
 //!
 //! How many points wait in memory and how many on disk does not show in the result. Counters are 64 bits wide.
 
+mod ahead;
 mod budget;
 mod buffer;
 mod count;
 mod emit;
+mod locate;
 mod pages;
 mod plan;
 mod spill;
+mod spool;
+mod stats;
 mod survey;
+mod work;
 
 use std::io::Write;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 pub use budget::Budget;
+pub use spool::Spooling;
+pub use stats::Stats;
 
-use crate::bounds::Point;
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 use crate::source::{Description, Input, PointReader};
-use crate::stream::{Header, Kind, StreamWriter};
-use plan::Plan;
-use survey::Survey;
+use work::Work;
 
 /// Points that a leaf holds about, unless the user says otherwise.
 pub const CELL_POINTS: u64 = 20_000;
@@ -45,6 +48,11 @@ pub trait Passes {
     /// # Errors
     /// If the input cannot be opened.
     fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+
+    /// Whether decoding costs more than writing decoded points to disk and reading them back.
+    fn is_costly(&self) -> bool {
+        false
+    }
 
     /// What messages call the input, if it has a name.
     fn name(&self) -> Option<String> {
@@ -85,8 +93,11 @@ pub struct Options {
     pub order: Order,
     /// Memory for counters, leaves and waiting points.
     pub budget: Budget,
-    /// Where waiting points go when the budget is used up; the system's folder for temporary files if `None`.
+    /// Where waiting points go when the budget is used up, and points that are kept for later passes; the
+    /// system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
+    /// When decoded points are kept for later passes.
+    pub spooling: Spooling,
 }
 
 impl Options {
@@ -151,41 +162,6 @@ pub trait Observer {
 
 impl Observer for () {}
 
-/// What happened: the columns of table 5.1 of the thesis, and more.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Stats {
-    /// Points written.
-    pub points: u64,
-    /// Points dropped because a coordinate is not finite.
-    pub invalid: u64,
-    /// Every pass over the input with its time, in order.
-    pub passes: Vec<(&'static str, Duration)>,
-    /// Level of the deepest leaf.
-    pub level: u8,
-    /// Leaves: occupied cells that are tagged.
-    pub occupied_cells: u64,
-    /// Maximal empty cells, tagged at the start.
-    pub empty_cells: u64,
-    /// Points in the fullest leaf.
-    pub cell_points_max: u64,
-    /// Most points that waited for their cell at once, in memory and on disk.
-    pub buffered_points_max: u64,
-    /// Most bytes of memory that pages of waiting points took up.
-    pub buffered_bytes_max: u64,
-    /// Points that had to wait on disk.
-    pub spilled_points: u64,
-    /// Bytes written to the temporary file.
-    pub spilled_bytes: u64,
-}
-
-impl Stats {
-    /// Average number of points in a leaf.
-    #[must_use]
-    pub fn cell_points_avg(&self) -> f64 {
-        self.points as f64 / self.occupied_cells.max(1) as f64
-    }
-}
-
 /// Reads `input` two or more times and writes its finalized point stream, END included, to `output`.
 ///
 /// Without points the stream has neither bounds nor tree. Where the extent of the points is so large that no
@@ -204,80 +180,13 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     output: W,
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
-    let mut work = Work { input, observer, stats: Stats::default() };
+    let mut work = Work::new(input, options, observer);
     work.write(options, output).map_err(|error| match input.name() {
         // What has no name by now and breaks promises is the input as a whole.
         Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
         _ => error,
     })?;
     Ok(work.stats)
-}
-
-fn header_of(description: &Description, survey: &Survey, options: &Options) -> Header {
-    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
-    Header {
-        bounds: survey.bounds,
-        points: Some(survey.points),
-        chunked: survey.grid.is_some() && options.order == Order::Chunked,
-        crs: crs.clone(),
-        ..Header::new(Kind::Points, coordinates, dims, has_elevation)
-    }
-}
-
-/// What all passes share.
-struct Work<'a, P: Passes + ?Sized> {
-    input: &'a P,
-    observer: &'a mut dyn Observer,
-    stats: Stats,
-}
-
-impl<P: Passes + ?Sized> Work<'_, P> {
-    /// Makes all passes.
-    fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
-        let survey = self.survey(options)?;
-        let header = header_of(self.input.description(), &survey, options);
-        let Some(grid) = survey.grid else {
-            return self.write_untagged(StreamWriter::new(output, header)?);
-        };
-        let plan = Plan::new(grid, options.leaves, &options.budget)?;
-        self.note_plan(&plan);
-        let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
-        match options.order {
-            Order::Chunked => self.write_chunked(plan, options, writer),
-            Order::Preserved => self.write_preserved(plan, writer),
-        }
-    }
-
-    /// Makes one pass over the input, handing every batch to `consume`; the number of invalid points dropped.
-    fn read_all(&mut self, pass: Pass, mut consume: impl FnMut(&[Point]) -> Result<()>) -> Result<u64> {
-        let start = Instant::now();
-        let total = match self.stats.points {
-            0 => self.input.description().stated_points,
-            known => Some(known),
-        };
-        self.observer.pass(pass, total);
-        let mut reader = self.input.read()?;
-        let mut batch = Vec::new();
-        let mut done = 0;
-        loop {
-            reader.next_batch(&mut batch)?;
-            if batch.is_empty() {
-                break;
-            }
-            consume(&batch)?;
-            done += batch.len() as u64;
-            self.observer.done(done);
-        }
-        self.stats.passes.push((pass.name(), start.elapsed()));
-        Ok(reader.invalid())
-    }
-
-    fn note_plan(&mut self, plan: &Plan) {
-        self.stats.level = plan.tree().depth();
-        self.stats.occupied_cells = plan.leaves() as u64;
-        self.stats.empty_cells = plan.empty().len() as u64;
-        self.stats.cell_points_max = plan.count_max();
-    }
 }
 
 impl Passes for Input {
@@ -287,6 +196,10 @@ impl Passes for Input {
 
     fn read(&self) -> Result<Box<dyn PointReader + '_>> {
         Input::read(self)
+    }
+
+    fn is_costly(&self) -> bool {
+        Input::is_costly(self)
     }
 
     fn name(&self) -> Option<String> {

@@ -1,9 +1,9 @@
-//! The finalization tree: which cells are leaves, which are empty, and the leaf of a point.
+//! The finalization tree: which cells are leaves, which are empty, and how many points each leaf expects.
 
 use super::buffer::CELL_COST;
+use super::locate::Locator;
 use super::survey::{Grid, input_changed};
 use super::{Budget, Leaves};
-use crate::bounds::Point;
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, ErrorKind, Result};
 
@@ -22,8 +22,7 @@ pub(super) struct Plan {
     /// In the order of the tree: increasing, when extended to the same depth.
     leaves: Vec<CellCode>,
     remaining: Vec<u64>,
-    /// The leaf of the last point: the next one is often in it.
-    last: usize,
+    table_bytes: u64,
     count_max: u64,
 }
 
@@ -53,7 +52,7 @@ impl Plan {
             empty: Vec::with_capacity(empty as usize),
             leaves: Vec::with_capacity(leaves as usize),
             remaining: Vec::with_capacity(leaves as usize),
-            last: 0,
+            table_bytes: budget.table(),
             count_max: 0,
         };
         visit(&grid, rule, CellCode::ROOT, &mut |cell, count| plan.enter(cell, count));
@@ -80,9 +79,9 @@ impl Plan {
         self.leaves.len()
     }
 
-    /// Memory that codes and counters take up.
+    /// Memory that codes, counters and the table of cells take up.
     pub(super) fn bytes(&self) -> u64 {
-        self.leaves.len() as u64 * PLAN_COST
+        self.leaves.len() as u64 * PLAN_COST + self.table_bytes
     }
 
     /// The maximal empty cells.
@@ -100,45 +99,32 @@ impl Plan {
         self.count_max
     }
 
-    /// The cell that is leaf number `leaf`.
-    pub(super) fn cell(&self, leaf: usize) -> CellCode {
-        self.leaves[leaf]
+    /// What tells the leaf of a point, and what counts the points that are still to come.
+    pub(super) fn split(self) -> (Locator, Countdown) {
+        (Locator::new(self.tree, self.leaves, self.table_bytes), Countdown { remaining: self.remaining })
     }
+}
 
-    /// Number of the leaf that holds `point`, whose counter goes down, and whether it was its last point.
+/// The number of points that each leaf still expects.
+pub(super) struct Countdown {
+    remaining: Vec<u64>,
+}
+
+impl Countdown {
+    /// Takes `points` points of `leaf`, and whether none are left.
     ///
     /// # Errors
-    /// If `point` was not counted: outside of the cube, in an empty cell, or one too many.
-    pub(super) fn expect(&mut self, point: Point) -> Result<(usize, bool)> {
-        if !self.tree.contains(point) {
-            return Err(input_changed());
-        }
-        let code = self.tree.cell_of(point, self.tree.depth()).0;
-        if !self.holds(self.last, code) {
-            self.last = self.leaves.partition_point(|leaf| extend(leaf.0, code) <= code).saturating_sub(1);
-        }
-        let leaf = self.last;
-        if !self.holds(leaf, code) || self.remaining[leaf] == 0 {
-            return Err(input_changed());
-        }
-        self.remaining[leaf] -= 1;
-        Ok((leaf, self.remaining[leaf] == 0))
+    /// If more points have come than were counted.
+    pub(super) fn take(&mut self, leaf: usize, points: usize) -> Result<bool> {
+        let remaining = &mut self.remaining[leaf];
+        *remaining = remaining.checked_sub(points as u64).ok_or_else(input_changed)?;
+        Ok(*remaining == 0)
     }
 
     /// Fails unless every point that was counted has come.
     pub(super) fn expect_end(&self) -> Result<()> {
         if self.remaining.iter().all(|&remaining| remaining == 0) { Ok(()) } else { Err(input_changed()) }
     }
-
-    fn holds(&self, leaf: usize, code: u64) -> bool {
-        let leaf = self.leaves[leaf].0;
-        code >> (leaf.leading_zeros() - code.leading_zeros()) == leaf
-    }
-}
-
-/// The first descendant of `cell` that is as deep as `code`.
-fn extend(cell: u64, code: u64) -> u64 {
-    cell << (cell.leading_zeros() - code.leading_zeros())
 }
 
 /// Calls `found` with every leaf and every maximal empty cell below `cell`, and the number of points in it.

@@ -1,8 +1,10 @@
 //! Passes 1 and 2: where the points are, and how many in which cell.
 
 use super::count::{CellSums, Counters};
-use super::{Leaves, Options, Pass, Passes, Work, depth_max};
+use super::work::Work;
+use super::{Leaves, Options, Pass, Passes, depth_max};
 use crate::bounds::{Bounds, Point};
+use crate::cell_grid::CellGrid;
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
 use crate::stream::Coordinates;
@@ -48,9 +50,52 @@ impl Grid {
         self.sums.last().expect("a grid has counts")
     }
 
-    fn is_crowded(&self, point: Point) -> bool {
-        let cell = self.tree.cell_of(point, self.finest().level());
-        self.finest().count(cell) > self.crowded
+    /// Sets the codes of points that lie in no crowded cell to 0; `deepest` are cells of the deepest level.
+    fn keep_crowded(&self, deepest: &mut [CellCode]) {
+        let shift = self.tree.dims() * (self.tree.depth() - self.finest().level());
+        let mut last = (CellCode(0), false);
+        for code in deepest {
+            let cell = CellCode(code.0 >> shift);
+            if cell != last.0 {
+                last = (cell, self.finest().count(cell) > self.crowded);
+            }
+            if !last.1 {
+                *code = CellCode(0);
+            }
+        }
+    }
+}
+
+/// A batch of points as passes 1 and 2 need it.
+#[derive(Default)]
+struct Surveyed {
+    /// Cells of the deepest level; 0 for points outside of the tree.
+    cells: Vec<CellCode>,
+    outside: u64,
+    bounds: Option<Bounds>,
+}
+
+impl Surveyed {
+    fn prepare(&mut self, tree: &CellTree, points: &[Point]) {
+        self.bounds = bounds_of(points);
+        self.cells.clear();
+        match CellGrid::new(tree, tree.depth()) {
+            Some(grid) => self.cells.extend(points.iter().map(|&point| grid.cell_of(point))),
+            None => self.cells.extend(points.iter().map(|&point| match tree.contains(point) {
+                true => tree.cell_of(point, tree.depth()),
+                false => CellCode(0),
+            })),
+        }
+        // Most batches lie inside as a whole, and the corners of their box tell.
+        self.outside = 0;
+        if !self.bounds.is_some_and(|bounds| tree.contains(bounds.min) && tree.contains(bounds.max)) {
+            for (cell, &point) in self.cells.iter_mut().zip(points) {
+                if !tree.contains(point) {
+                    *cell = CellCode(0);
+                    self.outside += 1;
+                }
+            }
+        }
     }
 }
 
@@ -91,7 +136,8 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         if count.outside > 0 || count.bounds != bounds || count.points != points {
             return Err(input_changed());
         }
-        self.finish_survey(tree, count, options)
+        // Of a border at zero that one pass has as -0 and another, from a spool, as 0, the first one counts.
+        self.finish_survey(tree, Count { bounds, ..count }, options)
     }
 
     /// Whether a count over the cube of the stated box can stand.
@@ -128,9 +174,13 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     /// Pass 1: the exact bounding box and the number of points.
     fn bounding_box(&mut self) -> Result<(Option<Bounds>, u64)> {
         let (mut bounds, mut points) = (None, 0);
-        self.read_all(Pass::Bounds, |batch| {
+        let prepare = |batch: &[Point], found: &mut Option<Bounds>| {
+            *found = bounds_of(batch);
+            Ok(())
+        };
+        self.read_all(Pass::Bounds, prepare, |batch, found| {
             points += batch.len() as u64;
-            bounds = union(bounds, batch);
+            bounds = union(bounds, *found);
             Ok(())
         })?;
         Ok((bounds, points))
@@ -143,17 +193,15 @@ impl<P: Passes + ?Sized> Work<'_, P> {
             Leaves::Collapsed { .. } => Counters::adaptive(tree, tree.depth(), options.budget.counters()),
         };
         let (mut bounds, mut points, mut outside) = (None, 0, 0);
-        self.stats.invalid = self.read_all(Pass::Count, |batch| {
-            points += batch.len() as u64;
-            bounds = union(bounds, batch);
-            for &point in batch {
-                if tree.contains(point) {
-                    counters.add(point)?;
-                } else {
-                    outside += 1;
-                }
-            }
+        let prepare = |batch: &[Point], surveyed: &mut Surveyed| {
+            surveyed.prepare(&tree, batch);
             Ok(())
+        };
+        self.read_all(Pass::Count, prepare, |batch, surveyed| {
+            points += batch.len() as u64;
+            bounds = union(bounds, surveyed.bounds);
+            outside += surveyed.outside;
+            counters.add(&surveyed.cells)
         })?;
         Ok(Count { bounds, points, outside, sums: counters.into_sums() })
     }
@@ -165,17 +213,16 @@ impl<P: Passes + ?Sized> Work<'_, P> {
             && grid.finest().has_more_than(grid.crowded)
         {
             let mut counters = Counters::adaptive(grid.tree, grid.tree.depth(), options.budget.counters());
-            self.read_all(Pass::Refine, |batch| {
-                for &point in batch {
-                    if !grid.tree.contains(point) {
-                        return Err(input_changed());
-                    }
-                    if grid.is_crowded(point) {
-                        counters.add(point)?;
-                    }
+            let known = &*grid;
+            let prepare = |batch: &[Point], surveyed: &mut Surveyed| {
+                surveyed.prepare(&known.tree, batch);
+                if surveyed.outside > 0 {
+                    return Err(input_changed());
                 }
+                known.keep_crowded(&mut surveyed.cells);
                 Ok(())
-            })?;
+            };
+            self.read_all(Pass::Refine, prepare, |_, surveyed| counters.add(&surveyed.cells))?;
             if counters.level() <= grid.finest().level() {
                 break;
             }
@@ -204,11 +251,23 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 }
 
-/// The box of `bounds` and `points` together.
-fn union(bounds: Option<Bounds>, points: &[Point]) -> Option<Bounds> {
-    match (bounds, Bounds::of_points(points)) {
-        (Some(bounds), Some(more)) => Some(bounds.union(more)),
-        (bounds, more) => bounds.or(more),
+/// The box of all `points`, which are finite; a loop without the branches that others need for NaN.
+fn bounds_of(points: &[Point]) -> Option<Bounds> {
+    let Bounds { mut min, mut max } = Bounds::of_point(*points.first()?);
+    for point in points {
+        for ((min, max), &value) in min.iter_mut().zip(&mut max).zip(point) {
+            *min = if value < *min { value } else { *min };
+            *max = if value > *max { value } else { *max };
+        }
+    }
+    Some(Bounds { min, max })
+}
+
+/// The box that holds both.
+fn union(one: Option<Bounds>, other: Option<Bounds>) -> Option<Bounds> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.union(other)),
+        (one, other) => one.or(other),
     }
 }
 

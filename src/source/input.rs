@@ -96,6 +96,17 @@ impl Input {
         &self.notices
     }
 
+    /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed files
+    /// and text.
+    #[must_use]
+    pub fn is_costly(&self) -> bool {
+        self.sources.iter().any(|source| match &source.content {
+            Content::Las(header) => header.laz.is_some(),
+            Content::Twin | Content::Spa | Content::Text(_) => true,
+            Content::Stream | Content::Spb => false,
+        })
+    }
+
     /// What messages about all files call them: the first one, and the number of the others.
     #[must_use]
     pub fn name(&self) -> String {

@@ -10,9 +10,11 @@ mod input;
 mod las_header;
 mod laz;
 mod laz_chunks;
+mod laz_codec;
 mod lines;
 mod mesh_events;
 mod obj;
+mod ordered;
 mod origin;
 mod panic_guard;
 mod patches;
@@ -34,6 +36,7 @@ mod text;
 mod twin;
 mod twin_header;
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 pub use crs::crs_name;
@@ -53,8 +56,8 @@ use crate::bounds::{Bounds, Point};
 use crate::error::Result;
 use crate::stream::{Coordinates, Crs};
 
-/// About how many points a batch has.
-const BATCH_POINTS: usize = 1 << 16;
+/// About how many points a batch has: few enough to stay in the cache of a core on their way.
+const BATCH_POINTS: usize = 1 << 14;
 
 /// What to read of the files, and how.
 #[derive(Debug, Clone, Default)]
@@ -77,6 +80,15 @@ pub struct SourceOptions {
     pub grid: Option<([f64; 3], [f64; 3])>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
+    /// Threads that decompress points; one per core if `None`.
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl SourceOptions {
+    fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+        self.threads.unwrap_or_else(cores).get()
+    }
 }
 
 /// What is known of an input before its points are read.

@@ -64,6 +64,11 @@ impl Placement {
         Placement { step, bounds, skip_invalid, invalid: 0 }
     }
 
+    /// Whether points with integer coordinates, which are finite, all stay what they are.
+    pub(super) fn keeps_integers(&self) -> bool {
+        matches!(self.step, Step::Same) && self.bounds.is_none()
+    }
+
     /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless it is to be dropped.
     ///
     /// # Errors

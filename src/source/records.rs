@@ -10,7 +10,7 @@ use crate::bounds::Point;
 use crate::error::{Error, Result};
 
 /// Bytes of records that are read at once from a file that is not compressed.
-const READ_LEN: usize = 1 << 20;
+const READ_LEN: usize = 1 << 18;
 
 /// A supply of point records as they stand in an uncompressed file.
 pub(super) trait RecordReader: Send {
@@ -38,6 +38,11 @@ impl RecordFilter {
             last_only: options.last_only,
             is_extended: format >= 6,
         }
+    }
+
+    /// Whether every record is wanted, whatever it says.
+    fn wants_all(&self) -> bool {
+        !self.first_only && !self.last_only && self.keep.iter().all(|&keep| keep)
     }
 
     /// Whether `record` is wanted. Formats 0 to 5 have 5 bits for the class and 3 for each return number,
@@ -68,7 +73,7 @@ pub(super) struct RecordPass {
 impl RecordPass {
     pub(super) fn new(file: FileView, header: &LasHeader, options: &SourceOptions) -> Result<Self> {
         let reader: Box<dyn RecordReader> = match &header.laz {
-            Some(laszip) => Box::new(LazRecords::new(file, header, laszip)?),
+            Some(laszip) => Box::new(LazRecords::new(file, header, laszip, options.threads())?),
             None => Box::new(PlainRecords::new(file, header)),
         };
         Ok(RecordPass {
@@ -93,6 +98,11 @@ impl Pass for RecordPass {
             }
         }
         let end = self.records.len().min(self.used + BATCH_POINTS * self.record_len);
+        if self.filter.wants_all() && placement.keeps_integers() {
+            batch.extend(self.records[self.used..end].chunks_exact(self.record_len).map(raw_point));
+            self.used = end;
+            return Ok(true);
+        }
         let first = self.before + (self.used / self.record_len) as u64;
         for (record, index) in self.records[self.used..end].chunks_exact(self.record_len).zip(first..) {
             if self.filter.wants(record) {

@@ -132,6 +132,23 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
     Ok(point)
 }
 
+/// Appends points that this process encoded with [`super::encode_points`]: nothing is checked.
+pub(crate) fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) {
+    let axes = header.coordinates_per_point();
+    let records = bytes.chunks_exact(header.point_len());
+    let decode = |record: &[u8], width: usize, value: fn(&[u8]) -> f64| {
+        let mut point = [0.0; 3];
+        point[..axes].iter_mut().zip(record.chunks_exact(width)).for_each(|(to, from)| *to = value(from));
+        point
+    };
+    match header.coordinates {
+        Coordinates::F64 => points.extend(records.map(|record| decode(record, 8, LE::read_f64))),
+        Coordinates::I32 { .. } => {
+            points.extend(records.map(|record| decode(record, 4, |bytes| f64::from(LE::read_i32(bytes)))));
+        }
+    }
+}
+
 /// That a point lies where the header says that all points lie.
 pub(crate) fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {

@@ -62,9 +62,14 @@ impl<W: Write> StreamWriter<W> {
     /// # Errors
     /// If a coordinate does not fit the encoding of the header, or writing fails.
     pub fn points(&mut self, points: &[Point]) -> Result<()> {
-        for &point in points {
-            encode_point(&self.header, point, &mut self.points)?;
-            if self.points.len() + self.header.point_len() > POINTS_PAYLOAD {
+        let point_len = self.header.point_len();
+        let mut rest = points;
+        while !rest.is_empty() {
+            let room = (POINTS_PAYLOAD - self.points.len()) / point_len;
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            encode_points(&self.header, now, &mut self.points)?;
+            rest = later;
+            if self.points.len() + point_len > POINTS_PAYLOAD {
                 self.flush_points()?;
             }
         }
@@ -72,7 +77,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends points that are encoded already, as [`encode_point`] does it.
+    /// Appends points that are encoded already, as [`encode_points`] does it.
     ///
     /// # Errors
     /// If writing fails.
@@ -232,7 +237,7 @@ fn write_error(cause: std::io::Error) -> Error {
 ///
 /// # Errors
 /// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
-pub(crate) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
+fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {
             return Err(Error::malformed(format!("coordinate {value} does not fit the stream's encoding")));
@@ -243,4 +248,49 @@ pub(crate) fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -
         }
     }
     Ok(())
+}
+
+/// Appends the stored form of all `points`, as `encode_point` does it for one.
+///
+/// # Errors
+/// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+pub(crate) fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
+    let all_fit = match (header.coordinates, header.coordinates_per_point()) {
+        (Coordinates::I32 { .. }, 2) => append::<2, 4>(points, bytes, i32_bytes),
+        (Coordinates::I32 { .. }, _) => append::<3, 4>(points, bytes, i32_bytes),
+        (Coordinates::F64, 2) => append::<2, 8>(points, bytes, f64_bytes),
+        (Coordinates::F64, _) => append::<3, 8>(points, bytes, f64_bytes),
+    };
+    if all_fit {
+        return Ok(());
+    }
+    points.iter().try_for_each(|&point| encode_point(header, point, &mut Vec::new()))
+}
+
+fn i32_bytes(value: f64) -> ([u8; 4], bool) {
+    ((value as i32).to_le_bytes(), f64::from(value as i32) == value)
+}
+
+fn f64_bytes(value: f64) -> ([u8; 8], bool) {
+    (value.to_le_bytes(), value.is_finite())
+}
+
+/// Appends the first `AXES` coordinates of each point as `WIDTH` bytes; whether all of them fit.
+#[inline(always)]
+fn append<const AXES: usize, const WIDTH: usize>(
+    points: &[Point],
+    bytes: &mut Vec<u8>,
+    encode: impl Fn(f64) -> ([u8; WIDTH], bool),
+) -> bool {
+    let start = bytes.len();
+    bytes.resize(start + points.len() * AXES * WIDTH, 0);
+    let mut all_fit = true;
+    for (record, point) in bytes[start..].chunks_exact_mut(AXES * WIDTH).zip(points) {
+        for (field, &value) in record.chunks_exact_mut(WIDTH).zip(point) {
+            let (encoded, fits) = encode(value);
+            field.copy_from_slice(&encoded);
+            all_fit &= fits;
+        }
+    }
+    all_fit
 }

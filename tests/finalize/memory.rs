@@ -17,6 +17,7 @@ pub(super) struct Memory {
     pub(super) changed: Option<Vec<Point>>,
     pub(super) passes: Cell<u32>,
     pub(super) name: Option<String>,
+    pub(super) is_costly: bool,
 }
 
 impl Memory {
@@ -29,7 +30,14 @@ impl Memory {
             stated_bounds: None,
             stated_points: None,
         };
-        Memory { description, points: set.points.clone(), changed: None, passes: Cell::new(0), name: None }
+        Memory {
+            description,
+            points: set.points.clone(),
+            changed: None,
+            passes: Cell::new(0),
+            name: None,
+            is_costly: false,
+        }
     }
 }
 
@@ -45,6 +53,10 @@ impl Passes for Memory {
             _ => &self.points,
         };
         Ok(Box::new(MemoryReader { rest: points }))
+    }
+
+    fn is_costly(&self) -> bool {
+        self.is_costly
     }
 
     fn name(&self) -> Option<String> {

@@ -1,0 +1,65 @@
+//! What the system can be asked and told about pipes and folders. Nothing here is needed for a right result, so
+//! that what a system refuses is left as it is.
+
+use std::ffi::CString;
+use std::os::fd::{AsFd, AsRawFd};
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+/// Bytes that a pipe holds where the system allows it; by default it is 64 KiB, and both ends wait for each other
+/// all the time.
+#[cfg(target_os = "linux")]
+const PIPE_LEN: libc::c_int = 1 << 20;
+
+/// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
+#[cfg(target_os = "linux")]
+pub fn widen_pipe(file: &impl AsFd) {
+    let descriptor = file.as_fd().as_raw_fd();
+    // SAFETY: both calls take an open descriptor and integers, and touch no memory of this process.
+    unsafe {
+        let len = libc::fcntl(descriptor, libc::F_GETPIPE_SZ);
+        if (1..PIPE_LEN).contains(&len) {
+            libc::fcntl(descriptor, libc::F_SETPIPE_SZ, PIPE_LEN);
+        }
+    }
+}
+
+/// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
+#[cfg(not(target_os = "linux"))]
+pub fn widen_pipe(_file: &impl AsFd) {}
+
+/// Bytes that can still be written below `folder`, if the system tells.
+pub(crate) fn free_bytes(folder: &Path) -> Option<u64> {
+    let path = CString::new(folder.as_os_str().as_bytes()).ok()?;
+    let mut found = std::mem::MaybeUninit::<libc::statvfs>::uninit();
+    // SAFETY: the path is NUL-terminated and the structure as long as the call expects; both outlive it.
+    if unsafe { libc::statvfs(path.as_ptr(), found.as_mut_ptr()) } != 0 {
+        return None;
+    }
+    // SAFETY: the call succeeded, so it filled the structure.
+    let found = unsafe { found.assume_init() };
+    #[allow(clippy::unnecessary_cast, reason = "the widths of the fields differ between systems")]
+    Some((found.f_bavail as u64).saturating_mul(found.f_frsize as u64))
+}
+
+/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs), as far as the system tells.
+#[cfg(target_os = "linux")]
+pub(crate) fn is_in_memory(folder: &Path) -> bool {
+    const TMPFS: u32 = 0x0102_1994;
+    const RAMFS: u32 = 0x8584_58f6;
+    let Ok(path) = CString::new(folder.as_os_str().as_bytes()) else { return false };
+    let mut found = std::mem::MaybeUninit::<libc::statfs>::uninit();
+    // SAFETY: the path is NUL-terminated and the structure as long as the call expects; both outlive it.
+    if unsafe { libc::statfs(path.as_ptr(), found.as_mut_ptr()) } != 0 {
+        return false;
+    }
+    // SAFETY: the call succeeded, so it filled the structure.
+    let kind = unsafe { found.assume_init() }.f_type as u32;
+    kind == TMPFS || kind == RAMFS
+}
+
+/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs), as far as the system tells.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn is_in_memory(_folder: &Path) -> bool {
+    false
+}

@@ -1,0 +1,69 @@
+//! Pipes are widened where the system allows it, and nothing else is touched.
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::os::fd::AsRawFd;
+
+use spmesh::system::widen_pipe;
+
+use crate::programs::{run, start};
+
+/// Bytes that the pipe of `file` holds; negative if it is no pipe.
+#[cfg(target_os = "linux")]
+fn pipe_len(file: &impl AsRawFd) -> i32 {
+    // SAFETY: takes a descriptor, touches no memory.
+    unsafe { libc::fcntl(file.as_raw_fd(), libc::F_GETPIPE_SZ) }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn widened_pipes_hold_more_and_keep_what_they_hold() {
+    let (mut reader, mut writer) = std::io::pipe().expect("a pipe");
+    writer.write_all(b"before").expect("written");
+    let before = pipe_len(&writer);
+    widen_pipe(&writer);
+    // A user who holds many pipes may be refused.
+    assert!(pipe_len(&reader) == 1 << 20 || pipe_len(&reader) == before, "{}", pipe_len(&reader));
+    writer.write_all(b" and after").expect("written");
+    drop(writer);
+    let mut text = String::new();
+    reader.read_to_string(&mut text).expect("read");
+    assert_eq!(text, "before and after");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn what_is_no_pipe_stays_as_it_is() {
+    for path in ["/dev/null", "/proc/self/exe"] {
+        let file = File::open(path).expect("it is there");
+        widen_pipe(&file);
+        assert!(pipe_len(&file) < 0);
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn every_tool_widens_the_pipe_that_it_reads_from() {
+    let points = run("spfinalize", &["-"], b"1 2 3\n4 5 6\n7 1 2\n").stdout;
+    let (narrow, probe) = std::io::pipe().expect("a pipe");
+    widen_pipe(&probe);
+    let expected = pipe_len(&probe);
+    drop(narrow);
+    let cases: [(&str, &[&str]); 4] = [
+        ("spfinalize", &["-"]),
+        ("spdelaunay2d", &[]),
+        ("spinfo", &["-"]),
+        ("spconvert", &["-", "--to", "text"]),
+    ];
+    for (name, arguments) in cases {
+        let (reader, mut writer) = std::io::pipe().expect("a pipe");
+        // This end lets the pipe live on when the tool has ended.
+        let kept = reader.try_clone().expect("a second end");
+        let child = start(name, arguments, reader.into());
+        writer.write_all(&points).expect("written");
+        drop(writer);
+        let output = child.wait_with_output().expect("it ends");
+        assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+        assert_eq!(pipe_len(&kept), expected, "{name}");
+    }
+}
