@@ -166,7 +166,9 @@ fn a_closed_pipe_is_silent() {
     fs::write(&files[1], &mesh).unwrap();
     let runs = [
         ("spfinalize", vec![&files[0][..]]),
-        ("spdelaunay2d", vec![&files[0]]),
+        ("spdelaunay2d", vec!["--threads", "1", &files[0]]),
+        ("spdelaunay2d", vec!["--threads", "2", &files[0]]),
+        ("spdelaunay2d", vec!["--threads", "8", &files[0]]),
         ("spconvert", vec!["--to", "text", &files[1]]),
         ("spconvert", vec!["--to", "ply", &files[1]]),
     ];
@@ -189,7 +191,9 @@ fn a_full_disk_is_an_error_with_its_reason() {
     let mesh = mesh_of(&points, &[]);
     let runs = [
         ("spfinalize", vec!["-", "-o", "/dev/full"], &points),
-        ("spdelaunay2d", vec!["-o", "/dev/full"], &points),
+        ("spdelaunay2d", vec!["--threads", "1", "-o", "/dev/full"], &points),
+        ("spdelaunay2d", vec!["--threads", "2", "-o", "/dev/full"], &points),
+        ("spdelaunay2d", vec!["--threads", "8", "-o", "/dev/full"], &points),
         ("spconvert", vec!["--to", "text", "-o", "/dev/full"], &mesh),
     ];
     for (name, arguments, input) in runs {

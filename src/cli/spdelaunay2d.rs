@@ -47,7 +47,7 @@ pub struct Flags {
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
 
-    /// Threads; memory grows with them [default: one per core, at most 8]
+    /// Threads that triangulate; memory grows with them [default: one per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::residual::Residual;
-use crate::bounds::{Point, Region};
+use crate::bounds::{Bounds, Point, Region};
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
 use crate::stream::FinalizedCells;
@@ -17,7 +17,9 @@ pub(super) struct Arrivals {
     finalized: Option<FinalizedCells>,
     /// Points outside are counted and dropped.
     region: Region,
-    current: Vec<Point>,
+    current: Residual,
+    /// Bounding box of `current`, or one that is larger.
+    bounds: Option<Bounds>,
     buckets: BTreeMap<u64, Vec<Point>>,
     in_buckets: usize,
     held_max: usize,
@@ -31,7 +33,8 @@ impl Arrivals {
             tree,
             finalized: tree.map(FinalizedCells::new),
             region,
-            current: Vec::new(),
+            current: Residual::default(),
+            bounds: None,
             buckets: BTreeMap::new(),
             in_buckets: 0,
             held_max: 0,
@@ -40,31 +43,35 @@ impl Arrivals {
         }
     }
 
-    /// Points of the stream. Those outside of the region are dropped.
+    /// Points of the stream with their bounding box. Those outside of the region are dropped.
     ///
     /// # Errors
     /// If a point lies in a cell that is final, or outside of the tree.
-    pub(super) fn points(&mut self, points: &[Point]) -> Result<()> {
-        for &point in points {
-            if let Some(finalized) = &mut self.finalized {
-                finalized.check_point(point)?;
-            }
-            if self.region.contains(point) {
-                self.current.push(point);
-            } else {
-                self.outside += 1;
-            }
+    pub(super) fn points(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
+        if let Some(finalized) = &mut self.finalized {
+            finalized.check_points_in(points, bounds)?;
         }
+        if self.region.contains(bounds.min) && self.region.contains(bounds.max) {
+            self.current.extend_raw(points);
+        } else {
+            let before = self.current.len();
+            for point in points.iter().filter(|&&point| self.region.contains(point)) {
+                self.current.extend_raw(std::slice::from_ref(point));
+            }
+            self.outside += (points.len() - (self.current.len() - before)) as u64;
+        }
+        self.bounds = Some(self.bounds.map_or(*bounds, |all| all.union(*bounds)));
         self.held_max = self.held_max.max(self.current.len() + self.in_buckets);
         Ok(())
     }
 
     /// The tag of `cell`: its points, in the order of the stream, and whether they are all of it, because no
-    /// part of the cell was final before.
+    /// part of the cell was final before. The points come in `fresh`, an empty residual whose memory is used
+    /// again.
     ///
     /// # Errors
     /// If the cell is final already.
-    pub(super) fn tag(&mut self, cell: CellCode) -> Result<(Residual, bool)> {
+    pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual) -> Result<(Residual, bool)> {
         let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
             return Err(Error::malformed("cell tag in a stream without a finalization tree"));
         };
@@ -72,30 +79,16 @@ impl Arrivals {
         finalized.finalize(cell)?;
         let (min, max) = tree.corners(cell);
         let inside = Region { min: [min[0], min[1]], max: [max[0], max[1]] };
-        if !self.current.iter().all(|&point| inside.contains(point)) {
+        if !self.all_inside(&inside) {
             self.move_to_buckets(&tree);
         }
-        let buckets: Vec<u64> = self.buckets.range(tree.deepest_range(cell)).map(|(&key, _)| key).collect();
-        let mut points = Residual::with_capacity(self.current.len(), 0);
-        for points_of_bucket in buckets.iter().filter_map(|key| self.buckets.remove(key)) {
-            self.in_buckets -= points_of_bucket.len();
-            points_of_bucket.into_iter().for_each(|point| points.push_raw(point));
-        }
-        self.current.drain(..).for_each(|point| points.push_raw(point));
-        self.accepted += points.len() as u64;
+        let points = self.take(tree.deepest_range(cell), fresh);
         Ok((points, is_whole))
     }
 
     /// The points whose cells were never tagged.
     pub(super) fn rest(&mut self) -> Residual {
-        let mut points = Residual::with_capacity(self.current.len() + self.in_buckets, 0);
-        for point in std::mem::take(&mut self.buckets).into_values().flatten() {
-            points.push_raw(point);
-        }
-        self.in_buckets = 0;
-        self.current.drain(..).for_each(|point| points.push_raw(point));
-        self.accepted += points.len() as u64;
-        points
+        self.take(0..u64::MAX, Residual::default())
     }
 
     /// Points handed on so far.
@@ -113,10 +106,37 @@ impl Arrivals {
         self.held_max
     }
 
-    fn move_to_buckets(&mut self, tree: &CellTree) {
-        for point in self.current.drain(..) {
-            self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default().push(point);
-            self.in_buckets += 1;
+    fn all_inside(&self, cell: &Region) -> bool {
+        let contains = |bounds: Bounds| cell.contains(bounds.min) && cell.contains(bounds.max);
+        self.bounds.is_none_or(contains) || self.current.xy.iter().all(|&[x, y]| cell.contains([x, y, 0.0]))
+    }
+
+    /// The points of the buckets in `range`, in its order, and behind them those that are in no bucket.
+    fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual) -> Residual {
+        self.bounds = None;
+        let current = std::mem::replace(&mut self.current, fresh);
+        self.accepted += current.len() as u64;
+        let keys: Vec<u64> = self.buckets.range(range).map(|(&key, _)| key).collect();
+        if keys.is_empty() {
+            return current;
         }
+        let mut points = Residual::default();
+        for bucket in keys.iter().filter_map(|key| self.buckets.remove(key)) {
+            self.in_buckets -= bucket.len();
+            self.accepted += bucket.len() as u64;
+            points.extend_raw(&bucket);
+        }
+        points.append_raw(&current);
+        points
+    }
+
+    fn move_to_buckets(&mut self, tree: &CellTree) {
+        for i in 0..self.current.len() {
+            let point = self.current.point(i);
+            self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default().push(point);
+        }
+        self.in_buckets += self.current.len();
+        self.current.clear();
+        self.bounds = None;
     }
 }

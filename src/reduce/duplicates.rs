@@ -83,7 +83,7 @@ mod tests {
 
     fn settled(policy: Duplicates, elevations: &[f64]) -> Result<f64> {
         let mut points = Residual::default();
-        elevations.iter().for_each(|&z| points.push([3.0, 4.0, z], 0));
+        elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]]));
         let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
         let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
         policy.settle(&mut points, &mut pairs, &grid).map(|()| points.elevation[0])

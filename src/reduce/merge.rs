@@ -5,13 +5,19 @@ use std::io::{Read, Write};
 use super::duplicates::Duplicates;
 use super::node::{Rules, Solver};
 use super::partial::Part;
-use super::patches::PatchWriter;
 use super::residual::{Residual, UNWRITTEN};
-use super::run::write_residual;
+use super::schedule::Output;
+use super::sequencer::Sequencer;
 use super::stats::Stats;
 use crate::bounds::{Bounds, Point, Region};
 use crate::error::{Error, Result};
-use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader, StreamWriter, Totals};
+use crate::stream::{
+    Event, Header, Kind, LiveVertices, Patch, PatchBlocks, StreamReader, StreamWriter, Totals,
+};
+
+/// Numbers of two nodes: all that the inputs have left, and what is made of it.
+const LEFT: u64 = 0;
+const MERGED: u64 = 1;
 
 /// Merges the results of partial runs over regions that do not overlap; `progress` is told how many vertices
 /// are read. Without `part`, the regions must cover all points, and the result is the whole mesh: the set of
@@ -31,31 +37,28 @@ pub fn merge<R: Read, W: Write>(
 ) -> Result<(W, Stats)> {
     let header = merged_header(&readers, part)?;
     let region = header.region.unwrap_or(Region::PLANE);
-    let is_partial = part.is_some();
-    let rules = Rules { coordinates: header.coordinates, duplicates: Duplicates::Error, is_partial };
-    let mut patches = PatchWriter::new(StreamWriter::new(output, header)?);
-    let mut stats = Stats::default();
+    let rules = Rules::new(&header, Duplicates::Error, part.is_some());
+    let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
+    let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
     let mut residual = Residual::default();
     for reader in &mut readers {
-        copy_through(reader, &mut patches, &mut residual, &mut stats, &mut progress)?;
+        copy_through(reader, &mut sequencer, &mut residual, &mut stats, &mut progress)?;
     }
-    stats.residual_max = residual.len() as u64;
-    stats.inner_nodes = 1;
-    stats.inner_node_max = residual.len() as u64;
-    let mut solver = Solver::default();
-    let mut solved = solver.solve(residual, &region, &rules)?;
-    patches.write(&mut solved)?;
+    let points = residual.len();
+    stats.inner_node_max = points as u64;
+    sequencer.leave(LEFT, residual.keys.clone(), 0);
+    let mut solver = Solver::new(rules);
+    let mut solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default())?;
+    residual = std::mem::take(&mut solved.residual);
+    let active = residual.active;
+    sequencer.write(Output { number: MERGED, points, children: vec![LEFT], active, solved })?;
     if part.is_some() {
-        let residual = solved.residual();
         stats.residual = residual.len() as u64;
-        write_residual(patches.stream(), &residual)?;
+        sequencer.write_residual(&[MERGED], &residual)?;
     }
-    stats.width = patches.live_max();
+    sequencer.add_to(&mut stats);
     stats.predicates = *solver.counts();
-    let stream = patches.into_stream();
-    stats.vertices = stream.totals().vertices;
-    stats.triangles = stream.totals().simplices;
-    let output = stream.end(stats.points, stats.merged)?;
+    let output = sequencer.end(stats.points, stats.merged)?;
     Ok((output, stats))
 }
 
@@ -124,13 +127,13 @@ fn covers(outer: &Region, inner: &Region) -> bool {
 /// Copies the final triangles of one input and adds its residual to that of all.
 fn copy_through<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
-    patches: &mut PatchWriter<W>,
+    sequencer: &mut Sequencer<W>,
     residual: &mut Residual,
     stats: &mut Stats,
     progress: &mut impl FnMut(u64),
 ) -> Result<()> {
     let region = region_of(reader);
-    let id_offset = patches.stream().totals().vertices;
+    let id_offset = sequencer.vertices();
     let mut part = Residual::default();
     let mut live = LiveVertices::<Point>::new();
     while let Some(event) = reader.next_event()? {
@@ -138,7 +141,7 @@ fn copy_through<R: Read, W: Write>(
             Event::Patch(patch) => live
                 .enter(&patch, |_, point| point)
                 .map(drop)
-                .and_then(|()| patches.forward(&renumbered(patch, id_offset))),
+                .and_then(|()| sequencer.forward(&renumbered(patch, id_offset))),
             Event::ResidualPoints(points) => points
                 .iter()
                 .try_for_each(|&(id, point)| take_point(&mut part, id, point, &mut live, &region, id_offset)),
@@ -150,7 +153,7 @@ fn copy_through<R: Read, W: Write>(
             Event::Points(_) | Event::Cells(_) => unreachable!("the reader refuses these blocks in a mesh"),
         };
         taken.map_err(|e| reader.locate(e))?;
-        progress(patches.stream().totals().vertices);
+        progress(sequencer.vertices());
     }
     stats.input_bytes += reader.bytes_read();
     residual.append(&part);

@@ -11,20 +11,27 @@
 //! * A node whose children are done triangulates the union of their residuals; triangles in the holes behind
 //!   the walls are dropped; the rest is tested against the node's box. At the root all are final.
 //!
-//! `ARCHITECTURE.md` says why this is right. Data flow one way: [`arrivals`] sorts points into cells that are
-//! done, [`node`] triangulates, [`patches`] writes, [`tree`] keeps residuals until their node is complete.
+//! `ARCHITECTURE.md` says why this is right. Data flow one way: [`intake`] reads points and holds them until their
+//! cell is done, [`schedule`] says which node can be triangulated, [`node`] does that and cuts [`patches`], and
+//! [`sequencer`] writes them in order. [`crew`] is the same on several threads.
 
 mod arrivals;
+mod boxes;
+mod crew;
+mod disks;
 mod duplicates;
+mod intake;
 mod merge;
 mod node;
 mod partial;
 mod patches;
-mod pool;
+mod plan;
 mod residual;
 mod run;
+mod schedule;
+mod sequencer;
 mod stats;
-mod tree;
+mod worker;
 
 pub use duplicates::Duplicates;
 pub use merge::merge;

@@ -1,24 +1,33 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
+use super::disks::Disks;
 use super::duplicates::Duplicates;
+use super::patches::PatchBuilder;
 use super::residual::Residual;
 use crate::bounds::Region;
 use crate::delaunay2::{Kernel, NONE, Triangulation};
 use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::circle::CircleBounds;
-use crate::stream::Coordinates;
+use crate::stream::{Coordinates, Header, PatchBlocks, PointCode};
 
 /// What every node of one run has in common.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
-    pub(super) coordinates: Coordinates,
-    pub(super) duplicates: Duplicates,
+    coordinates: Coordinates,
+    code: PointCode,
+    duplicates: Duplicates,
     /// Whether the run leaves a residual, to be merged with others.
     pub(super) is_partial: bool,
 }
 
 impl Rules {
+    /// The rules for a mesh with the given header.
+    pub(super) fn new(header: &Header, duplicates: Duplicates, is_partial: bool) -> Self {
+        let code = PointCode::of(header);
+        Rules { coordinates: header.coordinates, code, duplicates, is_partial }
+    }
+
     fn circle_bounds(&self) -> CircleBounds {
         match self.coordinates {
             Coordinates::F64 => CircleBounds::FLOAT,
@@ -30,92 +39,104 @@ impl Rules {
 /// What became of a triangle of a node's triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fate {
-    /// Not decided yet.
+    /// Not in a hole, and not found active.
     Open,
     /// In a hole: a final triangle stands there already, written at a node below.
     Hole,
-    /// Final at this node.
-    Final,
     /// Not final: triangulated again above.
     Active,
 }
 
-/// What becomes of a point of a node.
+/// What is known of a point of a node beside the triangles that it is in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum PointFate {
-    /// Not met yet outside of the holes.
-    Hidden,
-    /// No triangle above this node uses it.
-    Done,
+enum Mark {
+    /// Nothing: it is done with its last final triangle.
+    None,
+    /// On the hull, where there are no points beyond: done, and maybe in no final triangle of this node.
+    Hull,
     /// Belongs to the residual.
     Residual,
     /// Coincides with another point and is no vertex.
     Merged,
 }
 
-/// A node after its triangulation.
+/// What a node leaves.
 #[derive(Debug, Default)]
 pub(super) struct Solved {
-    /// The points, with the elevations of coinciding points settled.
-    pub(super) points: Residual,
-    /// What becomes of each point.
-    pub(super) fates: Vec<PointFate>,
-    /// Triangles that are final at this node, counterclockwise, in Morton order.
-    pub(super) triangles: Vec<[u32; 3]>,
-    /// Walls of the residual, as indices into `points`.
-    pub(super) walls: Vec<[u32; 2]>,
-    /// Number of triangles that are not final.
-    pub(super) active: usize,
+    /// Its final triangles.
+    pub(super) blocks: PatchBlocks,
+    /// What the node above has to triangulate.
+    pub(super) residual: Residual,
+    /// For each point of the residual, the reference that stands for its id.
+    pub(super) references: Vec<u64>,
     /// Number of points merged into others.
     pub(super) merged: u64,
 }
 
-impl Solved {
-    /// The residual: to be called after the final triangles were written and the ids are known.
-    pub(super) fn residual(&self) -> Residual {
-        let count = self.fates.iter().filter(|&&fate| fate == PointFate::Residual).count();
-        let mut residual = Residual::with_capacity(count, self.walls.len());
-        let mut index_above = vec![NONE; self.points.len()];
-        for (i, fate) in self.fates.iter().enumerate() {
-            if *fate == PointFate::Residual {
-                index_above[i] = residual.len() as u32;
-                residual.push(self.points.point(i), self.points.ids[i]);
-            }
-        }
-        residual.walls.extend(self.walls.iter().map(|wall| wall.map(|end| index_above[end as usize])));
-        residual.active = self.active;
-        residual
-    }
-}
-
 /// Triangulates nodes, one after the other, in buffers that are used again.
-#[derive(Default)]
 pub(super) struct Solver {
+    rules: Rules,
     kernel: Kernel,
     triangulation: Triangulation,
     fates: Vec<Fate>,
     /// For each triangle the set of its edges (bit i: opposite to corner i) that are walls of its hole.
     wall_edges: Vec<u8>,
     stack: Vec<u32>,
+    marks: Vec<Mark>,
+    /// Triangles that are not final.
+    active: Vec<u32>,
+    /// Walls of the residual, as three times a triangle that is done plus the corner opposite to the wall.
+    walls: Vec<u64>,
+    builder: PatchBuilder,
+    index_above: Vec<u32>,
 }
 
 impl Solver {
-    /// Triangulates `points` and finds what is final in `region`, outside of which other points may lie.
+    pub(super) fn new(rules: Rules) -> Self {
+        Solver {
+            rules,
+            kernel: Kernel::new(),
+            triangulation: Triangulation::default(),
+            fates: Vec::new(),
+            wall_edges: Vec::new(),
+            stack: Vec::new(),
+            marks: Vec::new(),
+            active: Vec::new(),
+            walls: Vec::new(),
+            builder: PatchBuilder::default(),
+            index_above: Vec::new(),
+        }
+    }
+
+    /// Triangulates the points of node `number`, and finds what is final in `region`, outside of which other points
+    /// may lie. Nodes are numbered in the order in which they are written. The memory of `blocks` is used again.
     ///
     /// # Errors
     /// [`crate::error::ErrorKind::Malformed`] if coinciding points are forbidden or come from different
     /// nodes, or the walls do not fit the points, which only damaged partial results can bring about.
-    pub(super) fn solve(&mut self, mut points: Residual, region: &Region, rules: &Rules) -> Result<Solved> {
+    pub(super) fn solve(
+        &mut self,
+        number: u64,
+        points: &mut Residual,
+        region: &Region,
+        mut blocks: PatchBlocks,
+    ) -> Result<Solved> {
+        blocks.clear();
         self.kernel.triangulate(&points.xy, &mut self.triangulation)?;
         let duplicates = &mut self.triangulation.duplicates;
         if let Some(pair) = duplicates.iter().find(|pair| pair.iter().any(|&i| i as usize >= points.raw)) {
-            return Err(overlap(&points, pair[0], pair[1]));
+            return Err(overlap(points, pair[0], pair[1]));
         }
-        rules.duplicates.settle(&mut points, duplicates, &rules.coordinates)?;
+        self.rules.duplicates.settle(points, duplicates, &self.rules.coordinates)?;
         self.find_holes(&points.walls)?;
-        let everything = *region == Region::PLANE && !rules.is_partial;
-        self.find_final(&points, region, everything, rules.circle_bounds());
-        self.collect(points, everything)
+        let everything = *region == Region::PLANE && !self.rules.is_partial;
+        self.split(points, region, everything, &mut blocks)?;
+        self.mark_points(points.len(), everything);
+        self.finish_patches(points, &mut blocks)?;
+        self.find_walls(everything);
+        let (residual, references) = self.residual(number, points);
+        let merged = self.triangulation.duplicates.len() as u64;
+        Ok(Solved { blocks, residual, references, merged })
     }
 
     /// Decisions of the predicates so far.
@@ -128,8 +149,12 @@ impl Solver {
         let triangulation = &self.triangulation;
         self.fates.clear();
         self.fates.resize(triangulation.triangles.len(), Fate::Open);
+        if walls.is_empty() {
+            return Ok(());
+        }
         self.wall_edges.clear();
         self.wall_edges.resize(triangulation.triangles.len(), 0);
+        self.stack.clear();
         for &[a, b] in walls {
             let Some(edge) = triangulation.left_of(a, b) else {
                 return Err(Error::malformed("a wall of a residual is no edge of the triangulation"));
@@ -147,7 +172,6 @@ impl Solver {
                 }
                 let beyond = triangulation.neighbours[triangle as usize][corner];
                 let Some(fate) = self.fates.get_mut(beyond as usize) else {
-                    self.stack.clear();
                     return Err(Error::malformed("the walls of a residual do not close a hole"));
                 };
                 if *fate == Fate::Open {
@@ -159,74 +183,117 @@ impl Solver {
         Ok(())
     }
 
-    /// Decides the triangles that are not in holes. Where no other point exists, `everything` is final.
-    fn find_final(&mut self, points: &Residual, region: &Region, everything: bool, bounds: CircleBounds) {
-        for (fate, &triangle) in self.fates.iter_mut().zip(&self.triangulation.triangles) {
-            if *fate == Fate::Open {
-                let [a, b, c] = triangle.map(|v| points.xy[v as usize]);
-                let is_final = everything || bounds.disk_inside(a, b, c, region);
-                *fate = if is_final { Fate::Final } else { Fate::Active };
+    /// Decides the triangles that are not in holes: final ones go into patches, the others are active. Where no
+    /// other point exists, `everything` is final.
+    fn split(
+        &mut self,
+        points: &Residual,
+        region: &Region,
+        everything: bool,
+        blocks: &mut PatchBlocks,
+    ) -> Result<()> {
+        let disks = Disks::new(self.rules.circle_bounds(), *region);
+        self.builder.start(points.len());
+        self.active.clear();
+        for ((t, fate), triangle) in (0..).zip(&mut self.fates).zip(&self.triangulation.triangles) {
+            if *fate == Fate::Hole {
+                continue;
+            }
+            let [a, b, c] = triangle.map(|v| points.xy[v as usize]);
+            if everything || disks.inside(a, b, c) {
+                self.builder.triangle(triangle, points, self.rules.code, blocks)?;
+            } else {
+                *fate = Fate::Active;
+                self.active.push(t);
             }
         }
+        Ok(())
     }
 
-    /// Gathers final triangles, the fates of the points, and the walls. If `everything` is final, the
-    /// infinite triangles are, too.
+    /// Finds out what becomes of the points. If `everything` is final, the infinite triangles are, too.
+    fn mark_points(&mut self, points: usize, everything: bool) {
+        let Triangulation { triangles, hull, duplicates, .. } = &self.triangulation;
+        self.marks.clear();
+        self.marks.resize(points, Mark::None);
+        let on_hull = if everything { Mark::Hull } else { Mark::Residual };
+        hull.iter().for_each(|&v| self.marks[v as usize] = on_hull);
+        for v in self.active.iter().flat_map(|&t| triangles[t as usize]) {
+            self.marks[v as usize] = Mark::Residual;
+        }
+        duplicates.iter().for_each(|&[point, _]| self.marks[point as usize] = Mark::Merged);
+    }
+
+    /// Adds the points that are done but in no triangle written here: vertices of the hull whose triangles were all
+    /// written below, and at the root the points of an input without triangles.
     ///
     /// # Errors
     /// If a point has no triangle outside of the holes: no node leaves such a point.
-    fn collect(&self, points: Residual, everything: bool) -> Result<Solved> {
-        let Triangulation { triangles, neighbours, hull, duplicates, .. } = &self.triangulation;
-        let mut fates = vec![PointFate::Hidden; points.len()];
-        let on_hull = if everything { PointFate::Done } else { PointFate::Residual };
-        hull.iter().for_each(|&v| fates[v as usize] = on_hull);
-        let mut solved = Solved { merged: duplicates.len() as u64, ..Solved::default() };
-        for (t, triangle) in triangles.iter().enumerate() {
-            match self.fates[t] {
-                Fate::Active => {
-                    solved.active += 1;
-                    triangle.iter().for_each(|&v| fates[v as usize] = PointFate::Residual);
+    fn finish_patches(&mut self, points: &Residual, blocks: &mut PatchBlocks) -> Result<()> {
+        let (builder, marks) = (&mut self.builder, &self.marks);
+        let mut unused = Vec::new();
+        for (v, &mark) in (0..).zip(marks) {
+            match mark {
+                Mark::Hull if builder.is_unused(v) => unused.push(v),
+                Mark::None if builder.is_unused(v) => {
+                    let point = points.point(v as usize);
+                    return Err(Error::malformed(format!(
+                        "residual point {point:?} lies inside of a final triangle"
+                    )));
                 }
-                Fate::Final => {
-                    for &v in triangle {
-                        if fates[v as usize] == PointFate::Hidden {
-                            fates[v as usize] = PointFate::Done;
-                        }
-                    }
-                    solved.triangles.push(*triangle);
-                    self.collect_walls(triangle, &neighbours[t], everything, &mut solved.walls);
-                }
-                _ => self.collect_walls(triangle, &neighbours[t], everything, &mut solved.walls),
+                _ => {}
             }
         }
-        duplicates.iter().for_each(|&[point, _]| fates[point as usize] = PointFate::Merged);
-        if let Some(hidden) = fates.iter().position(|&fate| fate == PointFate::Hidden) {
-            let point = points.point(hidden);
-            return Err(Error::malformed(format!(
-                "residual point {point:?} lies inside of a final triangle"
-            )));
-        }
-        Ok(Solved { points, fates, ..solved })
+        builder.finish(unused.into_iter(), points, self.rules.code, blocks)?;
+        builder.finalize(|v| matches!(marks[v as usize], Mark::None | Mark::Hull), blocks);
+        Ok(())
     }
 
-    /// Adds the edges of a triangle that is done beyond which lies one that is not.
-    fn collect_walls(
-        &self,
-        triangle: &[u32; 3],
-        neighbours: &[u32; 3],
-        everything: bool,
-        walls: &mut Vec<[u32; 2]>,
-    ) {
-        for corner in 0..3 {
-            let beyond_is_done = match neighbours[corner] {
-                NONE => everything,
-                beyond => self.fates[beyond as usize] != Fate::Active,
-            };
-            if !beyond_is_done {
-                walls.push([triangle[(corner + 1) % 3], triangle[(corner + 2) % 3]]);
+    /// Finds the edges of triangles that are done beyond which there is one that is not, finite or infinite.
+    fn find_walls(&mut self, everything: bool) {
+        let Triangulation { triangles, neighbours, hull, triangle_of_vertex, .. } = &self.triangulation;
+        let is_done = |t: u32| self.fates[t as usize] != Fate::Active;
+        self.walls.clear();
+        for &t in &self.active {
+            for &beyond in neighbours[t as usize].iter().filter(|&&beyond| beyond != NONE && is_done(beyond))
+            {
+                let corner = neighbours[beyond as usize].iter().position(|&back| back == t);
+                self.walls.extend(corner.map(|corner| wall(beyond, corner)));
             }
         }
+        for &v in hull.iter().filter(|_| !everything) {
+            // The first triangle at a vertex of the hull is the one at the edge of the hull that leaves it.
+            let t = triangle_of_vertex[v as usize];
+            if t != NONE && is_done(t) {
+                let corner = triangles[t as usize].iter().position(|&corner| corner == v);
+                self.walls.extend(corner.map(|corner| wall(t, (corner + 2) % 3)));
+            }
+        }
+        self.walls.sort_unstable();
     }
+
+    /// The residual, with references for the ids of its points.
+    fn residual(&mut self, number: u64, points: &Residual) -> (Residual, Vec<u64>) {
+        let count = self.marks.iter().filter(|&&mark| mark == Mark::Residual).count();
+        let mut residual = Residual::with_capacity(count, self.walls.len());
+        let mut references = Vec::with_capacity(count);
+        self.index_above.resize(self.index_above.len().max(points.len()), NONE);
+        for (v, _) in (0..).zip(&self.marks).filter(|&(_, &mark)| mark == Mark::Residual) {
+            let reference = self.builder.reference(v, points);
+            self.index_above[v as usize] = residual.len() as u32;
+            residual.push(points.point(v as usize), self.builder.key(v, number, points));
+            references.push(reference);
+        }
+        residual.walls.extend(self.walls.iter().map(|&wall| {
+            let (triangle, corner) = (self.triangulation.triangles[(wall / 3) as usize], wall % 3);
+            [1, 2].map(|k| self.index_above[triangle[(corner as usize + k) % 3] as usize])
+        }));
+        residual.active = self.active.len();
+        (residual, references)
+    }
+}
+
+fn wall(triangle: u32, corner: usize) -> u64 {
+    3 * u64::from(triangle) + corner as u64
 }
 
 fn overlap(points: &Residual, point: u32, vertex: u32) -> Error {

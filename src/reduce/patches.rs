@@ -1,11 +1,15 @@
-//! Writes what is final: patches of triangles, vertices with their first triangle and finalized with their last.
+//! Cuts the final triangles of a node into patches: vertices with their first triangle and finalized with their
+//! last.
+//!
+//! All of it happens where the node is triangulated, before it is known how many vertices precede it in the
+//! stream. So references stand for the ids of imported vertices: the number of a vertex among those that the node
+//! writes itself, or the number of a point among those that the nodes below have left.
 
-use std::io::Write;
+use std::ops::Range;
 
-use super::node::{PointFate, Solved};
 use super::residual::{Residual, UNWRITTEN};
 use crate::error::Result;
-use crate::stream::{Patch, StreamWriter};
+use crate::stream::{PatchBlocks, PointCode};
 
 /// Triangles per patch. With three vertices of its own each, a triangle takes at most 108 bytes, so a patch
 /// stays below the maximum of a block.
@@ -14,123 +18,172 @@ const PATCH_TRIANGLES: usize = 8192;
 /// Isolated or imported vertices per patch, by the same reckoning.
 const PATCH_VERTICES: usize = 16384;
 
+/// Bits of a key that count the vertices of a node, of which there are fewer than the kernel takes points.
+const KEY_BITS: u32 = 30;
+
+/// Bit of a reference to a vertex that the node writes itself.
+pub(super) const OWN: u64 = 1 << 63;
+
 const NONE: u32 = u32::MAX;
 
-/// Writes the final triangles of nodes to a mesh stream, and numbers the vertices.
-pub(super) struct PatchWriter<W: Write> {
-    stream: StreamWriter<W>,
-    /// For each point of the node, the last of its patches that uses it.
-    last_use: Vec<u32>,
-    /// For each point of the node, its local index in the patch that is stamped.
-    local: Vec<u32>,
-    stamp: Vec<u32>,
-    live: u64,
-    live_max: u64,
+/// Builds the patches of one node after the other, in buffers that are used again.
+///
+/// The vertices of a patch have codes, counting up over all patches of a node; so the code of a vertex in its
+/// last patch, which stays, tells which patch that was.
+#[derive(Default)]
+pub(super) struct PatchBuilder {
+    /// For each point, its code in the last patch that uses it; 0 if none does.
+    codes: Vec<u32>,
+    /// Code of the first vertex of the patch.
+    first_code: u32,
+    /// Vertices of the patch, in order of appearance.
+    vertices: Vec<u32>,
+    /// Corners of the triangles of the patch, as indices into `vertices`.
+    corners: Vec<u32>,
+    /// For each of `vertices`, its local index.
+    locals: Vec<u32>,
+    /// Key and index in `vertices` of the imported ones.
+    imported: Vec<(u64, u32)>,
+    /// For each point, its number among the vertices that the node writes.
+    own: Vec<u32>,
+    own_count: u32,
+    /// Vertices of all patches, by patch in local order, and where each patch has its own.
+    order: Vec<u32>,
+    patches: Vec<Range<usize>>,
 }
 
-impl<W: Write> PatchWriter<W> {
-    pub(super) fn new(stream: StreamWriter<W>) -> Self {
-        let (last_use, local, stamp) = (Vec::new(), Vec::new(), Vec::new());
-        PatchWriter { stream, last_use, local, stamp, live: 0, live_max: 0 }
-    }
-
-    pub(super) fn stream(&mut self) -> &mut StreamWriter<W> {
-        &mut self.stream
-    }
-
-    pub(super) fn into_stream(self) -> StreamWriter<W> {
-        self.stream
-    }
-
-    /// Most vertices that were written and not finalized at once: the width of the mesh.
-    pub(super) fn live_max(&self) -> u64 {
-        self.live_max
-    }
-
-    /// Writes a patch made elsewhere, whose ids already fit this stream.
-    pub(super) fn forward(&mut self, patch: &Patch) -> Result<()> {
-        self.stream.patch(patch)?;
-        self.live += patch.new.len() as u64;
-        self.live_max = self.live_max.max(self.live);
-        self.live -= patch.finalized.len() as u64;
-        Ok(())
-    }
-
-    /// Writes the final triangles of a node and finalizes its points that are done. Points that are written
-    /// get their ids.
-    pub(super) fn write(&mut self, solved: &mut Solved) -> Result<()> {
-        self.prepare(solved);
-        let unused = self.unused(solved);
-        for (number, triangles) in (0..).zip(solved.triangles.chunks(PATCH_TRIANGLES)) {
-            let corners = triangles.iter().flatten().copied();
-            let patch = self.build(&mut solved.points, &solved.fates, number, corners, triangles);
-            self.forward(&patch)?;
-        }
-        let next = solved.triangles.len().div_ceil(PATCH_TRIANGLES) as u32;
-        for (number, vertices) in (next..).zip(unused.chunks(PATCH_VERTICES)) {
-            vertices.iter().for_each(|&v| self.last_use[v as usize] = number);
-            let patch = self.build(&mut solved.points, &solved.fates, number, vertices.iter().copied(), &[]);
-            self.forward(&patch)?;
-        }
-        Ok(())
-    }
-
-    /// Finds the last patch of each point of the node.
-    fn prepare(&mut self, solved: &Solved) {
-        let points = solved.points.len();
-        for array in [&mut self.last_use, &mut self.local, &mut self.stamp] {
+impl PatchBuilder {
+    /// Begins with a node of `points` points.
+    pub(super) fn start(&mut self, points: usize) {
+        for (array, value) in [(&mut self.codes, 0), (&mut self.own, NONE)] {
             array.clear();
-            array.resize(points, NONE);
+            array.resize(points, value);
         }
-        for (number, triangles) in solved.triangles.chunks(PATCH_TRIANGLES).enumerate() {
-            triangles.iter().flatten().for_each(|&v| self.last_use[v as usize] = number as u32);
-        }
+        self.first_code = 1;
+        self.own_count = 0;
+        self.vertices.clear();
+        self.corners.clear();
+        self.order.clear();
+        self.patches.clear();
     }
 
-    /// Points that are done but in no triangle written here: vertices of the hull whose triangles were all
-    /// written below, and at the root the points of an input without triangles.
-    fn unused(&self, solved: &Solved) -> Vec<u32> {
-        let done = |&v: &usize| solved.fates[v] == PointFate::Done && self.last_use[v] == NONE;
-        (0..solved.points.len()).filter(done).map(|v| v as u32).collect()
-    }
-
-    /// The patch `number` of a node: of `corners`, unwritten points become new vertices in order of
-    /// appearance, the others are imported.
-    fn build(
+    /// Adds a final triangle.
+    ///
+    /// # Errors
+    /// As [`PatchBlocks::push`].
+    #[inline]
+    pub(super) fn triangle(
         &mut self,
-        points: &mut Residual,
-        fates: &[PointFate],
-        number: u32,
-        corners: impl Iterator<Item = u32>,
-        triangles: &[[u32; 3]],
-    ) -> Patch {
-        let mut patch = Patch { first_id: self.stream.totals().vertices, ..Patch::default() };
-        let mut new = Vec::new();
-        let mut imported = Vec::new();
-        for v in corners {
-            let i = v as usize;
-            if self.stamp[i] == number {
-                continue;
+        triangle: &[u32; 3],
+        points: &Residual,
+        code: PointCode,
+        blocks: &mut PatchBlocks,
+    ) -> Result<()> {
+        let corners = triangle.map(|v| self.index(v));
+        self.corners.extend_from_slice(&corners);
+        if self.corners.len() == 3 * PATCH_TRIANGLES { self.close(points, code, blocks) } else { Ok(()) }
+    }
+
+    /// Ends the triangles, and adds the vertices that are in none of them.
+    ///
+    /// # Errors
+    /// As [`PatchBlocks::push`].
+    pub(super) fn finish(
+        &mut self,
+        unused: impl Iterator<Item = u32>,
+        points: &Residual,
+        code: PointCode,
+        blocks: &mut PatchBlocks,
+    ) -> Result<()> {
+        self.close(points, code, blocks)?;
+        for v in unused {
+            self.index(v);
+            if self.vertices.len() == PATCH_VERTICES {
+                self.close(points, code, blocks)?;
             }
-            self.stamp[i] = number;
-            if points.ids[i] == UNWRITTEN {
-                points.ids[i] = patch.first_id + new.len() as u64;
-                self.local[i] = new.len() as u32;
-                patch.new.push(points.point(i));
-                new.push(v);
+        }
+        self.close(points, code, blocks)
+    }
+
+    /// Finalizes in each patch the vertices for which it is the last, if they are done.
+    pub(super) fn finalize(&self, is_done: impl Fn(u32) -> bool, blocks: &mut PatchBlocks) {
+        for (number, range) in self.patches.iter().enumerate() {
+            let codes = range.start as u32 + 1..range.end as u32 + 1;
+            let is_last = |v: u32| codes.contains(&self.codes[v as usize]) && is_done(v);
+            let locals = (0..).zip(&self.order[range.clone()]);
+            blocks.finalize(number, locals.filter(|&(_, &v)| is_last(v)).map(|(local, _)| local));
+        }
+    }
+
+    /// Whether `v` is in no patch so far.
+    pub(super) fn is_unused(&self, v: u32) -> bool {
+        self.codes[v as usize] == 0
+    }
+
+    /// A reference to a point that is a vertex by now; [`UNWRITTEN`] for one that is none.
+    pub(super) fn reference(&self, v: u32, points: &Residual) -> u64 {
+        match self.own[v as usize] {
+            NONE if points.key(v as usize) == UNWRITTEN => UNWRITTEN,
+            NONE => u64::from(v) - points.raw as u64,
+            own => OWN | u64::from(own),
+        }
+    }
+
+    /// Key of a point: vertices of node `number` come behind those of nodes with lesser numbers.
+    pub(super) fn key(&self, v: u32, number: u64, points: &Residual) -> u64 {
+        match self.own[v as usize] {
+            NONE => points.key(v as usize),
+            own => number << KEY_BITS | u64::from(own),
+        }
+    }
+
+    /// Index of `v` in the patch, which it enters if it is new to it.
+    #[inline]
+    fn index(&mut self, v: u32) -> u32 {
+        let code = &mut self.codes[v as usize];
+        if *code < self.first_code {
+            *code = self.first_code + self.vertices.len() as u32;
+            self.vertices.push(v);
+        }
+        *code - self.first_code
+    }
+
+    /// Writes the patch, if there is anything in it: unwritten points become new vertices in order of appearance,
+    /// the others are imported.
+    fn close(&mut self, points: &Residual, code: PointCode, blocks: &mut PatchBlocks) -> Result<()> {
+        if self.vertices.is_empty() {
+            return Ok(());
+        }
+        let start = self.order.len();
+        self.locals.clear();
+        self.imported.clear();
+        for (i, &v) in (0..).zip(&self.vertices) {
+            let own = &mut self.own[v as usize];
+            let key = if *own == NONE { points.key(v as usize) } else { OWN | u64::from(*own) };
+            if key == UNWRITTEN {
+                *own = self.own_count;
+                self.own_count += 1;
+                self.locals.push((self.order.len() - start) as u32);
+                self.order.push(v);
             } else {
-                imported.push((points.ids[i], v));
+                self.locals.push(NONE);
+                self.imported.push((key, i));
             }
         }
-        imported.sort_unstable();
-        for (rank, &(id, v)) in imported.iter().enumerate() {
-            self.local[v as usize] = (new.len() + rank) as u32;
-            patch.imported.push(id);
+        let imported_start = self.order.len();
+        self.imported.sort_unstable();
+        for &(_, i) in &self.imported {
+            self.locals[i as usize] = (self.order.len() - start) as u32;
+            self.order.push(self.vertices[i as usize]);
         }
-        patch.simplices.extend(triangles.iter().flatten().map(|&v| self.local[v as usize]));
-        let is_last = |v: u32| fates[v as usize] == PointFate::Done && self.last_use[v as usize] == number;
-        let in_local_order = new.iter().copied().chain(imported.iter().map(|&(_, v)| v));
-        patch.finalized.extend(in_local_order.filter(|&v| is_last(v)).map(|v| self.local[v as usize]));
-        patch
+        let new = self.order[start..imported_start].iter().map(|&v| points.point(v as usize));
+        let imported = self.order[imported_start..].iter().map(|&v| self.reference(v, points));
+        let simplices = self.corners.iter().map(|&i| self.locals[i as usize]);
+        blocks.push(code, new, imported, simplices)?;
+        self.patches.push(start..self.order.len());
+        self.first_code += self.vertices.len() as u32;
+        self.vertices.clear();
+        self.corners.clear();
+        Ok(())
     }
 }

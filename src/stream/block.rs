@@ -46,13 +46,15 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    pub(super) fn of(tag: Tag, sequence: u32, payload: &[u8]) -> Frame {
+    /// Frame of a block whose payload comes in two parts.
+    pub(super) fn of(tag: Tag, sequence: u32, payload: [&[u8]; 2]) -> Frame {
+        let len = (payload[0].len() + payload[1].len()) as u32;
         let mut head = [0; 12];
         head[0..4].copy_from_slice(&tag.bytes());
         LE::write_u32(&mut head[4..], sequence);
-        LE::write_u32(&mut head[8..], payload.len() as u32);
-        let mut frame = Frame { tag: Some(tag), sequence, len: payload.len() as u32, checksum: 0, head };
-        frame.checksum = frame.checksum_with(payload);
+        LE::write_u32(&mut head[8..], len);
+        let mut frame = Frame { tag: Some(tag), sequence, len, checksum: 0, head };
+        frame.checksum = crc32c::crc32c_append(frame.checksum_with(payload[0]), payload[1]);
         frame
     }
 

@@ -1,6 +1,6 @@
 //! The promise of a chunked points stream: the points between two tags lie in one cell of the next tag.
 
-use crate::bounds::{Bounds, Point};
+use crate::bounds::Bounds;
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
 
@@ -18,8 +18,8 @@ impl ChunkCheck {
         ChunkCheck { tree, waiting: None, in_tags: false }
     }
 
-    pub(crate) fn points(&mut self, points: &[Point]) -> Result<()> {
-        let Some(bounds) = Bounds::of_points(points) else { return Ok(()) };
+    /// Points with the bounding box `bounds`.
+    pub(crate) fn points(&mut self, bounds: Bounds) -> Result<()> {
         if self.in_tags {
             self.end()?;
             self.in_tags = false;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::bounds::Point;
+use crate::bounds::{Bounds, Point};
 use crate::cells::{CellCode, CellTree};
 use crate::error::{Error, Result};
 
@@ -140,6 +140,20 @@ impl FinalizedCells {
     /// As [`FinalizedCells::check_point`], for the first point that may not.
     pub fn check_points(&mut self, points: &[Point]) -> Result<()> {
         points.iter().try_for_each(|&point| self.check_point(point))
+    }
+
+    /// Checks that points with the bounding box `bounds` may still come: at once, if the box lies in one open cell.
+    ///
+    /// # Errors
+    /// As [`FinalizedCells::check_point`], for the first point that may not.
+    pub(crate) fn check_points_in(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
+        let Some(&first) = points.first() else { return Ok(()) };
+        self.check_point(first)?;
+        let dims = self.tree.dims();
+        if self.open.contains(bounds.min, dims) && self.open.contains(bounds.max, dims) {
+            return Ok(());
+        }
+        self.check_points(points)
     }
 
     /// Checks a point by its code, and remembers the largest open cell around it.

@@ -4,7 +4,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
-use crate::bounds::Point;
+use crate::bounds::{Bounds, Point};
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
 
@@ -12,10 +12,56 @@ use crate::error::{Error, Result};
 const NO_VERTEX: u64 = u64::MAX;
 
 /// Length of the counts before the arrays of a patch, in bytes.
-const PATCH_FIXED_LEN: usize = 24;
+pub(super) const PATCH_FIXED_LEN: usize = 24;
 
-pub(super) fn points(header: &Header, bytes: &[u8]) -> Result<Vec<Point>> {
-    whole_records(bytes, header.point_len())?.map(|record| point(header, record)).collect()
+/// Fills `points` with those of a block; their bounding box, if there are any.
+pub(super) fn points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) -> Result<Option<Bounds>> {
+    points.clear();
+    let _ = whole_records(bytes, header.point_len())?;
+    let decode = match (header.coordinates, header.coordinates_per_point()) {
+        (Coordinates::F64, 2) => decode::<8, 2>,
+        (Coordinates::F64, _) => decode::<8, 3>,
+        (Coordinates::I32 { .. }, 2) => decode::<4, 2>,
+        (Coordinates::I32 { .. }, _) => decode::<4, 3>,
+    };
+    decode(bytes, points);
+    check_places(header, points)
+}
+
+/// Appends the points of whole records: `N` coordinates of `WIDTH` bytes each.
+fn decode<const WIDTH: usize, const N: usize>(bytes: &[u8], points: &mut Vec<Point>) {
+    points.extend(bytes.chunks_exact(WIDTH * N).map(|record| {
+        let mut point = [0.0; 3];
+        for (value, bytes) in point.iter_mut().zip(record.chunks_exact(WIDTH)) {
+            *value = if WIDTH == 8 { LE::read_f64(bytes) } else { f64::from(LE::read_i32(bytes)) };
+        }
+        point
+    }));
+}
+
+/// That points lie where the header says, which their bounding box tells of all of them at once; the box.
+fn check_places(header: &Header, points: &[Point]) -> Result<Option<Bounds>> {
+    let Some((bounds, finite)) = extent(points) else { return Ok(None) };
+    if !finite || check_place(header, bounds.min).is_err() || check_place(header, bounds.max).is_err() {
+        points.iter().try_for_each(|&point| check_point(header, point))?;
+    }
+    Ok(Some(bounds))
+}
+
+/// Bounding box of points, and whether all coordinates are finite: only then it holds all of them.
+fn extent(points: &[Point]) -> Option<(Bounds, bool)> {
+    let Bounds { mut min, mut max } = Bounds::of_point(*points.first()?);
+    // Zero times infinity or NaN is NaN, which stays in the sum.
+    let mut poison = [0.0; 3];
+    for point in points {
+        for axis in 0..3 {
+            let value = point[axis];
+            min[axis] = if value < min[axis] { value } else { min[axis] };
+            max[axis] = if value > max[axis] { value } else { max[axis] };
+            poison[axis] += value * 0.0;
+        }
+    }
+    Some((Bounds { min, max }, poison.iter().all(|sum| *sum == 0.0)))
 }
 
 pub(super) fn cells(header: &Header, bytes: &[u8]) -> Result<Vec<CellCode>> {
@@ -56,9 +102,11 @@ pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Resu
         return Err(Error::malformed("the counts of the patch do not add up to its length"));
     };
     let locals = |bytes: &[u8]| bytes.chunks_exact(4).map(LE::read_u32).collect();
+    let mut new_points = Vec::with_capacity(new.len() / header.point_len());
+    points(header, new, &mut new_points)?;
     let patch = Patch {
         first_id: LE::read_u64(bytes),
-        new: points(header, new)?,
+        new: new_points,
         imported: imported.chunks_exact(8).map(LE::read_u64).collect(),
         simplices: locals(simplices),
         finalized: locals(finalized),
@@ -124,11 +172,8 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
             Coordinates::F64 => LE::read_f64(bytes),
             Coordinates::I32 { .. } => f64::from(LE::read_i32(bytes)),
         };
-        if !value.is_finite() {
-            return Err(Error::malformed(format!("coordinate {value} is not finite")));
-        }
     }
-    check_place(header, point)?;
+    check_point(header, point)?;
     Ok(point)
 }
 
@@ -147,6 +192,13 @@ pub(crate) fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Poin
             points.extend(records.map(|record| decode(record, 4, |bytes| f64::from(LE::read_i32(bytes)))));
         }
     }
+}
+
+fn check_point(header: &Header, point: Point) -> Result<()> {
+    if let Some(value) = point.iter().find(|value| !value.is_finite()) {
+        return Err(Error::malformed(format!("coordinate {value} is not finite")));
+    }
+    check_place(header, point)
 }
 
 /// That a point lies where the header says that all points lie.

@@ -11,6 +11,7 @@ use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
 use super::payload;
 use super::tally::Tally;
+use crate::bounds::{Bounds, Point};
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
 
@@ -23,6 +24,10 @@ pub struct StreamReader<R: Read> {
     name: String,
     header: Header,
     payload: Vec<u8>,
+    /// An array of points that was given back.
+    spare: Vec<Point>,
+    /// Bounding box of the points of the last block of points.
+    points_bounds: Option<Bounds>,
     /// Number of blocks read, and the byte at which the next one starts.
     block: u64,
     offset: u64,
@@ -47,6 +52,8 @@ impl<R: Read> StreamReader<R> {
             name,
             header,
             payload: Vec::new(),
+            spare: Vec::new(),
+            points_bounds: None,
             block: 0,
             offset,
             block_start: 0,
@@ -74,6 +81,16 @@ impl<R: Read> StreamReader<R> {
     /// Bytes read so far.
     pub fn bytes_read(&self) -> u64 {
         self.offset
+    }
+
+    /// Bounding box of the points of the last [`Event::Points`]; none if it held no points.
+    pub fn points_bounds(&self) -> Option<Bounds> {
+        self.points_bounds
+    }
+
+    /// Takes back the array of an [`Event::Points`], to be used for a later one.
+    pub fn give_back(&mut self, points: Vec<Point>) {
+        self.spare = points;
     }
 
     /// Adds input and position to an error about the block that was read last. Errors that are not about the
@@ -153,7 +170,12 @@ impl<R: Read> StreamReader<R> {
     fn decode(&mut self, tag: Tag) -> Result<Event> {
         let (header, payload, totals) = (&self.header, &self.payload[..], self.tally.totals());
         let event = match tag {
-            Tag::Points => Event::Points(payload::points(header, payload)?),
+            Tag::Points => {
+                let mut points = std::mem::take(&mut self.spare);
+                self.points_bounds = payload::points(header, payload, &mut points)?;
+                self.tally.count_points(points.len(), self.points_bounds)?;
+                return Ok(Event::Points(points));
+            }
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
             Tag::Patch => Event::Patch(payload::patch(header, totals.vertices, payload)?),
             Tag::ResidualPoints => {

@@ -3,6 +3,7 @@
 use super::chunks::ChunkCheck;
 use super::event::{Event, Totals};
 use super::header::Header;
+use crate::bounds::Bounds;
 use crate::error::{Error, Result};
 
 /// What was read so far of a stream, in whatever form it is written, with the rules that span its events.
@@ -34,10 +35,8 @@ impl Tally {
     pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
-                self.totals.points += points.len() as u64;
-                if let Some(chunks) = &mut self.chunks {
-                    chunks.points(points)?;
-                }
+                let bounds = self.chunks.as_ref().and_then(|_| Bounds::of_points(points));
+                self.count_points(points.len(), bounds)?;
             }
             Event::Cells(cells) => {
                 self.totals.cells += cells.len() as u64;
@@ -58,6 +57,18 @@ impl Tally {
             Event::End(_) => {}
         }
         Ok(())
+    }
+
+    /// Counts points with the given bounding box.
+    ///
+    /// # Errors
+    /// As [`Tally::count`].
+    pub(crate) fn count_points(&mut self, count: usize, bounds: Option<Bounds>) -> Result<()> {
+        self.totals.points += count as u64;
+        match (&mut self.chunks, bounds) {
+            (Some(chunks), Some(bounds)) => chunks.points(bounds),
+            _ => Ok(()),
+        }
     }
 
     /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.7). A mesh

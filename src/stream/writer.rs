@@ -5,6 +5,7 @@ use std::io::Write;
 use super::block::{Frame, Tag};
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
+use super::patch_blocks::PatchBlocks;
 use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
@@ -145,6 +146,41 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
+    /// Appends patches that were encoded ahead, with `id_of` for the references that stand for imported vertices;
+    /// `count` is told of each patch how many new and how many finalized vertices it has.
+    ///
+    /// # Errors
+    /// If a patch is longer than a block, or writing fails.
+    pub(crate) fn patches(
+        &mut self,
+        blocks: &mut PatchBlocks,
+        id_of: impl Fn(u64) -> u64,
+        mut count: impl FnMut(u64, u64),
+    ) -> Result<()> {
+        for number in 0..blocks.len() {
+            self.start_block(Tag::Patch);
+            let patch = blocks.complete(number, self.totals.vertices, self.sequence, &id_of);
+            check_len(patch.payload_len())?;
+            debug_assert!(
+                super::payload::patch(
+                    &self.header,
+                    self.totals.vertices,
+                    &[&patch.block[super::block::FRAME_LEN..], patch.finalized].concat()
+                )
+                .is_ok(),
+                "a patch that no reader accepts"
+            );
+            self.sequence = self.sequence.wrapping_add(1);
+            self.output.write_all(patch.block).map_err(write_error)?;
+            self.output.write_all(patch.finalized).map_err(write_error)?;
+            let [new, simplices, finalized] = patch.counts();
+            self.totals.vertices += new;
+            self.totals.simplices += simplices;
+            count(new, finalized);
+        }
+        Ok(())
+    }
+
     /// Appends residual points, each with its id if it is a vertex of an earlier patch.
     ///
     /// # Errors
@@ -209,6 +245,15 @@ impl<W: Write> StreamWriter<W> {
     }
 
     fn flush_block(&mut self, tag: Tag) -> Result<()> {
+        self.start_block(tag);
+        check_len(self.payload.len())?;
+        let frame = Frame::of(tag, self.sequence, [&self.payload, &[]]);
+        self.sequence = self.sequence.wrapping_add(1);
+        self.output.write_all(&frame.encode()).map_err(write_error)?;
+        self.output.write_all(&self.payload).map_err(write_error)
+    }
+
+    fn start_block(&mut self, tag: Tag) {
         assert!(
             self.header.kind.allows(self.last_tag, tag),
             "{tag:?} after {:?} in a stream of kind {}",
@@ -216,17 +261,16 @@ impl<W: Write> StreamWriter<W> {
             self.header.kind.name()
         );
         self.last_tag = Some(tag);
-        if self.payload.len() > BLOCK_PAYLOAD_MAX {
-            return Err(Error::usage(format!(
-                "cannot write a block of {} bytes, the maximum is {BLOCK_PAYLOAD_MAX}",
-                self.payload.len()
-            )));
-        }
-        let frame = Frame::of(tag, self.sequence, &self.payload);
-        self.sequence = self.sequence.wrapping_add(1);
-        self.output.write_all(&frame.encode()).map_err(write_error)?;
-        self.output.write_all(&self.payload).map_err(write_error)
     }
+}
+
+fn check_len(payload_len: usize) -> Result<()> {
+    if payload_len > BLOCK_PAYLOAD_MAX {
+        return Err(Error::usage(format!(
+            "cannot write a block of {payload_len} bytes, the maximum is {BLOCK_PAYLOAD_MAX}"
+        )));
+    }
+    Ok(())
 }
 
 fn write_error(cause: std::io::Error) -> Error {

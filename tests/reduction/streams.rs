@@ -1,5 +1,7 @@
 //! Streams of points as a finalizer could write them, and meshes read back, all in memory.
 
+use std::io::Cursor;
+
 use spmesh::bounds::{Bounds, Point};
 use spmesh::cells::{CellCode, CellTree};
 use spmesh::error::Result;
@@ -148,7 +150,7 @@ pub fn read_mesh(bytes: &[u8]) -> Mesh {
 
 /// Triangulates a stream of points into a mesh stream.
 pub fn triangulate(points: &[u8], options: &Options) -> Result<(Vec<u8>, Stats)> {
-    let reader = StreamReader::new(points, "points")?;
+    let reader = StreamReader::new(Cursor::new(points.to_vec()), "points")?;
     reduce::triangulate(reader, Vec::new(), options, |_| ())
 }
 

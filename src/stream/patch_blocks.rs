@@ -1,0 +1,185 @@
+//! Patches that are encoded before their place in the stream is known.
+
+use byteorder::{ByteOrder, LittleEndian as LE};
+
+use super::block::{FRAME_LEN, Frame, Tag};
+use super::header::{Coordinates, Header};
+use super::payload::PATCH_FIXED_LEN;
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+
+/// How points are encoded: what [`PatchBlocks`] needs of a header.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointCode {
+    coordinates: Coordinates,
+    per_point: usize,
+}
+
+impl PointCode {
+    pub(crate) fn of(header: &Header) -> Self {
+        PointCode { coordinates: header.coordinates, per_point: header.coordinates_per_point() }
+    }
+}
+
+/// Patches in their order, with room for their frames. What depends on earlier blocks is filled in by
+/// [`super::StreamWriter::patches`]: frames, first ids, and the ids of imported vertices, for which references
+/// stand that mean something to the caller.
+///
+/// Buffers are kept by [`PatchBlocks::clear`]: no patch is allocated.
+#[derive(Debug, Default)]
+pub(crate) struct PatchBlocks {
+    /// Frame and payload of each patch, but for its finalized vertices. Longer than `used` after a use.
+    bytes: Vec<u8>,
+    used: usize,
+    /// Finalized vertices of all patches, encoded.
+    finalized: Vec<u8>,
+    patches: Vec<Place>,
+}
+
+/// Where the parts of a patch are.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    /// First byte of its frame, and one past the last of its simplices.
+    start: usize,
+    end: usize,
+    /// First byte of its imported vertices, and their number.
+    imported: usize,
+    imports: usize,
+    /// One past the last byte of its finalized vertices; those of the patch before it end where they start.
+    finalized_end: usize,
+}
+
+impl PatchBlocks {
+    /// Forgets the patches.
+    pub(crate) fn clear(&mut self) {
+        self.used = 0;
+        self.finalized.clear();
+        self.patches.clear();
+    }
+
+    /// Number of patches.
+    pub(crate) fn len(&self) -> usize {
+        self.patches.len()
+    }
+
+    /// Adds a triangle patch: new vertices, references to imported ones, simplices in local indices.
+    ///
+    /// # Errors
+    /// If a coordinate does not fit the encoding.
+    pub(crate) fn push(
+        &mut self,
+        code: PointCode,
+        new: impl ExactSizeIterator<Item = Point>,
+        imported: impl ExactSizeIterator<Item = u64>,
+        simplices: impl ExactSizeIterator<Item = u32>,
+    ) -> Result<()> {
+        let (start, imports) = (self.used, imported.len());
+        let counts = [new.len(), imports, simplices.len() / 3];
+        let points_len = new.len() * code.per_point * code.coordinates.width();
+        let len = FRAME_LEN + PATCH_FIXED_LEN + points_len + 8 * imports + 4 * simplices.len();
+        let bytes = self.room(len);
+        let fixed = &mut bytes[FRAME_LEN..][..PATCH_FIXED_LEN];
+        for (count, bytes) in counts.into_iter().zip(fixed[8..20].chunks_exact_mut(4)) {
+            LE::write_u32(bytes, count as u32);
+        }
+        let (points, rest) = bytes[FRAME_LEN + PATCH_FIXED_LEN..].split_at_mut(points_len);
+        match (code.coordinates, code.per_point) {
+            (Coordinates::F64, 2) => encode::<8, 2>(points, new)?,
+            (Coordinates::F64, _) => encode::<8, 3>(points, new)?,
+            (Coordinates::I32 { .. }, 2) => encode::<4, 2>(points, new)?,
+            (Coordinates::I32 { .. }, _) => encode::<4, 3>(points, new)?,
+        }
+        let (ids, locals) = rest.split_at_mut(8 * imports);
+        ids.chunks_exact_mut(8).zip(imported).for_each(|(bytes, id)| LE::write_u64(bytes, id));
+        locals.chunks_exact_mut(4).zip(simplices).for_each(|(bytes, local)| LE::write_u32(bytes, local));
+        let imported = start + FRAME_LEN + PATCH_FIXED_LEN + points_len;
+        self.patches.push(Place { start, end: start + len, imported, imports, finalized_end: 0 });
+        Ok(())
+    }
+
+    /// Says which local vertices patch number `patch` finalizes, increasing. To be called for one patch after the
+    /// other, when all are there.
+    pub(crate) fn finalize(&mut self, patch: usize, locals: impl Iterator<Item = u32>) {
+        let before = self.finalized.len();
+        locals.for_each(|local| self.finalized.extend_from_slice(&local.to_le_bytes()));
+        let place = &mut self.patches[patch];
+        place.finalized_end = self.finalized.len();
+        let count = &mut self.bytes[place.start + FRAME_LEN + 20..][..4];
+        LE::write_u32(count, ((place.finalized_end - before) / 4) as u32);
+    }
+
+    /// Completes patch number `patch` as block `sequence`, with what a reference stands for told by `id_of`.
+    pub(super) fn complete(
+        &mut self,
+        patch: usize,
+        first_id: u64,
+        sequence: u32,
+        id_of: impl Fn(u64) -> u64,
+    ) -> EncodedPatch<'_> {
+        let finalized_start = patch.checked_sub(1).map_or(0, |before| self.patches[before].finalized_end);
+        let Place { start, end, imported, imports, finalized_end } = self.patches[patch];
+        for bytes in self.bytes[imported..imported + 8 * imports].chunks_exact_mut(8) {
+            LE::write_u64(bytes, id_of(LE::read_u64(bytes)));
+        }
+        let (frame, payload) = self.bytes[start..end].split_at_mut(FRAME_LEN);
+        LE::write_u64(payload, first_id);
+        let finalized = &self.finalized[finalized_start..finalized_end];
+        frame.copy_from_slice(&Frame::of(Tag::Patch, sequence, [payload, finalized]).encode());
+        EncodedPatch { block: &self.bytes[start..end], finalized }
+    }
+
+    /// Room for `len` more bytes, whatever is in them.
+    fn room(&mut self, len: usize) -> &mut [u8] {
+        let start = self.used;
+        self.used += len;
+        if self.bytes.len() < self.used {
+            // By little: so much more memory would lie idle in each node under way.
+            self.bytes.reserve_exact((self.used - self.bytes.len()).max(self.used / 8));
+            self.bytes.resize(self.used, 0);
+        }
+        &mut self.bytes[start..self.used]
+    }
+}
+
+/// A patch ready to be written: one part behind the other.
+pub(super) struct EncodedPatch<'a> {
+    /// Frame and payload up to the simplices.
+    pub(super) block: &'a [u8],
+    /// The finalized vertices.
+    pub(super) finalized: &'a [u8],
+}
+
+impl EncodedPatch<'_> {
+    /// Length of the payload in bytes.
+    pub(super) fn payload_len(&self) -> usize {
+        self.block.len() - FRAME_LEN + self.finalized.len()
+    }
+
+    /// Numbers of new vertices, simplices and finalized vertices.
+    pub(super) fn counts(&self) -> [u64; 3] {
+        [8, 16, 20].map(|at| u64::from(LE::read_u32(&self.block[FRAME_LEN + at..])))
+    }
+}
+
+/// Writes points of `N` coordinates of `WIDTH` bytes each.
+fn encode<const WIDTH: usize, const N: usize>(
+    bytes: &mut [u8],
+    points: impl Iterator<Item = Point>,
+) -> Result<()> {
+    for (record, point) in bytes.chunks_exact_mut(WIDTH * N).zip(points) {
+        let mut fits = true;
+        for (bytes, value) in record.chunks_exact_mut(WIDTH).zip(point) {
+            if WIDTH == 8 {
+                fits &= value.is_finite();
+                LE::write_f64(bytes, value);
+            } else {
+                fits &= f64::from(value as i32) == value;
+                LE::write_i32(bytes, value as i32);
+            }
+        }
+        if !fits {
+            return Err(Error::malformed(format!("point {point:?} does not fit the stream's encoding")));
+        }
+    }
+    Ok(())
+}
