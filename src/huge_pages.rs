@@ -3,6 +3,8 @@
 //! The first touch of a page of 4 KiB costs more than a microsecond; the arrays for ten million points at once are
 //! half a million pages. The system gives pages of 2 MiB to those who ask.
 
+use crate::system;
+
 /// Arrays of fewer bytes stay in small pages, so that a process takes no more memory than it uses.
 const LEAST_BYTES: usize = 4 << 20;
 
@@ -11,24 +13,13 @@ pub(crate) fn reserve<T>(array: &mut Vec<T>, capacity: usize) {
     array.clear();
     if array.capacity() < capacity {
         array.reserve_exact(capacity);
-        ask(array);
+        ask(array.spare_capacity_mut());
     }
 }
 
-/// Asks for large pages for the whole capacity of `array`.
-#[cfg(target_os = "linux")]
-pub(crate) fn ask<T>(array: &mut Vec<T>) {
-    const PAGE: usize = 4096;
-    let bytes = array.capacity() * size_of::<T>();
-    if bytes >= LEAST_BYTES {
-        let start = array.as_mut_ptr().cast::<libc::c_void>();
-        let skipped = start.align_offset(PAGE);
-        // SAFETY: the range lies in one allocation that is mutably borrowed, and starts at a page. The advice changes
-        // neither its content nor its validity; where it is not taken nothing is lost, so that the result is ignored.
-        unsafe { libc::madvise(start.wrapping_byte_add(skipped), bytes - skipped, libc::MADV_HUGEPAGE) };
+/// Asks for large pages for `memory`, which has not been touched, if it is large.
+pub(crate) fn ask<T>(memory: &mut [T]) {
+    if size_of_val(memory) >= LEAST_BYTES {
+        system::ask_for_large_pages(memory);
     }
 }
-
-/// Other systems decide for themselves.
-#[cfg(not(target_os = "linux"))]
-pub(crate) fn ask<T>(_array: &mut Vec<T>) {}

@@ -9,8 +9,12 @@ use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::system;
 
 const BUFFER_LEN: usize = 1 << 18;
+
+/// After so many bytes a file's data are sent on to the disk, so that few are left to wait for at the end.
+const SEND_ON_LEN: u64 = 8 << 20;
 
 /// Start of the name of a file that is not complete, where it has to have a name.
 const TEMPORARY_PREFIX: &str = ".spmesh-";
@@ -24,6 +28,8 @@ pub struct Output {
     name: String,
     sink: Sink,
     written: u64,
+    /// Bytes of a file that are on their way to the disk.
+    sent_on: u64,
 }
 
 enum Sink {
@@ -56,11 +62,11 @@ impl Output {
             // Past the line buffering of `Stdout`, which would look for line ends in binary data.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
-            return Ok(Output { name: "stdout".into(), sink, written: 0 });
+            return Ok(Output { name: "stdout".into(), sink, written: 0, sent_on: 0 });
         }
         let name = path.display().to_string();
         let sink = create_file(path).map_err(|e| Error::io("creating the output", e).of_input(&name))?;
-        Ok(Output { name, sink, written: 0 })
+        Ok(Output { name, sink, written: 0, sent_on: 0 })
     }
 
     /// Bytes written so far.
@@ -87,6 +93,18 @@ impl Output {
         io::Error::new(error.kind(), format!("{}: {error}", self.name))
     }
 
+    /// Has the system begin to write to the disk what has been written to a file since the last time.
+    fn send_on(&mut self) {
+        let file = match &self.sink {
+            Sink::InPlace(_) => return,
+            Sink::Unnamed { file, .. } => file.get_ref(),
+            Sink::Named { file, .. } => file.get_ref().as_file(),
+        };
+        let handed_over = self.written.saturating_sub(BUFFER_LEN as u64);
+        system::start_write_back(file, self.sent_on, handed_over - self.sent_on);
+        self.sent_on = handed_over;
+    }
+
     fn writer(&mut self) -> &mut dyn Write {
         match &mut self.sink {
             Sink::InPlace(file) | Sink::Unnamed { file, .. } => file,
@@ -99,6 +117,9 @@ impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.writer().write(bytes).map_err(|e| self.named(e))?;
         self.written += written as u64;
+        if self.written - self.sent_on > SEND_ON_LEN {
+            self.send_on();
+        }
         Ok(written)
     }
 

@@ -1,4 +1,4 @@
-//! What the system can be asked and told about pipes and folders. Nothing here is needed for a right result, so
+//! What the system can be asked and told about pipes, files, folders and memory. Nothing here is needed for a right result, so
 //! that what a system refuses is left as it is.
 
 use std::ffi::CString;
@@ -27,6 +27,18 @@ pub fn widen_pipe(file: &impl AsFd) {
 /// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
 #[cfg(not(target_os = "linux"))]
 pub fn widen_pipe(_file: &impl AsFd) {}
+
+/// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for it.
+#[cfg(target_os = "linux")]
+pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
+    let (Ok(offset), Ok(len)) = (offset.try_into(), len.try_into()) else { return };
+    // SAFETY: the call takes an open descriptor and integers, and touches no memory of this process.
+    unsafe { libc::sync_file_range(file.as_fd().as_raw_fd(), offset, len, libc::SYNC_FILE_RANGE_WRITE) };
+}
+
+/// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for it.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn start_write_back(_file: &impl AsFd, _offset: u64, _len: u64) {}
 
 /// Bytes that can still be written below `folder`, if the system tells.
 pub(crate) fn free_bytes(folder: &Path) -> Option<u64> {
@@ -63,3 +75,19 @@ pub(crate) fn is_in_memory(folder: &Path) -> bool {
 pub(crate) fn is_in_memory(_folder: &Path) -> bool {
     false
 }
+
+/// Asks for large pages for `memory`, before it is touched.
+#[cfg(target_os = "linux")]
+pub(crate) fn ask_for_large_pages<T>(memory: &mut [T]) {
+    const PAGE: usize = 4096;
+    let bytes = std::mem::size_of_val(memory);
+    let start = memory.as_mut_ptr().cast::<libc::c_void>();
+    let skipped = start.align_offset(PAGE).min(bytes);
+    // SAFETY: the range is mutably borrowed, and starts at a page or is empty. The advice changes neither its content
+    // nor its validity.
+    unsafe { libc::madvise(start.wrapping_byte_add(skipped), bytes - skipped, libc::MADV_HUGEPAGE) };
+}
+
+/// Asks for large pages for `memory`, before it is touched.
+#[cfg(not(target_os = "linux"))]
+pub(crate) fn ask_for_large_pages<T>(_memory: &mut [T]) {}

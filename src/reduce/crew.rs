@@ -24,13 +24,13 @@ use crate::predicates::PredicateCounts;
 use crate::stream::PatchBlocks;
 
 /// Points under way per thread that triangulates, beyond which no more are taken in.
-const POINTS_PER_WORKER: usize = 3 << 13;
+const POINTS_PER_WORKER: usize = 1 << 16;
 
 /// Nodes that wait for a thread or have one, per thread that triangulates, beyond which no cells are taken in.
-const JOBS_PER_WORKER: usize = 2;
+const JOBS_PER_WORKER: usize = 3;
 
 /// Cells that are read ahead.
-const ARRIVALS_AHEAD: usize = 1;
+const ARRIVALS_AHEAD: usize = 3;
 
 /// Buffers that wait to be used again.
 const SHELF_LEN: usize = 16;
