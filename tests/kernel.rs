@@ -5,6 +5,10 @@ use crate::reference::{as_set, exhaustive, incremental};
 use spmesh::delaunay2::{Corner, Kernel, NONE, Triangulation, distinct, triangulate};
 use std::collections::HashSet;
 
+fn triangles(mesh: &Triangulation) -> impl Iterator<Item = [u32; 3]> + '_ {
+    mesh.triangles().iter().map(|triangle| triangle.vertices)
+}
+
 /// Checks everything that [`Triangulation`] promises but the Delaunay property; returns the set of triangles.
 fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
     let dropped: HashSet<u32> = mesh.duplicates.iter().map(|pair| pair[0]).collect();
@@ -13,34 +17,31 @@ fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
         assert_eq!(points[duplicate as usize], points[vertex as usize]);
         assert!(vertex < duplicate && !dropped.contains(&vertex));
     }
-    assert_eq!(mesh.triangles.len(), mesh.neighbours.len());
     assert_eq!(mesh.triangle_of_vertex.len(), points.len());
-    if mesh.triangles.is_empty() {
+    if mesh.triangles().is_empty() {
         assert_eq!(mesh.hull.len(), vertices);
         assert!(mesh.triangle_of_vertex.iter().all(|&t| t == NONE));
     } else {
-        assert_eq!(mesh.triangles.len(), 2 * vertices - 2 - mesh.hull.len(), "Euler relation");
+        assert_eq!(mesh.triangles().len(), 2 * vertices - 2 - mesh.hull.len(), "Euler relation");
     }
     let mut hull_edges = HashSet::new();
-    for (t, (triangle, neighbours)) in mesh.triangles.iter().zip(&mesh.neighbours).enumerate() {
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
         for i in 0..3 {
-            let (a, b) = (triangle[(i + 1) % 3], triangle[(i + 2) % 3]);
+            let (a, b) = (triangle.vertices[(i + 1) % 3], triangle.vertices[(i + 2) % 3]);
             assert_eq!(mesh.left_of(a, b), Some(Corner { triangle: t as u32, corner: i as u32 }));
-            if neighbours[i] == NONE {
-                assert_eq!(mesh.left_of(b, a), None);
+            assert_eq!(mesh.left_of(b, a), triangle.across(i));
+            if triangle.across(i).is_none() {
                 assert!(hull_edges.insert((a, b)));
-            } else {
-                assert_eq!(mesh.left_of(b, a).map(|corner| corner.triangle), Some(neighbours[i]));
             }
         }
     }
-    if !mesh.triangles.is_empty() {
+    if !mesh.triangles().is_empty() {
         let cycle = mesh.hull.iter().zip(mesh.hull.iter().cycle().skip(1));
         assert_eq!(cycle.map(|(&a, &b)| (a, b)).collect::<HashSet<_>>(), hull_edges);
         let corners: usize = (0..points.len() as u32).map(|v| mesh.corners_of(v).count()).sum();
-        assert_eq!(corners, 3 * mesh.triangles.len());
+        assert_eq!(corners, 3 * mesh.triangles().len());
     }
-    as_set(mesh.triangles.iter().copied())
+    as_set(triangles(mesh))
 }
 
 /// Triangulates, checks, and compares with `expected`.
@@ -193,9 +194,12 @@ fn order_of_input_does_not_matter() {
         let shuffled: Vec<[f64; 2]> = order.iter().map(|&i| floats[i as usize]).collect();
         let mut again = Triangulation::default();
         kernel.triangulate(&shuffled, &mut again).expect("finite points");
-        let renamed: Vec<[u32; 3]> = again.triangles.iter().map(|t| t.map(|v| order[v as usize])).collect();
-        assert_eq!(mesh.triangles, renamed, "the very same triangles in the same order, seed {seed}");
-        assert_eq!(mesh.neighbours, again.neighbours);
+        let renamed = triangles(&again).map(|t| t.map(|v| order[v as usize]));
+        assert!(triangles(&mesh).eq(renamed), "the very same triangles in the same order, seed {seed}");
+        let neighbours = |mesh: &Triangulation| -> Vec<_> {
+            mesh.triangles().iter().map(|t| [0, 1, 2].map(|side| t.across(side))).collect()
+        };
+        assert_eq!(neighbours(&mesh), neighbours(&again));
     }
 }
 
@@ -203,7 +207,7 @@ fn order_of_input_does_not_matter() {
 fn quarter_turns_keep_the_triangles_of_points_in_general_position() {
     let mut random = Random::new(5000);
     let points: Vec<[f64; 2]> = (0..3000).map(|_| [random.unit(), random.unit() * 0.01]).collect();
-    let expected = as_set(triangulate(&points).expect("finite points").triangles);
+    let expected = as_set(triangles(&triangulate(&points).expect("finite points")));
     let turned: Vec<[f64; 2]> = points.iter().map(|p| [-p[1], p[0]]).collect();
     assert_eq!(checked(&turned, &triangulate(&turned).expect("finite points")), expected);
 }
@@ -254,6 +258,9 @@ fn a_kernel_is_clean_after_an_error_and_after_larger_input() {
         let points = sets::as_floats(&sets::uniform(&mut random, count, 1 << 20));
         kernel.triangulate(&[[f64::NAN; 2]], &mut mesh).expect_err("not finite");
         kernel.triangulate(&points, &mut mesh).expect("finite points");
-        assert_eq!(mesh, triangulate(&points).expect("finite points"));
+        let fresh = triangulate(&points).expect("finite points");
+        assert!(triangles(&mesh).eq(triangles(&fresh)));
+        assert_eq!((&mesh.hull, &mesh.triangle_of_vertex), (&fresh.hull, &fresh.triangle_of_vertex));
+        assert_eq!(checked(&points, &mesh), checked(&points, &fresh));
     }
 }

@@ -186,6 +186,6 @@ fn perturbation_takes_the_lexicographically_largest_point() {
     // The unit square: raising [1, 1] keeps it off every circle, so that the diagonal avoids it.
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mesh = spmesh::delaunay2::triangulate(&square).expect("finite points");
-    assert_eq!(mesh.triangles.len(), 2);
-    assert!(mesh.left_of(1, 3).is_some() && mesh.left_of(3, 1).is_some(), "{:?}", mesh.triangles);
+    assert_eq!(mesh.triangles().len(), 2);
+    assert!(mesh.left_of(1, 3).is_some() && mesh.left_of(3, 1).is_some(), "{:?}", mesh.triangles());
 }

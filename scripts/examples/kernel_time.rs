@@ -27,7 +27,11 @@ fn compare(paths: &Paths, points: &[[f64; 2]]) -> Result<(), Box<dyn std::error:
     let mut mesh = Triangulation::default();
     let (result, seconds) = timed(|| Kernel::new().triangulate(points, &mut mesh));
     result?;
-    Ok(paths.write_triangles(points.len(), mesh.triangles.into_iter(), seconds)?)
+    Ok(paths.write_triangles(
+        points.len(),
+        mesh.triangles().iter().map(|triangle| triangle.vertices),
+        seconds,
+    )?)
 }
 
 /// Many rounds; nothing is written.
@@ -45,7 +49,7 @@ fn tune(points: &[[f64; 2]], rounds: usize) -> Result<(), Box<dyn std::error::Er
     println!(
         "{} points, {} triangles, {} duplicates",
         points.len(),
-        mesh.triangles.len(),
+        mesh.triangles().len(),
         mesh.duplicates.len()
     );
     println!("decisions in {rounds} rounds: {:?}", kernel.counts());

@@ -1,7 +1,8 @@
-//! From the triangulated sphere to the arrays of a [`Triangulation`].
+//! From the triangulated sphere to a [`Triangulation`], in place: infinite triangles go, and vertices become indices of
+//! input points.
 
-use super::sphere::{HalfEdge, INFINITE, Sphere, previous, triangle_of};
-use super::triangulation::{NONE, Triangulation};
+use super::sphere::{HalfEdge, Sphere, number_of, previous, triangle_of};
+use super::triangulation::NONE;
 use crate::huge_pages;
 
 /// Reads the finished sphere.
@@ -11,71 +12,81 @@ pub(super) struct Extraction<'a> {
     pub(super) indices: &'a [u32],
     /// For each vertex, a triangle at it; overwritten.
     pub(super) triangle_at: &'a mut Vec<u32>,
+    /// The arrays of the triangulation, empty.
+    pub(super) hull: &'a mut Vec<u32>,
+    pub(super) triangle_of_vertex: &'a mut Vec<u32>,
 }
 
 impl Extraction<'_> {
-    /// Fills the empty `out`; `count` is the number of input points, duplicates included.
-    pub(super) fn run(mut self, count: usize, out: &mut Triangulation) {
-        let (triangles, hull_side) = self.number_triangles();
-        self.emit_triangles(triangles, out);
-        huge_pages::reserve(&mut out.triangle_of_vertex, count);
-        out.triangle_of_vertex.resize(count, NONE);
-        for (&index, &triangle) in self.indices.iter().zip(self.triangle_at.iter()).skip(1) {
-            out.triangle_of_vertex[index as usize] = triangle;
+    /// Leaves the finite triangles at the start of the array, fills the other arrays, and returns the number of
+    /// triangles; `points` is the number of input points, duplicates included.
+    pub(super) fn run(mut self, points: usize) -> usize {
+        let hull_sides = self.hull_sides();
+        // Half-edges of the hull, by origin.
+        let mut hull: Vec<(u32, HalfEdge)> = hull_sides
+            .iter()
+            .map(|&side| (self.sphere.opposite(previous(side)), self.sphere.across(side)))
+            .collect();
+        hull.iter().for_each(|&(_, inside)| self.sphere.set_across(inside, NONE));
+        let count = self.fill_holes(&hull_sides, &mut hull);
+        self.rename_vertices(count);
+        for &(origin, inside) in &hull {
+            // The first triangle counterclockwise.
+            self.triangle_at[origin as usize] = number_of(inside);
+            self.hull.push(self.indices[origin as usize]);
         }
-        self.walk_hull(hull_side, out);
+        huge_pages::reserve(self.triangle_of_vertex, points);
+        self.triangle_of_vertex.resize(points, NONE);
+        for (&index, &triangle) in self.indices.iter().zip(self.triangle_at.iter()).skip(1) {
+            self.triangle_of_vertex[index as usize] = triangle;
+        }
+        count
     }
 
-    /// Numbers the finite triangles; the others get [`NONE`].
-    ///
-    /// Returns how many are finite, and the outer half-edge of an edge of the hull.
-    fn number_triangles(&mut self) -> (u32, HalfEdge) {
-        let (mut number, mut infinite) = (0, 0);
-        for t in self.sphere.triangles() {
-            let [a, b, c] = self.sphere.vertices(t);
-            let is_finite = a != INFINITE && b != INFINITE && c != INFINITE;
-            self.sphere.set_number(t, if is_finite { number } else { NONE });
-            number += u32::from(is_finite);
-            if !is_finite && a.max(b).max(c) != INFINITE {
-                infinite = t;
+    /// The outer half-edges of the edges of the hull, counterclockwise.
+    fn hull_sides(&self) -> Vec<HalfEdge> {
+        let blank = self.sphere.blank();
+        let mut triangles = Sphere::triangles(self.sphere.len()).filter(|t| !blank.contains(t));
+        let mut sides = Vec::new();
+        let Some(first) = triangles.find_map(|t| self.sphere.hull_side(t)) else { return sides };
+        let mut side = first;
+        loop {
+            sides.push(side);
+            // From outside an edge is seen clockwise: the next one is across the edge from its end to infinity.
+            side = previous(self.sphere.across(previous(side)));
+            if side == first {
+                return sides;
             }
         }
-        (number, self.sphere.hull_side(infinite).unwrap_or(infinite))
     }
 
-    /// Writes the finite triangles, and notes one for each vertex.
-    fn emit_triangles(&mut self, count: u32, out: &mut Triangulation) {
-        huge_pages::reserve(&mut out.triangles, count as usize);
-        huge_pages::reserve(&mut out.neighbours, count as usize);
+    /// Moves the last finite triangles to the places of infinite and blank ones; the number of finite ones.
+    fn fill_holes(&mut self, hull_sides: &[HalfEdge], hull: &mut [(u32, HalfEdge)]) -> usize {
+        let infinite = hull_sides.iter().map(|&side| triangle_of(side));
+        let mut holes: Vec<HalfEdge> = infinite.chain(self.sphere.blank()).collect();
+        holes.sort_unstable();
+        let count = self.sphere.len() - holes.len();
+        let tail = Sphere::triangles(self.sphere.len()).skip(count);
+        let moved: Vec<HalfEdge> = tail.filter(|t| holes.binary_search(t).is_err()).collect();
+        for (&t, &hole) in moved.iter().zip(&holes) {
+            self.sphere.move_triangle(t, hole);
+        }
+        for (_, inside) in hull {
+            if let Ok(at) = moved.binary_search(&triangle_of(*inside)) {
+                *inside = holes[at] + (*inside - moved[at]);
+            }
+        }
+        count
+    }
+
+    /// Makes vertices indices of input points, and notes a triangle for each.
+    fn rename_vertices(&mut self, count: usize) {
         huge_pages::reserve(self.triangle_at, self.indices.len());
         self.triangle_at.resize(self.indices.len(), NONE);
-        for t in self.sphere.triangles() {
-            let number = self.sphere.number(t);
-            if number == NONE {
-                continue;
-            }
+        for t in Sphere::triangles(count) {
             let vertices = self.sphere.vertices(t);
-            let beyond = |h| self.sphere.number(triangle_of(self.sphere.across(h)));
-            out.triangles.push(vertices.map(|v| self.indices[v as usize]));
-            out.neighbours.push([beyond(t), beyond(t + 1), beyond(t + 2)]);
-            vertices.iter().for_each(|&v| self.triangle_at[v as usize] = number);
-        }
-    }
-
-    /// Lists the hull, and makes the triangle at each of its vertices the first one counterclockwise.
-    fn walk_hull(&mut self, hull_side: HalfEdge, out: &mut Triangulation) {
-        let mut side = hull_side;
-        loop {
-            // From outside the edge is seen clockwise.
-            let origin = self.indices[self.sphere.opposite(previous(side)) as usize];
-            out.hull.push(origin);
-            let inside = triangle_of(self.sphere.across(side));
-            out.triangle_of_vertex[origin as usize] = self.sphere.number(inside);
-            // Across the edge from the end of this one to infinity is the next one.
-            side = previous(self.sphere.across(previous(side)));
-            if side == hull_side {
-                break;
-            }
+            vertices.iter().for_each(|&v| self.triangle_at[v as usize] = number_of(t));
+            self.sphere.set_vertices(t, vertices.map(|v| self.indices[v as usize]));
         }
     }
 }

@@ -14,7 +14,7 @@ mod sphere;
 mod triangulation;
 
 pub use distinct::distinct;
-pub use triangulation::{Corner, NONE, Triangulation};
+pub use triangulation::{Corner, NONE, Triangle, Triangulation};
 
 use crate::error::{Error, Result};
 use crate::huge_pages;
@@ -23,7 +23,7 @@ use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicograph
 use build::Build;
 use extract::Extraction;
 use insertion::Cavity;
-use sphere::{INFINITE, SphereMemory};
+use sphere::INFINITE;
 
 /// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.
 pub const MAX_POINTS: usize = 268_000_000;
@@ -36,12 +36,9 @@ pub struct Kernel {
     indices: Vec<u32>,
     /// The vertices: one at infinity, then the distinct points, in order along the curve.
     points: Vec<Point2>,
-    /// The vertices in the order of insertion.
+    /// The vertices in the order of insertion; afterwards, for each vertex, a triangle at it.
     sequence: Vec<u32>,
-    triangles: SphereMemory,
     cavity: Cavity,
-    /// For each vertex, a triangle at it.
-    triangle_at: Vec<u32>,
     counts: PredicateCounts,
 }
 
@@ -80,14 +77,21 @@ impl Kernel {
         rounds::fill(&mut self.sequence, self.points.len() - 1);
         let build = Build {
             points: &self.points,
-            room: self.triangles.room(self.points.len()),
+            room: triangulation.memory.room(self.points.len()),
             sequence: &self.sequence,
             cavity: &mut self.cavity,
         };
         match Arithmetic::of(&extent).run(build, &mut self.counts) {
             Some(sphere) => {
-                let (indices, triangle_at) = (&self.indices, &mut self.triangle_at);
-                Extraction { sphere, indices, triangle_at }.run(points.len(), triangulation);
+                let extraction = Extraction {
+                    sphere,
+                    indices: &self.indices,
+                    triangle_at: &mut self.sequence,
+                    hull: &mut triangulation.hull,
+                    triangle_of_vertex: &mut triangulation.triangle_of_vertex,
+                };
+                let count = extraction.run(points.len());
+                triangulation.memory.set_count(count);
             }
             None => self.extract_line(points, triangulation),
         }

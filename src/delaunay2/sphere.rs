@@ -1,16 +1,15 @@
 //! A triangulated sphere in a flat array: the plane and one vertex at infinity (thesis 4.3).
 
-use crate::huge_pages;
+use super::triangulation::NONE;
 use crate::predicates::Point2;
 
 /// The vertex at infinity. Its coordinates are not numbers, so that no comparison of rounded values decides a test
 /// of a triangle that has it as a corner: such tests fall through every filter.
 pub(super) const INFINITE: u32 = 0;
 
-/// Words of a triangle: three vertices counterclockwise, a word to spare, the half-edges across from the vertices, a
-/// word to spare. Half a cache line.
-const WORDS: usize = 8;
-const SPARE: u32 = 3;
+/// Words of a triangle ([`super::Triangle`]): three vertices counterclockwise, a word to spare, the half-edges across
+/// from the vertices, a word to spare.
+pub(super) const WORDS: usize = 8;
 const ACROSS: u32 = 4;
 
 /// A half-edge is the word of the vertex opposite to it; its triangle is the word of its first vertex.
@@ -31,6 +30,12 @@ pub(super) fn triangle_of(h: HalfEdge) -> HalfEdge {
     h & !(WORDS as u32 - 1)
 }
 
+/// The number of the triangle of a half-edge in the array.
+#[inline(always)]
+pub(super) fn number_of(h: HalfEdge) -> u32 {
+    h / WORDS as u32
+}
+
 /// Which corner of its triangle a half-edge is opposite to.
 #[inline(always)]
 pub(super) fn corner(h: HalfEdge) -> usize {
@@ -49,57 +54,39 @@ pub(super) fn previous(h: HalfEdge) -> HalfEdge {
     if h & 3 == 0 { h + 2 } else { h - 1 }
 }
 
-/// Memory for triangles, to be used again.
-#[derive(Debug, Default)]
-pub(super) struct SphereMemory {
-    words: Vec<u32>,
-}
-
-impl SphereMemory {
-    /// Room for the triangles of `vertices` vertices, that at infinity among them, to be written before they are read.
-    ///
-    /// Fresh memory is zeroed by the system when it is touched, not here.
-    pub(super) fn room(&mut self, vertices: usize) -> &mut [u32] {
-        /// Triangles at cache lines.
-        #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-        #[repr(C, align(32))]
-        struct Triangle([u32; WORDS]);
-        let words = 2 * vertices * WORDS;
-        // Up to one triangle is lost to alignment.
-        if self.words.len() < words + WORDS {
-            self.words = Vec::new();
-            self.words = vec![0; words + WORDS];
-            huge_pages::ask(&mut self.words);
-        }
-        let (_, triangles, _) = bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words);
-        &mut bytemuck::cast_slice_mut(triangles)[..words]
-    }
-}
-
 /// Points and triangles. Vertices are numbered from 1 on; [`INFINITE`] is at index 0 of the points.
 pub(super) struct Sphere<'a> {
     points: &'a [Point2],
     words: &'a mut [u32],
+    blank: [HalfEdge; 4],
 }
 
 impl<'a> Sphere<'a> {
     /// The triangle of three points, which are counterclockwise, and the three infinite ones around it.
     pub(super) fn new(points: &'a [Point2], room: &'a mut [u32], [a, b, c]: [u32; 3]) -> Sphere<'a> {
-        let mut sphere = Sphere { points, words: room };
+        let ([i, j], [k, l]) = (triangles_of(b), triangles_of(c));
+        let mut sphere = Sphere { points, words: room, blank: [i, j, k, l] };
         let ([inside, at_a], [at_b, at_c]) = (triangles_of(INFINITE), triangles_of(a));
         sphere.write(inside, [a, b, c], [at_a, at_b, at_c]);
         sphere.write(at_a, [INFINITE, c, b], [inside, at_c + 2, at_b + 1]);
         sphere.write(at_b, [INFINITE, a, c], [inside + 1, at_a + 2, at_c + 1]);
         sphere.write(at_c, [INFINITE, b, a], [inside + 2, at_b + 2, at_a + 1]);
-        for t in triangles_of(b).into_iter().chain(triangles_of(c)) {
-            sphere.write(t, [INFINITE; 3], [t; 3]);
-        }
         sphere
     }
 
-    /// All triangles, and those that are left blank, with no finite vertex.
-    pub(super) fn triangles(&self) -> impl Iterator<Item = HalfEdge> + use<> {
-        (0..self.words.len() as u32).step_by(WORDS)
+    /// The first `count` triangles of the array.
+    pub(super) fn triangles(count: usize) -> impl DoubleEndedIterator<Item = HalfEdge> {
+        (0..count as u32).map(|number| number * WORDS as u32)
+    }
+
+    /// The triangles of the array that are never written.
+    pub(super) fn blank(&self) -> [HalfEdge; 4] {
+        self.blank
+    }
+
+    /// Number of triangles in the array, with those that are never written.
+    pub(super) fn len(&self) -> usize {
+        self.words.len() / WORDS
     }
 
     #[inline(always)]
@@ -137,16 +124,19 @@ impl<'a> Sphere<'a> {
         self.words[t as usize..][..WORDS].copy_from_slice(&[a, b, c, 0, i, j, k, 0]);
     }
 
-    /// The number given to triangle `t` by [`Sphere::set_number`].
+    /// Replaces the vertices of triangle `t`.
     #[inline(always)]
-    pub(super) fn number(&self, t: HalfEdge) -> u32 {
-        self.words[(t + SPARE) as usize]
+    pub(super) fn set_vertices(&mut self, t: HalfEdge, vertices: [u32; 3]) {
+        self.words[t as usize..][..3].copy_from_slice(&vertices);
     }
 
-    /// Numbers triangle `t`.
-    #[inline(always)]
-    pub(super) fn set_number(&mut self, t: HalfEdge, number: u32) {
-        self.words[(t + SPARE) as usize] = number;
+    /// Moves triangle `t` to the place of `to`, which is none any more.
+    pub(super) fn move_triangle(&mut self, t: HalfEdge, to: HalfEdge) {
+        let across = [t, t + 1, t + 2].map(|h| self.across(h));
+        self.write(to, self.vertices(t), across);
+        for (i, h) in (0..).zip(across).filter(|&(_, h)| h != NONE) {
+            self.set_across(h, to + i);
+        }
     }
 
     /// The half-edge opposite to the vertex at infinity, if `t` has it: the other side of an edge of the hull.

@@ -1,5 +1,9 @@
 //! What the kernel hands out: flat arrays.
 
+use super::sphere::{HalfEdge, WORDS, corner, number_of};
+use crate::huge_pages;
+use bytemuck::{Pod, Zeroable};
+
 /// No triangle: beyond an edge of the hull, or at a vertex without triangles.
 pub const NONE: u32 = u32::MAX;
 
@@ -12,13 +16,32 @@ pub struct Corner {
     pub corner: u32,
 }
 
+/// A triangle with its neighbours: half a cache line.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C, align(32))]
+pub struct Triangle {
+    /// Vertices, counterclockwise.
+    pub vertices: [u32; 3],
+    spare: u32,
+    /// The half-edges on the other sides of the edges opposite to the vertices.
+    across: [HalfEdge; 3],
+    spare_too: u32,
+}
+
+impl Triangle {
+    /// The triangle across the edge opposite to a corner, as its corner opposite to that edge; `None` beyond the hull.
+    #[inline]
+    #[must_use]
+    pub fn across(&self, side: usize) -> Option<Corner> {
+        let h = self.across[side];
+        (h != NONE).then(|| Corner { triangle: number_of(h), corner: corner(h) as u32 })
+    }
+}
+
 /// A Delaunay triangulation. Vertices are indices into the array of input points.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Default)]
 pub struct Triangulation {
-    /// Vertices of each triangle, counterclockwise. Triangles are about in the order of a Hilbert curve.
-    pub triangles: Vec<[u32; 3]>,
-    /// For each triangle, the triangle across the edge opposite to each corner, or [`NONE`] on the hull.
-    pub neighbours: Vec<[u32; 3]>,
+    pub(super) memory: TriangleMemory,
     /// For each input point a triangle at it, such that turning counterclockwise from it meets all others before
     /// the hull; [`NONE`] for duplicates, and for all if there are no triangles.
     pub triangle_of_vertex: Vec<u32>,
@@ -30,13 +53,11 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// Empties all arrays, keeping their memory.
-    pub(super) fn clear(&mut self) {
-        self.triangles.clear();
-        self.neighbours.clear();
-        self.triangle_of_vertex.clear();
-        self.hull.clear();
-        self.duplicates.clear();
+    /// All triangles, about in the order of a Hilbert curve.
+    #[inline]
+    #[must_use]
+    pub fn triangles(&self) -> &[Triangle] {
+        &bytemuck::pod_align_to::<u32, Triangle>(&self.memory.words).1[..self.memory.count]
     }
 
     /// Corners at vertex `v`, counterclockwise; on the hull from the first edge to the last.
@@ -44,16 +65,14 @@ impl Triangulation {
         let first = self.triangle_of_vertex[v as usize];
         let mut next = first;
         std::iter::from_fn(move || {
-            if next == NONE {
-                return None;
-            }
-            let triangle = next;
-            let corner = self.triangles[triangle as usize].iter().position(|&w| w == v)?;
-            next = self.neighbours[triangle as usize][(corner + 1) % 3];
+            let triangle = self.triangles().get(next as usize)?;
+            let corner = triangle.vertices.iter().position(|&w| w == v)?;
+            let at = Corner { triangle: next, corner: corner as u32 };
+            next = triangle.across((corner + 1) % 3).map_or(NONE, |beyond| beyond.triangle);
             if next == first {
                 next = NONE;
             }
-            Some(Corner { triangle, corner: corner as u32 })
+            Some(at)
         })
     }
 
@@ -63,8 +82,46 @@ impl Triangulation {
     pub fn left_of(&self, a: u32, b: u32) -> Option<Corner> {
         self.corners_of(a).find_map(|Corner { triangle, corner }| {
             let next = (corner + 1) % 3;
-            (self.triangles[triangle as usize][next as usize] == b)
+            (self.triangles()[triangle as usize].vertices[next as usize] == b)
                 .then_some(Corner { triangle, corner: (corner + 2) % 3 })
         })
+    }
+
+    /// Empties all arrays, keeping their memory.
+    pub(super) fn clear(&mut self) {
+        self.memory.count = 0;
+        self.triangle_of_vertex.clear();
+        self.hull.clear();
+        self.duplicates.clear();
+    }
+}
+
+/// Memory of triangles, where the kernel builds them.
+#[derive(Debug, Default)]
+pub(super) struct TriangleMemory {
+    words: Vec<u32>,
+    /// Number of triangles.
+    count: usize,
+}
+
+impl TriangleMemory {
+    /// Room for the triangles of `vertices` vertices, that at infinity among them, to be written before they are read.
+    ///
+    /// Fresh memory is zeroed by the system when it is touched, not here.
+    pub(super) fn room(&mut self, vertices: usize) -> &mut [u32] {
+        let words = 2 * vertices * WORDS;
+        // Up to one triangle is lost to alignment.
+        if self.words.len() < words + WORDS {
+            self.words = Vec::new();
+            self.words = vec![0; words + WORDS];
+            huge_pages::ask(&mut self.words);
+        }
+        let (_, triangles, _) = bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words);
+        &mut bytemuck::cast_slice_mut(triangles)[..words]
+    }
+
+    /// Makes the first `count` triangles of the room those of the triangulation.
+    pub(super) fn set_count(&mut self, count: usize) {
+        self.count = count;
     }
 }

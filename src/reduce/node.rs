@@ -5,7 +5,7 @@ use super::duplicates::Duplicates;
 use super::patches::PatchBuilder;
 use super::residual::Residual;
 use crate::bounds::Region;
-use crate::delaunay2::{Kernel, NONE, Triangulation};
+use crate::delaunay2::{Corner, Kernel, NONE, Triangulation};
 use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::circle::CircleBounds;
@@ -148,12 +148,12 @@ impl Solver {
     fn find_holes(&mut self, walls: &[[u32; 2]]) -> Result<()> {
         let triangulation = &self.triangulation;
         self.fates.clear();
-        self.fates.resize(triangulation.triangles.len(), Fate::Open);
+        self.fates.resize(triangulation.triangles().len(), Fate::Open);
         if walls.is_empty() {
             return Ok(());
         }
         self.wall_edges.clear();
-        self.wall_edges.resize(triangulation.triangles.len(), 0);
+        self.wall_edges.resize(triangulation.triangles().len(), 0);
         self.stack.clear();
         for &[a, b] in walls {
             let Some(edge) = triangulation.left_of(a, b) else {
@@ -170,13 +170,13 @@ impl Solver {
                 if self.wall_edges[triangle as usize] & 1 << corner != 0 {
                     continue;
                 }
-                let beyond = triangulation.neighbours[triangle as usize][corner];
-                let Some(fate) = self.fates.get_mut(beyond as usize) else {
+                let Some(beyond) = triangulation.triangles()[triangle as usize].across(corner) else {
                     return Err(Error::malformed("the walls of a residual do not close a hole"));
                 };
+                let fate = &mut self.fates[beyond.triangle as usize];
                 if *fate == Fate::Open {
                     *fate = Fate::Hole;
-                    self.stack.push(beyond);
+                    self.stack.push(beyond.triangle);
                 }
             }
         }
@@ -195,13 +195,13 @@ impl Solver {
         let disks = Disks::new(self.rules.circle_bounds(), *region);
         self.builder.start(points.len());
         self.active.clear();
-        for ((t, fate), triangle) in (0..).zip(&mut self.fates).zip(&self.triangulation.triangles) {
+        for ((t, fate), triangle) in (0..).zip(&mut self.fates).zip(self.triangulation.triangles()) {
             if *fate == Fate::Hole {
                 continue;
             }
-            let [a, b, c] = triangle.map(|v| points.xy[v as usize]);
+            let [a, b, c] = triangle.vertices.map(|v| points.xy[v as usize]);
             if everything || disks.inside(a, b, c) {
-                self.builder.triangle(triangle, points, self.rules.code, blocks)?;
+                self.builder.triangle(&triangle.vertices, points, self.rules.code, blocks)?;
             } else {
                 *fate = Fate::Active;
                 self.active.push(t);
@@ -212,12 +212,13 @@ impl Solver {
 
     /// Finds out what becomes of the points. If `everything` is final, the infinite triangles are, too.
     fn mark_points(&mut self, points: usize, everything: bool) {
-        let Triangulation { triangles, hull, duplicates, .. } = &self.triangulation;
+        let Triangulation { hull, duplicates, .. } = &self.triangulation;
+        let triangles = self.triangulation.triangles();
         self.marks.clear();
         self.marks.resize(points, Mark::None);
         let on_hull = if everything { Mark::Hull } else { Mark::Residual };
         hull.iter().for_each(|&v| self.marks[v as usize] = on_hull);
-        for v in self.active.iter().flat_map(|&t| triangles[t as usize]) {
+        for v in self.active.iter().flat_map(|&t| triangles[t as usize].vertices) {
             self.marks[v as usize] = Mark::Residual;
         }
         duplicates.iter().for_each(|&[point, _]| self.marks[point as usize] = Mark::Merged);
@@ -250,22 +251,21 @@ impl Solver {
 
     /// Finds the edges of triangles that are done beyond which there is one that is not, finite or infinite.
     fn find_walls(&mut self, everything: bool) {
-        let Triangulation { triangles, neighbours, hull, triangle_of_vertex, .. } = &self.triangulation;
+        let Triangulation { hull, triangle_of_vertex, .. } = &self.triangulation;
+        let triangles = self.triangulation.triangles();
         let is_done = |t: u32| self.fates[t as usize] != Fate::Active;
         self.walls.clear();
         for &t in &self.active {
-            for &beyond in neighbours[t as usize].iter().filter(|&&beyond| beyond != NONE && is_done(beyond))
-            {
-                let corner = neighbours[beyond as usize].iter().position(|&back| back == t);
-                self.walls.extend(corner.map(|corner| wall(beyond, corner)));
-            }
+            let beyond = (0..3).filter_map(|side| triangles[t as usize].across(side));
+            self.walls.extend(beyond.filter(|beyond| is_done(beyond.triangle)).map(wall));
         }
         for &v in hull.iter().filter(|_| !everything) {
             // The first triangle at a vertex of the hull is the one at the edge of the hull that leaves it.
             let t = triangle_of_vertex[v as usize];
             if t != NONE && is_done(t) {
-                let corner = triangles[t as usize].iter().position(|&corner| corner == v);
-                self.walls.extend(corner.map(|corner| wall(t, (corner + 2) % 3)));
+                let corner = (0..).zip(triangles[t as usize].vertices).find(|&(_, vertex)| vertex == v);
+                self.walls
+                    .extend(corner.map(|(corner, _)| wall(Corner { triangle: t, corner: (corner + 2) % 3 })));
             }
         }
         self.walls.sort_unstable();
@@ -284,16 +284,16 @@ impl Solver {
             references.push(reference);
         }
         residual.walls.extend(self.walls.iter().map(|&wall| {
-            let (triangle, corner) = (self.triangulation.triangles[(wall / 3) as usize], wall % 3);
-            [1, 2].map(|k| self.index_above[triangle[(corner as usize + k) % 3] as usize])
+            let (triangle, corner) = (&self.triangulation.triangles()[(wall / 3) as usize], wall % 3);
+            [1, 2].map(|k| self.index_above[triangle.vertices[(corner as usize + k) % 3] as usize])
         }));
         residual.active = self.active.len();
         (residual, references)
     }
 }
 
-fn wall(triangle: u32, corner: usize) -> u64 {
-    3 * u64::from(triangle) + corner as u64
+fn wall(edge: Corner) -> u64 {
+    3 * u64::from(edge.triangle) + u64::from(edge.corner)
 }
 
 fn overlap(points: &Residual, point: u32, vertex: u32) -> Error {
