@@ -7,7 +7,7 @@ use crate::predicates::{Extent, Point2};
 pub(super) const BITS_MAX: u32 = 16;
 
 /// Cells per point that the box of the points is divided into, about.
-const CELLS_PER_POINT: f64 = 4.0;
+const CELLS_PER_POINT: f64 = 8.0;
 
 /// `2^bits` by `2^bits` cells around an extent, of the same size on both axes.
 #[derive(Debug, Clone, Copy)]
