@@ -13,7 +13,6 @@ pub mod convert;
 pub mod delaunay2;
 pub mod error;
 pub mod finalize;
-mod huge_pages;
 pub mod limits;
 pub mod order;
 pub mod output;

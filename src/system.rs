@@ -1,5 +1,5 @@
-//! What the system can be asked and told about pipes, files, folders and memory. Nothing here is needed for a right result, so
-//! that what a system refuses is left as it is.
+//! What the system can be asked and told about pipes, files and folders. Nothing here is needed for a right
+//! result, so that what a system refuses is left as it is.
 
 use std::ffi::CString;
 use std::os::fd::{AsFd, AsRawFd};
@@ -75,19 +75,3 @@ pub(crate) fn is_in_memory(folder: &Path) -> bool {
 pub(crate) fn is_in_memory(_folder: &Path) -> bool {
     false
 }
-
-/// Asks for large pages for `memory`, before it is touched.
-#[cfg(target_os = "linux")]
-pub(crate) fn ask_for_large_pages<T>(memory: &mut [T]) {
-    const PAGE: usize = 4096;
-    let bytes = std::mem::size_of_val(memory);
-    let start = memory.as_mut_ptr().cast::<libc::c_void>();
-    let skipped = start.align_offset(PAGE).min(bytes);
-    // SAFETY: the range is mutably borrowed, and starts at a page or is empty. The advice changes neither its content
-    // nor its validity.
-    unsafe { libc::madvise(start.wrapping_byte_add(skipped), bytes - skipped, libc::MADV_HUGEPAGE) };
-}
-
-/// Asks for large pages for `memory`, before it is touched.
-#[cfg(not(target_os = "linux"))]
-pub(crate) fn ask_for_large_pages<T>(_memory: &mut [T]) {}

@@ -167,7 +167,7 @@ fn decimal_grids_are_nearly_cocircular() {
 }
 
 #[test]
-fn outliers_that_leave_the_rest_one_morton_cell() {
+fn outliers_that_leave_the_rest_one_cell_of_the_curve() {
     let mut kernel = Kernel::new();
     for (seed, outlier) in [(0, 1e20), (1, 1e200), (2, f64::MAX), (3, -f64::MAX)] {
         let mut random = Random::new(9000 + seed);
@@ -176,6 +176,26 @@ fn outliers_that_leave_the_rest_one_morton_cell() {
         points.push([2.0, -outlier]);
         assert_triangles(&mut kernel, &points, &exhaustive::triangles(&points));
     }
+}
+
+#[test]
+fn many_points_in_a_tiny_extent_and_too_many() {
+    let integers = sets::uniform(&mut Random::new(77), 20_000, 1 << 20);
+    let tiny = 2f64.powi(-520).powi(2);
+    let mut points: Vec<[f64; 2]> = integers.iter().map(|p| p.map(|c| c as f64 * tiny)).collect();
+    let mut kernel = Kernel::new();
+    let mut mesh = Triangulation::default();
+    kernel.triangulate(&points, &mut mesh).expect("finite points");
+    let scaled = checked(&points, &mesh);
+    assert_eq!(scaled, as_set(triangles(&triangulate(&sets::as_floats(&integers)).expect("finite points"))));
+    points.push([1.0, 1.0]);
+    kernel.triangulate(&points, &mut mesh).expect("finite points");
+    checked(&points, &mesh);
+
+    // Never touched: the number alone is refused.
+    let too_many = vec![[0.0; 2]; spmesh::delaunay2::MAX_POINTS + 1];
+    let error = kernel.triangulate(&too_many, &mut Triangulation::default()).expect_err("too many");
+    assert!(error.to_string().contains("at most"), "{error}");
 }
 
 #[test]

@@ -1,9 +1,8 @@
-//! From the triangulated sphere to a [`Triangulation`], in place: infinite triangles go, and vertices become indices of
-//! input points.
+//! From the triangulated sphere to a [`super::Triangulation`], in place: infinite triangles go, and vertices become
+//! indices of input points.
 
 use super::sphere::{HalfEdge, Sphere, number_of, previous, triangle_of};
 use super::triangulation::NONE;
-use crate::huge_pages;
 
 /// Reads the finished sphere.
 pub(super) struct Extraction<'a> {
@@ -35,7 +34,8 @@ impl Extraction<'_> {
             self.triangle_at[origin as usize] = number_of(inside);
             self.hull.push(self.indices[origin as usize]);
         }
-        huge_pages::reserve(self.triangle_of_vertex, points);
+        self.triangle_of_vertex.clear();
+        self.triangle_of_vertex.reserve_exact(points);
         self.triangle_of_vertex.resize(points, NONE);
         for (&index, &triangle) in self.indices.iter().zip(self.triangle_at.iter()).skip(1) {
             self.triangle_of_vertex[index as usize] = triangle;
@@ -81,7 +81,8 @@ impl Extraction<'_> {
 
     /// Makes vertices indices of input points, and notes a triangle for each.
     fn rename_vertices(&mut self, count: usize) {
-        huge_pages::reserve(self.triangle_at, self.indices.len());
+        self.triangle_at.clear();
+        self.triangle_at.reserve_exact(self.indices.len());
         self.triangle_at.resize(self.indices.len(), NONE);
         for t in Sphere::triangles(count) {
             let vertices = self.sphere.vertices(t);

@@ -5,8 +5,8 @@ use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly
 use super::sphere::{HalfEdge, Sphere, next, previous, triangle_of, triangles_of};
 use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
 
-/// With lifts k, l, m of three points around the new one, the rounded in-circle determinant differs from the exact one
-/// by at most this times k l + l m + m k.
+/// With lifts k, l, m of three points around the new one, the rounded in-circle determinant has the sign of the exact
+/// one if its magnitude is more than this times k l + l m + m k.
 ///
 /// The bound of the filter ([`crate::predicates`]) is [`INCIRCLE_BOUND`] times the sum of magnitudes, of which each
 /// term is a lift times the magnitudes of the two products of a cross product, which are together at most the product
@@ -78,83 +78,78 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     /// Inserts vertex `q`, which is no vertex yet; says where to start for a point at `then`.
     ///
     /// The cavity is passed counterclockwise, depth first: its triangles form a tree, since no vertex lies inside, so
-    /// that none is met twice and no marks are needed. Each edge of its border makes a triangle with `q`, linked
-    /// to the one before.
+    /// that none is met twice and no marks are needed. Each edge of its border makes a triangle with `q`.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: Start, then: Point2) -> Start {
         let at = self.sphere.point(q);
-        let then = difference(then, at);
-        let (t, corners, crosses) = self.find_conflict(start, at);
-        let [first, second] = triangles_of(q);
-        let Cavity { pending, slots } = &mut *self.cavity;
-        slots.clear();
-        slots.extend([first, second, t]);
-        let side = |corner: u32, end: Sight, cross: f64| Pending {
-            beyond: self.sphere.across(t + corner),
-            end,
-            cross,
-        };
-        pending.clear();
-        pending.extend([side(1, corners[0], crosses[1]), side(0, corners[2], crosses[0])]);
-        let mut edge = side(2, corners[1], crosses[2]);
-        let mut start_of_edge = corners[0];
-        let mut is_left_of_then = cross(start_of_edge.at, then) >= 0.0;
-        let mut written = 0;
-        let mut last = first;
-        let mut hint = Start { triangle: first, is_seen: false };
+        let (mut from, mut edge) = self.open_cavity(q, start, at);
+        let mut star = Star::new(q, from, difference(then, at));
         loop {
             let apex = Sight::new(&self.sphere, self.sphere.opposite(edge.beyond), at);
-            let left = cross(start_of_edge.at, apex.at);
+            let left = cross(from.at, apex.at);
             let right = cross(apex.at, edge.end.at);
-            let value = edge.end.lift * left + start_of_edge.lift * right - apex.lift * edge.cross;
-            let error = ERROR
-                * (apex.lift * (start_of_edge.lift + edge.end.lift) + start_of_edge.lift * edge.end.lift);
-            let is_inside = if P::NUMBERS != Numbers::Any && value.abs() > error {
-                value > 0.0
-            } else {
-                self.unfiltered += 1;
-                if P::NUMBERS == Numbers::Integers && error < ROUNDED {
-                    settle(
-                        value,
-                        apex.at,
-                        (start_of_edge.at, left),
-                        (edge.end.at, right),
-                        self.predicates.counts_mut(),
-                    )
-                } else {
-                    is_in_conflict(&self.sphere, triangle_of(edge.beyond), at, self.predicates)
-                }
-            };
-            if is_inside {
+            if self.is_in_circle(at, (from, left), apex, (&edge, right)) {
+                let Cavity { pending, slots } = &mut *self.cavity;
                 slots.push(triangle_of(edge.beyond));
-                let beyond = self.sphere.across(previous(edge.beyond));
-                pending.push(Pending { beyond, cross: right, ..edge });
-                let beyond = self.sphere.across(next(edge.beyond));
-                edge = Pending { beyond, end: apex, cross: left };
+                pending.push(Pending {
+                    beyond: self.sphere.across(previous(edge.beyond)),
+                    cross: right,
+                    ..edge
+                });
+                edge = Pending { beyond: self.sphere.across(next(edge.beyond)), end: apex, cross: left };
                 continue;
             }
-            let slot = slots[written];
-            let vertices = [q, start_of_edge.vertex, edge.end.vertex];
-            self.sphere.write(slot, vertices, [edge.beyond, slot, last + 1]);
-            self.sphere.set_across(edge.beyond, slot);
-            self.sphere.set_across(last + 1, slot + 2);
-            written += 1;
-            last = slot;
-            let end_is_left = cross(edge.end.at, then) >= 0.0;
-            if is_left_of_then && !end_is_left {
-                hint = Start { triangle: slot, is_seen: true };
-            }
-            is_left_of_then = end_is_left;
-            start_of_edge = edge.end;
-            match pending.pop() {
+            star.add(&mut self.sphere, self.cavity.slots[star.len], from, &edge);
+            from = edge.end;
+            match self.cavity.pending.pop() {
                 Some(before) => edge = before,
                 None => break,
             }
         }
-        self.sphere.set_across(last + 1, first + 2);
-        self.sphere.set_across(first + 2, last + 1);
-        self.tests += 2 * slots.len() as u64 - 3;
-        hint
+        // Each edge of the border failed a test, and each triangle of the cavity but the first passed one.
+        self.tests += 2 * self.cavity.slots.len() as u64 - 3;
+        star.close(&mut self.sphere)
+    }
+
+    /// Makes a triangle in conflict the whole cavity: the start of one of its edges, and that edge. The others wait.
+    #[inline(always)]
+    fn open_cavity(&mut self, q: u32, start: Start, at: Point2) -> (Sight, Pending) {
+        let (t, [a, b, c], [bc, ca, ab]) = self.find_conflict(start, at);
+        let [first, second] = triangles_of(q);
+        let beyond = [t, t + 1, t + 2].map(|h| self.sphere.across(h));
+        let Cavity { pending, slots } = &mut *self.cavity;
+        slots.clear();
+        slots.extend([first, second, t]);
+        pending.clear();
+        pending.extend([
+            Pending { beyond: beyond[1], end: a, cross: ca },
+            Pending { beyond: beyond[0], end: c, cross: bc },
+        ]);
+        (a, Pending { beyond: beyond[2], end: b, cross: ab })
+    }
+
+    /// Whether the new point, at `at`, is in the circle of the triangle beyond an edge, which has the vertex `apex`
+    /// opposite to it; with the cross products of the start of the edge and the apex, and of the apex and its end.
+    #[inline(always)]
+    fn is_in_circle(
+        &mut self,
+        at: Point2,
+        (from, left): (Sight, f64),
+        apex: Sight,
+        (edge, right): (&Pending, f64),
+    ) -> bool {
+        let end = edge.end;
+        let value = end.lift * left + from.lift * right - apex.lift * edge.cross;
+        let error = ERROR * (apex.lift * (from.lift + end.lift) + from.lift * end.lift);
+        if P::NUMBERS != Numbers::Any && value.abs() > error {
+            return value > 0.0;
+        }
+        self.unfiltered += 1;
+        if P::NUMBERS == Numbers::Integers && error < ROUNDED {
+            settle(value, apex.at, (from.at, left), (end.at, right), self.predicates.counts_mut())
+        } else {
+            is_in_conflict(&self.sphere, triangle_of(edge.beyond), at, self.predicates)
+        }
     }
 
     /// A triangle in conflict with a point, what the point sees of its corners, and the cross product of the ends
@@ -180,8 +175,59 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     }
 }
 
+/// The triangles around the new point, as they are written counterclockwise.
+struct Star {
+    /// The new point.
+    q: u32,
+    /// The next point, seen from the new one.
+    then: Point2,
+    is_left_of_then: bool,
+    first: HalfEdge,
+    last: HalfEdge,
+    len: usize,
+    /// Where the walk to the next point starts.
+    start: Start,
+}
+
+impl Star {
+    /// No triangle yet; the first edge will begin at `from`.
+    #[inline(always)]
+    fn new(q: u32, from: Sight, then: Point2) -> Star {
+        let [first, _] = triangles_of(q);
+        let start = Start { triangle: first, is_seen: false };
+        Star { q, then, is_left_of_then: cross(from.at, then) >= 0.0, first, last: first, len: 0, start }
+    }
+
+    /// Writes the triangle of an edge to `slot`, and links it to the one before.
+    #[inline(always)]
+    fn add(&mut self, sphere: &mut Sphere, slot: HalfEdge, from: Sight, edge: &Pending) {
+        sphere.write(slot, [self.q, from.vertex, edge.end.vertex], [edge.beyond, slot, self.last + 1]);
+        sphere.set_across(edge.beyond, slot);
+        sphere.set_across(self.last + 1, slot + 2);
+        let end_is_left = cross(edge.end.at, self.then) >= 0.0;
+        if self.is_left_of_then && !end_is_left {
+            self.start = Start { triangle: slot, is_seen: true };
+        }
+        self.is_left_of_then = end_is_left;
+        self.last = slot;
+        self.len += 1;
+    }
+
+    /// Links the last triangle to the first.
+    #[inline(always)]
+    fn close(self, sphere: &mut Sphere) -> Start {
+        sphere.set_across(self.last + 1, self.first + 2);
+        sphere.set_across(self.first + 2, self.last + 1);
+        self.start
+    }
+}
+
 /// Decides by a value that was not rounded, ties by the canonical perturbation: whether the new point, the origin, is
 /// in the circle of w, b, a. The point of greatest rank decides; orientations about the origin are at hand.
+///
+/// If w is of greatest rank, the origin is outside, because it sees the edge from a to b counterclockwise: a point
+/// on that edge or beyond it, but in the circle of the triangle on this side, is strictly inside of the circle of the
+/// one on the other, which is no tie; and edges further out face the same way.
 #[inline(always)]
 fn settle(
     value: f64,

@@ -1,7 +1,5 @@
 //! In which order points are inserted.
 
-use crate::huge_pages;
-
 /// Every `1 << shift`-th point along the curve is inserted in the round of that shift, unless it is in already.
 ///
 /// Each round spreads over the whole set and makes an eighth of the next, so that a point finds small triangles around
@@ -10,7 +8,8 @@ const SHIFTS: [u32; 4] = [9, 6, 3, 0];
 
 /// Fills `sequence` with the numbers from 1 to `count`, which are in order along the curve, in the order of insertion.
 pub(super) fn fill(sequence: &mut Vec<u32>, count: usize) {
-    huge_pages::reserve(sequence, count);
+    sequence.clear();
+    sequence.reserve_exact(count);
     let count = count as u32;
     let mut inserted = u32::MAX;
     for shift in SHIFTS {

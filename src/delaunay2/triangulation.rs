@@ -1,7 +1,6 @@
 //! What the kernel hands out: flat arrays.
 
 use super::sphere::{HalfEdge, WORDS, corner, number_of};
-use crate::huge_pages;
 use bytemuck::{Pod, Zeroable};
 
 /// No triangle: beyond an edge of the hull, or at a vertex without triangles.
@@ -114,7 +113,6 @@ impl TriangleMemory {
         if self.words.len() < words + WORDS {
             self.words = Vec::new();
             self.words = vec![0; words + WORDS];
-            huge_pages::ask(&mut self.words);
         }
         let (_, triangles, _) = bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words);
         &mut bytemuck::cast_slice_mut(triangles)[..words]

@@ -21,7 +21,7 @@ const ROOM_CHECK_LEN: u64 = 16 << 20;
 /// When decoded points are kept for later passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spooling {
-    /// Where decoding again would cost more, and where it takes no more than half of the room on a disk. If the
+    /// Where decoding again would cost more, and where it takes no more than a quarter of the room on a disk. If the
     /// file cannot be written, the input is decoded again.
     #[default]
     Auto,
@@ -167,9 +167,13 @@ impl SpoolPlan {
     }
 }
 
-/// Whether `bytes` more leave as many free. What the system does not tell is found out by writing.
+/// So many times the size of the spool has to be free: for the spool itself, for points that wait for their cell, and
+/// for what comes out at the end, which may all be on one disk.
+const ROOM: u64 = 4;
+
+/// Whether there is room for `bytes`. What the system does not tell is found out by writing.
 fn has_room(folder: &Path, bytes: u64) -> bool {
-    system::free_bytes(folder).is_none_or(|free| bytes <= free / 2)
+    system::free_bytes(folder).is_none_or(|free| bytes <= free / ROOM)
 }
 
 /// A reader whose points are kept on the way.
@@ -209,8 +213,8 @@ impl<'a> Tee<'a> {
         let Ok(spool) = &mut self.spool else { return Ok(()) };
         if !self.plan.is_strict && spool.bytes >= self.next_room_check {
             self.next_room_check += ROOM_CHECK_LEN;
-            if system::free_bytes(&self.plan.folder).is_some_and(|free| free < spool.bytes) {
-                return Err(Error::new(ErrorKind::Io, "more than half of the room would be used up")
+            if system::free_bytes(&self.plan.folder).is_some_and(|free| free < (ROOM - 1) * spool.bytes) {
+                return Err(Error::new(ErrorKind::Io, "more than a quarter of the room would be used up")
                     .of_input(&spool.place));
             }
         }

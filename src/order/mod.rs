@@ -4,8 +4,6 @@ mod cells;
 mod hilbert;
 mod radix;
 
-pub use hilbert::hilbert_key;
-
 use crate::predicates::{Extent, Point2, lexicographic};
 use cells::Cells;
 use radix::{Keyed, RadixSort};
@@ -67,4 +65,63 @@ fn refine(points: &[Point2], items: &mut [Keyed]) {
     items.iter_mut().for_each(|item| *item = Keyed::new(cells.key(point(item)), item.index()));
     items.sort_unstable();
     for_groups(items, |group| refine(points, group));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pseudo-random numbers in [0, 1).
+    fn random(count: usize) -> impl Iterator<Item = f64> {
+        let mut state = 1u64;
+        (0..count).map(move |_| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        })
+    }
+
+    fn check(points: &[Point2]) {
+        let mut order = HilbertOrder::default();
+        let indices: Vec<u32> = order.sort(points, &Extent::of(points)).collect();
+        let mut sorted = indices.clone();
+        sorted.sort_unstable();
+        assert!(sorted.into_iter().eq(0..points.len() as u32), "a permutation");
+        let mut last_of = std::collections::HashMap::new();
+        for (place, &index) in indices.iter().enumerate() {
+            let point = points[index as usize].map(|c| (c + 0.0).to_bits());
+            if let Some((last, before)) = last_of.insert(point, (place, index)) {
+                assert!(last + 1 == place && before < index, "equal points are neighbours, in order");
+            }
+        }
+    }
+
+    #[test]
+    fn clusters_within_clusters() {
+        let numbers: Vec<f64> = random(60_000).collect();
+        let points: Vec<Point2> = numbers
+            .chunks_exact(2)
+            .enumerate()
+            .map(|(i, p)| {
+                let size = 1e-5f64.powi(i as i32 % 40);
+                // Every seventh has an equal.
+                let p = if i % 7 == 0 { [0.5, 0.25] } else { [p[0], p[1]] };
+                p.map(|c| c * size)
+            })
+            .collect();
+        check(&points);
+    }
+
+    #[test]
+    fn many_points_in_extents_of_every_size() {
+        for size in [5e-324, 1e-320, 1e-307, 1e-300, 1e-150, 1.0, 1e150, f64::MAX] {
+            let numbers: Vec<f64> = random(100_000).collect();
+            let mut points: Vec<Point2> =
+                numbers.chunks_exact(2).map(|p| [(2.0 * p[0] - 1.0) * size, p[1] * size]).collect();
+            check(&points);
+            points.push([1.0, -1.0]);
+            check(&points);
+            points.iter_mut().for_each(|p| p[1] = 1e300);
+            check(&points);
+        }
+    }
 }

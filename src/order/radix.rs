@@ -1,7 +1,5 @@
 //! Radix sort of keys with an index, packed in one word.
 
-use crate::huge_pages;
-
 const DIGIT_BITS_MAX: u32 = 11;
 const DIGITS_MAX: u32 = u32::BITS.div_ceil(DIGIT_BITS_MAX);
 
@@ -36,7 +34,8 @@ pub(super) struct RadixSort {
 impl RadixSort {
     /// The items to be sorted, to be filled before [`RadixSort::sort`]: empty, with room for `count`.
     pub(super) fn items(&mut self, count: usize) -> &mut Vec<Keyed> {
-        huge_pages::reserve(&mut self.items, count);
+        self.items.clear();
+        self.items.reserve_exact(count);
         &mut self.items
     }
 
@@ -52,7 +51,8 @@ impl RadixSort {
             }
         }
         if self.scratch.len() < self.items.len() {
-            huge_pages::reserve(&mut self.scratch, self.items.len());
+            self.scratch.clear();
+            self.scratch.reserve_exact(self.items.len());
         }
         self.scratch.resize(self.items.len(), Keyed::default());
         for (number, places) in (0..digits).zip(&mut places) {

@@ -117,8 +117,13 @@ impl Codec {
                 return Err(Error::malformed(format!("chunk of {count} points, expected {expected}")));
             }
         }
-        let mut decompressor = self.decompressor(Cursor::new(compressed))?;
-        decompression(guarded(|| decompressor.decompress_many(records)))
+        let work =
+            || self.decompressor(Cursor::new(compressed)).map(|mut codec| codec.decompress_many(records));
+        match guarded(work) {
+            Ok(Err(refused)) => Err(refused),
+            Ok(Ok(outcome)) => decompression(Ok(outcome)),
+            Err(panic) => decompression(Err(panic)),
+        }
     }
 }
 
