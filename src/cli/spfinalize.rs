@@ -81,7 +81,7 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
     spool: Spool,
 
-    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory
+    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads ahead
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 

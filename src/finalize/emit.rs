@@ -12,6 +12,10 @@ use crate::bounds::{Bounds, Point};
 use crate::error::Result;
 use crate::stream::{Header, StreamWriter, encode_points};
 
+/// Points after which leaves that are complete are written. Counted in the input, not in what happens to be read at once,
+/// so that the output depends on the input alone.
+const WINDOW: u64 = 1 << 16;
+
 /// A batch of points with the leaf and the record of each.
 #[derive(Default)]
 struct Located {
@@ -40,6 +44,9 @@ impl Located {
 
 impl<P: Passes + ?Sized> Work<'_, P> {
     /// Holds the points of a leaf back until its counter is zero, then writes them and its tag.
+    ///
+    /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree: from points
+    /// in random order nearly all are complete at the very end, and neighbours had better follow each other.
     pub(super) fn write_chunked<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -52,19 +59,32 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         let bytes = options.budget.bytes() - plan.bytes();
         let mut buffers = CellBuffers::new(plan.leaves(), record_len, bytes, options.temp_dir.clone())?;
         let (locator, mut countdown) = plan.split();
+        let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
+            complete.sort_unstable();
+            complete.drain(..).try_for_each(|leaf| {
+                buffers.drain(leaf, |bytes| writer.encoded_points(bytes))?;
+                writer.cells(&[locator.leaves()[leaf]])
+            })
+        };
+        let (mut complete, mut points, mut window_end) = (Vec::new(), 0, WINDOW);
         let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
         self.read_all(Pass::Write, prepare, |_, located| {
             for (leaf, records) in located.runs(record_len) {
                 let is_complete = countdown.take(leaf, records.len() / record_len)?;
                 buffers.push(leaf, records)?;
+                points += (records.len() / record_len) as u64;
+                if points > window_end {
+                    write_leaves(&mut complete, &mut buffers)?;
+                    window_end = points.next_multiple_of(WINDOW);
+                }
                 if is_complete {
-                    buffers.drain(leaf, |bytes| writer.encoded_points(bytes))?;
-                    writer.cells(&[locator.leaves()[leaf]])?;
+                    complete.push(leaf);
                 }
             }
             Ok(())
         })?;
         countdown.expect_end()?;
+        write_leaves(&mut complete, &mut buffers)?;
         buffers.report(&mut self.stats);
         writer.end(0, 0).map(drop)
     }

@@ -167,7 +167,7 @@ impl Observer for () {}
 /// Without points the stream has neither bounds nor tree. Where the extent of the points is so large that no
 /// cube around them is finite, it has no tree, no tags, and keeps the input order.
 ///
-/// Memory: the budget, on any input, and one batch of the reader.
+/// Memory: the budget, on any input, and a few batches of the reader.
 ///
 /// # Errors
 /// What the input fails with; [`crate::error::ErrorKind::Malformed`] if it changes between passes;
