@@ -11,6 +11,7 @@ pub mod cells;
 pub mod cli;
 pub mod convert;
 pub mod delaunay2;
+pub mod delaunay3;
 pub mod error;
 pub mod finalize;
 pub mod limits;

@@ -96,6 +96,7 @@ impl Audit {
             Kind::PartialTriangleMesh => {
                 (State::Partial(PartialAudit::new(header, standard)), PARTIAL_CHECKS.to_vec())
             }
+            Kind::TetrahedralMesh => unimplemented!("audit of tetrahedral meshes"),
         };
         let is_mesh = header.kind.vertices_per_simplex() > 0;
         checks.extend((is_mesh && standard == Standard::Canonical).then_some(Check::Canonical));

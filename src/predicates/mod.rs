@@ -22,6 +22,9 @@ pub use perturbation::lexicographic;
 /// A point of the plane: x, y; both finite. Integer coordinates are stored as integer-valued `f64`.
 pub type Point2 = [f64; 2];
 
+/// A point of space: x, y, z; all finite. Integer coordinates are stored as integer-valued `f64`.
+pub type Point3 = [f64; 3];
+
 /// Sign of an exactly evaluated expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Sign {

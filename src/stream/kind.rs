@@ -11,6 +11,8 @@ pub enum Kind {
     TriangleMesh,
     /// The final triangles of a region and its residual, to be merged with those of other regions.
     PartialTriangleMesh,
+    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron.
+    TetrahedralMesh,
 }
 
 struct Row {
@@ -23,7 +25,7 @@ struct Row {
     is_ordered: bool,
 }
 
-const ROWS: [Row; 3] = [
+const ROWS: [Row; 4] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -46,6 +48,14 @@ const ROWS: [Row; 3] = [
         name: "partial triangle mesh",
         vertices_per_simplex: 3,
         blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
+        is_ordered: true,
+    },
+    Row {
+        kind: Kind::TetrahedralMesh,
+        code: 4,
+        name: "tetrahedral mesh",
+        vertices_per_simplex: 4,
+        blocks: &[Tag::Patch],
         is_ordered: true,
     },
 ];
