@@ -12,7 +12,7 @@ mod counts;
 mod extent;
 mod integer;
 mod perturbation;
-mod spatial;
+pub(crate) mod spatial;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{ExpansionPredicates, TotalPredicates};

@@ -3,7 +3,7 @@
 //! A tetrahedron abcd is positively oriented if det(b - a, c - a, d - a) > 0: seen from d, the triangle abc is
 //! clockwise; the thumb of the right hand points to d if the fingers go from a to b to c.
 
-mod filter;
+pub(crate) mod filter;
 mod float;
 mod integer;
 
