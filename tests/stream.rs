@@ -37,6 +37,7 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
             Event::Points(points) => writer.points(points)?,
             Event::Cells(cells) => writer.cells(cells)?,
             Event::Patch(patch) => writer.patch(patch)?,
+            Event::Labels(labels) => writer.labels(labels)?,
             Event::ResidualPoints(points) => writer.residual_points(points)?,
             Event::Walls(walls) => writer.walls(walls)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),

@@ -60,6 +60,9 @@ impl<W: Write> EventSink for TwinSink<W> {
                 cells.iter().try_for_each(|cell| self.line(format_args!("x cell {}", cell.0)))
             }
             Event::Patch(patch) => self.patch(patch),
+            Event::Labels(labels) => {
+                labels.iter().try_for_each(|label| self.line(format_args!("label {label}")))
+            }
             Event::ResidualPoints(points) => points.iter().try_for_each(|&(id, point)| match id {
                 Some(id) => self.point(&format!("r {}", id + 1), point),
                 None => self.point("r -", point),

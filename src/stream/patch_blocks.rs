@@ -8,16 +8,21 @@ use super::payload::PATCH_FIXED_LEN;
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 
-/// How points are encoded: what [`PatchBlocks`] needs of a header.
+/// How points and simplices are encoded: what [`PatchBlocks`] needs of the header of a mesh.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PointCode {
     coordinates: Coordinates,
     per_point: usize,
+    per_simplex: usize,
 }
 
 impl PointCode {
     pub(crate) fn of(header: &Header) -> Self {
-        PointCode { coordinates: header.coordinates, per_point: header.coordinates_per_point() }
+        PointCode {
+            coordinates: header.coordinates,
+            per_point: header.coordinates_per_point(),
+            per_simplex: header.kind.vertices_per_simplex(),
+        }
     }
 }
 
@@ -62,7 +67,7 @@ impl PatchBlocks {
         self.patches.len()
     }
 
-    /// Adds a triangle patch: new vertices, references to imported ones, simplices in local indices.
+    /// Adds a patch: new vertices, references to imported ones, simplices in local indices.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding.
@@ -74,7 +79,7 @@ impl PatchBlocks {
         simplices: impl ExactSizeIterator<Item = u32>,
     ) -> Result<()> {
         let (start, imports) = (self.used, imported.len());
-        let counts = [new.len(), imports, simplices.len() / 3];
+        let counts = [new.len(), imports, simplices.len() / code.per_simplex];
         let points_len = new.len() * code.per_point * code.coordinates.width();
         let len = FRAME_LEN + PATCH_FIXED_LEN + points_len + 8 * imports + 4 * simplices.len();
         let bytes = self.room(len);
