@@ -134,6 +134,20 @@ fn twins_of_the_vectors_are_those_of_the_specification() {
 }
 
 #[test]
+fn the_examples_of_the_specification_are_twins() {
+    let text = std::fs::read_to_string(crate::vectors::repository("formats/text.md")).unwrap();
+    let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("    ")).collect();
+    let starts: Vec<usize> = (0..lines.len()).filter(|&i| lines[i] == "#spmesh version 1").collect();
+    assert_eq!(starts.len(), 2);
+    for (i, &start) in starts.iter().enumerate() {
+        let end = starts.get(i + 1).copied().unwrap_or(lines.len());
+        let example = lines[start..end].join("\n") + "\n";
+        let stream = converted(example.as_bytes(), Format::Text, Format::Spm).unwrap();
+        assert_eq!(text_of(&stream), example);
+    }
+}
+
+#[test]
 fn the_python_reader_prints_the_same_twins() {
     for stream in samples::all() {
         let Some(python) = crate::vectors::run_python("scripts/spmesh_reader.py", &["-"], &stream) else {
