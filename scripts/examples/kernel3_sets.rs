@@ -40,7 +40,7 @@ fn write_set(mesh: &Tetrahedralization, output: &mut impl Write) -> io::Result<(
     output.write_all(&(hull as u32).to_le_bytes())?;
     for tetrahedron in tetrahedra {
         for vertex in tetrahedron.vertices {
-            output.write_all(&mesh.indices[vertex as usize].to_le_bytes())?;
+            output.write_all(&mesh.vertices()[vertex as usize].index.to_le_bytes())?;
         }
     }
     output.flush()
