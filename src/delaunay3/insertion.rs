@@ -175,11 +175,12 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
         let nm = next(cross(p, next(p)));
         let dp = cross(d, p);
         let (n_lift, m_lift) = (lift.next(), lift.previous());
-        let value = (d_lift * dot(e, nm) - n_lift * dot(e, previous(dp)))
-            + (m_lift * dot(e, next(dp)) - e_lift * dot(d, nm));
+        let plus = m_lift.times_plus(dot(e, next(dp)), d_lift * dot(e, nm));
+        let value = plus - n_lift.times_plus(dot(e, previous(dp)), e_lift * dot(d, nm));
         let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
         let square = greatest * greatest;
-        let bound = L::splat(INSPHERE_SQUARED_BOUND) * (square * square * greatest) + L::splat(TINY);
+        let fifth = square * square * greatest;
+        let bound = fifth.times_plus(L::splat(INSPHERE_SQUARED_BOUND), L::splat(TINY));
         value.where_greater(value * value, bound)
     }
 
@@ -191,7 +192,7 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
             apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
         let [x, y, z, _] = L::columns([L::new(u), L::new(v), L::new(w)]);
         let (x, y, z) = (x - L::splat(at[0]), y - L::splat(at[1]), z - L::splat(at[2]));
-        let mut lift = x * x + y * y + z * z;
+        let mut lift = dot([x, y, z], [x, y, z]);
         if apexes.contains(&infinite) {
             let mut lifts = lift.array();
             for (lift, apex) in lifts.iter_mut().zip(apexes) {
@@ -246,12 +247,16 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
 
 #[inline(always)]
 fn cross<L: Lanes>(p: [L; 3], q: [L; 3]) -> [L; 3] {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    [
+        p[1].times_minus(q[2], p[2] * q[1]),
+        p[2].times_minus(q[0], p[0] * q[2]),
+        p[0].times_minus(q[1], p[1] * q[0]),
+    ]
 }
 
 #[inline(always)]
 fn dot<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+    p[0].times_plus(q[0], p[1].times_plus(q[1], p[2] * q[2]))
 }
 
 #[inline(always)]
