@@ -69,6 +69,9 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
         while next < self.cavity.end {
             let facet = self.cavity.pending[next];
             next += 1;
+            // Its neighbours will be wanted if it is taken. (What stands behind the end is of an earlier insertion.)
+            let later = &self.cavity.pending[(next + 1).min(self.cavity.pending.len() - 1)];
+            self.complex.fetch_neighbours(later.beyond);
             if facet.value < 0.0 {
                 self.cavity.star.border.push((facet.corners, facet.beyond));
             } else if self.complex.opposite(facet.beyond) == DELETED {
