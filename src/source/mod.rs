@@ -32,6 +32,7 @@ mod spa;
 mod spb;
 mod statements;
 mod stream;
+pub mod structure;
 mod text;
 mod twin;
 mod twin_header;
