@@ -12,7 +12,7 @@ pub struct Structure {
     /// How the points of all models are stored: whole numbers of 0.001 Å (or of a smaller power of ten that all
     /// coordinates of the input are multiples of) in 32 bits, or else the numbers themselves.
     pub coordinates: Coordinates,
-    /// The models, in the order of the file; a file without any has one of number 1.
+    /// The models that have atoms, one or more, in the order of the file; a file that names none has one of number 1.
     pub models: Vec<Model>,
     /// The residues that atoms refer to.
     pub residues: Vec<Residue>,
