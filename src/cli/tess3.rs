@@ -42,8 +42,8 @@ input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, and spmesh streams of points, plain or compressed (.gz), and writes a
-/// tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of points only.
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ and LAS, plain or compressed (.gz),
+/// and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -120,12 +120,8 @@ enum FormatFlag {
     Mmcif,
     /// XYZ of chemistry: number of atoms, comment, and lines of element x y z
     Xyz,
-    /// Lines of x y z
-    Text,
-    /// A spmesh stream of points
-    Stream,
-    /// The text twin of such a stream
-    Twin,
+    /// Points as spfinalize reads them: lines of x y z, streams, LAS
+    Points,
     /// Vertices of a PLY file
     Ply,
     /// Vertices of an OBJ file
@@ -138,9 +134,7 @@ impl From<FormatFlag> for Format {
             FormatFlag::Pdb => Format::Pdb,
             FormatFlag::Mmcif => Format::Mmcif,
             FormatFlag::Xyz => Format::Xyz,
-            FormatFlag::Text => Format::Text,
-            FormatFlag::Stream => Format::Stream,
-            FormatFlag::Twin => Format::Twin,
+            FormatFlag::Points => Format::Points,
             FormatFlag::Ply => Format::Ply,
             FormatFlag::Obj => Format::Obj,
         }

@@ -70,10 +70,13 @@ impl Job<'_> {
     /// Triangulates what is selected of the selected model.
     fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
         let started = Instant::now();
-        let at = choice::model_index(structure, self.options.selection.models)?;
+        let at = choice::model_index(structure, &self.options.selection)?;
         let name = ModelName { place, number: structure.models[at].number };
         // Points of which nothing else is known are handed over, so that the kernel needs no copy.
         let is_plain = self.options.product == Product::Mesh && structure.models[at].atoms.is_empty();
+        if is_plain {
+            choice::select(structure, &self.options.selection)?;
+        }
         let plain = is_plain.then(|| std::mem::take(&mut structure.models[at].points));
         let selected = plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
