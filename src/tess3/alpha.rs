@@ -22,19 +22,19 @@ use crate::predicates::Point3;
 #[derive(Debug)]
 pub struct AlphaComplex<'m> {
     mesh: &'m Tetrahedralization,
-    /// In the unit of the mesh's points.
+    /// In the unit of the mesh's coordinates.
     radius: Radius,
     /// A bit per tetrahedron: whether it belongs to the complex.
     tetrahedra: Vec<u64>,
 }
 
 impl<'m> AlphaComplex<'m> {
-    /// The complex of a radius in the unit of the mesh's points.
+    /// The complex of a radius in the unit of the mesh's coordinates.
     ///
     /// Cost: a few sphere equations per tetrahedron; a bit of memory for each.
     #[must_use]
     pub fn new(mesh: &'m Tetrahedralization, radius: Radius) -> Self {
-        let fits = |vertices: &[u32; 4]| tetrahedron_fits(vertices.map(|v| mesh.points[v as usize]), &radius);
+        let fits = |vertices: &[u32; 4]| tetrahedron_fits(vertices.map(|v| mesh.vertices()[v as usize].at), &radius);
         let tetrahedra = mesh.tetrahedra().chunks(64).map(|chunk| {
             chunk.iter().rev().fold(0, |bits, t| bits << 1 | u64::from(fits(&t.vertices)))
         });
@@ -91,6 +91,6 @@ impl<'m> AlphaComplex<'m> {
     }
 
     fn point(&self, v: u32) -> Point3 {
-        self.mesh.points[v as usize]
+        self.mesh.vertices()[v as usize].at
     }
 }

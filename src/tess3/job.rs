@@ -128,11 +128,11 @@ impl Job<'_> {
     fn write_mesh(&mut self, triangulated: &Triangulated<'_>, alpha: Option<&AlphaComplex<'_>>) -> Result<()> {
         let Triangulated { name, structure, selected, mesh } = *triangulated;
         let merged = mesh.duplicates.len() as u64;
-        let points = mesh.points.len() as u64 + merged;
+        let points = mesh.vertices().len() as u64 + merged;
         let header = self.header(structure.coordinates, mesh, points);
         let mut writer = StreamWriter::new((self.open)(Some(name))?, header)?;
         let label = |v: u32| {
-            let index = mesh.indices[v as usize];
+            let index = mesh.vertices()[v as usize].index;
             selected.map_or(u64::from(index) + 1, |selected| selected.label(index as usize))
         };
         match alpha {
@@ -150,7 +150,7 @@ impl Job<'_> {
             coordinates,
             dims: 3,
             has_elevation: false,
-            bounds: Bounds::of_points(&mesh.points),
+            bounds: bounds(mesh),
             points: Some(points),
             tree: None,
             region: None,
@@ -169,6 +169,13 @@ struct Triangulated<'s> {
     /// The atoms, if they are more than points.
     selected: Option<&'s Selected<'s>>,
     mesh: &'s Tetrahedralization,
+}
+
+fn bounds(mesh: &Tetrahedralization) -> Option<Bounds> {
+    let (first, rest) = mesh.vertices().split_first()?;
+    let mut bounds = Bounds::of_point(first.at);
+    rest.iter().for_each(|vertex| bounds.extend(vertex.at));
+    Some(bounds)
 }
 
 /// World units per stored unit, which is the same for all axes of structures.

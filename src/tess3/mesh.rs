@@ -45,7 +45,7 @@ pub fn write_mesh<W: Write>(
         vertices.iter().for_each(|&v| builder.corner(v));
     }
     builder.close(writer)?;
-    for v in 0..mesh.points.len() as u32 {
+    for v in 0..mesh.vertices().len() as u32 {
         builder.single(v);
         if builder.new.len() == PATCH_VERTICES {
             builder.close(writer)?;
@@ -77,7 +77,7 @@ struct PatchBuilder<'m, Label> {
 
 impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
     fn new(mesh: &'m Tetrahedralization, label: Label) -> Self {
-        let vertices = mesh.points.len();
+        let vertices = mesh.vertices().len();
         assert!(vertices < IMPORTED as usize, "more vertices than the kernel can number");
         PatchBuilder {
             mesh,
@@ -133,7 +133,7 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         let vertices = self.new.iter().copied().chain(self.imported.iter().map(|&(_, v)| v));
         let is_last = |v: u32| self.last_patches[v as usize] == self.number;
         self.patch.finalized.extend((0..).zip(vertices).filter(|&(_, v)| is_last(v)).map(|(local, _)| local));
-        self.patch.new.extend(self.new.iter().map(|&v| self.mesh.points[v as usize]));
+        self.patch.new.extend(self.new.iter().map(|&v| self.mesh.vertices()[v as usize].at));
         self.patch.imported.extend(self.imported.iter().map(|&(id, _)| u64::from(id)));
         writer.patch(&self.patch)?;
         self.labels.extend(self.new.iter().map(|&v| (self.label)(v)));

@@ -75,10 +75,9 @@ impl Report {
     }
 
     fn count(&mut self, mesh: &Tetrahedralization) {
-        self.vertices = mesh.points.len() as u64;
+        self.vertices = mesh.vertices().len() as u64;
         self.tetrahedra = mesh.tetrahedra().len() as u64;
-        let hull_facets = mesh.tetrahedra().iter().map(|t| (0..4).filter(|&side| t.across(side).is_none()).count());
-        self.hull_facets = hull_facets.sum::<usize>() as u64;
+        self.hull_facets = mesh.hull_facets as u64;
     }
 }
 

@@ -92,7 +92,7 @@ impl<'s> Rows<'s> {
 
     /// Indices in the selection, increasing, of vertices of the mesh.
     fn in_order_of_input<const N: usize>(&self, vertices: [u32; N]) -> [u32; N] {
-        let mut indices = vertices.map(|v| self.mesh.indices[v as usize]);
+        let mut indices = vertices.map(|v| self.mesh.vertices()[v as usize].index);
         indices.sort_unstable();
         indices
     }
