@@ -9,6 +9,7 @@ mod convert;
 mod finalize;
 mod kernel;
 mod kernel_predicates;
+mod kernel_predicates3;
 mod output;
 mod pipelines;
 mod programs;

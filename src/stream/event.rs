@@ -13,8 +13,8 @@ pub enum Event {
     Cells(Vec<CellCode>),
     /// A piece of the mesh.
     Patch(Patch),
-    /// Labels of vertices, in the order of their ids: those after the labels before. What a label means, the
-    /// producer says.
+    /// Labels of the next vertices that have none yet, in the order of their ids. What a label means, the producer
+    /// says.
     Labels(Vec<u64>),
     /// Points of a residual, each with its vertex id if it was written in an earlier patch.
     ResidualPoints(Vec<(Option<u64>, Point)>),

@@ -188,3 +188,46 @@ fn encode<const WIDTH: usize, const N: usize>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Event, Kind, Patch, StreamReader, StreamWriter};
+
+    #[test]
+    fn tetrahedra_that_are_encoded_ahead_are_those_that_are_read() {
+        let grid = Coordinates::I32 { scale: [0.001; 3], offset: [0.0; 3] };
+        let header = Header::new(Kind::TetrahedralMesh, grid, 3, false);
+        let point = |i: u32| [f64::from(i), f64::from(i * i), -5.0];
+        let first = Patch { new: (0..5).map(point).collect(), ..Patch::default() };
+        let second = Patch {
+            first_id: 5,
+            new: vec![point(9)],
+            imported: vec![0, 1, 2, 3, 4],
+            simplices: vec![0, 1, 2, 3, 4, 5, 0, 1],
+            finalized: vec![0, 1, 2, 3, 4, 5],
+        };
+        let (code, mut blocks) = (PointCode::of(&header), PatchBlocks::default());
+        for patch in [&first, &second] {
+            let references = patch.imported.iter().map(|&id| 100 - id).collect::<Vec<_>>();
+            let (new, simplices) = (patch.new.iter().copied(), patch.simplices.iter().copied());
+            blocks.push(code, new, references.into_iter(), simplices).unwrap();
+        }
+        for (number, patch) in [&first, &second].into_iter().enumerate() {
+            blocks.finalize(number, patch.finalized.iter().copied());
+        }
+        let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+        writer.patches(&mut blocks, |reference| 100 - reference, |_, _| ()).unwrap();
+        writer.labels(&[3, 3, 2, 1, 0, 9]).unwrap();
+        let bytes = writer.end(6, 0).unwrap();
+        let mut reader = StreamReader::new(&bytes[..], "test").unwrap();
+        for patch in [first, second] {
+            assert_eq!(reader.next_event().unwrap(), Some(Event::Patch(patch)));
+        }
+        assert_eq!(reader.next_event().unwrap(), Some(Event::Labels(vec![3, 3, 2, 1, 0, 9])));
+        assert_eq!(
+            reader.next_event().unwrap().map(|end| matches!(end, Event::End(t) if t.simplices == 2)),
+            Some(true)
+        );
+    }
+}

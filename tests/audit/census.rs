@@ -8,7 +8,8 @@ use spmesh::stream::StreamReader;
 use super::reference::Random;
 use super::solid::{Solid, cubic, position};
 use super::tetrahedra_mutations::{distinct, has_repeated_vertex, mutate, positive_tetrahedra};
-use crate::reference::tetrahedra::{exact_points, insphere, orientation};
+use crate::reference::exact3::{insphere, orientation};
+use crate::reference::tetrahedra::exact_points;
 
 const SEED: u64 = 31;
 
