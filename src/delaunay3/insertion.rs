@@ -36,6 +36,13 @@ pub(super) struct Cavity {
     sights: Vec<[f64; 4]>,
 }
 
+impl Cavity {
+    /// Forgets tetrahedra of an earlier complex.
+    pub(super) fn clear(&mut self) {
+        self.pending.iter_mut().for_each(|facet| facet.beyond = 0);
+    }
+}
+
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
 pub(super) struct Insertion<'a, P, L> {
     pub(super) complex: Complex,
