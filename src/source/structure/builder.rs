@@ -50,19 +50,10 @@ pub(super) struct StructureBuilder {
     /// Index of the model that atoms go to.
     model: usize,
     residues: Vec<Residue>,
-    /// Texts of the last residue, so that the next atom of it needs no table.
-    last: ResidueTexts,
     names: Names,
     /// First line and number of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
     warnings: Vec<String>,
-}
-
-#[derive(Debug, Default)]
-struct ResidueTexts {
-    chain: String,
-    name: String,
-    insertion_code: String,
 }
 
 impl StructureBuilder {
@@ -130,29 +121,15 @@ impl StructureBuilder {
 
     /// Index of the residue of an atom: that of the atom before, or a new one.
     fn residue(&mut self, record: &Record) -> Result<u32> {
-        let ResidueTexts { chain, name, insertion_code } = &self.last;
-        if let Some(last) = self.residues.last()
-            && last.number == record.residue_number
-            && chain == record.chain
-            && name == record.residue_name
-            && insertion_code == record.insertion_code
-        {
-            return Ok((self.residues.len() - 1) as u32);
-        }
         let residue = Residue {
             chain: self.names.intern(record.chain),
             name: self.names.intern(record.residue_name),
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
         };
-        let ResidueTexts { chain, name, insertion_code } = &mut self.last;
-        for (text, now) in
-            [(chain, record.chain), (name, record.residue_name), (insertion_code, record.insertion_code)]
-        {
-            text.clear();
-            text.push_str(now);
+        if self.residues.last() != Some(&residue) {
+            self.residues.push(residue);
         }
-        self.residues.push(residue);
         u32::try_from(self.residues.len() - 1)
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
     }
