@@ -8,6 +8,8 @@ use crate::error::{Error, Result};
 /// An atom as a file has it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'a> {
+    /// Line in which it ends, counted from 1.
+    pub(super) line: u64,
     /// `None` if the file has none that can be read.
     pub(super) serial: Option<u64>,
     pub(super) name: &'a str,
@@ -54,6 +56,8 @@ pub(super) struct StructureBuilder {
     /// First line and number of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
     warnings: Vec<String>,
+    /// Line of the last atom.
+    last_line: u64,
 }
 
 impl StructureBuilder {
@@ -93,6 +97,13 @@ impl StructureBuilder {
         self.warnings.push(warning.into());
     }
 
+    /// Notes which line has no line end, if there is one: an atom in it may have lost its last columns.
+    pub(super) fn end(&mut self, unended: Option<u64>) {
+        if unended.is_some_and(|line| line == self.last_line) {
+            self.warn("the last atom's line has no line end: the file may have been cut off there");
+        }
+    }
+
     /// Adds an atom to the model.
     ///
     /// # Errors
@@ -101,6 +112,7 @@ impl StructureBuilder {
         if self.models.is_empty() {
             self.start_model(1);
         }
+        self.last_line = record.line;
         let residue = self.residue(record)?;
         let point = self.quantum.store(record.place, &mut self.models);
         let model = &mut self.models[self.model];
@@ -164,8 +176,9 @@ impl StructureBuilder {
 ///
 /// # Errors
 /// If it is not; `what` says what it should be.
-pub(super) fn text<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
-    let text = std::str::from_utf8(bytes).ok().filter(|text| !text.chars().any(char::is_control));
+pub(super) fn printable<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
+    let is_printable = bytes.iter().all(|&byte| byte >= b' ' && byte != 0x7f);
+    let text = if is_printable { std::str::from_utf8(bytes).ok() } else { None };
     text.ok_or_else(|| {
         crate::source::statements::unexpected(bytes, &format!("{what} in printable characters"))
     })
