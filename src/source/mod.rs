@@ -16,7 +16,7 @@ mod mesh_events;
 mod obj;
 mod ordered;
 mod origin;
-mod panic_guard;
+pub(crate) mod panic_guard;
 mod patches;
 mod placement;
 mod ply;

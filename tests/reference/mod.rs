@@ -1,9 +1,11 @@
 //! Independent canonical Delaunay triangulations, slow and plain. They share no code with the library.
 
 pub mod exact;
+pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
 pub mod sets;
+pub mod tetrahedra;
 
 /// A triangle as its vertex indices, counterclockwise, the least first.
 pub fn normalised(triangle: [u32; 3]) -> [u32; 3] {
