@@ -40,7 +40,7 @@ fn damaged_input_is_named_and_leaves_nothing() {
     let folder = Folder::new();
     let good = pdb(&cloud(10, 9_000, 1));
     let cases = [
-        ("bad.pdb", good.replacen("1.000", "1.0x0", 1), 3),
+        ("bad.pdb", good.replacen("A  10    ", "A  10   x", 1), 3),
         ("empty.pdb", String::new(), 3),
         ("header.pdb", "HEADER    NOTHING\nEND\n".into(), 3),
         ("words.txt", "not a structure\n".into(), 3),
