@@ -3,9 +3,9 @@
 use super::complex::Complex;
 use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
-use super::rounds;
 use super::stats::{Clock, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
+use crate::order::Rounds;
 use crate::predicates::{Point3, Predicates3, Sign};
 use std::marker::PhantomData;
 
@@ -29,7 +29,8 @@ impl Build<'_> {
     #[inline(always)]
     pub(super) fn run<P: Predicates3, L: Lanes>(self, predicates: &mut P) -> Result<Complex, Self> {
         let Some(first) = self.first_tetrahedron(predicates) else { return Err(self) };
-        let count = self.vertices.len() as u32 - 1;
+        let count = self.vertices.len() - 1;
+        self.cavity.clear();
         let mut insertion = Insertion::<P, L> {
             complex: Complex::new(self.vertices, self.tetrahedra, first),
             predicates,
@@ -42,7 +43,7 @@ impl Build<'_> {
         };
         insertion.stats.created = 5;
         let mut start = 0;
-        for vertex in rounds::strided(count) {
+        for vertex in Rounds::new(count) {
             if !first.contains(&vertex) {
                 start = insertion.insert(vertex, start);
             }
@@ -53,7 +54,7 @@ impl Build<'_> {
     /// The first four vertices that are not in a plane, positively oriented.
     fn first_tetrahedron<P: Predicates3>(&self, predicates: &mut P) -> Option<[u32; 4]> {
         let point = |v: u32| self.vertices[v as usize].at;
-        let mut sequence = rounds::strided(self.vertices.len() as u32 - 1);
+        let mut sequence = Rounds::new(self.vertices.len() - 1);
         let (a, b) = (sequence.next()?, sequence.next()?);
         let c = sequence.find(|&c| !is_line(point(a), point(b), point(c), predicates))?;
         let mut orientation = Sign::Zero;

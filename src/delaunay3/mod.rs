@@ -1,9 +1,9 @@
 //! The bulk kernel in 3D: the canonical Delaunay tetrahedralization of an array of points.
 //!
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve (`rounds`), so that the next point is near and finds small tetrahedra around it. `complex` is the
-//! data structure, `locate` the walk to the next point, `insertion` the search of the cavity, `star` what takes its
-//! place, `extract` what comes out.
+//! along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small tetrahedra
+//! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
+//! cavity, `star` what takes its place, `extract` what comes out.
 
 mod build;
 mod complex;
@@ -12,7 +12,6 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
-mod rounds;
 mod sight;
 mod star;
 mod stats;
@@ -23,9 +22,8 @@ pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 
 use crate::error::{Error, Result};
-use crate::predicates::{
-    Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3, lexicographic,
-};
+use crate::order::{Curve, SpatialOrder};
+use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
 use build::Build;
 use complex::Complex;
 use insertion::Cavity;
@@ -129,56 +127,13 @@ fn infinite_lift(extent: &Extent<3>, vertices: usize) -> f64 {
 
 /// Fills the vertices with the distinct points in order along the curve.
 fn take_sorted(points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
-    let side = extent.max_difference();
-    let scale = 1023.999 / side.max(1e-300);
-    let mut keys: Vec<(u64, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| (hilbert([0, 1, 2].map(|k| ((p[k] - extent.lower[k]) * scale) as u32), 10), i as u32))
-        .collect();
-    keys.sort_unstable_by(|a, b| {
-        a.0.cmp(&b.0)
-            .then_with(|| lexicographic(points[a.1 as usize], points[b.1 as usize]))
-            .then(a.1.cmp(&b.1))
-    });
+    let mut order = SpatialOrder::default();
     mesh.vertices.reserve_exact(points.len() + 1);
-    for &(_, index) in &keys {
+    for index in order.sort(&points, extent, Curve::Hilbert) {
         let at = points[index as usize];
         match mesh.vertices.last() {
             Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
             _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
         }
     }
-}
-
-fn hilbert(mut x: [u32; 3], bits: u32) -> u64 {
-    let m = 1u32 << (bits - 1);
-    let mut q = m;
-    while q > 1 {
-        let p = q - 1;
-        for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= p
-            } else {
-                let t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
-        }
-        q >>= 1;
-    }
-    for i in 1..3 {
-        x[i] ^= x[i - 1];
-    }
-    let mut t = 0;
-    q = m;
-    while q > 1 {
-        if x[2] & q != 0 {
-            t ^= q - 1;
-        }
-        q >>= 1;
-    }
-    let x = x.map(|v| v ^ t);
-    let spread = |x: u32| (0..10).fold(0u64, |r, i| r | u64::from(x >> i & 1) << (3 * i));
-    spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2])
 }
