@@ -21,11 +21,10 @@ mod tie;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 
-use crate::error::{Error, Result};
-use crate::order::{Curve, SpatialOrder};
+use crate::error::{Error, ErrorKind, Result};
+use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
 use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
-use build::Build;
-use complex::Complex;
+use build::{Build, Built};
 use insertion::Cavity;
 use std::borrow::Cow;
 use std::time::Instant;
@@ -39,6 +38,12 @@ pub const MAX_POINTS: usize = 60_000_000;
 pub struct Kernel {
     cavity: Cavity,
     counts: PredicateCounts,
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first (thesis 3.4.1).
+    pub by_bit_levels: bool,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
 }
@@ -57,7 +62,8 @@ impl Kernel {
     /// least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input of every kind is
     /// fine: cospherical points are triangulated canonically, and points in a plane give no tetrahedra.
     ///
-    /// Errors: a coordinate that is not finite, too many points; the mesh is as it was then.
+    /// Errors: a coordinate that is not finite, too many points: the mesh is as it was then; too many tetrahedra, which
+    /// not even [`MAX_POINTS`] points have unless they are quite special.
     ///
     /// Cost: O(n) for points that are spread evenly in space, about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
@@ -74,7 +80,8 @@ impl Kernel {
         }
         mesh.clear();
         let started = Instant::now();
-        take_sorted(points, &extent, mesh);
+        self.take_sorted(points, &extent, mesh);
+        let insertions = self.insertions(&mesh.vertices);
         mesh.stats.order = started.elapsed();
         let started = Instant::now();
         // The vertex at infinity.
@@ -86,20 +93,49 @@ impl Kernel {
             cavity: &mut self.cavity,
             stats: &mut mesh.stats,
             is_timed: self.is_timed,
+            insertions,
         };
-        let (vertices, tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
-            Ok(mut complex) => {
+        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
+            Built::Complex(mut complex) => {
                 mesh.hull_facets = extract::extract(&mut complex);
                 (complex.vertices, complex.tetrahedra)
             }
-            Err(mut build) => {
-                build.vertices.pop();
-                (build.vertices, build.tetrahedra)
+            Built::Flat(mut vertices, tetrahedra) => {
+                vertices.pop();
+                (vertices, tetrahedra)
+            }
+            Built::TooMany => {
+                mesh.clear();
+                let limit = build::TETRAHEDRA_MAX;
+                return Err(Error::new(
+                    ErrorKind::Io,
+                    format!("more than {limit} tetrahedra, the kernel's maximum"),
+                ));
             }
         };
-        (mesh.vertices, mesh.tetrahedra) = (vertices, tetrahedra);
         mesh.stats.insertion = started.elapsed();
         Ok(())
+    }
+
+    /// Fills the vertices with the distinct points in order along the curve.
+    fn take_sorted(&self, points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
+        let mut order = SpatialOrder::default();
+        mesh.vertices.reserve_exact(points.len() + 1);
+        for index in order.sort(&points, extent, self.curve) {
+            let at = points[index as usize];
+            match mesh.vertices.last() {
+                Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
+                _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
+            }
+        }
+    }
+
+    fn insertions(&self, vertices: &[Vertex]) -> Insertions {
+        if !self.by_bit_levels {
+            return self.sequence.of(vertices.len());
+        }
+        let points: Vec<Point3> = vertices.iter().map(|vertex| vertex.at).collect();
+        self.sequence.by_levels(&points, Suffixes::MostCommon)
     }
 
     /// Decisions of the predicates in all runs of this kernel so far.
@@ -109,10 +145,10 @@ impl Kernel {
     }
 }
 
-impl<'a> WithPredicates3 for Build<'a> {
-    type Output = std::result::Result<Complex, Build<'a>>;
+impl WithPredicates3 for Build<'_> {
+    type Output = Built;
 
-    fn with(self, predicates: &mut impl Predicates3) -> Self::Output {
+    fn with(self, predicates: &mut impl Predicates3) -> Built {
         dispatch::run(self, predicates)
     }
 }
@@ -123,17 +159,4 @@ fn infinite_lift(extent: &Extent<3>, vertices: usize) -> f64 {
     let side = (extent.max_difference() / (vertices as f64).powf(0.4)).clamp(1e-75, 1e75);
     let lift = side * side;
     if extent.integral { lift.round().clamp(1.0, EXACT / 2.0) } else { lift }
-}
-
-/// Fills the vertices with the distinct points in order along the curve.
-fn take_sorted(points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
-    let mut order = SpatialOrder::default();
-    mesh.vertices.reserve_exact(points.len() + 1);
-    for index in order.sort(&points, extent, Curve::Hilbert) {
-        let at = points[index as usize];
-        match mesh.vertices.last() {
-            Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
-            _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
-        }
-    }
 }
