@@ -135,7 +135,7 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
     let options = SourceOptions { dims: mesh.dims, grid, ..SourceOptions::default() };
     let input = Input::open(&flags.points, &options)?;
     input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
-    let mut points = PointSet::new(input.description().coordinates);
+    let mut points = PointSet::new(input.description().coordinates, mesh.dims);
     let (mut reader, mut batch) = (input.read()?, Vec::new());
     loop {
         reader.next_batch(&mut batch)?;
