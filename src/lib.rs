@@ -23,3 +23,4 @@ pub mod sink;
 pub mod source;
 pub mod stream;
 pub mod system;
+pub mod tess3;

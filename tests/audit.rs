@@ -1,5 +1,7 @@
 //! The audit: it passes correct streams and names the fault of every other.
 
+#[path = "audit/census.rs"]
+mod census;
 #[path = "audit/command.rs"]
 mod command;
 #[path = "audit/exhaustive.rs"]

@@ -18,4 +18,5 @@ mod reference;
 mod sources;
 mod stream;
 mod system;
+mod tess3;
 mod vectors;

@@ -47,6 +47,7 @@ pub(crate) use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use point_set::PointSet;
 pub use survey::{CellPoints, PatchSize, Survey};
+pub use tetrahedra::{Census, Faults, Figures};
 pub use triangles::Standard;
 
 use check::Ledger;

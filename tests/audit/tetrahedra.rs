@@ -114,7 +114,7 @@ fn cavity_inside() {
     assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Vertices, "vertex 13 has none");
     mesh.points.remove(13);
     mesh.tetrahedra.iter_mut().flatten().for_each(|v| *v -= usize::from(*v > 13));
-    assert!(matches!(mesh.audit(CANONICAL), Err(Verdict::Violation(_))));
+    assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Vertices, "links are rings");
 }
 
 /// A tetrahedron far from the hull is away: its four facets are open, all around it is right.

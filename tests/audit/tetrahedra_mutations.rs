@@ -88,7 +88,7 @@ fn one_of_all_sets_of_tetrahedra_passes() {
     }
 }
 
-fn distinct(random: &mut Random, len: usize, side: usize) -> Vec<[i32; 3]> {
+pub fn distinct(random: &mut Random, len: usize, side: usize) -> Vec<[i32; 3]> {
     let mut points: Vec<[i32; 3]> = Vec::new();
     while points.len() < len {
         let point = [0; 3].map(|_| random.below(side) as i32);
@@ -99,7 +99,7 @@ fn distinct(random: &mut Random, len: usize, side: usize) -> Vec<[i32; 3]> {
     points
 }
 
-fn mutate(mesh: &mut Solid, random: &mut Random) {
+pub fn mutate(mesh: &mut Solid, random: &mut Random) {
     if mesh.tetrahedra.is_empty() {
         return;
     }
@@ -169,7 +169,7 @@ fn set_of(mesh: &Solid) -> Vec<[[i32; 3]; 4]> {
     set
 }
 
-fn positive_tetrahedra(points: &[[i32; 3]]) -> Vec<[usize; 4]> {
+pub fn positive_tetrahedra(points: &[[i32; 3]]) -> Vec<[usize; 4]> {
     let mut found = Vec::new();
     for i in 0..points.len().pow(4) {
         let [a, b, c, d] = [0, 1, 2, 3].map(|digit| i / points.len().pow(digit) % points.len());
@@ -189,6 +189,6 @@ fn volume([a, b, c, d]: [[i32; 3]; 4]) -> i64 {
 }
 
 /// Neither writer nor reader let such a tetrahedron pass.
-fn has_repeated_vertex(mesh: &Solid) -> bool {
+pub fn has_repeated_vertex(mesh: &Solid) -> bool {
     mesh.tetrahedra.iter().any(|t| (1..4).any(|i| t[..i].contains(&t[i])))
 }

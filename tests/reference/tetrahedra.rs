@@ -6,61 +6,45 @@
 //! that of its first coefficient that is not zero: the determinant itself, or the cofactor of the lift of the largest
 //! point that has one.
 
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
 
-use super::exact::times_2_1074;
+use super::exact::sign;
+use super::exact3::{self, ExactPoint, orientation};
 
-/// An exact point: all points of a set are scaled by the same power of two.
-pub type ExactPoint3 = [BigInt; 3];
-
-/// The points as integers: times the least power of two that makes all of them integers, or a lesser one if all are
-/// even.
-pub fn exact_points(points: &[[f64; 3]]) -> Vec<ExactPoint3> {
-    let integers: Vec<ExactPoint3> = points.iter().map(|p| p.map(times_2_1074)).collect();
+/// The points as integers that are not all even: times a power of two.
+pub fn exact_points(points: &[[f64; 3]]) -> Vec<ExactPoint> {
+    let integers = exact3::exact_points(points);
     let zeros = integers.as_flattened().iter().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
     integers.into_iter().map(|p| p.map(|c| c >> zeros)).collect()
 }
 
-fn sign(value: &BigInt) -> i32 {
-    match value.sign() {
-        Sign::Minus => -1,
-        Sign::NoSign => 0,
-        Sign::Plus => 1,
-    }
-}
-
-fn minus(p: &ExactPoint3, q: &ExactPoint3) -> ExactPoint3 {
+fn minus(p: &ExactPoint, q: &ExactPoint) -> ExactPoint {
     [0, 1, 2].map(|i| &p[i] - &q[i])
 }
 
-fn cross(u: &ExactPoint3, v: &ExactPoint3) -> ExactPoint3 {
+fn cross(u: &ExactPoint, v: &ExactPoint) -> ExactPoint {
     [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &u[i] * &v[j] - &u[j] * &v[i])
 }
 
-fn dot(u: &ExactPoint3, v: &ExactPoint3) -> BigInt {
+fn dot(u: &ExactPoint, v: &ExactPoint) -> BigInt {
     &u[0] * &v[0] + &u[1] * &v[1] + &u[2] * &v[2]
 }
 
 /// det(b - a, c - a, d - a): six times the volume.
-fn volume([a, b, c, d]: [&ExactPoint3; 4]) -> BigInt {
+fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
     dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
-}
-
-/// Sign of det(b - a, c - a, d - a).
-pub fn orientation(points: [&ExactPoint3; 4]) -> i32 {
-    sign(&volume(points))
 }
 
 /// The sphere of a positive tetrahedron: a point is inside, on it or outside as `side` is positive, zero or negative.
 struct Sphere<'a> {
-    origin: &'a ExactPoint3,
-    normal: ExactPoint3,
+    origin: &'a ExactPoint,
+    normal: ExactPoint,
     volume: BigInt,
 }
 
 impl<'a> Sphere<'a> {
     /// `volume * |p - a|^2 = normal * (p - a)` holds for the four points, by Cramer's rule.
-    fn of([a, b, c, d]: [&'a ExactPoint3; 4]) -> Self {
+    fn of([a, b, c, d]: [&'a ExactPoint; 4]) -> Self {
         let [b, c, d] = [b, c, d].map(|p| minus(p, a));
         let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
         let (over_b, over_c, over_d) = (dot(&b, &b), dot(&c, &c), dot(&d, &d));
@@ -68,26 +52,14 @@ impl<'a> Sphere<'a> {
         Sphere { origin: a, normal, volume: dot(&b, &cd) }
     }
 
-    fn side(&self, p: &ExactPoint3) -> i32 {
+    fn side(&self, p: &ExactPoint) -> i32 {
         let p = minus(p, self.origin);
         sign(&(dot(&self.normal, &p) - &self.volume * dot(&p, &p)))
     }
 }
 
-/// Sign of the in-sphere determinant, unperturbed: positive if e is strictly inside of the sphere of the positive
-/// tetrahedron abcd.
-pub fn insphere([a, b, c, d, e]: [&ExactPoint3; 5]) -> i32 {
-    Sphere::of([a, b, c, d]).side(e)
-}
-
-/// The same with perturbed lifts; 0 only if all five points lie in a plane, or two of them coincide.
-pub fn insphere_perturbed(points: [&ExactPoint3; 5]) -> i32 {
-    let unperturbed = insphere(points);
-    if unperturbed != 0 { unperturbed } else { tie(points) }
-}
-
 /// The side of e if it is on the sphere: the sign of the first cofactor by descending rank.
-fn tie([a, b, c, d, e]: [&ExactPoint3; 5]) -> i32 {
+fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
     let mut cofactors = [
         (a, volume([e, b, c, d])),
         (b, volume([a, e, c, d])),
@@ -123,7 +95,7 @@ pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
     as_set(found)
 }
 
-fn is_empty(points: &[ExactPoint3], tetrahedron: [usize; 4]) -> bool {
+fn is_empty(points: &[ExactPoint], tetrahedron: [usize; 4]) -> bool {
     let [a, b, c, d] = tetrahedron.map(|i| &points[i]);
     let sphere = Sphere::of([a, b, c, d]);
     (0..points.len()).filter(|e| !tetrahedron.contains(e)).all(|e| match sphere.side(&points[e]) {
@@ -196,7 +168,7 @@ fn the_perturbation_is_that_of_real_lifts() {
             let [a, b, c, d] = corners.map(|i| &exact[i]);
             let others = (0..points.len()).filter(|e| !corners.contains(e));
             let heights: Vec<i32> = others.clone().map(|e| height(corners, e)).collect();
-            let depths = others.map(|e| -insphere_perturbed([a, b, c, d, &exact[e]]));
+            let depths = others.map(|e| -exact3::insphere_perturbed([a, b, c, d, &exact[e]]));
             assert_eq!(heights, depths.collect::<Vec<_>>(), "{corners:?} of {points:?}");
             if heights.iter().all(|&height| height > 0) {
                 lower.push(corners.map(|v| v as u32));

@@ -9,6 +9,7 @@
 mod dyadic;
 pub(super) mod plane;
 pub(super) mod space;
+mod wide;
 
 use std::cmp::Ordering;
 

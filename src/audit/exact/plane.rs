@@ -6,6 +6,7 @@ use std::ops::{Add, Mul, Sub};
 use num_bigint::BigInt;
 
 use super::dyadic::{differences, integers, small_differences};
+use super::wide::Wide;
 use super::{Decided, ROUNDING, decide, decided, power_of_two};
 
 /// A position in the plane, in stored coordinates. Both are finite.
@@ -106,14 +107,14 @@ fn exact_in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
         return terms.into_iter().map(|(lift, minor)| lift * minor).sum::<BigInt>().cmp(&BigInt::ZERO);
     };
     let is_short = [a, b, c].as_flattened().iter().all(|&difference| difference.abs() <= 1 << 30);
-    let terms = lifts_and_minors([a, b, c].map(|point| point.map(i128::from)));
     if is_short {
         // Lifts and minors have at most 61 bits, a product 122, the sum of three 124.
+        let terms = lifts_and_minors([a, b, c].map(|point| point.map(i128::from)));
         terms.into_iter().map(|(lift, minor)| lift * minor).sum::<i128>().cmp(&0)
     } else {
-        // Lifts and minors have at most 123 bits.
-        let product = |(lift, minor)| BigInt::from(lift) * BigInt::from(minor);
-        terms.into_iter().map(product).sum::<BigInt>().cmp(&BigInt::ZERO)
+        let terms = lifts_and_minors([a, b, c].map(|point| point.map(Wide::from)));
+        let products = terms.map(|(lift, minor)| lift * minor);
+        (products[0] + products[1] + products[2]).sign()
     }
 }
 
@@ -133,7 +134,7 @@ mod tests {
 
     const SQUARE: [Xy; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-    /// Every route of the arithmetic: i128, products without limit, everything without limit.
+    /// Every route of the arithmetic: 128 bits, 320 bits, and without limit.
     #[test]
     fn cocircular_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e5 / 3.0, 1e9 / 7.0, 2f64.powi(40) + 1.0, 1e300, 5e-324, 1e-200] {

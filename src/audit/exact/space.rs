@@ -6,6 +6,7 @@ use std::ops::{Add, Mul, Sub};
 use num_bigint::BigInt;
 
 use super::dyadic::{differences, integers, small_differences};
+use super::wide::Wide;
 use super::{Decided, ROUNDING, decide, decided, plane, power_of_two};
 
 /// A position in space, in stored coordinates. All three are finite.
@@ -153,7 +154,7 @@ fn exact_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Ordering {
         // A product of three differences has at most 123 bits, the sum of six 126.
         volume([b, c, d].map(|point| point.map(i128::from))).cmp(&0)
     } else {
-        volume([b, c, d].map(|point| point.map(BigInt::from))).cmp(&BigInt::ZERO)
+        volume([b, c, d].map(|point| point.map(Wide::from))).sign()
     }
 }
 
@@ -185,7 +186,7 @@ fn exact_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
         // A lift is at most 3 * 2^48, a minor 6 * 2^72, so the sum of four products 72 * 2^120.
         raised_volumes([a, b, c, d].map(|point| point.map(i128::from))).cmp(&0)
     } else {
-        raised_volumes([a, b, c, d].map(|point| point.map(BigInt::from))).cmp(&BigInt::ZERO)
+        raised_volumes([a, b, c, d].map(|point| point.map(Wide::from))).sign()
     }
 }
 
@@ -209,7 +210,7 @@ mod tests {
     /// A positive tetrahedron of corners of the unit cube, and another corner.
     const CUBE: [Xyz; 5] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
 
-    /// Every route of the arithmetic: i128, products without limit, everything without limit.
+    /// Every route of the arithmetic: 128 bits, 320 bits, and without limit.
     #[test]
     fn cospherical_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e7, 1e5 / 3.0, 1e9 / 7.0, 2f64.powi(40) + 1.0, 1e300, 5e-324, 1e-200] {

@@ -26,52 +26,57 @@ pub(super) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0,
 
 /// What adding a facet did.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Meeting {
+pub(super) enum Meeting<T> {
     /// Its twin has not come yet.
     Open,
-    /// Its twin was open and is not any more; the apex of the twin's tetrahedron.
-    Twin(Corner),
+    /// Its twin was open and is not any more; what is known of the twin's tetrahedron.
+    Twin(T),
     /// Another tetrahedron on the same side has the same facet open.
-    Twice(Corner),
+    Twice(T),
 }
 
-/// Facets, each with the apex of its tetrahedron, between their tetrahedron and that of their twin.
+/// Facets between their tetrahedron and that of their twin, each with what is to be known of its tetrahedron: the
+/// apex at least.
 ///
 /// Memory: the boundary of the tetrahedra seen so far, which is the front of the stream and the hull.
-#[derive(Debug, Default)]
-pub(super) struct OpenFacets {
-    open: HashMap<[u64; 3], Side, RandomState>,
+#[derive(Debug)]
+pub(super) struct OpenFacets<T> {
+    open: HashMap<[u64; 3], Side<T>, RandomState>,
 }
 
 /// The tetrahedron on one side of a facet.
 #[derive(Debug, Clone, Copy)]
-struct Side {
-    apex: Corner,
+struct Side<T> {
+    tetrahedron: T,
     /// Whether the corners in increasing order are counterclockwise seen from outside of it.
     is_increasing: bool,
 }
 
-impl OpenFacets {
-    /// Adds a facet, counterclockwise seen from outside of its tetrahedron, whose fourth corner is `apex`.
-    pub(super) fn meet(&mut self, facet: [u64; 3], apex: Corner) -> Meeting {
+impl<T: Copy> OpenFacets<T> {
+    pub(super) fn new() -> Self {
+        OpenFacets { open: HashMap::default() }
+    }
+
+    /// Adds a facet, counterclockwise seen from outside of its tetrahedron.
+    pub(super) fn meet(&mut self, facet: [u64; 3], tetrahedron: T) -> Meeting<T> {
         let (sorted, is_increasing) = increasing(facet);
         match self.open.entry(sorted) {
             Entry::Vacant(place) => {
-                place.insert(Side { apex, is_increasing });
+                place.insert(Side { tetrahedron, is_increasing });
                 Meeting::Open
             }
             Entry::Occupied(twin) if twin.get().is_increasing != is_increasing => {
-                Meeting::Twin(twin.remove().apex)
+                Meeting::Twin(twin.remove().tetrahedron)
             }
-            Entry::Occupied(other) => Meeting::Twice(other.get().apex),
+            Entry::Occupied(other) => Meeting::Twice(other.get().tetrahedron),
         }
     }
 
-    /// The open facets, counterclockwise seen from outside, with their apex, in no order.
-    pub(super) fn iter(&self) -> impl Iterator<Item = ([u64; 3], Corner)> + '_ {
-        self.open
-            .iter()
-            .map(|(&[a, b, c], side)| (if side.is_increasing { [a, b, c] } else { [a, c, b] }, side.apex))
+    /// The open facets, counterclockwise seen from outside, with what is known of their tetrahedra, in no order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = ([u64; 3], T)> + '_ {
+        self.open.iter().map(|(&[a, b, c], side)| {
+            (if side.is_increasing { [a, b, c] } else { [a, c, b] }, side.tetrahedron)
+        })
     }
 
     /// Number of open facets.
@@ -104,7 +109,7 @@ mod tests {
         for facet in [[1, 2, 3], [2, 3, 1], [3, 1, 2], [1, 3, 2], [3, 2, 1], [2, 1, 3]] {
             let [a, b, c] = facet;
             for other in [[a, b, c], [b, c, a], [c, a, b]] {
-                let mut facets = OpenFacets::default();
+                let mut facets = OpenFacets::new();
                 assert_eq!(facets.meet(facet, APEX), Meeting::Open);
                 assert_eq!(facets.meet(other, APEX), Meeting::Twice(APEX));
                 let (found, _) = facets.iter().next().unwrap();

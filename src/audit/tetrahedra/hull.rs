@@ -22,14 +22,15 @@
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::convert::Infallible;
 
 use foldhash::fast::RandomState;
 
-use super::facets::{Corner, OpenFacets, name_corners};
+use super::facets::{Corner, name_corners};
 use super::live::named;
 use crate::audit::check::{Check, Ledger, Violation};
 use crate::audit::exact::plane;
-use crate::audit::exact::space::{Xyz, orientation};
+use crate::audit::exact::space::{Xyz, float_orientation, orientation};
 
 /// Corners of the boundary.
 ///
@@ -51,15 +52,51 @@ impl Hull {
     }
 
     /// Proves that the open facets are one convex surface; all their corners must have been added.
-    pub(super) fn check(&self, facets: &OpenFacets, ledger: &mut Ledger) -> Result<(), Violation> {
+    pub(super) fn check(
+        &self,
+        facets: impl Iterator<Item = OpenFacet>,
+        ledger: &mut Ledger,
+    ) -> Result<(), Violation> {
         let surface = Surface::of(self, facets);
         let Some(inside) = surface.inside else {
             return Err(Violation::new(Check::Hull, "the tetrahedra have no boundary"));
         };
-        surface.check_edges(ledger)?;
+        surface.for_each_edge(|edge| edge.check(ledger))?;
         surface.check_inside(&inside, ledger)?;
         surface.check_once(&inside, ledger)
     }
+
+    /// Counts the faults of the edges of the surface; all its corners must have been added.
+    pub(super) fn count(&self, facets: impl Iterator<Item = OpenFacet>) -> EdgeFaults {
+        let mut faults = EdgeFaults::default();
+        let counted = Surface::of(self, facets).for_each_edge(|edge| {
+            match edge {
+                Edge::Torn { .. } => faults.torn += 1,
+                Edge::Whole { facet: [a, b, c], opposite, .. } => {
+                    let [a, b, c, d] = [a.at, b.at, c.at, opposite.at];
+                    faults.concave += u64::from(orientation(a, b, c, d).sign == Ordering::Greater);
+                    faults.concave_in_float += u64::from(float_orientation(a, b, c, d) == Ordering::Greater);
+                }
+            }
+            Ok::<(), Infallible>(())
+        });
+        let Ok(()) = counted;
+        faults
+    }
+}
+
+/// Corners of an open facet, counterclockwise seen from outside, and the apex of its tetrahedron.
+pub(super) type OpenFacet = ([u64; 3], Corner);
+
+/// How many edges of a surface are wrong.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct EdgeFaults {
+    /// Edges that are not between two facets.
+    pub(super) torn: u64,
+    /// Edges between two facets that are concave.
+    pub(super) concave: u64,
+    /// The same, by plain floating-point arithmetic.
+    pub(super) concave_in_float: u64,
 }
 
 /// The boundary in the order of its ids. Memory: about 200 bytes per facet.
@@ -74,54 +111,75 @@ struct Surface {
 /// An edge of a facet: its ends in increasing order, whether the facet has them in that order, and the facet.
 type Half = ([usize; 2], bool, usize);
 
+/// An edge of the surface.
+enum Edge {
+    /// Between two facets, which have it in opposite directions: one, and the third corner of the other.
+    Whole { ends: [Corner; 2], facet: [Corner; 3], opposite: Corner },
+    /// Any other, with the number of its facets.
+    Torn { ends: [Corner; 2], facets: usize },
+}
+
+impl Edge {
+    /// Every edge belongs to two facets, and is convex or flat.
+    fn check(&self, ledger: &mut Ledger) -> Result<(), Violation> {
+        match self {
+            Edge::Torn { ends, facets } => {
+                let message = format!("edge {} belongs to {facets} facets of the boundary", named(ends));
+                Err(name_corners(Violation::new(Check::Hull, message), ends))
+            }
+            Edge::Whole { ends, facet: facet @ [a, b, c], opposite } => {
+                let turn = orientation(a.at, b.at, c.at, opposite.at);
+                ledger.count(Check::Hull, turn.exactly);
+                if turn.sign != Ordering::Greater {
+                    return Ok(());
+                }
+                let message = format!(
+                    "the boundary is concave at edge {}: vertex {} lies beyond the facet {}",
+                    named(ends),
+                    opposite.id,
+                    named(facet)
+                );
+                let violation = name_corners(Violation::new(Check::Hull, message), facet);
+                Err(name_corners(violation, &[*opposite]))
+            }
+        }
+    }
+}
+
 impl Surface {
-    fn of(hull: &Hull, facets: &OpenFacets) -> Self {
+    fn of(hull: &Hull, facets: impl Iterator<Item = OpenFacet>) -> Self {
         let mut corners: Vec<Corner> = hull.corners.iter().map(|(&id, &at)| Corner { id, at }).collect();
         corners.sort_unstable_by_key(|corner| corner.id);
         let index: HashMap<u64, usize, RandomState> =
             corners.iter().enumerate().map(|(i, corner)| (corner.id, i)).collect();
-        let mut indexed: Vec<[usize; 3]> =
-            facets.iter().map(|(facet, _)| facet.map(|id| index[&id])).collect();
-        indexed.sort_unstable();
-        let first = facets.iter().min_by_key(|(facet, _)| *facet);
-        let inside = first.map(|(facet, apex)| {
-            let [a, b, c] = facet.map(|id| corners[index[&id]]);
-            [apex, a, b, c]
-        });
-        Surface { corners, facets: indexed, inside }
+        let mut indexed: Vec<([usize; 3], Corner)> =
+            facets.map(|(facet, apex)| (facet.map(|id| index[&id]), apex)).collect();
+        indexed.sort_unstable_by_key(|&(facet, _)| facet);
+        let inside = indexed.first().map(|&([a, b, c], apex)| [apex, corners[a], corners[b], corners[c]]);
+        let facets = indexed.into_iter().map(|(facet, _)| facet).collect();
+        Surface { corners, facets, inside }
     }
 
-    /// Every edge belongs to two facets, which meet in opposite directions, and is convex or flat.
-    fn check_edges(&self, ledger: &mut Ledger) -> Result<(), Violation> {
+    /// Visits the edges in order.
+    fn for_each_edge<E>(&self, mut visit: impl FnMut(Edge) -> Result<(), E>) -> Result<(), E> {
         let mut halves: Vec<Half> = Vec::with_capacity(3 * self.facets.len());
         for (i, &[a, b, c]) in self.facets.iter().enumerate() {
             halves.extend([[a, b], [b, c], [c, a]].map(|[p, q]| ([p.min(q), p.max(q)], p < q, i)));
         }
         halves.sort_unstable();
-        halves.chunk_by(|one, other| one.0 == other.0).try_for_each(|edge| self.check_edge(edge, ledger))
+        halves.chunk_by(|one, other| one.0 == other.0).try_for_each(|edge| visit(self.edge(edge)))
     }
 
-    fn check_edge(&self, halves: &[Half], ledger: &mut Ledger) -> Result<(), Violation> {
-        let ends = halves[0].0.map(|i| self.corners[i]);
+    /// The edge with these halves, which have the same ends.
+    fn edge(&self, halves: &[Half]) -> Edge {
+        let between = halves[0].0;
+        let ends = between.map(|i| self.corners[i]);
         let &[(_, false, one), (_, true, other)] = halves else {
-            let message = format!("edge {} belongs to {} facets of the boundary", named(&ends), halves.len());
-            return Err(name_corners(Violation::new(Check::Hull, message), &ends));
+            return Edge::Torn { ends, facets: halves.len() };
         };
-        let [a, b, c] = self.facets[one].map(|i| self.corners[i]);
-        let apex = self.facets[other].iter().find(|i| !halves[0].0.contains(i));
-        let opposite = self.corners[*apex.expect("a facet has three corners")];
-        let turn = orientation(a.at, b.at, c.at, opposite.at);
-        ledger.count(Check::Hull, turn.exactly);
-        if turn.sign != Ordering::Greater {
-            return Ok(());
-        }
-        let message = format!(
-            "the boundary is concave at edge {}: vertex {} lies beyond the facet {}",
-            named(&ends),
-            opposite.id,
-            named(&[a, b, c])
-        );
-        Err(name_corners(Violation::new(Check::Hull, message), &[a, b, c, opposite]))
+        let third = self.facets[other].iter().find(|i| !between.contains(i));
+        let opposite = self.corners[*third.expect("a facet has three corners")];
+        Edge::Whole { ends, facet: self.facets[one].map(|i| self.corners[i]), opposite }
     }
 
     /// The point `o` lies strictly inside of every facet's plane.

@@ -1,53 +1,30 @@
 //! What can be proved tetrahedron by tetrahedron, with the vertices that are live.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
 
-use foldhash::fast::RandomState;
-
-use super::edges::LiveEdges;
+use super::faces::SeenFaces;
 use super::facets::{Corner, FACETS, Meeting, OpenFacets, name_corners};
+use super::vertices::{Vertex, Vertices};
 use crate::audit::Standard;
 use crate::audit::check::{Check, Ledger, Violation};
 use crate::audit::exact::space::{in_raised_sphere, in_sphere, orientation};
-use crate::bounds::Point;
 use crate::stream::Patch;
 
-/// A vertex between its patch and its finalization, with the size of its link.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
-    pub(super) id: u64,
-    pub(super) at: Point,
-    /// Tetrahedra that have it.
-    pub(super) tetrahedra: u64,
-    /// Edges that have it.
-    pub(super) edges: u64,
-    /// Open facets that have it.
-    pub(super) open: u64,
-}
-
-impl Vertex {
-    pub(super) fn corner(&self) -> Corner {
-        Corner { id: self.id, at: self.at }
-    }
-}
-
 /// The edges of a tetrahedron.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Live vertices, open facets and edges of the tetrahedra seen so far.
 pub(super) struct LiveTetrahedra {
     standard: Standard,
-    live: HashMap<u64, Vertex, RandomState>,
-    pub(super) facets: OpenFacets,
-    edges: LiveEdges,
-    pub(super) seen: Seen,
-    local: Vec<Vertex>,
-    live_max: usize,
+    pub(super) vertices: Vertices,
+    pub(super) facets: OpenFacets<Corner>,
+    edges: SeenFaces<2>,
+    facets_seen: u64,
+    tetrahedra_seen: u64,
 }
 
 /// How much came so far.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
     pub(super) vertices: u64,
     pub(super) edges: u64,
@@ -60,12 +37,20 @@ impl LiveTetrahedra {
     pub(super) fn new(standard: Standard) -> Self {
         LiveTetrahedra {
             standard,
-            live: HashMap::default(),
-            facets: OpenFacets::default(),
-            edges: LiveEdges::default(),
-            seen: Seen::default(),
-            local: Vec::new(),
-            live_max: 0,
+            vertices: Vertices::default(),
+            facets: OpenFacets::new(),
+            edges: SeenFaces::default(),
+            facets_seen: 0,
+            tetrahedra_seen: 0,
+        }
+    }
+
+    pub(super) fn seen(&self) -> Seen {
+        Seen {
+            vertices: self.vertices.seen(),
+            edges: self.edges.seen(),
+            facets: self.facets_seen,
+            tetrahedra: self.tetrahedra_seen,
         }
     }
 
@@ -76,44 +61,18 @@ impl LiveTetrahedra {
         ledger: &mut Ledger,
         mut finalize: impl FnMut(&Vertex, &mut Ledger) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
-        self.enter(patch, ledger)?;
+        self.vertices.enter(patch)?;
+        ledger.add(Check::Finalization, patch.vertices() as u64);
         for tetrahedron in patch.tetrahedra() {
             self.tetrahedron(tetrahedron.map(|local| local as usize), ledger)?;
         }
-        let mut finalized = patch.finalized.iter().map(|&local| local as usize).peekable();
-        for (local, vertex) in self.local.iter().enumerate() {
-            if finalized.next_if_eq(&local).is_some() {
-                finalize(vertex, ledger)?;
-            } else {
-                self.live.insert(vertex.id, *vertex);
-            }
-        }
-        self.edges.sweep(|id| self.live.contains_key(&id));
-        self.seen.edges = self.edges.seen();
-        Ok(())
-    }
-
-    /// Puts the vertices of a patch in the order of their local indices.
-    fn enter(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
-        self.local.clear();
-        for (&at, id) in patch.new.iter().zip(patch.first_id..) {
-            self.local.push(Vertex { id, at, tetrahedra: 0, edges: 0, open: 0 });
-        }
-        for id in &patch.imported {
-            let Some(vertex) = self.live.remove(id) else {
-                let message = format!("vertex {id} is used after it was finalized");
-                return Err(Violation::new(Check::Finalization, message));
-            };
-            self.local.push(vertex);
-        }
-        ledger.add(Check::Finalization, patch.vertices() as u64);
-        self.seen.vertices += patch.new.len() as u64;
-        self.live_max = self.live_max.max(self.live.len() + self.local.len());
+        self.vertices.leave(patch, |vertex| finalize(vertex, ledger))?;
+        self.edges.sweep(|id| self.vertices.is_live(id));
         Ok(())
     }
 
     fn tetrahedron(&mut self, locals: [usize; 4], ledger: &mut Ledger) -> Result<(), Violation> {
-        let corners = locals.map(|local| self.local[local].corner());
+        let corners = locals.map(|local| self.vertices.local[local].corner());
         let [a, b, c, d] = corners;
         let turn = orientation(a.at, b.at, c.at, d.at);
         ledger.count(Check::Orientation, turn.exactly);
@@ -122,7 +81,7 @@ impl LiveTetrahedra {
             let message = format!("tetrahedron {} {fault}", named(&corners));
             return Err(name_corners(Violation::new(Check::Orientation, message), &corners));
         }
-        self.seen.tetrahedra += 1;
+        self.tetrahedra_seen += 1;
         let mut is_shared = [false; 4];
         for (side, is_shared) in is_shared.iter_mut().enumerate() {
             *is_shared = self.side(&corners, &locals, side, ledger)?;
@@ -130,11 +89,12 @@ impl LiveTetrahedra {
         for [i, j] in EDGES {
             // The edges of a facet that was open came with the tetrahedron beyond it.
             let is_old = (0..4).any(|side| is_shared[side] && side != i && side != j);
-            let is_new = !is_old && self.edges.add(corners[i].id, corners[j].id);
-            self.local[locals[i]].edges += u64::from(is_new);
-            self.local[locals[j]].edges += u64::from(is_new);
+            if !is_old && self.edges.add(edge(corners[i], corners[j])) {
+                self.vertices.local[locals[i]].edges += 1;
+                self.vertices.local[locals[j]].edges += 1;
+            }
         }
-        locals.iter().for_each(|&local| self.local[local].tetrahedra += 1);
+        locals.iter().for_each(|&local| self.vertices.local[local].tetrahedra += 1);
         Ok(())
     }
 
@@ -150,12 +110,12 @@ impl LiveTetrahedra {
         ledger.add(Check::Facets, 1);
         match self.facets.meet(facet.map(|i| corners[i].id), corners[side]) {
             Meeting::Open => {
-                self.seen.facets += 1;
-                facet.iter().for_each(|&i| self.local[locals[i]].open += 1);
+                self.facets_seen += 1;
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open += 1);
                 Ok(false)
             }
             Meeting::Twin(opposite) => {
-                facet.iter().for_each(|&i| self.local[locals[i]].open -= 1);
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open -= 1);
                 self.interior_facet(corners, side, opposite, ledger).map(|()| true)
             }
             Meeting::Twice(other) => {
@@ -205,16 +165,11 @@ impl LiveTetrahedra {
         let violation = name_corners(Violation::new(check, message), corners);
         Err(name_corners(violation, &[opposite]))
     }
+}
 
-    /// Most vertices that were live at once.
-    pub(super) fn live_max(&self) -> usize {
-        self.live_max
-    }
-
-    /// The live vertex with the smallest id.
-    pub(super) fn first_live(&self) -> Option<&Vertex> {
-        self.live.values().min_by_key(|vertex| vertex.id)
-    }
+/// The ids of an edge in increasing order.
+pub(super) fn edge(p: Corner, q: Corner) -> [u64; 2] {
+    [p.id.min(q.id), p.id.max(q.id)]
 }
 
 /// The ids, as they are written in messages.

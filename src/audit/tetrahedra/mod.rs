@@ -11,13 +11,14 @@
 //! is how often the surface winds around it: once inside of the hull, never outside. No two tetrahedra overlap and
 //! none is missing.
 //!
-//! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a vertex without
-//! open facets, its tetrahedra are positive triangles on a sphere, joined side to side, so they cover every
-//! direction equally often, and all of its neighbourhood at least once. A vertex with open facets is a corner of the
-//! surface, which passes each of its positions once; seen from there its tetrahedra have the border of the convex
-//! cone inside of the surface as their border, so they cover the cone once more often than the rest, hence at least
-//! once. So a second vertex at the same place, or a tetrahedron around it, would cover something twice. In particular a vertex on the
-//! hull has open facets, so it is a corner of the surface, also inside of a flat part of it.
+//! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a vertex, its
+//! tetrahedra are positive triangles on a small sphere, joined side to side. If it has no open facets, they have no
+//! border, so they cover every direction equally often, which is at least once: all of its neighbourhood. If it has,
+//! it is a corner of the surface, which passes each of its positions once, and the border of the triangles is the
+//! outline of the convex cone inside of the surface there; so they cover the directions inside of the cone once more
+//! often than the others, which is at least once. A tetrahedron around the place that is not one of these, or that of
+//! a second vertex there, would cover directions inside of the hull a second time. In particular a vertex on the hull
+//! has open facets, so it is a corner of the surface, also inside of a flat part of it.
 //!
 //! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is used
 //! again while it is open is reported at once, one that is used again later by its consequences.
@@ -38,20 +39,24 @@
 //! The links of vertices and Euler's relation follow too. They are checked as a test of the audit itself, and because
 //! a fault found at its vertex is easier to understand than one found in the hull at the end.
 
+mod census;
 mod coplanar;
-mod edges;
+mod faces;
 mod facets;
 mod hull;
 mod live;
+mod vertices;
 
 use super::Standard;
 use super::check::{Check, Ledger, Violation};
 use super::extent::Extent;
 use crate::stream::{Header, Patch, Totals};
+pub use census::{Census, Faults, Figures};
 use coplanar::check_plane;
 use facets::Corner;
 use hull::Hull;
-use live::{LiveTetrahedra, Vertex};
+use live::LiveTetrahedra;
+use vertices::Vertex;
 
 /// State of the audit of a tetrahedral mesh.
 ///
@@ -101,7 +106,7 @@ impl TetrahedraAudit {
     pub(super) fn labels(&mut self, labels: &[u64], ledger: &mut Ledger) -> Result<(), Violation> {
         ledger.add(Check::Labels, labels.len() as u64);
         self.labels += labels.len() as u64;
-        let vertices = self.tetrahedra.seen.vertices;
+        let vertices = self.tetrahedra.seen().vertices;
         if self.labels > vertices {
             let message = format!("{} labels, but only {vertices} vertices so far", self.labels);
             return Err(Violation::new(Check::Labels, message));
@@ -110,14 +115,14 @@ impl TetrahedraAudit {
     }
 
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
-        if let Some(vertex) = self.tetrahedra.first_live() {
+        if let Some(vertex) = self.tetrahedra.vertices.first_live() {
             let message = format!("vertex {} is never finalized", vertex.id);
             return Err(Violation::new(Check::Finalization, message).with(vertex.id, vertex.at));
         }
-        if self.tetrahedra.seen.tetrahedra == 0 {
+        if self.tetrahedra.seen().tetrahedra == 0 {
             check_plane(&mut self.unused, ledger)?;
         } else {
-            self.hull.check(&self.tetrahedra.facets, ledger)?;
+            self.hull.check(self.tetrahedra.facets.iter(), ledger)?;
             self.check_euler(ledger)?;
         }
         self.check_counts(totals, ledger)?;
@@ -131,12 +136,12 @@ impl TetrahedraAudit {
 
     /// Most vertices that were live at once.
     pub(super) fn live_max(&self) -> usize {
-        self.tetrahedra.live_max()
+        self.tetrahedra.vertices.live_max()
     }
 
     fn check_unused(&self) -> Result<(), Violation> {
         match self.unused.first() {
-            Some(corner) if self.tetrahedra.seen.tetrahedra > 0 => {
+            Some(corner) if self.tetrahedra.seen().tetrahedra > 0 => {
                 let message = format!("no tetrahedron uses vertex {}", corner.id);
                 Err(Violation::new(Check::Vertices, message).with(corner.id, corner.at))
             }
@@ -146,7 +151,7 @@ impl TetrahedraAudit {
 
     /// The mesh is a ball and its surface a sphere.
     fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
-        let seen = self.tetrahedra.seen;
+        let seen = self.tetrahedra.seen();
         let (hull_facets, hull_vertices) = (self.tetrahedra.facets.len() as u64, self.hull.len());
         ledger.add(Check::Euler, 2);
         if seen.vertices + seen.facets != seen.edges + seen.tetrahedra + 1 {
@@ -164,7 +169,7 @@ impl TetrahedraAudit {
     }
 
     fn check_counts(&self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
-        let vertices = self.tetrahedra.seen.vertices;
+        let vertices = self.tetrahedra.seen().vertices;
         ledger.add(Check::Counts, 1);
         if vertices.checked_add(totals.merged) != Some(totals.points) {
             let message = format!(

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::{Report, Survey, shortest};
+use super::census;
+use crate::audit::{Figures, Report, Survey, shortest};
 use crate::bounds::Point;
 use crate::error::Error;
 use crate::source::crs_name;
@@ -14,6 +15,7 @@ pub(super) struct Summary<'a> {
     pub(super) header: &'a Header,
     pub(super) survey: &'a Survey,
     pub(super) audit: Option<Report>,
+    pub(super) census: Option<&'a Figures>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
 }
@@ -46,6 +48,9 @@ impl Summary<'_> {
         self.figures(&mut line);
         if let Some(report) = &self.audit {
             text += &self.audit_text(report);
+        }
+        if let Some(figures) = self.census {
+            text += &census::text(figures);
         }
         text
     }
@@ -135,6 +140,7 @@ impl Summary<'_> {
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
             "audit": self.audit.as_ref().map(|report| self.audit_json(report)),
+            "census": self.census.map(census::json),
         });
         format!("{object:#}\n")
     }
