@@ -48,7 +48,7 @@ struct Args {
     /// Where a set that fails goes, and the number of the set that is being tried.
     #[arg(long, default_value = "target/fuzz3")]
     out: PathBuf,
-    /// Seconds after which the kernel is said to hang.
+    /// Seconds of CPU after which the kernel is said to hang.
     #[arg(long, default_value_t = 60)]
     limit: u64,
 }
@@ -57,7 +57,7 @@ struct Args {
 #[derive(Debug, Default)]
 struct Progress {
     /// The set in the kernel, and since when.
-    running: Mutex<Option<(u64, Instant)>>,
+    running: Mutex<Option<(u64, Duration)>>,
     sets: AtomicU64,
     points: AtomicU64,
     tetrahedra: AtomicU64,
@@ -70,7 +70,7 @@ fn main() {
         let points = set_of(args.seed, set);
         println!("set {set} of seed {}: {} points", args.seed, points.len());
         write(&args.out, &format!("{}-{set}", args.seed), &points);
-        match attempt(&mut Kernel::new(), &mut Tetrahedralization::default(), &points) {
+        match attempted(&points) {
             Ok(()) => println!("proved"),
             Err(message) => fail(&args, set, &points, &message),
         }
@@ -95,9 +95,15 @@ fn set_of(seed: u64, set: u64) -> Vec<Point> {
     clouds::mixture(&mut random, count)
 }
 
-/// Tetrahedralizes and proves.
-fn attempt(kernel: &mut Kernel, mesh: &mut Tetrahedralization, points: &[Point]) -> Result<(), String> {
+/// Tetrahedralizes and proves; says when the kernel is done.
+fn attempt(
+    kernel: &mut Kernel,
+    mesh: &mut Tetrahedralization,
+    points: &[Point],
+    done: impl FnOnce(),
+) -> Result<(), String> {
     kernel.triangulate(Cow::Borrowed(points), mesh).map_err(|error| error.to_string())?;
+    done();
     promises::prove(points, mesh)?;
     if points.len() <= 14 {
         let (kept, first) = distinct(points);
@@ -111,12 +117,25 @@ fn attempt(kernel: &mut Kernel, mesh: &mut Tetrahedralization, points: &[Point])
     Ok(())
 }
 
-/// As [`attempt`], panics being failures.
-fn caught(kernel: &mut Kernel, mesh: &mut Tetrahedralization, points: &[Point]) -> Result<(), String> {
-    catch_unwind(AssertUnwindSafe(|| attempt(kernel, mesh, points))).unwrap_or_else(|panic| {
+/// Panics are failures.
+fn caught(attempt: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
+    catch_unwind(AssertUnwindSafe(attempt)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         Err(format!("panic: {}", text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("of unknown kind")))
     })
+}
+
+/// With a new kernel.
+fn attempted(points: &[Point]) -> Result<(), String> {
+    caught(|| attempt(&mut Kernel::new(), &mut Tetrahedralization::default(), points, || ()))
+}
+
+/// Time of all threads on processors: others may keep them busy for minutes.
+fn cpu_time() -> Duration {
+    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
+    // Safety: writes one struct, which is there.
+    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
+    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
 fn fuzz(args: &Args) {
@@ -148,14 +167,10 @@ fn fuzz(args: &Args) {
 /// Ends the program if a set has been in the kernel for too long.
 fn watch(args: &Args, progress: &Progress) {
     let running = *progress.running.lock().expect("no panic while locked");
-    if let Some((set, since)) = running.filter(|(_, since)| since.elapsed().as_secs() > args.limit) {
+    let limit = Duration::from_secs(args.limit) * args.threads as u32;
+    if let Some((set, _)) = running.filter(|(_, since)| cpu_time() - *since > limit) {
         let points = set_of(args.seed, set);
-        println!(
-            "set {set} of seed {} hangs since {:?}: {} points",
-            args.seed,
-            since.elapsed(),
-            points.len()
-        );
+        println!("set {set} of seed {} hangs: {} points", args.seed, points.len());
         write(&args.out, &format!("hang-{}-{set}", args.seed), &points);
         exit(1);
     }
@@ -166,10 +181,7 @@ fn report(progress: &[Progress], started: Instant) {
         progress.iter().map(|progress| count(progress).load(Ordering::Relaxed)).sum()
     };
     let (sets, points, tetrahedra) = (sum(|p| &p.sets), sum(|p| &p.points), sum(|p| &p.tetrahedra));
-    let mut cpu = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // Safety: writes one struct, which is there.
-    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut cpu) };
-    let (wall, cpu) = (started.elapsed().as_secs(), cpu.tv_sec);
+    let (wall, cpu) = (started.elapsed().as_secs(), cpu_time().as_secs());
     println!("{wall} s, {cpu} s of CPU: {sets} sets, {points} points, {tetrahedra} tetrahedra proved");
 }
 
@@ -182,9 +194,10 @@ fn work(args: &Args, thread: u64, progress: &Progress, is_over: &AtomicBool) {
         let points = set_of(args.seed, set);
         // Whatever happens, it is known which set it was.
         fs::write(&current, format!("{set}\n")).expect("a writable folder");
-        *progress.running.lock().expect("no panic while locked") = Some((set, Instant::now()));
-        let result = caught(&mut kernel, &mut mesh, &points);
-        *progress.running.lock().expect("no panic while locked") = None;
+        let tell = |running| *progress.running.lock().expect("no panic while locked") = running;
+        tell(Some((set, cpu_time())));
+        let result = caught(|| attempt(&mut kernel, &mut mesh, &points, || tell(None)));
+        tell(None);
         if let Err(message) = result {
             fail(args, set, &points, &message);
         }
@@ -200,7 +213,7 @@ fn fail(args: &Args, set: u64, points: &[Point], message: &str) -> ! {
     println!("set {set} of seed {} fails, {} points: {message}", args.seed, points.len());
     write(&args.out, &format!("fail-{}-{set}", args.seed), points);
     let small = shrunk(points.to_vec());
-    match caught(&mut Kernel::new(), &mut Tetrahedralization::default(), &small) {
+    match attempted(&small) {
         Ok(()) => println!("not with a fresh kernel"),
         Err(message) => println!("{} points do: {message}\nlet points = {small:?};", small.len()),
     }
@@ -211,8 +224,7 @@ fn fail(args: &Args, set: u64, points: &[Point], message: &str) -> ! {
 /// Leaves points out, and takes bits away, as long as the set fails.
 fn shrunk(mut points: Vec<Point>) -> Vec<Point> {
     std::panic::set_hook(Box::new(|_| {}));
-    let fails =
-        |points: &[Point]| caught(&mut Kernel::new(), &mut Tetrahedralization::default(), points).is_err();
+    let fails = |points: &[Point]| attempted(points).is_err();
     let mut chunk = points.len() / 2;
     while chunk > 0 {
         let mut start = 0;

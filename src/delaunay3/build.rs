@@ -18,6 +18,8 @@ pub(super) struct Build<'a> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
+    /// Whether only instructions that every processor has are used.
+    pub(super) is_portable: bool,
     /// See [`Insertion`].
     pub(super) infinite_lift: f64,
 }

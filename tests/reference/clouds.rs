@@ -228,7 +228,10 @@ pub fn mixture(random: &mut Random, count: usize) -> Vec<Point> {
     let parts = pick(random, &[1, 1, 1, 2, 2, 3, 5]);
     for _ in 0..parts {
         let family = pick(random, &FAMILIES);
-        let mut part = of(random, family, (count / parts).max(1));
+        // Of these all pairs are neighbours.
+        let is_dense = matches!(family, Family::SkewLines | Family::MomentCurve);
+        let size = if is_dense { (count / parts).min(150) } else { count / parts };
+        let mut part = of(random, family, size.max(1));
         if parts > 1 || random.integer(0, 3) == 0 {
             place(random, &mut part);
         }

@@ -2,10 +2,11 @@
 //! tetrahedra are the canonical ones. Shares no code with the library.
 //!
 //! A decision is made in `f64` where the error bound allows, in 128 bits where the points are small integers times a
-//! power of two, and by [`super::tetrahedra`] where neither is so.
+//! power of two, and in integers without limit where neither is so.
 
-use super::exact::times_2_1074;
-use super::tetrahedra::{self, ExactPoint3, as_set};
+use super::exact::{sign, times_2_1074};
+use super::exact3::ExactPoint;
+use super::tetrahedra::{as_set, exact_points};
 use num_bigint::BigInt;
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -25,40 +26,43 @@ pub struct Space {
     /// Times a power of two.
     points: Vec<Point>,
     /// Differences to the first point, times a power of two.
-    small: Option<Vec<[i64; 3]>>,
-    exact: OnceCell<Vec<ExactPoint3>>,
+    small: Option<Vec<[i128; 3]>>,
+    exact: OnceCell<Vec<ExactPoint>>,
 }
 
 /// Largest difference of integers whose in-sphere determinant fits in 128 bits: with squares of lengths up to 3 * 2^48
 /// and volumes up to 6 * 2^72, the sum of four products is below 2^127.
-const SMALL: i64 = 1 << 24;
+const SMALL: i128 = 1 << 24;
 
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 impl Number for f64 {}
 impl Number for i128 {}
+impl Number for BigInt {}
 
-fn minus<T: Number>(p: [T; 3], q: [T; 3]) -> [T; 3] {
-    [p[0] - q[0], p[1] - q[1], p[2] - q[2]]
+fn minus<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
+    [0, 1, 2].map(|i| p[i].clone() - q[i].clone())
 }
 
-fn dot<T: Number>(p: [T; 3], q: [T; 3]) -> T {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+fn dot<T: Number>(p: &[T; 3], q: &[T; 3]) -> T {
+    let [x, y, z] = [0, 1, 2].map(|i| p[i].clone() * q[i].clone());
+    x + y + z
 }
 
-fn volume<T: Number>(p: [T; 3], q: [T; 3], r: [T; 3]) -> T {
-    dot(p, [q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2], q[0] * r[1] - q[1] * r[0]])
+fn cross<T: Number>(p: &[T; 3], q: &[T; 3]) -> [T; 3] {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| p[i].clone() * q[j].clone() - p[j].clone() * q[i].clone())
 }
 
 /// det(b - a, c - a, d - a).
-fn orientation<T: Number>([a, b, c, d]: [[T; 3]; 4]) -> T {
-    volume(minus(b, a), minus(c, a), minus(d, a))
+fn orientation<T: Number>([a, b, c, d]: [&[T; 3]; 4]) -> T {
+    dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
 }
 
 /// The in-sphere determinant, positive if e is inside of the positive tetrahedron abcd.
-fn insphere<T: Number>([a, b, c, d, e]: [[T; 3]; 5]) -> T {
-    let [a, b, c, d] = [minus(a, e), minus(b, e), minus(c, e), minus(d, e)];
-    (dot(a, a) * volume(b, c, d) - dot(b, b) * volume(a, c, d))
-        + (dot(c, c) * volume(a, b, d) - dot(d, d) * volume(a, b, c))
+fn insphere<T: Number>([a, b, c, d, e]: [&[T; 3]; 5]) -> T {
+    let [a, b, c, d] = [a, b, c, d].map(|p| minus(p, e));
+    let (ab, cd) = (cross(&a, &b), cross(&c, &d));
+    (dot(&a, &a) * dot(&b, &cd) - dot(&b, &b) * dot(&a, &cd))
+        + (dot(&c, &c) * dot(&d, &ab) - dot(&d, &d) * dot(&c, &ab))
 }
 
 /// Where neither products nor their errors over- or underflow.
@@ -73,17 +77,17 @@ fn certain(value: f64, error: f64) -> Option<i32> {
 
 /// The sum of the magnitudes of the products is at most 2/sqrt(3) times the product of the lengths, and 8 roundings
 /// of 2^-53 each go into every one: 1.1e-15 times the lengths.
-fn filtered_orientation([a, b, c, d]: [Point; 4]) -> Option<i32> {
-    let [p, q, r] = [minus(b, a), minus(c, a), minus(d, a)];
-    let squares = [dot(p, p), dot(q, q), dot(r, r)];
+fn filtered_orientation(points: [&Point; 4]) -> Option<i32> {
+    let [a, b, c, d] = points;
+    let squares = [b, c, d].map(|p| minus(p, a)).map(|p| dot(&p, &p));
     squares.into_iter().all(is_ordinary).then_some(())?;
-    certain(volume(p, q, r), 3e-15 * (squares[0].sqrt() * squares[1].sqrt() * squares[2].sqrt()))
+    certain(orientation(points), 3e-15 * (squares[0].sqrt() * squares[1].sqrt() * squares[2].sqrt()))
 }
 
 /// As for the orientation, four volumes, each times a square: 17 roundings, 8/sqrt(3), 9e-15.
-fn filtered_insphere(points: [Point; 5]) -> Option<i32> {
+fn filtered_insphere(points: [&Point; 5]) -> Option<i32> {
     let [a, b, c, d, e] = points;
-    let squares = [a, b, c, d].map(|p| dot(minus(p, e), minus(p, e)));
+    let squares = [a, b, c, d].map(|p| minus(p, e)).map(|p| dot(&p, &p));
     squares.into_iter().all(is_ordinary).then_some(())?;
     let greatest = squares.into_iter().fold(0.0, f64::max);
     certain(insphere(points), 3e-14 * greatest * greatest * greatest.sqrt())
@@ -96,18 +100,18 @@ impl Space {
         Space { small: small(&points), points, exact: OnceCell::new() }
     }
 
-    fn exact(&self) -> &[ExactPoint3] {
-        self.exact.get_or_init(|| tetrahedra::exact_points(&self.points))
+    fn exact(&self) -> &[ExactPoint] {
+        self.exact.get_or_init(|| exact_points(&self.points))
     }
 
     /// Sign of det(b - a, c - a, d - a).
     pub fn orientation(&self, corners: [usize; 4]) -> i32 {
-        if let Some(sign) = filtered_orientation(corners.map(|i| self.points[i])) {
+        if let Some(sign) = filtered_orientation(corners.map(|i| &self.points[i])) {
             return sign;
         }
         match &self.small {
-            Some(small) => orientation(corners.map(|i| small[i].map(i128::from))).signum() as i32,
-            None => tetrahedra::orientation(corners.map(|i| &self.exact()[i])),
+            Some(small) => orientation(corners.map(|i| &small[i])).signum() as i32,
+            None => sign(&orientation(corners.map(|i| &self.exact()[i]))),
         }
     }
 
@@ -116,16 +120,14 @@ impl Space {
     pub fn insphere(&self, corners: [usize; 4], e: usize) -> i32 {
         let [a, b, c, d] = corners;
         let five = [a, b, c, d, e];
-        if let Some(sign) = filtered_insphere(five.map(|i| self.points[i])) {
+        if let Some(sign) = filtered_insphere(five.map(|i| &self.points[i])) {
             return sign;
         }
-        match &self.small {
-            Some(small) => match insphere(five.map(|i| small[i].map(i128::from))).signum() as i32 {
-                0 => self.tie(corners, e),
-                sign => sign,
-            },
-            None => tetrahedra::insphere_perturbed(five.map(|i| &self.exact()[i])),
-        }
+        let unperturbed = match &self.small {
+            Some(small) => insphere(five.map(|i| &small[i])).signum() as i32,
+            None => sign(&insphere(five.map(|i| &self.exact()[i]))),
+        };
+        if unperturbed == 0 { self.tie(corners, e) } else { unperturbed }
     }
 
     /// Of the points by descending rank the first decides whose lift makes a difference.
@@ -170,12 +172,13 @@ impl Space {
     }
 
     /// Proves that the claimed tetrahedra are the canonical Delaunay tetrahedra of the points, or says why not. In
-    /// O(n) for each facet of the hull.
+    /// O(n + h^2) for h facets of the hull.
     ///
-    /// All are positive, and what is across from each other has its facet in common. Facets without another tetrahedron
-    /// have all points on their inner side: so the number of tetrahedra around a place changes nowhere within the hull,
-    /// and it is 1 at one place. So they fill the hull. Neighbours are locally Delaunay: the lifted points are convex
-    /// across all facets, hence convex.
+    /// All are positive, and what is across from each other has its facet in common: so the number of tetrahedra around a
+    /// place changes only at open facets. These have all of their own vertices on their inner side, so they are on the
+    /// hull of these: the number is 0 outside of it, and all points are inside. Within it is 1, because it is 1 at one
+    /// place. So they fill the hull. Neighbours are locally Delaunay: the lifted points are convex across all facets,
+    /// hence convex.
     pub fn prove(&self, claims: &[Claim]) -> Result<(), String> {
         if claims.is_empty() {
             return if self.is_flat() { Ok(()) } else { Err("there are no tetrahedra".into()) };
@@ -205,6 +208,7 @@ impl Space {
     }
 
     fn prove_facets(&self, claims: &[Claim]) -> Result<(), String> {
+        let hull = vertices_of_open_facets(claims);
         for (t, (corners, across)) in claims.iter().enumerate() {
             for side in 0..4 {
                 let Some((u, other_side)) = across[side] else {
@@ -213,7 +217,7 @@ impl Space {
                         replaced[side] = e;
                         !corners.contains(&e) && self.orientation(replaced) < 0
                     };
-                    if let Some(e) = (0..self.points.len()).find(|&e| beyond(e)) {
+                    if let Some(e) = hull.iter().find(|&&e| beyond(e)) {
                         return Err(format!(
                             "point {e} is beyond side {side} of {t}, {corners:?}, on the hull"
                         ));
@@ -256,14 +260,14 @@ impl Space {
             return false;
         }
         let times_4 = |i: usize| self.exact()[i].clone().map(|c| c * BigInt::from(4));
-        let center: ExactPoint3 =
+        let center: ExactPoint =
             [0, 1, 2].map(|axis| of.iter().map(|&i| &self.exact()[i][axis]).sum::<BigInt>());
         let (corners, steps) = (corners.map(times_4), [of[0], of[1], of[2]].map(times_4));
         (0..4).all(|side| {
-            let seen_from = |p: &ExactPoint3| {
+            let seen_from = |p: &ExactPoint| {
                 let mut replaced = [&corners[0], &corners[1], &corners[2], &corners[3]];
                 replaced[side] = p;
-                tetrahedra::orientation(replaced)
+                sign(&orientation(replaced))
             };
             let signs = [&center].into_iter().chain(&steps).map(seen_from);
             signs.into_iter().find(|&sign| sign != 0).unwrap_or(0) > 0
@@ -285,6 +289,18 @@ impl Space {
     }
 }
 
+fn vertices_of_open_facets(claims: &[Claim]) -> Vec<usize> {
+    let open = claims.iter().flat_map(|(corners, across)| {
+        (0..4)
+            .filter(|&side| across[side].is_none())
+            .flat_map(move |side| (0..4).filter(move |&i| i != side).map(|i| corners[i]))
+    });
+    let mut vertices: Vec<usize> = open.collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    vertices
+}
+
 /// The points times a power of two that makes the greatest coordinate about 1, unless that takes bits away.
 fn ordinary(points: &[Point]) -> Vec<Point> {
     let greatest = points.as_flattened().iter().fold(0.0, |greatest: f64, c| greatest.max(c.abs()));
@@ -298,7 +314,7 @@ fn ordinary(points: &[Point]) -> Vec<Point> {
 }
 
 /// The points as integers relative to the first, if they are small.
-fn small(points: &[Point]) -> Option<Vec<[i64; 3]>> {
+fn small(points: &[Point]) -> Option<Vec<[i128; 3]>> {
     let numbers = points.as_flattened();
     let least = numbers.iter().filter(|c| **c != 0.0).map(|c| exponent_of_last_bit(*c)).min().unwrap_or(0);
     // Cheap to see, and almost always so if they are not small: coordinates above 2^60 units.
@@ -306,9 +322,9 @@ fn small(points: &[Point]) -> Option<Vec<[i64; 3]>> {
         return None;
     }
     let unit = 2f64.powi(least);
-    let integers: Vec<[i64; 3]> = points.iter().map(|p| p.map(|c| (c / unit) as i64)).collect();
+    let integers: Vec<[i128; 3]> = points.iter().map(|p| p.map(|c| (c / unit) as i128)).collect();
     let first = integers.first().copied().unwrap_or_default();
-    let differences: Vec<[i64; 3]> =
+    let differences: Vec<[i128; 3]> =
         integers.iter().map(|p| [0, 1, 2].map(|axis| p[axis] - first[axis])).collect();
     // Differences of two differences are twice as large.
     differences.as_flattened().iter().all(|d| d.abs() <= SMALL / 2).then_some(differences)
@@ -333,4 +349,112 @@ pub fn distinct(points: &[Point]) -> (Vec<Point>, Vec<usize>) {
         })
         .collect();
     (kept, first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::sets::Random;
+    use crate::reference::{clouds, exact3};
+
+    #[test]
+    fn decisions_are_those_of_integers_without_limit() {
+        let mut decided = [0; 3];
+        for seed in 0..150 {
+            let mut random = Random::new(seed);
+            let (points, _) = distinct(&clouds::mixture(&mut random, 12));
+            let (space, exact) = (Space::new(&points), exact_points(&points));
+            for _ in 0..40 {
+                let mut five: Vec<usize> = (0..points.len()).collect();
+                random.shuffle(&mut five);
+                let &[a, b, c, d, e, ..] = five.as_slice() else { break };
+                let sign = space.orientation([a, b, c, d]);
+                assert_eq!(sign, exact3::orientation([a, b, c, d].map(|i| &exact[i])), "{points:?}");
+                decided[(sign + 1) as usize] += 1;
+                let (a, b) = if sign < 0 { (b, a) } else { (a, b) };
+                let expected = exact3::insphere_perturbed([a, b, c, d, e].map(|i| &exact[i]));
+                assert!(sign == 0 || space.insphere([a, b, c, d], e) == expected, "{points:?}");
+            }
+        }
+        assert!(decided.iter().all(|&count| count > 500), "{decided:?}");
+    }
+
+    /// The tetrahedra by definition, each facet with what is across.
+    fn claims(points: &[Point]) -> Vec<Claim> {
+        let tetrahedra = Space::new(points).tetrahedra();
+        let facet = |t: usize, side: usize| {
+            let mut facet = tetrahedra[t];
+            facet[side] = u32::MAX;
+            facet.sort_unstable();
+            facet
+        };
+        let corners: Vec<Corner> = (0..tetrahedra.len()).flat_map(|t| (0..4).map(move |i| (t, i))).collect();
+        let across = |t, i| {
+            let is_other = |&&(u, j): &&Corner| u != t && facet(u, j) == facet(t, i);
+            corners.iter().find(is_other).copied()
+        };
+        (0..tetrahedra.len())
+            .map(|t| (tetrahedra[t].map(|v| v as usize), [0, 1, 2, 3].map(|i| across(t, i))))
+            .collect()
+    }
+
+    #[test]
+    fn the_proof_holds_for_the_tetrahedra_by_definition_and_for_no_others() {
+        for seed in 0..60 {
+            let mut random = Random::new(1000 + seed);
+            let (points, _) = distinct(&clouds::mixture(&mut random, 9));
+            let (space, claims) = (Space::new(&points), claims(&points));
+            assert_eq!(space.prove(&claims), Ok(()), "{points:?}");
+            if claims.is_empty() {
+                continue;
+            }
+            assert!(space.prove(&[]).is_err());
+            let t = random.integer(0, claims.len() as i64 - 1) as usize;
+            let mut inverted = claims.clone();
+            inverted[t].0.swap(0, 1);
+            inverted[t].1.swap(0, 1);
+            assert!(space.prove(&inverted).is_err(), "{points:?}");
+            let mut holed: Vec<Claim> = claims.clone();
+            for side in 0..4 {
+                if let Some((u, back)) = claims[t].1[side] {
+                    holed[u].1[back] = None;
+                }
+            }
+            holed.remove(t);
+            let renumbered = |(u, i): Corner| (u - usize::from(u > t), i);
+            holed.iter_mut().for_each(|claim| claim.1 = claim.1.map(|across| across.map(renumbered)));
+            assert!(space.prove(&holed).is_err(), "{points:?}");
+            let twice: Vec<Claim> = claims
+                .iter()
+                .copied()
+                .chain(
+                    claims
+                        .iter()
+                        .map(|&(v, across)| (v, across.map(|a| a.map(|(u, i)| (u + claims.len(), i))))),
+                )
+                .collect();
+            assert!(space.prove(&twice).is_err(), "{points:?}");
+        }
+    }
+
+    /// Lifts of other points are no Delaunay tetrahedra of these: but for ties, of five points there are two ways.
+    #[test]
+    fn the_other_tetrahedra_of_five_points_are_refused() {
+        let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 3.0], [1.0, 1.0, -3.0]];
+        let two = vec![
+            ([0, 1, 2, 3], [None, None, None, Some((1, 3))]),
+            ([0, 2, 1, 4], [None, None, None, Some((0, 3))]),
+        ];
+        let around = |i: usize, j: usize| [i, j, 3, 4];
+        let cyclic = |t: usize| [Some(((t + 1) % 3, 1)), Some(((t + 2) % 3, 0)), None, None];
+        let three: Vec<Claim> = (0..3)
+            .map(|t| (around(t, (t + 1) % 3), cyclic(t)))
+            .map(|([i, j, k, l], a)| ([i, j, l, k], a))
+            .collect();
+        let space = Space::new(&points);
+        let results = [space.prove(&two), space.prove(&three)];
+        assert_eq!(results.iter().filter(|result| result.is_ok()).count(), 1, "{results:?}");
+        let error = results.into_iter().find_map(Result::err).expect("one");
+        assert!(error.contains("locally Delaunay"), "{error}");
+    }
 }
