@@ -27,6 +27,7 @@ use reference::clouds::{self, Family};
 use reference::sets::Random;
 use reference::space::{Point, Space, distinct};
 use spmesh::delaunay3::{Kernel, Tetrahedralization};
+use spmesh::order::{Curve, Sequence};
 
 /// Fuzzes the 3D kernel.
 #[derive(Debug, Parser)]
@@ -70,7 +71,7 @@ fn main() {
         let points = set_of(args.seed, set);
         println!("set {set} of seed {}: {} points", args.seed, points.len());
         write(&args.out, &format!("{}-{set}", args.seed), &points);
-        match attempted(&points) {
+        match attempted(set, &points) {
             Ok(()) => println!("proved"),
             Err(message) => fail(&args, set, &points, &message),
         }
@@ -125,9 +126,21 @@ fn caught(attempt: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
     })
 }
 
-/// With a new kernel.
-fn attempted(points: &[Point]) -> Result<(), String> {
-    caught(|| attempt(&mut Kernel::new(), &mut Tetrahedralization::default(), points, || ()))
+/// With a new kernel, which inserts as that of a set does.
+fn attempted(set: u64, points: &[Point]) -> Result<(), String> {
+    let mut kernel = Kernel::new();
+    choose_order(&mut kernel, set);
+    caught(|| attempt(&mut kernel, &mut Tetrahedralization::default(), points, || ()))
+}
+
+/// The order of insertion of a set: the usual one in half of them.
+fn choose_order(kernel: &mut Kernel, set: u64) {
+    let mut random = Random::new(set);
+    let is_usual = random.integer(0, 1) == 0;
+    let [curve, sequence, levels] = [3, 2, 1].map(|last| if is_usual { 0 } else { random.integer(0, last) });
+    kernel.curve = Curve::ALL[curve as usize];
+    kernel.sequence = [Sequence::Rounds, Sequence::Pass, Sequence::Random { seed: set }][sequence as usize];
+    kernel.by_bit_levels = levels == 1;
 }
 
 /// Time of all threads on processors: others may keep them busy for minutes.
@@ -195,6 +208,7 @@ fn work(args: &Args, thread: u64, progress: &Progress, is_over: &AtomicBool) {
         // Whatever happens, it is known which set it was.
         fs::write(&current, format!("{set}\n")).expect("a writable folder");
         let tell = |running| *progress.running.lock().expect("no panic while locked") = running;
+        choose_order(&mut kernel, set);
         tell(Some((set, cpu_time())));
         let result = caught(|| attempt(&mut kernel, &mut mesh, &points, || tell(None)));
         tell(None);
@@ -212,8 +226,8 @@ fn work(args: &Args, thread: u64, progress: &Progress, is_over: &AtomicBool) {
 fn fail(args: &Args, set: u64, points: &[Point], message: &str) -> ! {
     println!("set {set} of seed {} fails, {} points: {message}", args.seed, points.len());
     write(&args.out, &format!("fail-{}-{set}", args.seed), points);
-    let small = shrunk(points.to_vec());
-    match attempted(&small) {
+    let small = shrunk(set, points.to_vec());
+    match attempted(set, &small) {
         Ok(()) => println!("not with a fresh kernel"),
         Err(message) => println!("{} points do: {message}\nlet points = {small:?};", small.len()),
     }
@@ -222,9 +236,9 @@ fn fail(args: &Args, set: u64, points: &[Point], message: &str) -> ! {
 }
 
 /// Leaves points out, and takes bits away, as long as the set fails.
-fn shrunk(mut points: Vec<Point>) -> Vec<Point> {
+fn shrunk(set: u64, mut points: Vec<Point>) -> Vec<Point> {
     std::panic::set_hook(Box::new(|_| {}));
-    let fails = |points: &[Point]| attempted(points).is_err();
+    let fails = |points: &[Point]| attempted(set, points).is_err();
     let mut chunk = points.len() / 2;
     while chunk > 0 {
         let mut start = 0;

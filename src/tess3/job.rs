@@ -78,7 +78,8 @@ impl Job<'_> {
             choice::select(structure, &self.options.selection)?;
         }
         let plain = is_plain.then(|| std::mem::take(&mut structure.models[at].points));
-        let selected = plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
+        let selected =
+            plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
         let points = match (plain, selected) {
             (Some(points), _) => Cow::Owned(points),
@@ -86,8 +87,11 @@ impl Job<'_> {
         };
         let mut report = Report::new(name.number, points.len());
         let mut mesh = Tetrahedralization::default();
-        Kernel::new().triangulate(points, &mut mesh)?;
-        report.count(&mesh);
+        let mut kernel = Kernel::new();
+        kernel.is_timed = self.options.is_timed;
+        kernel.triangulate(points, &mut mesh)?;
+        report.count(&kernel, &mesh);
+        drop(kernel);
         report.times.triangulate = started.elapsed();
         let triangulated = Triangulated { name, structure, selected, mesh: &mesh };
         self.write(&triangulated, &mut report)?;
@@ -125,7 +129,11 @@ impl Job<'_> {
         Ok(self.table.as_mut().expect("there is one now"))
     }
 
-    fn write_mesh(&mut self, triangulated: &Triangulated<'_>, alpha: Option<&AlphaComplex<'_>>) -> Result<()> {
+    fn write_mesh(
+        &mut self,
+        triangulated: &Triangulated<'_>,
+        alpha: Option<&AlphaComplex<'_>>,
+    ) -> Result<()> {
         let Triangulated { name, structure, selected, mesh } = *triangulated;
         let merged = mesh.duplicates.len() as u64;
         let points = mesh.vertices().len() as u64 + merged;

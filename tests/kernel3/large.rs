@@ -7,6 +7,7 @@ use crate::reference::sets::Random;
 use crate::reference::space::Point;
 use crate::reference::tetrahedra::as_set;
 use spmesh::delaunay3::Kernel;
+use spmesh::order::{Curve, Sequence};
 
 fn grid(side: i64) -> impl Iterator<Item = [i64; 2]> {
     (0..side * side).map(move |i| [i % side, i / side])
@@ -85,6 +86,24 @@ fn the_order_of_the_input_and_copies_make_no_difference() {
         random.shuffle(&mut shuffled);
         let found = by_coordinates(&shuffled, &tetrahedra(&unproved(&mut kernel, &shuffled)));
         assert!(found == expected, "seed {seed}");
+    }
+}
+
+#[test]
+fn the_order_of_insertion_makes_no_difference() {
+    for (seed, family) in (0..).zip([Family::Uniform, Family::Cubic, Family::Chain, Family::RoundedSphere]) {
+        let points = clouds::of(&mut Random::new(8000 + seed), family, 400);
+        let expected = tetrahedra(&proved(&mut Kernel::new(), &points));
+        for curve in Curve::ALL {
+            for sequence in [Sequence::Rounds, Sequence::Pass, Sequence::Random { seed }] {
+                for by_bit_levels in [false, true] {
+                    let mut kernel = Kernel::new();
+                    (kernel.curve, kernel.sequence, kernel.by_bit_levels) = (curve, sequence, by_bit_levels);
+                    let found = tetrahedra(&unproved(&mut kernel, &points));
+                    assert!(found == expected, "{family:?}, {curve:?}, {sequence:?}, {by_bit_levels}");
+                }
+            }
+        }
     }
 }
 

@@ -29,7 +29,7 @@ impl Record {
             altloc: ' ',
             residue: "ALA",
             chain: 'A',
-            number: serial as i32,
+            number: (serial % 10_000) as i32,
             at,
             occupancy: 1.0,
             element: "C",

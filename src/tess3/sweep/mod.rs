@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::{Options, Stats};
 use crate::error::{Error, ErrorKind, Result};
 use crate::source::structure::Format;
-use file::Job;
+use file::{End, Job};
 use summary::{Done, Summary};
 
 /// A sweep to be done.
@@ -77,7 +77,8 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let mut done = if sweep.resume { Done::read(&sweep.summary)? } else { Done::default() };
     let mut outcome = Outcome::default();
     let mut seen = HashSet::new();
-    let files: Vec<&Path> = sweep.files.iter().filter(|&file| seen.insert(file)).map(PathBuf::as_path).collect();
+    let files: Vec<&Path> =
+        sweep.files.iter().filter(|&file| seen.insert(file)).map(PathBuf::as_path).collect();
     listener(News::Files(files.len() as u64));
     let files = left_to_do(files, &mut done, sweep, &mut |_| {
         outcome.skipped += 1;
@@ -85,7 +86,9 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     });
     let jobs = jobs(files, &done);
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    crew::run(sweep.threads, &jobs, |job| file::run(job, sweep), |job, end| {
+    let work = |job: &Job<'_>| file::run(job, sweep);
+    let is_last = |end: &End| sweep.strict && end.result.is_err();
+    crew::run(sweep.threads, &jobs, work, is_last, |job, end| {
         summary.add(end.lines(job.file, &sweep.options_text))?;
         match end.result {
             Ok(written) => {
@@ -131,11 +134,8 @@ fn left_to_do<'f>(
 /// The jobs, the largest file first: if it came last, all threads but one would wait for it.
 fn jobs<'f>(files: Vec<&'f Path>, done: &Done) -> Vec<Job<'f>> {
     let stems = names::stems(&files, &done.stems());
-    let mut jobs: Vec<(u64, Job<'f>)> = files
-        .into_iter()
-        .zip(stems)
-        .map(|(file, stem)| (work(file), Job { file, stem }))
-        .collect();
+    let mut jobs: Vec<(u64, Job<'f>)> =
+        files.into_iter().zip(stems).map(|(file, stem)| (work(file), Job { file, stem })).collect();
     jobs.sort_by_key(|(work, _)| std::cmp::Reverse(*work));
     jobs.into_iter().map(|(_, job)| job).collect()
 }
