@@ -8,6 +8,7 @@ mod cli;
 mod convert;
 mod finalize;
 mod kernel;
+mod kernel3;
 mod kernel_predicates;
 mod kernel_predicates3;
 mod order;

@@ -20,6 +20,8 @@ pub(super) struct Build<'a> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
+    /// Whether only instructions that every processor has are used.
+    pub(super) is_portable: bool,
     /// The numbers of the vertices in the order of insertion.
     pub(super) insertions: Insertions,
     /// See [`Insertion`].

@@ -4,10 +4,13 @@ use super::build::{Build, Built};
 use super::exact::Exact;
 use super::lanes;
 
-/// Runs `build` with the widest lanes there are.
+/// Runs `build` with the widest lanes there are, unless it wants those that are everywhere.
 pub(super) fn run(build: Build, predicates: &mut dyn Exact) -> Built {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+    if !build.is_portable
+        && std::arch::is_x86_feature_detected!("avx2")
+        && std::arch::is_x86_feature_detected!("fma")
+    {
         // Safety: the processor has AVX2 and FMA.
         return unsafe { run_avx2(build, predicates) };
     }
