@@ -26,13 +26,19 @@ pub struct Tetrahedron {
 }
 
 impl Tetrahedron {
+    /// A tetrahedron with what is across from each corner.
+    pub(crate) fn new(vertices: [u32; 4], across: [Option<Corner>; 4]) -> Tetrahedron {
+        let word = |corner: Corner| corner.tetrahedron * 8 + corner.corner;
+        Tetrahedron { vertices, across: across.map(|corner| corner.map_or(NONE, word)) }
+    }
+
     /// The tetrahedron across the facet opposite to a corner, as its corner opposite to that facet; `None` beyond the
     /// hull.
     #[inline]
     #[must_use]
     pub fn across(&self, side: usize) -> Option<Corner> {
         let word = self.across[side];
-        (word != NONE).then(|| Corner { tetrahedron: word / 8, corner: word & 3 })
+        (word != NONE).then_some(Corner { tetrahedron: word / 8, corner: word & 3 })
     }
 }
 
@@ -49,6 +55,11 @@ pub struct Tetrahedralization {
 }
 
 impl Tetrahedralization {
+    /// Gives it tetrahedra that were made elsewhere.
+    pub(crate) fn set_tetrahedra(&mut self, tetrahedra: Vec<Tetrahedron>) {
+        self.tetrahedra = tetrahedra;
+    }
+
     /// All tetrahedra, about in the order of the curve; vertices are indices of `points`. None if all points lie in
     /// a plane.
     #[inline]
