@@ -15,7 +15,7 @@ from decimal import Decimal
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats", "vectors")
 UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
-KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3}
+KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4}
 INF, NAN = float("inf"), float("nan")
 
 
@@ -155,13 +155,19 @@ class Vector:
         ids = list(range(first, first + len(new))) + list(imported)
         name = lambda local: str(ids[local] + 1 if local < len(ids) else "?")
         self.lines += ["# patch"] + ["v " + text for _, text in pairs]
-        self.lines += ["f " + " ".join(map(name, t)) for t in simplices] + ["x " + name(local) for local in finalized]
+        letter, simplex = ("c ", "tetrahedron") if self.dims == 3 else ("f ", "triangle")
+        self.lines += [letter + " ".join(map(name, t)) for t in simplices] + ["x " + name(local) for local in finalized]
         payload = [(struct.pack("<Q", first), "first id"), (struct.pack("<4I", *counts), "counts N M S F")]
         payload += [(data, "vertex %d: %s" % (first + i, text)) for i, (data, text) in enumerate(pairs)]
         payload += [(struct.pack("<Q", vertex), "imports vertex %d" % vertex) for vertex in imported]
-        payload += [(struct.pack("<3I", *t), "triangle of vertices %s" % " ".join(map(str, t))) for t in simplices]
+        payload += [(struct.pack("<%dI" % len(t), *t), "%s of vertices %s" % (simplex, " ".join(map(str, t))))
+                    for t in simplices]
         payload += [(struct.pack("<I", local), "finalizes local vertex %d" % local) for local in finalized]
         return self.block(b"PTCH", payload)
+
+    def labels(self, *labels):
+        self.lines += ["label %d" % label for label in labels]
+        return self.block(b"LABL", [(struct.pack("<Q", label), "label %d" % label) for label in labels])
 
     def residual(self, *points):
         payload = []
@@ -205,6 +211,9 @@ CM = (("0.01", "0.01", "0.5"), ("1000", "-2000", "0"))
 HALF = (("0.5", "0.5", "0.25"), ("0", "0", "0"))
 QUADTREE = (2, 0, 0, 0, 4)
 SQUARE = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (2, 2, 4)]
+# A corner of a cube, its three neighbours, and the corner opposite: two tetrahedra on one facet.
+CORNERS = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (4, 4, 4)]
+TETRAHEDRAL = dict(kind="tetrahedral mesh", dims=3, grid=HALF)
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
 
 
@@ -263,6 +272,21 @@ def passing():
         0, [(2, 2, 0), (0, 0, 0), (6, 0, 0), (2, 6, 0)], (), [(0, 1, 2), (0, 2, 3), (0, 3, 1)], (0,)).residual(
         (1, 0, 0, 0), (2, 6, 0, 0), (3, 2, 6, 0)).walls((0, 1), (1, 2), (2, 0)).end(
         4, vertices=4, simplices=3, residual=3, walls=3)
+    yield "tetrahedra-empty", "A tetrahedral mesh without vertices", Vector(**TETRAHEDRAL).end()
+    yield "tetrahedra-one", "One tetrahedron in f64 without labels", Vector(
+        "tetrahedral mesh", dims=3, bounds=("-1e22", 0, "-0.0", "0.1", "5e-324", 3), points=4).patch(
+        0, [("0", "0", "-0.0"), ("0.1", "0", "0"), ("-1e22", "5e-324", "0"), ("0", "0", "3")], (), [(0, 1, 2, 3)],
+        (0, 1, 2, 3)).end(4, vertices=4, simplices=1)
+    yield "tetrahedra-labels", "Two patches with their labels behind each; one point was merged", Vector(
+        **TETRAHEDRAL, bounds=(0, 0, 0, 4, 4, 4), points=6).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)], (0,)).labels(
+        17, 4, 2**64 - 1, 4).patch(4, CORNERS[4:], (1, 2, 3), [(0, 1, 3, 2)], (0, 1, 2, 3)).labels(0).end(
+        6, vertices=5, simplices=2, merged=1)
+    yield "tetrahedra-labels-late", "Labels that lag behind, an empty block of them, and patches without tetrahedra", Vector(
+        **TETRAHEDRAL).labels().patch(0, CORNERS[:3]).labels(1).patch(3, CORNERS[3:]).labels(2, 3).labels().patch(
+        5, (), (0, 1, 2, 3, 4), [(0, 1, 2, 3), (4, 1, 3, 2)], (0, 1, 2, 3, 4)).labels(4, 5).end(
+        5, vertices=5, simplices=2)
+    yield "tetrahedra-none", "Coplanar points: vertices and labels without tetrahedra", Vector(**TETRAHEDRAL).patch(
+        0, CORNERS[:3], (), (), (0, 1, 2)).labels(3, 2, 1).end(5, vertices=3, merged=2)
 
 
 def failing_headers():
@@ -313,6 +337,10 @@ def failing_headers():
         ("region-empty", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 0, 1))),
         ("region-nan", "region is empty", dict(kind="partial triangle mesh", region=(0, 0, 1, NAN))),
         ("mesh-in-3d", "a triangle mesh in 3", dict(kind="triangle mesh", dims=3)),
+        ("tetrahedra-in-2d", "a tetrahedral mesh in 2", dict(kind="tetrahedral mesh", elevation=1)),
+        ("tetrahedra-region", "region goes with a partial mesh", dict(kind="tetrahedral mesh", dims=3, region=(0, 0, 1, 1))),
+        ("tetrahedra-chunked", "can be chunked",
+            dict(kind="tetrahedral mesh", dims=3, chunked=True, tree=(2, 0, 0, 0, 4))),
     ]
     for name, words, fields in damage:
         raw = {field: value for field, value in fields.items() if isinstance(value, bytes)}
@@ -433,6 +461,47 @@ def failing_streams():
         partial().residual((None, 0, 0, 0)).walls((0, 1)).end(1, residual=1, walls=1))
     yield ("wall-to-itself", "wall 0 to 0 between no",
         partial().residual((None, 0, 0, 0)).walls((0, 0)).end(1, residual=1, walls=1))
+    cell = lambda **fields: Vector(**TETRAHEDRAL, **fields).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)], (0,))
+    four = lambda: Vector(**TETRAHEDRAL).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)], (0, 1, 2, 3))
+    tetrahedra = lambda new, simplices: Vector(**TETRAHEDRAL).patch(0, CORNERS[:new], (), simplices, range(new)).end(
+        new, vertices=new, simplices=len(simplices))
+    yield ("labels-too-many", "5 labels after 4 vertices", four().labels(1, 2, 3, 4, 5).end(4, vertices=4, simplices=1))
+    yield ("labels-before-vertices", "2 labels after 0 vertices", Vector(**TETRAHEDRAL).labels(1, 2).patch(
+        0, CORNERS[:2], (), (), (0, 1)).end(2, vertices=2))
+    yield ("labels-ahead", "5 labels after 4 vertices", cell().labels(1, 2, 3).labels(4, 5).patch(
+        4, CORNERS[4:], (1, 2, 3), [(0, 1, 3, 2)], (0, 1, 2, 3)).end(5, vertices=5, simplices=2))
+    yield ("labels-too-few", "3 labels of 4 vertices", four().labels(1, 2, 3).end(4, vertices=4, simplices=1))
+    yield ("labels-not-of-all", "4 labels of 5 vertices", cell().labels(1, 2, 3, 4).patch(
+        4, CORNERS[4:], (1, 2, 3), [(0, 1, 3, 2)], (0, 1, 2, 3)).end(5, vertices=5, simplices=2))
+    yield "labels-length", "whole number of records", four().block(b"LABL", raw(bytes(31))).end(
+        4, vertices=4, simplices=1)
+    yield "labels-in-points", "may stand here", Vector(grid=HALF, dims=3).points((0, 0, 0)).labels(1).end(1)
+    yield ("labels-in-mesh", "may stand here",
+        mesh().patch(0, SQUARE[:1], (), (), (0,)).labels(1).end(1, vertices=1))
+    yield ("labels-in-partial", "may stand here",
+        partial().patch(0, SQUARE[:1], (), (), (0,)).labels(1).end(1, vertices=1))
+    yield "points-in-tetrahedra", "may stand here", Vector(**TETRAHEDRAL).points((0, 0, 0)).end(1)
+    yield ("cells-in-tetrahedra", "may stand here",
+        Vector(**TETRAHEDRAL, tree=(2, 0, 0, 0, 8)).cells(1).end(cells=1))
+    yield "residual-in-tetrahedra", "may stand here", Vector(**TETRAHEDRAL).residual((None, 0, 0, 0)).end(1, residual=1)
+    yield "walls-in-tetrahedra", "may stand here", Vector(**TETRAHEDRAL).walls((0, 1)).end(walls=1)
+    yield "tetrahedron-repeats-vertex", "uses a vertex twice", tetrahedra(4, [(0, 1, 2, 0)])
+    yield "tetrahedron-repeats-last", "uses a vertex twice", tetrahedra(5, [(0, 1, 2, 3), (4, 1, 3, 3)])
+    yield "tetrahedron-index", "simplex uses", tetrahedra(4, [(0, 1, 2, 4)])
+    yield "tetrahedron-of-three", "do not add up", tetrahedra(4, [(0, 1, 2)])
+    yield "tetrahedra-counts", "do not add up", Vector(**TETRAHEDRAL).patch(0, CORNERS, counts=(5, 0, 2**30, 0)).end()
+    yield "tetrahedra-import-finalized", "vertex 0 referenced after finalization", cell().patch(
+        4, CORNERS[4:], (0, 1, 2, 3), [(0, 2, 4, 3)], (0, 2, 3, 4)).end(5, vertices=5, simplices=2)
+    yield "tetrahedra-not-finalized", "1 of 4 vertices were finalized", cell().end(4, vertices=4, simplices=1)
+    yield "tetrahedra-finalized-twice", "vertex 0 referenced after finalization", cell().patch(
+        4, (), (0, 1, 2, 3), (), (0, 1, 2, 3)).end(4, vertices=4, simplices=1)
+    yield "tetrahedra-outside-box", "outside of the header's bounding box", cell(bounds=(0, 0, 0, 4, 4, 3)).patch(
+        4, (), (1, 2, 3), (), (0, 1, 2)).end(4, vertices=4, simplices=1)
+    yield ("end-tetrahedra", "END states", Vector(**TETRAHEDRAL).patch(
+        0, CORNERS[:4], (), [(0, 1, 2, 3)], (0, 1, 2, 3)).end(4, vertices=4, simplices=2))
+    yield ("end-tetrahedra-points", "END states",
+        four().labels(1, 2, 3, 4).end(5, vertices=4, simplices=1))
+    yield "tetrahedra-no-end", "truncated", four().labels(1, 2, 3, 4)
     yield "end-walls", "END states", partial().residual((None, 0, 0, 0)).end(1, residual=1, walls=1)
 
 

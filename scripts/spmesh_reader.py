@@ -4,7 +4,7 @@
     python3 spmesh_reader.py FILE      (- for stdin; -q prints nothing)
 
 A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with the standard
-library alone. It checks every rule of the text but the orientation of triangles, those included that need a memory
+library alone. It checks every rule of the text but the orientation of simplices, those included that need a memory
 of cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit 1: the input cannot be read.
 """
 
@@ -60,6 +60,7 @@ KINDS = {
     1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
     2: ("triangle mesh", (2,), ((b"PTCH",),)),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+    4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
 }
 
 
@@ -336,7 +337,7 @@ class Stream:
         self.where, self.offset = "header at byte 0", 0
         self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
         self.live = {}
-        self.finalized = self.named = self.phase = 0
+        self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
         data = self.source.read(length)
@@ -379,6 +380,7 @@ class Stream:
             b"PNTS": self.points,
             b"CELL": self.tags,
             b"PTCH": self.patch,
+            b"LABL": self.label,
             b"RPNT": self.residual,
             b"WALL": self.walls,
             b"END ": self.end,
@@ -417,7 +419,8 @@ class Stream:
     def patch(self, payload):
         require(len(payload) >= 24, "patch of %d bytes, expected at least 24" % len(payload))
         first, n, m, s, f = struct.unpack_from("<QIIII", payload)
-        lengths = [n * self.header.record.size, m * 8, s * 12, f * 4]
+        corners = self.header.dims + 1
+        lengths = [n * self.header.record.size, m * 8, s * corners * 4, f * 4]
         require(24 + sum(lengths) == len(payload), "the counts of the patch do not add up to its length")
         require(
             first == self.total["vertices"],
@@ -426,7 +429,7 @@ class Stream:
         at = 24 + lengths[0]
         new = self.header.points_of(payload[24:at])
         imported = struct.unpack_from("<%dQ" % m, payload, at)
-        corners = struct.unpack_from("<%dI" % (3 * s), payload, at + lengths[1])
+        simplices = struct.unpack_from("<%dI" % (corners * s), payload, at + lengths[1])
         finalized = struct.unpack_from("<%dI" % f, payload, at + lengths[1] + lengths[2])
         require(
             is_increasing(imported) and (m == 0 or imported[-1] < first),
@@ -436,20 +439,29 @@ class Stream:
             is_increasing(finalized) and (f == 0 or finalized[-1] < n + m),
             "finalized vertices are not increasing indices of the patch",
         )
-        require(s == 0 or max(corners) < n + m, "simplex uses a vertex that its patch does not have")
+        require(s == 0 or max(simplices) < n + m, "simplex uses a vertex that its patch does not have")
         for vertex in imported:
             require(vertex in self.live, "vertex %d referenced after finalization" % vertex)
         ids = list(range(first, first + n)) + list(imported)
-        triangles = list(zip(corners[0::3], corners[1::3], corners[2::3]))
-        for a, b, c in triangles:
-            require(a != b and b != c and c != a, "simplex (%d, %d, %d) uses a vertex twice" % (a, b, c))
+        simplices = list(zip(*[iter(simplices)] * corners))
+        for simplex in simplices:
+            require(len(set(simplex)) == corners, "simplex %r uses a vertex twice" % (simplex,))
         self.live.update(zip(range(first, first + n), new))
         for local in finalized:
             del self.live[ids[local]]
         self.total["vertices"] += n
         self.total["simplices"] += s
         self.finalized += f
-        self.text.patch(new, [(ids[a], ids[b], ids[c]) for a, b, c in triangles], [ids[local] for local in finalized])
+        simplices = [[ids[local] for local in simplex] for simplex in simplices]
+        self.text.patch(new, simplices, [ids[local] for local in finalized])
+
+    def label(self, payload):
+        require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
+        self.labels += len(payload) // 8
+        vertices = self.total["vertices"]
+        require(self.labels <= vertices, "%d labels after %d vertices" % (self.labels, vertices))
+        for (label,) in struct.iter_unpack("<Q", payload):
+            self.text.line("label %d" % label)
 
     def residual(self, payload):
         size = 8 + self.header.record.size
@@ -490,6 +502,10 @@ class Stream:
                 not self.live and retired == counted["vertices"],
                 "END: %d of %d vertices were finalized or handed to the residual" % (retired, counted["vertices"]),
             )
+        require(
+            self.labels in (0, counted["vertices"]),
+            "END: %d labels of %d vertices, expected none, or one for each" % (self.labels, counted["vertices"]),
+        )
         require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
         if self.chunks:
@@ -561,10 +577,12 @@ class Text:
         world = self.world
         self.write("".join(["v %s\n" % world(point) for point in points]))
 
-    def patch(self, new, triangles, finalized):
+    def patch(self, new, simplices, finalized):
         self.line("# patch")
         self.vertices(new)
-        self.write("".join(["f %d %d %d\n" % (a + 1, b + 1, c + 1) for a, b, c in triangles]))
+        for simplex in simplices:
+            letter = "c" if len(simplex) == 4 else "f"
+            self.line(letter + "".join([" %d" % (vertex + 1) for vertex in simplex]))
         self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
 
     def residual(self, vertex, point):

@@ -8,6 +8,7 @@ mod peers;
 mod ply;
 mod samples;
 mod text;
+mod volume;
 
 use std::io::Cursor;
 

@@ -10,6 +10,7 @@ mod delaunay3_float;
 mod finalize;
 mod kernel;
 mod kernel_predicates;
+mod kernel_predicates3;
 mod output;
 mod pipelines;
 mod programs;

@@ -37,6 +37,7 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
             Event::Points(points) => writer.points(points)?,
             Event::Cells(cells) => writer.cells(cells)?,
             Event::Patch(patch) => writer.patch(patch)?,
+            Event::Labels(labels) => writer.labels(labels)?,
             Event::ResidualPoints(points) => writer.residual_points(points)?,
             Event::Walls(walls) => writer.walls(walls)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),
@@ -52,10 +53,12 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
         match (result.last_mut(), event) {
             (Some(Event::Points(before)), Event::Points(points)) => before.extend(points),
             (Some(Event::Cells(before)), Event::Cells(cells)) => before.extend(cells),
+            (Some(Event::Labels(before)), Event::Labels(labels)) => before.extend(labels),
             (Some(Event::ResidualPoints(before)), Event::ResidualPoints(points)) => before.extend(points),
             (Some(Event::Walls(before)), Event::Walls(walls)) => before.extend(walls),
             (_, Event::Points(points)) if points.is_empty() => {}
             (_, Event::Cells(cells)) if cells.is_empty() => {}
+            (_, Event::Labels(labels)) if labels.is_empty() => {}
             (_, Event::ResidualPoints(points)) if points.is_empty() => {}
             (_, Event::Walls(walls)) if walls.is_empty() => {}
             (_, event) => result.push(event),
@@ -100,6 +103,26 @@ fn a_flipped_bit_changes_nothing_or_is_malformed() {
                 Ok(read) => assert_eq!(read, whole, "{} with bit {bit} flipped", vector.name),
                 Err(error) => assert_eq!(error.kind(), ErrorKind::Malformed, "{}: {error}", vector.name),
             }
+        }
+    }
+}
+
+#[test]
+fn every_changed_byte_of_a_tetrahedral_mesh_is_malformed() {
+    let header = Header::new(Kind::TetrahedralMesh, Coordinates::F64, 3, false);
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let new = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let (simplices, finalized) = (vec![0, 1, 2, 3], vec![0, 1, 2, 3]);
+    writer.patch(&Patch { new, simplices, finalized, ..Patch::default() }).unwrap();
+    writer.labels(&[7, 1, 7, u64::MAX]).unwrap();
+    let bytes = writer.end(5, 1).unwrap();
+    assert_eq!(verify(&bytes).unwrap().1.len(), 3);
+    for at in 0..bytes.len() {
+        for change in 1..=255 {
+            let mut changed = bytes.clone();
+            changed[at] ^= change;
+            let error = read_all(&changed).expect_err("one byte is another");
+            assert_eq!(error.kind(), ErrorKind::Malformed, "byte {at} ^ {change}: {error}");
         }
     }
 }
@@ -200,6 +223,8 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
     let region = Some(Region::PLANE);
     let partial = Header { region, ..Header::new(Kind::PartialTriangleMesh, grid, 2, false) };
     let partial = write(&partial, &[Event::End(Default::default())]).unwrap();
+    let tetrahedral = Header::new(Kind::TetrahedralMesh, grid, 3, false);
+    let tetrahedral = write(&tetrahedral, &[Event::End(Default::default())]).unwrap();
     let with_block = |stream: &[u8], tag: &[u8; 4], payload: Vec<u8>| {
         let block = [tag, &[0; 12][..], &payload].concat();
         seal(vec![stream[frames(stream)[0].clone()].to_vec(), block])
@@ -216,6 +241,9 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
         with_block(&partial, b"PTCH", counts([(BLOCK_MAX as u32 - 24) / 8, 0, 0, 0])),
         with_block(&partial, b"PTCH", counts([u32::MAX; 4])),
         with_block(&partial, b"PTCH", counts([0, u32::MAX, 0, 0])),
+        with_block(&tetrahedral, b"PTCH", counts([0, 0, 1 << 30, 0])),
+        with_block(&tetrahedral, b"PTCH", counts([0, 0, (BLOCK_MAX as u32 - 24) / 16, 0])),
+        with_block(&tetrahedral, b"LABL", vec![0; BLOCK_MAX]),
         with_block(&points, b"END ", vec![0; BLOCK_MAX]),
     ];
     for at in [12, 204, frames(&points)[1].start + 8] {
@@ -236,7 +264,11 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
 
 /// A header with random parts, and coordinates that fit all of them.
 fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
-    let dims = if kind == Kind::Points && random.coin() { 3 } else { 2 };
+    let dims = match kind {
+        Kind::TetrahedralMesh => 3,
+        Kind::Points if random.coin() => 3,
+        _ => 2,
+    };
     let coordinates = if random.coin() {
         Coordinates::F64
     } else {
@@ -286,19 +318,23 @@ fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<E
     events
 }
 
-/// Patches with random imports and finalization, then a residual of what is live.
+/// Patches with random imports and finalization, then a residual of what is live. A tetrahedral mesh has labels that
+/// lag behind its vertices, or none.
 fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
     let mut live: Vec<(u64, Point)> = Vec::new();
     let mut events = Vec::new();
     let mut first_id = 0;
+    let per_simplex = header.kind.vertices_per_simplex();
+    let has_labels = header.kind == Kind::TetrahedralMesh && random.coin();
+    let mut unlabelled = 0;
     for _ in 0..random.below(20) {
         let new: Vec<Point> = (0..random.below(8)).map(|_| random_point(random, header)).collect();
         let imported: Vec<_> = live.iter().copied().filter(|_| random.below(3) == 0).collect();
         let vertices = new.len() + imported.len();
         let mut simplices = Vec::new();
-        for _ in 0..if vertices < 3 { 0 } else { random.below(6) } {
+        for _ in 0..if vertices < per_simplex { 0 } else { random.below(6) } {
             let start = random.below(vertices);
-            simplices.extend((0..3).map(|i| ((start + i) % vertices) as u32));
+            simplices.extend((0..per_simplex).map(|i| ((start + i) % vertices) as u32));
         }
         let finalized: Vec<u32> = (0..vertices as u32).filter(|_| random.below(3) == 0).collect();
         let imported = imported.iter().map(|&(id, _)| id).collect();
@@ -306,9 +342,18 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
         live.extend(patch.new.iter().zip(first_id..).map(|(&point, id)| (id, point)));
         live.retain(|&(id, _)| !patch.finalized.iter().any(|&local| patch.id(local) == id));
         first_id += patch.new.len() as u64;
+        unlabelled += patch.new.len();
         events.push(Event::Patch(patch));
+        if has_labels {
+            let count = random.below(unlabelled + 1);
+            unlabelled -= count;
+            events.push(Event::Labels((0..count).map(|_| random.next()).collect()));
+        }
     }
-    if header.kind == Kind::TriangleMesh {
+    if has_labels {
+        events.push(Event::Labels((0..unlabelled).map(|_| random.next() % 9).collect()));
+    }
+    if header.kind != Kind::PartialTriangleMesh {
         let imported: Vec<u64> = live.iter().map(|&(id, _)| id).collect();
         let finalized = (0..imported.len() as u32).collect();
         events.push(Event::Patch(Patch { first_id, imported, finalized, ..Patch::default() }));
@@ -325,7 +370,8 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
 /// A stream with random content, whole and well-formed.
 fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
     let mut random = Random(seed);
-    let kind = [Kind::Points, Kind::TriangleMesh, Kind::PartialTriangleMesh][random.below(3)];
+    let kinds = [Kind::Points, Kind::TriangleMesh, Kind::PartialTriangleMesh, Kind::TetrahedralMesh];
+    let kind = kinds[random.below(4)];
     let (mut header, tree) = random_header(&mut random, kind);
     let events = match kind {
         Kind::Points => random_points(&mut random, &header, &tree),

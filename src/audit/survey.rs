@@ -9,6 +9,8 @@ use crate::stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 #[derive(Debug, Default)]
 pub struct Survey {
     live: LiveVertices<()>,
+    vertices_per_simplex: usize,
+    labels: u64,
     finalized: Option<FinalizedCells>,
     found: Option<Bounds>,
     totals: Totals,
@@ -45,7 +47,11 @@ impl Survey {
     /// A survey of a stream with this header.
     #[must_use]
     pub fn new(header: &Header) -> Self {
-        Survey { finalized: header.tree.map(FinalizedCells::new), ..Survey::default() }
+        Survey {
+            vertices_per_simplex: header.kind.vertices_per_simplex(),
+            finalized: header.tree.map(FinalizedCells::new),
+            ..Survey::default()
+        }
     }
 
     /// Adds the next event.
@@ -71,6 +77,7 @@ impl Survey {
                 self.end_run();
             }
             Event::Patch(patch) => return self.patch(patch),
+            Event::Labels(labels) => self.labels += labels.len() as u64,
             Event::ResidualPoints(points) => {
                 let mut ids = points.iter().filter_map(|&(id, _)| id);
                 ids.try_for_each(|id| self.live.retire(id))?;
@@ -101,6 +108,12 @@ impl Survey {
         self.live.live_max()
     }
 
+    /// Number of vertices that have a label.
+    #[must_use]
+    pub fn labels(&self) -> u64 {
+        self.labels
+    }
+
     /// Number of patches.
     #[must_use]
     pub fn patches(&self) -> u64 {
@@ -122,7 +135,7 @@ impl Survey {
     fn patch(&mut self, patch: &Patch) -> Result<()> {
         self.extend(patch.new.iter().copied());
         let size = PatchSize {
-            simplices: patch.triangles().count() as u64,
+            simplices: (patch.simplices.len() / self.vertices_per_simplex) as u64,
             new: patch.new.len() as u64,
             imported: patch.imported.len() as u64,
         };

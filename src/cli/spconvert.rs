@@ -16,16 +16,19 @@ Formats:
   spm   binary stream                     text  its text twin, lossless both ways
   obj   Wavefront OBJ                     ply   Stanford PLY
   spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
+  vtu   VTK, for ParaView (written only)  medit  Medit's .mesh (written only)
 
 Examples:
   spconvert mesh.spm --to text | less
   spfinalize tile.laz | spdelaunay2d | spconvert --to ply -o tin.ply
   spconvert old.smb -o mesh.spm
+  spconvert protein.spm -o protein.vtu
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
 The format of the input is recognized by its content, or its name; that of the output by its name.
 Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB rounded to
 32 bits. A notice says what is lost.
+Of tetrahedra, OBJ and PLY get the hull; VTU has the labels of vertices as point data, Medit as references.
 Meshes of OBJ and PLY do not say when vertices are final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
@@ -44,11 +47,11 @@ pub struct Flags {
     output: PathBuf,
 
     /// Format of the output [default: by the name of the output]
-    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names()))]
     to: Option<Format>,
 
     /// Format of the input [default: by its content, or its name]
-    #[arg(long, value_name = "FORMAT", value_parser = formats())]
+    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names_read()))]
     from: Option<Format>,
 
     /// Write PLY as text
@@ -59,7 +62,7 @@ pub struct Flags {
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for the temporary files that PLY needs
+    /// Folder for the temporary files that PLY, VTU and Medit need
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 
@@ -67,8 +70,8 @@ pub struct Flags {
     common: Common,
 }
 
-fn formats() -> impl TypedValueParser<Value = Format> {
-    PossibleValuesParser::new(Format::names())
+fn formats(names: impl Iterator<Item = &'static str>) -> impl TypedValueParser<Value = Format> {
+    PossibleValuesParser::new(names)
         .map(|name| Format::from_name(&name).expect("the name is one of the names"))
 }
 

@@ -17,7 +17,8 @@ pub(super) fn detect(head: &[u8], name: &Path) -> Result<Format> {
         return Err(Error::malformed("the input is empty"));
     }
     let by_content = by_magic(head).or_else(|| by_statements(head));
-    by_content.or_else(|| Format::from_path(name)).ok_or_else(|| {
+    let by_name = || Format::from_path(name).filter(|format| format.is_read());
+    by_content.or_else(by_name).ok_or_else(|| {
         Error::usage("cannot tell the format from the first bytes and the name: give it with --from")
     })
 }

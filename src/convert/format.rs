@@ -21,6 +21,10 @@ pub enum Format {
     Sma,
     /// Isenburg's streaming meshes, binary.
     Smb,
+    /// VTK's unstructured grids in XML; written only.
+    Vtu,
+    /// Medit's meshes as text; written only.
+    Medit,
 }
 
 struct Row {
@@ -28,17 +32,20 @@ struct Row {
     name: &'static str,
     extension: &'static str,
     is_binary: bool,
+    is_read: bool,
 }
 
-const ROWS: [Row; 8] = [
-    Row { format: Format::Spm, name: "spm", extension: "spm", is_binary: true },
-    Row { format: Format::Text, name: "text", extension: "txt", is_binary: false },
-    Row { format: Format::Obj, name: "obj", extension: "obj", is_binary: false },
-    Row { format: Format::Ply, name: "ply", extension: "ply", is_binary: true },
-    Row { format: Format::Spa, name: "spa", extension: "spa", is_binary: false },
-    Row { format: Format::Spb, name: "spb", extension: "spb", is_binary: true },
-    Row { format: Format::Sma, name: "sma", extension: "sma", is_binary: false },
-    Row { format: Format::Smb, name: "smb", extension: "smb", is_binary: true },
+const ROWS: [Row; 10] = [
+    Row { format: Format::Spm, name: "spm", extension: "spm", is_binary: true, is_read: true },
+    Row { format: Format::Text, name: "text", extension: "txt", is_binary: false, is_read: true },
+    Row { format: Format::Obj, name: "obj", extension: "obj", is_binary: false, is_read: true },
+    Row { format: Format::Ply, name: "ply", extension: "ply", is_binary: true, is_read: true },
+    Row { format: Format::Spa, name: "spa", extension: "spa", is_binary: false, is_read: true },
+    Row { format: Format::Spb, name: "spb", extension: "spb", is_binary: true, is_read: true },
+    Row { format: Format::Sma, name: "sma", extension: "sma", is_binary: false, is_read: true },
+    Row { format: Format::Smb, name: "smb", extension: "smb", is_binary: true, is_read: true },
+    Row { format: Format::Vtu, name: "vtu", extension: "vtu", is_binary: true, is_read: false },
+    Row { format: Format::Medit, name: "medit", extension: "mesh", is_binary: false, is_read: false },
 ];
 
 impl Format {
@@ -46,9 +53,20 @@ impl Format {
         ROWS.iter().find(|row| row.format == self).expect("every format has its row")
     }
 
-    /// Names of all formats.
+    /// Names of all formats, each of which is written.
     pub fn names() -> impl Iterator<Item = &'static str> {
         ROWS.iter().map(|row| row.name)
+    }
+
+    /// Names of the formats that are read.
+    pub fn names_read() -> impl Iterator<Item = &'static str> {
+        ROWS.iter().filter(|row| row.is_read).map(|row| row.name)
+    }
+
+    /// Whether it is read.
+    #[must_use]
+    pub fn is_read(self) -> bool {
+        self.row().is_read
     }
 
     /// The format with this name, if there is one.

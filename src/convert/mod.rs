@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::sink::{
-    EventSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink, SpmSink, TwinSink,
+    EventSink, HullSink, MeditSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink,
+    SpmSink, TwinSink, VtuSink, surface_header,
 };
 use crate::source::{
     EventSource, SpEvents, SpaReader, SpbReader, TwinSource, open_obj, open_ply, open_sma, open_smb,
 };
-use crate::stream::{Event, StreamReader};
+use crate::stream::{Event, Kind, StreamReader};
 
 /// What a conversion may choose.
 #[derive(Debug, Clone, Default)]
@@ -103,6 +104,10 @@ pub fn open_source(
             Box::new(SpEvents::new(reader, name, dims))
         }
         Format::Ply => open_ply(input, name, dims)?,
+        Format::Vtu | Format::Medit => {
+            let name = format.name();
+            return Err(in_input(Error::usage(format!("{name} is written by this program, but not read"))));
+        }
     })
 }
 
@@ -113,14 +118,26 @@ fn open_sink<'a>(
     options: &Options,
 ) -> Result<Box<dyn EventSink + 'a>> {
     let header = source.header();
+    let temp_dir = options.temp_dir.as_deref();
+    let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
+    if header.kind == Kind::TetrahedralMesh {
+        let surface = surface_header(header);
+        match to {
+            Format::Obj => return Ok(Box::new(HullSink::new(ObjSink::new(output, &surface)?, "OBJ"))),
+            Format::Ply => {
+                let ply = PlySink::new(output, &surface, encoding, temp_dir)?;
+                return Ok(Box::new(HullSink::new(ply, "PLY")));
+            }
+            _ => {}
+        }
+    }
     Ok(match to {
         Format::Spm => Box::new(SpmSink::new(output, header)?),
         Format::Text => Box::new(TwinSink::new(output, header)?),
         Format::Obj => Box::new(ObjSink::new(output, header)?),
-        Format::Ply => {
-            let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
-            Box::new(PlySink::new(output, header, encoding, options.temp_dir.as_deref())?)
-        }
+        Format::Ply => Box::new(PlySink::new(output, header, encoding, temp_dir)?),
+        Format::Vtu => Box::new(VtuSink::new(output, header, temp_dir)?),
+        Format::Medit => Box::new(MeditSink::new(output, header, temp_dir)?),
         Format::Spa => Box::new(SpaSink::new(output, header)?),
         Format::Spb => Box::new(SpbSink::new(output, header)?),
         Format::Sma => Box::new(SmaSink::new(output, header)?),

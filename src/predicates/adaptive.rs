@@ -8,7 +8,7 @@
 use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big};
 use robust::Coord;
 
-const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
 pub(crate) const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
 
@@ -16,7 +16,7 @@ pub(crate) const INCIRCLE_BOUND: f64 = (10.0 + 96.0 * UNIT_ROUNDOFF) * UNIT_ROUN
 pub(super) struct Estimate {
     pub(super) value: f64,
     pub(super) magnitude: f64,
-    bound: f64,
+    pub(super) bound: f64,
 }
 
 impl Estimate {
@@ -54,8 +54,8 @@ impl Estimate {
 
 /// Difference of two points, rounded.
 #[inline(always)]
-pub(super) fn difference(p: Point2, q: Point2) -> Point2 {
-    [p[0] - q[0], p[1] - q[1]]
+pub(super) fn difference<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
+    std::array::from_fn(|axis| p[axis] - q[axis])
 }
 
 fn coord([x, y]: Point2) -> Coord<f64> {

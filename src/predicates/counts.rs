@@ -1,6 +1,7 @@
 //! How many decisions each stage of the predicates took: shows that exactness is cheap.
 
-/// Decisions by stage. Every call of `orient2d` or `incircle` is one decision in exactly one of the first four.
+/// Decisions by stage. Every call of `orient2d`, `incircle`, `orient3d` or `insphere` is one decision in exactly one of the
+/// first four.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PredicateCounts {
     /// Decided in `f64` because the value exceeds its error bound.
@@ -11,7 +12,7 @@ pub struct PredicateCounts {
     pub expansion: u64,
     /// Decided by arbitrary-precision integers.
     pub bigint: u64,
-    /// Among the decisions above, in-circle tests that were zero and fell to the perturbation.
+    /// Among the decisions above, in-circle and in-sphere tests that were zero and fell to the perturbation.
     pub perturbed: u64,
 }
 

@@ -1,14 +1,12 @@
 //! What the choice of arithmetic has to know of a chunk of points.
 
-use super::Point2;
-
-/// Bounding box of a chunk, and which numbers its coordinates are.
+/// Bounding box of a chunk of points of the plane, or of space with `D = 3`, and which numbers its coordinates are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
-    /// Least x and y; `INFINITY` if there is no point.
-    pub lower: Point2,
-    /// Greatest x and y; `NEG_INFINITY` if there is no point.
-    pub upper: Point2,
+pub struct Extent<const D: usize = 2> {
+    /// Least coordinate of each axis; `INFINITY` if there is no point.
+    pub lower: [f64; D],
+    /// Greatest coordinate of each axis; `NEG_INFINITY` if there is no point.
+    pub upper: [f64; D],
     /// Every coordinate is an integer, of a magnitude up to 2^63.
     pub integral: bool,
     /// Least magnitude among the coordinates that are not zero; `INFINITY` if all are.
@@ -17,19 +15,19 @@ pub struct Extent {
     pub finite: bool,
 }
 
-impl Extent {
+impl<const D: usize> Extent<D> {
     /// Extent of `points`. Cost: one pass.
     #[must_use]
-    pub fn of(points: &[Point2]) -> Extent {
+    pub fn of(points: &[[f64; D]]) -> Extent<D> {
         Extent::of_each(points.iter().copied())
     }
 
     /// Extent of all points that `points` gives.
     #[must_use]
-    pub fn of_each(points: impl Iterator<Item = Point2>) -> Extent {
+    pub fn of_each(points: impl Iterator<Item = [f64; D]>) -> Extent<D> {
         let mut extent = Extent {
-            lower: [f64::INFINITY; 2],
-            upper: [f64::NEG_INFINITY; 2],
+            lower: [f64::INFINITY; D],
+            upper: [f64::NEG_INFINITY; D],
             integral: true,
             least_magnitude: f64::INFINITY,
             finite: true,
@@ -50,7 +48,7 @@ impl Extent {
     /// Greatest difference of two coordinates of the same axis, rounded; may be infinite. Zero if there is no point.
     #[must_use]
     pub fn max_difference(&self) -> f64 {
-        (self.upper[0] - self.lower[0]).max(self.upper[1] - self.lower[1]).max(0.0)
+        (0..D).fold(0.0, |greatest, axis| greatest.max(self.upper[axis] - self.lower[axis]))
     }
 
     /// Greatest magnitude of a coordinate. Zero if there is no point.

@@ -14,7 +14,7 @@ use super::{Numbers, Point2, PredicateCounts, Predicates2, Sign};
 use std::marker::PhantomData;
 
 /// Above this, integers are not all representable in `f64`: 2^53.
-const EXACT_F64: f64 = 9_007_199_254_740_992.0;
+pub(super) const EXACT_F64: f64 = 9_007_199_254_740_992.0;
 
 /// Plain `f64`, no error bound.
 ///

@@ -2,7 +2,8 @@
 //!
 //! The sign is never wrong; only the price differs. [`Arithmetic::of`] looks once at the coordinates of a chunk
 //! and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs an algorithm
-//! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`TotalPredicates`].
+//! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`TotalPredicates`]. In space,
+//! [`Arithmetic3`] and [`TotalPredicates3`] do the same.
 
 mod adaptive;
 mod big;
@@ -11,6 +12,7 @@ mod counts;
 mod extent;
 mod integer;
 mod perturbation;
+pub(crate) mod spatial;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{ExpansionPredicates, TotalPredicates};
@@ -18,6 +20,10 @@ pub use counts::PredicateCounts;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;
+pub use spatial::{
+    Arithmetic3, ExpansionPredicates3, IntegerPredicates3, Predicates3, SmallIntegerPredicates3,
+    TotalPredicates3, Width3, WithPredicates3,
+};
 
 /// A point of the plane: x, y; both finite. Integer coordinates are stored as integer-valued `f64`.
 pub type Point2 = [f64; 2];
@@ -54,9 +60,9 @@ impl Sign {
 /// What the coordinates are that an arithmetic is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Numbers {
-    /// Integers with differences of at most 2^41.
+    /// Integers with differences that some integers of fixed width are enough for.
     Integers,
-    /// Numbers whose products of four neither over- nor underflow.
+    /// Numbers whose products of four (five in space) neither over- nor underflow.
     Floats,
     /// Finite numbers.
     Any,

@@ -1,19 +1,21 @@
-//! The canonical perturbation: how four cocircular points are told apart.
+//! The canonical perturbation: how four cocircular or five cospherical points are told apart.
 
-use super::{Point2, Predicates2, Sign};
+use super::{Point2, Point3, Predicates2, Predicates3, Sign, big};
 use std::cmp::Ordering;
 
-/// Lexicographic order of two points, x before y; `-0.0` equals `0.0`. Domain: no NaN.
+/// Lexicographic order of two points, x before y before z; `-0.0` equals `0.0`. Domain: no NaN.
 #[inline(always)]
 #[must_use]
-pub fn lexicographic(a: Point2, b: Point2) -> Ordering {
-    if (a[0], a[1]) < (b[0], b[1]) {
-        Ordering::Less
-    } else if (b[0], b[1]) < (a[0], a[1]) {
-        Ordering::Greater
-    } else {
-        Ordering::Equal
+pub fn lexicographic<const D: usize>(a: [f64; D], b: [f64; D]) -> Ordering {
+    for (a, b) in a.into_iter().zip(b) {
+        if a < b {
+            return Ordering::Less;
+        }
+        if b < a {
+            return Ordering::Greater;
+        }
     }
+    Ordering::Equal
 }
 
 /// In-circle sign of four distinct cocircular points, abc counterclockwise, under the perturbation.
@@ -42,5 +44,38 @@ pub(super) fn cocircular<P: Predicates2 + ?Sized>(
         predicates.orient2d(a, b, d)
     };
     debug_assert_ne!(sign, Sign::Zero, "four distinct points of a circle");
+    sign
+}
+
+/// In-sphere sign of five distinct cospherical points, abcd positively oriented, under the perturbation.
+///
+/// As in the plane, the point of largest rank dominates, but a vertex does not decide if the tetrahedron with that
+/// vertex replaced by e is flat: the next rank does. It always decides. If e lay in the planes of two facets it would
+/// be on the line of the edge that these share, and on the sphere, so equal to an end of the edge.
+#[inline(never)]
+pub(super) fn cospherical<P: Predicates3 + ?Sized>(
+    predicates: &mut P,
+    [a, b, c, d]: [Point3; 4],
+    e: Point3,
+) -> Sign {
+    debug_assert_eq!(big::orient3d(a, b, c, d), Sign::Positive, "{:?}", [a, b, c, d]);
+    debug_assert!(![a, b, c, d].contains(&e), "{e:?} is a vertex");
+    predicates.counts_mut().perturbed += 1;
+    let points = [a, b, c, d, e];
+    let mut ranked = [0, 1, 2, 3, 4];
+    ranked.sort_unstable_by(|&i: &usize, &j| lexicographic(points[j], points[i]));
+    let mut sign = Sign::Zero;
+    for place in ranked {
+        sign = match place {
+            0 => predicates.orient3d(e, b, c, d),
+            1 => predicates.orient3d(a, e, c, d),
+            2 => predicates.orient3d(a, b, e, d),
+            3 => predicates.orient3d(a, b, c, e),
+            _ => Sign::Negative,
+        };
+        if sign != Sign::Zero {
+            break;
+        }
+    }
     sign
 }

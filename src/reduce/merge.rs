@@ -150,7 +150,9 @@ fn copy_through<R: Read, W: Write>(
                 Ok(())
             }
             Event::End(totals) => add_totals(stats, &totals).and_then(|()| all_retired(&live)),
-            Event::Points(_) | Event::Cells(_) => unreachable!("the reader refuses these blocks in a mesh"),
+            Event::Points(_) | Event::Cells(_) | Event::Labels(_) => {
+                unreachable!("the reader refuses these blocks in a partial mesh")
+            }
         };
         taken.map_err(|e| reader.locate(e))?;
         progress(sequencer.vertices());

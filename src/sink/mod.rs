@@ -2,6 +2,8 @@
 
 mod elements;
 mod historical_cells;
+mod hull;
+mod medit;
 mod obj;
 mod ply;
 mod sma;
@@ -9,10 +11,14 @@ mod smb;
 mod spa;
 mod spb;
 mod spm;
+mod spool;
 mod triangles;
 mod twin;
+mod vtu;
 mod world;
 
+pub use hull::{HullSink, surface_header};
+pub use medit::MeditSink;
 pub use obj::ObjSink;
 pub use ply::{PlyEncoding, PlySink};
 pub use sma::SmaSink;
@@ -21,6 +27,7 @@ pub use spa::SpaSink;
 pub use spb::SpbSink;
 pub use spm::SpmSink;
 pub use twin::TwinSink;
+pub use vtu::VtuSink;
 
 use crate::error::{Error, Result};
 use crate::stream::{Coordinates, Crs, Event, Header, Kind};

@@ -1,9 +1,9 @@
 //! Writes PLY: doubles for the vertices, lists of three indices for the faces.
 
-use std::fs::File;
-use std::io::{BufReader, BufWriter, Seek, Write};
+use std::io::Write;
 use std::path::Path;
 
+use super::spool::Spool;
 use super::world::world_of;
 use super::{EventSink, expect_kind, lost_of_header, write_error};
 use crate::bounds::Point;
@@ -27,8 +27,8 @@ pub struct PlySink<W> {
     output: W,
     header: Header,
     encoding: PlyEncoding,
-    vertices: BufWriter<File>,
-    faces: BufWriter<File>,
+    vertices: Spool,
+    faces: Spool,
 }
 
 impl<W: Write> PlySink<W> {
@@ -38,19 +38,16 @@ impl<W: Write> PlySink<W> {
     /// Usage, if PLY does not hold the kind of stream; I/O, if there is no room for temporary files.
     pub fn new(output: W, header: &Header, encoding: PlyEncoding, temp_dir: Option<&Path>) -> Result<Self> {
         expect_kind(header, "PLY", &[Kind::Points, Kind::TriangleMesh])?;
-        let (vertices, faces) = (spool(temp_dir)?, spool(temp_dir)?);
+        let (vertices, faces) = (Spool::new(temp_dir)?, Spool::new(temp_dir)?);
         Ok(PlySink { output, header: header.clone(), encoding, vertices, faces })
     }
 
     fn vertex(&mut self, point: Point) -> Result<()> {
         let [x, y, z] = world_of(&self.header, point);
-        let written = match self.encoding {
-            PlyEncoding::Ascii => writeln!(self.vertices, "{x} {y} {z}"),
-            PlyEncoding::Binary => {
-                [x, y, z].iter().try_for_each(|x| self.vertices.write_all(&x.to_le_bytes()))
-            }
-        };
-        written.map_err(spool_error)
+        match self.encoding {
+            PlyEncoding::Ascii => self.vertices.text(format_args!("{x} {y} {z}\n")),
+            PlyEncoding::Binary => [x, y, z].iter().try_for_each(|x| self.vertices.bytes(&x.to_le_bytes())),
+        }
     }
 
     fn patch(&mut self, patch: &Patch) -> Result<()> {
@@ -60,17 +57,18 @@ impl<W: Write> PlySink<W> {
         }
         for triangle in patch.triangles() {
             let ids = triangle.map(|local| patch.id(local) as i32);
-            let written = match self.encoding {
-                PlyEncoding::Ascii => writeln!(self.faces, "3 {} {} {}", ids[0], ids[1], ids[2]),
+            match self.encoding {
+                PlyEncoding::Ascii => {
+                    self.faces.text(format_args!("3 {} {} {}\n", ids[0], ids[1], ids[2]))?
+                }
                 PlyEncoding::Binary => {
                     let mut face = [3; 13];
                     for (bytes, id) in face[1..].chunks_exact_mut(4).zip(ids) {
                         bytes.copy_from_slice(&id.to_le_bytes());
                     }
-                    self.faces.write_all(&face)
+                    self.faces.bytes(&face)?;
                 }
-            };
-            written.map_err(spool_error)?;
+            }
         }
         Ok(())
     }
@@ -90,8 +88,8 @@ impl<W: Write> PlySink<W> {
         }
         header += "end_header\n";
         self.output.write_all(header.as_bytes()).map_err(write_error)?;
-        copy(&mut self.vertices, &mut self.output)?;
-        copy(&mut self.faces, &mut self.output)?;
+        self.vertices.copy_to(&mut self.output)?;
+        self.faces.copy_to(&mut self.output)?;
         self.output.flush().map_err(write_error)
     }
 }
@@ -109,27 +107,4 @@ impl<W: Write> EventSink for PlySink<W> {
     fn notices(&self) -> Vec<String> {
         lost_of_header(&self.header, "PLY")
     }
-}
-
-/// A temporary file that has no name, so that nothing stays behind whatever happens.
-fn spool(temp_dir: Option<&Path>) -> Result<BufWriter<File>> {
-    let file = match temp_dir {
-        Some(folder) => tempfile::tempfile_in(folder),
-        None => tempfile::tempfile(),
-    };
-    let file = file.map_err(|e| Error::io("creating a temporary file", e))?;
-    Ok(BufWriter::with_capacity(1 << 16, file))
-}
-
-fn spool_error(cause: std::io::Error) -> Error {
-    Error::io("writing a temporary file", cause)
-}
-
-/// Copies a temporary file from its start.
-fn copy(spool: &mut BufWriter<File>, output: &mut impl Write) -> Result<()> {
-    spool.flush().map_err(spool_error)?;
-    spool.rewind().map_err(spool_error)?;
-    let mut input = BufReader::with_capacity(1 << 16, spool.get_ref());
-    std::io::copy(&mut input, output).map_err(|e| Error::io("copying a temporary file to the output", e))?;
-    Ok(())
 }

@@ -28,6 +28,7 @@ impl<W: Write> EventSink for SpmSink<W> {
             Event::Points(points) => writer.points(points),
             Event::Cells(cells) => writer.cells(cells),
             Event::Patch(patch) => writer.patch(patch),
+            Event::Labels(labels) => writer.labels(labels),
             Event::ResidualPoints(points) => writer.residual_points(points),
             Event::Walls(walls) => writer.walls(walls),
             Event::End(totals) => {

@@ -6,7 +6,7 @@ use super::world::{world_of, write_numbers};
 use super::{EventSink, write_error};
 use crate::bounds::Point;
 use crate::error::Result;
-use crate::stream::{Coordinates, Crs, Event, Header, Patch, Totals};
+use crate::stream::{Coordinates, Crs, Event, Header, Kind, Patch, Totals};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
@@ -35,9 +35,16 @@ impl<W: Write> TwinSink<W> {
     fn patch(&mut self, patch: &Patch) -> Result<()> {
         self.line(format_args!("# patch"))?;
         patch.new.iter().try_for_each(|&point| self.point("v", point))?;
-        for triangle in patch.triangles() {
-            let [a, b, c] = triangle.map(|local| patch.id(local) + 1);
-            self.line(format_args!("f {a} {b} {c}"))?;
+        if self.header.kind == Kind::TetrahedralMesh {
+            for tetrahedron in patch.tetrahedra() {
+                let [a, b, c, d] = tetrahedron.map(|local| patch.id(local) + 1);
+                self.line(format_args!("c {a} {b} {c} {d}"))?;
+            }
+        } else {
+            for triangle in patch.triangles() {
+                let [a, b, c] = triangle.map(|local| patch.id(local) + 1);
+                self.line(format_args!("f {a} {b} {c}"))?;
+            }
         }
         patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))
     }
@@ -60,6 +67,9 @@ impl<W: Write> EventSink for TwinSink<W> {
                 cells.iter().try_for_each(|cell| self.line(format_args!("x cell {}", cell.0)))
             }
             Event::Patch(patch) => self.patch(patch),
+            Event::Labels(labels) => {
+                labels.iter().try_for_each(|label| self.line(format_args!("label {label}")))
+            }
             Event::ResidualPoints(points) => points.iter().try_for_each(|&(id, point)| match id {
                 Some(id) => self.point(&format!("r {}", id + 1), point),
                 None => self.point("r -", point),

@@ -209,7 +209,7 @@ impl PatchBuilder {
         let finals = if self.triangles.is_empty() { FINALIZED_MAX } else { 0 };
         let finalized = drain_at_most(&mut self.finalized, finals);
         self.first_id += new.len() as u64;
-        patch_of_ids(first_id, new, &triangles, &finalized)
+        patch_of_ids(first_id, new, triangles.as_flattened(), &finalized)
     }
 
     /// One triangle that used the vertex no longer waits.
@@ -228,14 +228,10 @@ impl PatchBuilder {
     }
 }
 
-/// The patch of vertices from `first_id` on, with ids below the end of those in triangles and finalizations.
-pub(super) fn patch_of_ids(
-    first_id: u64,
-    new: Vec<Point>,
-    triangles: &[[u64; 3]],
-    finalized: &[u64],
-) -> Patch {
-    let used = triangles.iter().flatten().chain(finalized);
+/// The patch of vertices from `first_id` on, with ids below the end of those in simplices, one behind the other, and
+/// in finalizations.
+pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
+    let used = simplices.iter().chain(finalized);
     let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();
     imported.sort_unstable();
     imported.dedup();
@@ -243,7 +239,7 @@ pub(super) fn patch_of_ids(
         Some(new) => new as u32,
         None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
     };
-    let simplices = triangles.iter().flatten().map(local).collect();
+    let simplices = simplices.iter().map(local).collect();
     let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
     finalized.sort_unstable();
     Patch { first_id, new, imported, simplices, finalized }

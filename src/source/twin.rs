@@ -22,8 +22,10 @@ enum Statement {
     Vertex(Point),
     Cell(CellCode),
     Patch,
-    Triangle([u64; 3]),
+    /// Of a triangle the first three count.
+    Simplex([u64; 4]),
     Final(u64),
+    Label(u64),
     Residual(Option<u64>, Point),
     Wall([u64; 2]),
     End(Totals),
@@ -33,14 +35,15 @@ enum Statement {
 #[derive(Default)]
 struct PatchLines {
     new: Vec<Point>,
-    triangles: Vec<[u64; 3]>,
+    /// One behind the other.
+    simplices: Vec<u64>,
     finalized: Vec<u64>,
 }
 
 impl PatchLines {
     /// Length of the payload without imported vertices, in bytes.
     fn len_min(&self, header: &Header) -> usize {
-        24 + self.new.len() * header.point_len() + self.triangles.len() * 12 + self.finalized.len() * 4
+        24 + self.new.len() * header.point_len() + self.simplices.len() * 4 + self.finalized.len() * 4
     }
 }
 
@@ -50,6 +53,7 @@ enum Group {
     Points(Vec<Point>),
     Cells(Vec<CellCode>),
     Patch(PatchLines),
+    Labels(Vec<u64>),
     Residual(Vec<(Option<u64>, Point)>),
     Walls(Vec<[u32; 2]>),
 }
@@ -133,13 +137,17 @@ impl<R: Read> TwinSource<R> {
     fn push(&mut self, statement: Statement) -> Result<()> {
         let is_mesh = self.header.kind != Kind::Points;
         let is_partial = self.header.kind == Kind::PartialTriangleMesh;
+        let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
         let Totals { residual_points, walls, .. } = *self.tally.totals();
         match (&mut self.group, statement) {
             (Group::Points(points), Statement::Vertex(point)) => points.push(point),
             (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
             (Group::Patch(patch), Statement::Vertex(point)) => patch.new.push(point),
-            (Group::Patch(patch), Statement::Triangle(triangle)) => patch.triangles.push(triangle),
+            (Group::Patch(patch), Statement::Simplex(ids)) => {
+                patch.simplices.extend_from_slice(&ids[..self.header.kind.vertices_per_simplex()]);
+            }
             (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
+            (Group::Labels(labels), Statement::Label(label)) => labels.push(label),
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
             (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
             (Group::Empty, statement) => {
@@ -149,6 +157,7 @@ impl<R: Read> TwinSource<R> {
                     Statement::Patch if is_mesh && residual_points == 0 => {
                         Group::Patch(PatchLines::default())
                     }
+                    Statement::Label(_) if is_tetrahedral => Group::Labels(Vec::new()),
                     Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
                     _ => {
@@ -176,6 +185,7 @@ impl<R: Read> TwinSource<R> {
             Group::Points(points) => Event::Points(points),
             Group::Cells(cells) => Event::Cells(cells),
             Group::Patch(lines) => Event::Patch(self.patch_of(vertices, lines)?),
+            Group::Labels(labels) => Event::Labels(labels),
             Group::Residual(points) => {
                 let mut named = points.iter().filter_map(|&(id, _)| id);
                 if let Some(id) = named.find(|&id| id >= vertices) {
@@ -194,12 +204,12 @@ impl<R: Read> TwinSource<R> {
 
     fn patch_of(&self, first_id: u64, lines: PatchLines) -> Result<Patch> {
         let len_min = lines.len_min(&self.header);
-        let PatchLines { new, triangles, finalized } = lines;
+        let PatchLines { new, simplices, finalized } = lines;
         let end = first_id + new.len() as u64;
-        if let Some(id) = triangles.iter().flatten().chain(&finalized).find(|&&id| id >= end) {
+        if let Some(id) = simplices.iter().chain(&finalized).find(|&&id| id >= end) {
             return Err(Error::malformed(format!("vertex {} of {end}", id + 1)));
         }
-        let patch = patch_of_ids(first_id, new, &triangles, &finalized);
+        let patch = patch_of_ids(first_id, new, &simplices, &finalized);
         if len_min + patch.imported.len() * 8 > BLOCK_PAYLOAD_MAX {
             return Err(too_long());
         }
@@ -243,7 +253,8 @@ impl Group {
             (Group::Empty, _) => true,
             (Group::Points(points), Statement::Vertex(_)) => points.len() < BATCH_MAX,
             (Group::Cells(cells), Statement::Cell(_)) => cells.len() < BATCH_MAX,
-            (Group::Patch(_), Statement::Vertex(_) | Statement::Triangle(_) | Statement::Final(_)) => true,
+            (Group::Patch(_), Statement::Vertex(_) | Statement::Simplex(_) | Statement::Final(_)) => true,
+            (Group::Labels(labels), Statement::Label(_)) => labels.len() < BATCH_MAX,
             (Group::Residual(points), Statement::Residual(..)) => points.len() < BATCH_MAX,
             (Group::Walls(walls), Statement::Wall(_)) => walls.len() < BATCH_MAX,
             _ => false,
@@ -268,9 +279,12 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     }
     let mut fields = fields(line);
     let fields = &mut fields;
+    let per_simplex = header.kind.vertices_per_simplex();
     let statement = match next_field(fields)? {
         b"v" => Statement::Vertex(parse_point(fields, header)?),
-        b"f" => Statement::Triangle(parse_triangle(fields)?),
+        b"f" if per_simplex == 3 => Statement::Simplex(parse_simplex(fields, 3)?),
+        b"c" if per_simplex == 4 => Statement::Simplex(parse_simplex(fields, 4)?),
+        b"label" => Statement::Label(parse_integer(next_field(fields)?)?),
         b"x" => match next_field(fields)? {
             b"cell" => Statement::Cell(parse_cell(next_field(fields)?, header)?),
             vertex => Statement::Final(parse_number(vertex)?),
@@ -285,10 +299,20 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
             b"patch" => Statement::Patch,
             _ => Statement::End(parse_end(fields)?),
         },
-        other => return Err(unexpected(other, "v, f, x, r, w or a comment")),
+        other => return Err(unexpected(other, statements_of(header.kind))),
     };
     expect_no_field(fields)?;
     Ok(Some(statement))
+}
+
+/// The statements of a kind, for messages.
+fn statements_of(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Points => "v, x or a comment",
+        Kind::TriangleMesh => "v, f, x or a comment",
+        Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
+        Kind::TetrahedralMesh => "v, c, x, label or a comment",
+    }
 }
 
 /// A point in stored coordinates, from world coordinates, checked by the header.
@@ -309,16 +333,16 @@ fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header)
     Ok(stored)
 }
 
-fn parse_triangle<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<[u64; 3]> {
-    let mut triangle = [0; 3];
-    for vertex in &mut triangle {
-        *vertex = parse_number(next_field(fields)?)?;
+/// `count` different vertices.
+fn parse_simplex<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, count: usize) -> Result<[u64; 4]> {
+    let mut simplex = [0; 4];
+    for i in 0..count {
+        simplex[i] = parse_number(next_field(fields)?)?;
+        if simplex[..i].contains(&simplex[i]) {
+            return Err(Error::malformed("simplex uses a vertex twice"));
+        }
     }
-    let [a, b, c] = triangle;
-    if a == b || b == c || c == a {
-        return Err(Error::malformed("triangle uses a vertex twice"));
-    }
-    Ok(triangle)
+    Ok(simplex)
 }
 
 fn parse_cell(field: &[u8], header: &Header) -> Result<CellCode> {

@@ -11,15 +11,17 @@ pub(super) enum Tag {
     Points,
     Cells,
     Patch,
+    Labels,
     ResidualPoints,
     Walls,
     End,
 }
 
-const NAMES: [(Tag, [u8; 4]); 6] = [
+const NAMES: [(Tag, [u8; 4]); 7] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
+    (Tag::Labels, *b"LABL"),
     (Tag::ResidualPoints, *b"RPNT"),
     (Tag::Walls, *b"WALL"),
     (Tag::End, *b"END "),

@@ -13,6 +13,9 @@ pub enum Event {
     Cells(Vec<CellCode>),
     /// A piece of the mesh.
     Patch(Patch),
+    /// Labels of the next vertices that have none yet, in the order of their ids. What a label means, the producer
+    /// says.
+    Labels(Vec<u64>),
     /// Points of a residual, each with its vertex id if it was written in an earlier patch.
     ResidualPoints(Vec<(Option<u64>, Point)>),
     /// Directed edges between residual points (counted over all their blocks): left of each lies a final
@@ -31,7 +34,8 @@ pub struct Patch {
     pub new: Vec<Point>,
     /// Ids of vertices of earlier patches, increasing.
     pub imported: Vec<u64>,
-    /// Simplices as local indices, positively oriented (counterclockwise), `vertices_per_simplex` each.
+    /// Simplices as local indices, positively oriented, `vertices_per_simplex` each: triangles are
+    /// counterclockwise, tetrahedra (a, b, c, d) have det(b - a, c - a, d - a) > 0.
     pub simplices: Vec<u32>,
     /// Local indices, increasing, of vertices that no later patch uses.
     pub finalized: Vec<u32>,
@@ -86,6 +90,11 @@ impl Patch {
     /// The simplices of a triangle mesh.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.simplices.chunks_exact(3).map(|t| [t[0], t[1], t[2]])
+    }
+
+    /// The simplices of a tetrahedral mesh.
+    pub fn tetrahedra(&self) -> impl Iterator<Item = [u32; 4]> + '_ {
+        self.simplices.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]])
     }
 }
 

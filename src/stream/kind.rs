@@ -11,7 +11,8 @@ pub enum Kind {
     TriangleMesh,
     /// The final triangles of a region and its residual, to be merged with those of other regions.
     PartialTriangleMesh,
-    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron.
+    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; a label for each vertex, or
+    /// for none.
     TetrahedralMesh,
 }
 
@@ -55,8 +56,8 @@ const ROWS: [Row; 4] = [
         code: 4,
         name: "tetrahedral mesh",
         vertices_per_simplex: 4,
-        blocks: &[Tag::Patch],
-        is_ordered: true,
+        blocks: &[Tag::Patch, Tag::Labels],
+        is_ordered: false,
     },
 ];
 

@@ -8,16 +8,21 @@ use super::payload::PATCH_FIXED_LEN;
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 
-/// How points are encoded: what [`PatchBlocks`] needs of a header.
+/// How points and simplices are encoded: what [`PatchBlocks`] needs of the header of a mesh.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PointCode {
     coordinates: Coordinates,
     per_point: usize,
+    per_simplex: usize,
 }
 
 impl PointCode {
     pub(crate) fn of(header: &Header) -> Self {
-        PointCode { coordinates: header.coordinates, per_point: header.coordinates_per_point() }
+        PointCode {
+            coordinates: header.coordinates,
+            per_point: header.coordinates_per_point(),
+            per_simplex: header.kind.vertices_per_simplex(),
+        }
     }
 }
 
@@ -62,7 +67,7 @@ impl PatchBlocks {
         self.patches.len()
     }
 
-    /// Adds a triangle patch: new vertices, references to imported ones, simplices in local indices.
+    /// Adds a patch: new vertices, references to imported ones, simplices in local indices.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding.
@@ -74,7 +79,7 @@ impl PatchBlocks {
         simplices: impl ExactSizeIterator<Item = u32>,
     ) -> Result<()> {
         let (start, imports) = (self.used, imported.len());
-        let counts = [new.len(), imports, simplices.len() / 3];
+        let counts = [new.len(), imports, simplices.len() / code.per_simplex];
         let points_len = new.len() * code.per_point * code.coordinates.width();
         let len = FRAME_LEN + PATCH_FIXED_LEN + points_len + 8 * imports + 4 * simplices.len();
         let bytes = self.room(len);
@@ -182,4 +187,47 @@ fn encode<const WIDTH: usize, const N: usize>(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::{Event, Kind, Patch, StreamReader, StreamWriter};
+
+    #[test]
+    fn tetrahedra_that_are_encoded_ahead_are_those_that_are_read() {
+        let grid = Coordinates::I32 { scale: [0.001; 3], offset: [0.0; 3] };
+        let header = Header::new(Kind::TetrahedralMesh, grid, 3, false);
+        let point = |i: u32| [f64::from(i), f64::from(i * i), -5.0];
+        let first = Patch { new: (0..5).map(point).collect(), ..Patch::default() };
+        let second = Patch {
+            first_id: 5,
+            new: vec![point(9)],
+            imported: vec![0, 1, 2, 3, 4],
+            simplices: vec![0, 1, 2, 3, 4, 5, 0, 1],
+            finalized: vec![0, 1, 2, 3, 4, 5],
+        };
+        let (code, mut blocks) = (PointCode::of(&header), PatchBlocks::default());
+        for patch in [&first, &second] {
+            let references = patch.imported.iter().map(|&id| 100 - id).collect::<Vec<_>>();
+            let (new, simplices) = (patch.new.iter().copied(), patch.simplices.iter().copied());
+            blocks.push(code, new, references.into_iter(), simplices).unwrap();
+        }
+        for (number, patch) in [&first, &second].into_iter().enumerate() {
+            blocks.finalize(number, patch.finalized.iter().copied());
+        }
+        let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+        writer.patches(&mut blocks, |reference| 100 - reference, |_, _| ()).unwrap();
+        writer.labels(&[3, 3, 2, 1, 0, 9]).unwrap();
+        let bytes = writer.end(6, 0).unwrap();
+        let mut reader = StreamReader::new(&bytes[..], "test").unwrap();
+        for patch in [first, second] {
+            assert_eq!(reader.next_event().unwrap(), Some(Event::Patch(patch)));
+        }
+        assert_eq!(reader.next_event().unwrap(), Some(Event::Labels(vec![3, 3, 2, 1, 0, 9])));
+        assert_eq!(
+            reader.next_event().unwrap().map(|end| matches!(end, Event::End(t) if t.simplices == 2)),
+            Some(true)
+        );
+    }
 }

@@ -115,6 +115,11 @@ pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Resu
     Ok(patch)
 }
 
+/// Labels; [`super::Tally`] compares their number with that of the vertices.
+pub(super) fn labels(bytes: &[u8]) -> Result<Vec<u64>> {
+    Ok(whole_records(bytes, 8)?.map(LE::read_u64).collect())
+}
+
 /// Residual points; ids must be those of `vertices` earlier ones.
 pub(super) fn residual_points(
     header: &Header,

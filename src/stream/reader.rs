@@ -178,6 +178,7 @@ impl<R: Read> StreamReader<R> {
             }
             Tag::Cells => Event::Cells(payload::cells(header, payload)?),
             Tag::Patch => Event::Patch(payload::patch(header, totals.vertices, payload)?),
+            Tag::Labels => Event::Labels(payload::labels(payload)?),
             Tag::ResidualPoints => {
                 Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
             }

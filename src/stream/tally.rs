@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 #[derive(Debug)]
 pub(crate) struct Tally {
     totals: Totals,
+    labels: u64,
     finalized: u64,
     named_residual_points: u64,
     per_simplex: usize,
@@ -20,7 +21,8 @@ impl Tally {
     pub(crate) fn new(header: &Header) -> Self {
         let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
         let per_simplex = header.kind.vertices_per_simplex();
-        Tally { totals: Totals::default(), finalized: 0, named_residual_points: 0, per_simplex, chunks }
+        let totals = Totals::default();
+        Tally { totals, labels: 0, finalized: 0, named_residual_points: 0, per_simplex, chunks }
     }
 
     /// What was counted. A mesh has no count of points before its end.
@@ -31,7 +33,7 @@ impl Tally {
     /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
     ///
     /// # Errors
-    /// If points of a chunked stream are not those of one cell.
+    /// If points of a chunked stream are not those of one cell, or labels are more than the vertices so far.
     pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -49,6 +51,7 @@ impl Tally {
                 self.totals.simplices += (patch.simplices.len() / self.per_simplex) as u64;
                 self.finalized += patch.finalized.len() as u64;
             }
+            Event::Labels(labels) => self.count_labels(labels.len())?,
             Event::ResidualPoints(points) => {
                 self.totals.residual_points += points.len() as u64;
                 self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
@@ -71,12 +74,23 @@ impl Tally {
         }
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.7). A mesh
+    fn count_labels(&mut self, count: usize) -> Result<()> {
+        self.labels += count as u64;
+        if self.labels > self.totals.vertices {
+            return Err(Error::malformed(format!(
+                "{} labels after {} vertices: a label follows its vertex",
+                self.labels, self.totals.vertices
+            )));
+        }
+        Ok(())
+    }
+
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.8). A mesh
     /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
     /// residual.
     ///
     /// # Errors
-    /// If they are not, or if vertices are neither final nor in the residual.
+    /// If they are not, if vertices are neither final nor in the residual, or if some have a label and others none.
     pub(crate) fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         let mut counted = self.totals;
         if self.per_simplex > 0 {
@@ -91,6 +105,12 @@ impl Tally {
                     counted.vertices
                 )));
             }
+        }
+        if self.labels != 0 && self.labels != counted.vertices {
+            return Err(Error::malformed(format!(
+                "END: {} labels of {} vertices, expected none, or one for each",
+                self.labels, counted.vertices
+            )));
         }
         if *stated != counted {
             return Err(Error::malformed(format!("END states {stated:?}, but the stream holds {counted:?}")));

@@ -28,6 +28,7 @@ pub struct StreamWriter<W: Write> {
     points: Vec<u8>,
     payload: Vec<u8>,
     totals: Totals,
+    labels: u64,
 }
 
 impl<W: Write> StreamWriter<W> {
@@ -45,6 +46,7 @@ impl<W: Write> StreamWriter<W> {
             points: Vec::with_capacity(POINTS_PAYLOAD),
             payload: Vec::new(),
             totals: Totals::default(),
+            labels: 0,
         })
     }
 
@@ -181,6 +183,23 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
+    /// Appends the labels of the next vertices, counted from the one after the last that has a label. They must have
+    /// been written in patches before. By the end either all vertices have labels, or none has.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn labels(&mut self, labels: &[u64]) -> Result<()> {
+        self.labels += labels.len() as u64;
+        assert!(self.labels <= self.totals.vertices, "a label follows its vertex");
+        for labels in labels.chunks(BLOCK_PAYLOAD_MAX / 8) {
+            let payload = &mut self.payload;
+            payload.clear();
+            labels.iter().for_each(|label| payload.extend_from_slice(&label.to_le_bytes()));
+            self.flush_block(Tag::Labels)?;
+        }
+        Ok(())
+    }
+
     /// Appends residual points, each with its id if it is a vertex of an earlier patch.
     ///
     /// # Errors
@@ -219,6 +238,7 @@ impl<W: Write> StreamWriter<W> {
     /// # Errors
     /// If writing or flushing fails.
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
+        assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;
         if self.header.kind.vertices_per_simplex() > 0 {
             self.totals.points = input_points;

@@ -52,9 +52,10 @@ fn a_cut_input_leaves_no_file() {
 #[test]
 fn wrong_requests_are_told_apart() {
     let points = samples::points(2, true, false);
-    let cases: [(&[&str], &[u8], i32, &str); 6] = [
+    let cases: [(&[&str], &[u8], i32, &str); 7] = [
         (&[], &points, 2, "--to"),
         (&["--to", "dxf"], &points, 2, "possible values"),
+        (&["--to", "spm", "--from", "vtu"], &points, 2, "possible values"),
         (&["--to", "sma"], &points, 2, "cannot be written as SMA, which holds triangle mesh"),
         (&["--to", "spm", "--from", "ply"], &points, 3, "expected \"ply\""),
         (&["--to", "spm"], b"no mesh at all\n", 2, "--from"),

@@ -16,6 +16,9 @@ fn files() -> Vec<(Format, Vec<u8>)> {
     for format in [Format::Spm, Format::Text, Format::Ply, Format::Spa, Format::Spb] {
         files.push((format, converted(&points, Format::Spm, format).unwrap()));
     }
+    let tetrahedra = samples::tetrahedra(samples::grids()[1], true);
+    files.push((Format::Text, text_of(&tetrahedra).into_bytes()));
+    files.push((Format::Spm, tetrahedra));
     files.push((Format::Spm, samples::partial()));
     files.push((Format::Text, text_of(&samples::partial()).into_bytes()));
     files

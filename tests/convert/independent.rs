@@ -86,3 +86,79 @@ pub fn sma(text: &str) -> (Soup, BTreeMap<usize, usize>) {
     }
     (soup, finals)
 }
+
+/// Vertices, cells of any number of vertices, and labels of the vertices.
+#[derive(Debug, Default, PartialEq)]
+pub struct Volume {
+    pub vertices: Vec<[f64; 3]>,
+    pub cells: Vec<Vec<usize>>,
+    pub labels: Vec<u64>,
+}
+
+/// VTU with raw appended arrays; the type of a cell must be that of its number of vertices.
+pub fn vtu(bytes: &[u8]) -> Volume {
+    let marker = b"<AppendedData encoding=\"raw\">\n_";
+    let split = bytes.windows(marker.len()).position(|window| window == marker).unwrap();
+    let (xml, data) = (std::str::from_utf8(&bytes[..split]).unwrap(), &bytes[split + marker.len()..]);
+    assert!(xml.contains("byte_order=\"LittleEndian\" header_type=\"UInt64\""));
+    let value = |text: &str, name: &str| {
+        let start = text.find(&format!("{name}=\"")).unwrap() + name.len() + 2;
+        text[start..].split('"').next().unwrap().to_string()
+    };
+    let array = |name: &str| -> &[u8] {
+        let elements = xml.split("<DataArray ").skip(1);
+        let Some(element) = elements.into_iter().find(|element| value(element, "Name") == name) else {
+            return &[];
+        };
+        let at: usize = value(element, "offset").parse().unwrap();
+        &data[at + 8..at + 8 + LE::read_u64(&data[at..]) as usize]
+    };
+    let numbers = |name: &str| -> Vec<usize> {
+        array(name).chunks_exact(8).map(|bytes| LE::read_u64(bytes) as usize).collect()
+    };
+    let coordinates: Vec<f64> = array("Points").chunks_exact(8).map(LE::read_f64).collect();
+    let (corners, ends, types) = (numbers("connectivity"), numbers("offsets"), array("types"));
+    let starts = std::iter::once(0).chain(ends.iter().copied());
+    let cells: Vec<Vec<usize>> =
+        starts.zip(&ends).map(|(start, &end)| corners[start..end].to_vec()).collect();
+    assert_eq!(corners.len(), ends.last().copied().unwrap_or_default());
+    assert_eq!(types.len(), cells.len());
+    let codes = [0, 1, 3, 5, 10];
+    assert!(types.iter().zip(&cells).all(|(&code, cell)| code == codes[cell.len()]));
+    let last = array("types").as_ptr_range().end as usize - data.as_ptr() as usize;
+    assert_eq!(&data[last..], b"\n</AppendedData>\n</VTKFile>\n");
+    let vertices: Vec<[f64; 3]> = coordinates.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
+    assert_eq!(value(xml, "NumberOfPoints"), vertices.len().to_string());
+    assert_eq!(value(xml, "NumberOfCells"), cells.len().to_string());
+    Volume { vertices, cells, labels: array("label").chunks_exact(8).map(LE::read_u64).collect() }
+}
+
+/// Medit's text, version 2; references of vertices are the labels.
+pub fn medit(text: &str) -> Volume {
+    let mut words = text.split_ascii_whitespace();
+    let mut word = || words.next().unwrap();
+    assert_eq!([word(), word(), word(), word()], ["MeshVersionFormatted", "2", "Dimension", "3"]);
+    let mut volume = Volume::default();
+    loop {
+        let (name, count) = match word() {
+            "End" => break,
+            name => (name, word().parse().unwrap()),
+        };
+        for _ in 0..count {
+            let corners = match name {
+                "Vertices" => {
+                    volume.vertices.push([0; 3].map(|_| word().parse().unwrap()));
+                    volume.labels.push(word().parse().unwrap());
+                    continue;
+                }
+                "Tetrahedra" => 4,
+                "Triangles" => 3,
+                other => panic!("{other}"),
+            };
+            volume.cells.push((0..corners).map(|_| word().parse::<usize>().unwrap() - 1).collect());
+            assert_eq!(word(), "0");
+        }
+    }
+    assert_eq!(words.next(), None);
+    volume
+}

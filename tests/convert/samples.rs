@@ -124,6 +124,53 @@ pub fn partial() -> Vec<u8> {
     writer.end(4, 0).unwrap()
 }
 
+/// A box of `LAYERS` layers of cubes, five tetrahedra in each, one patch per layer of vertices; vertices are final after
+/// the layer above theirs. Labels, where there are any, come behind every other patch.
+pub fn tetrahedra(coordinates: Coordinates, has_labels: bool) -> Vec<u8> {
+    const SIDE: u64 = 4;
+    const LAYERS: u64 = 3;
+    const AREA: u64 = SIDE * SIDE;
+    let mut header = Header::new(Kind::TetrahedralMesh, coordinates, 3, false);
+    header.points = Some(AREA * (LAYERS + 1) + 2);
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let step = if coordinates == Coordinates::F64 { 1.0 / 3.0 } else { 1e8 };
+    for layer in 0..=LAYERS {
+        let at = |i: u64| [i % SIDE, i / SIDE, layer].map(|x| x as f64 * step - step);
+        let mut patch =
+            Patch { first_id: layer * AREA, new: (0..AREA).map(at).collect(), ..Patch::default() };
+        if layer > 0 {
+            patch.imported = ((layer - 1) * AREA..layer * AREA).collect();
+            let cubes = (0..SIDE - 1).flat_map(|x| (0..SIDE - 1).map(move |y| (x, y)));
+            patch.simplices = cubes.flat_map(|(x, y)| cube(x, y, layer, SIDE)).collect();
+            let all = 2 * AREA as u32;
+            patch.finalized = (if layer == LAYERS { 0 } else { AREA as u32 }..all).collect();
+        }
+        writer.patch(&patch).unwrap();
+        if has_labels && layer % 2 == 1 {
+            writer.labels(&((layer - 1) * AREA..(layer + 1) * AREA).map(label).collect::<Vec<_>>()).unwrap();
+        }
+    }
+    writer.end(AREA * (LAYERS + 1) + 2, 2).unwrap()
+}
+
+/// Label of a vertex of [`tetrahedra`].
+pub fn label(id: u64) -> u64 {
+    1000 - 7 * id
+}
+
+/// Local indices of the five tetrahedra of a cube whose upper side is new, and whose lower one is imported. Neighbours
+/// are mirror images, so that diagonals meet.
+fn cube(x: u64, y: u64, layer: u64, side: u64) -> Vec<u32> {
+    let corner = |i: u64| {
+        let lower = if i & 4 == 0 { side * side } else { 0 };
+        (lower + (y + (i >> 1 & 1)) * side + x + (i & 1)) as u32
+    };
+    let is_mirrored = (x + y + layer) % 2 == 1;
+    let five = [[0, 1, 2, 4], [3, 2, 1, 7], [5, 4, 7, 1], [6, 7, 4, 2], [1, 2, 4, 7]];
+    let turned = five.map(|t| if is_mirrored { [t[1] ^ 1, t[0] ^ 1, t[2] ^ 1, t[3] ^ 1] } else { t });
+    turned.iter().flatten().map(|&i| corner(i)).collect()
+}
+
 /// One stream of every sort.
 pub fn all() -> Vec<Vec<u8>> {
     let mut all: Vec<Vec<u8>> = grids().into_iter().map(mesh).collect();
@@ -131,5 +178,7 @@ pub fn all() -> Vec<Vec<u8>> {
         all.extend([points(2, true, is_i32), points(2, false, is_i32), points(3, false, is_i32)]);
     }
     all.push(partial());
+    all.extend(grids().into_iter().map(|grid| tetrahedra(grid, true)));
+    all.push(tetrahedra(Coordinates::F64, false));
     all
 }

@@ -4,6 +4,7 @@ use spmesh::convert::Format;
 use spmesh::error::ErrorKind;
 
 use super::{converted, samples, text_of};
+use crate::vectors::load;
 
 #[test]
 fn stream_to_text_to_stream_is_the_identity() {
@@ -26,7 +27,9 @@ fn text_to_text_is_the_identity() {
 
 #[test]
 fn every_truncation_is_refused() {
-    for stream in [samples::points(3, false, true), samples::partial()] {
+    let tetrahedra =
+        load("pass", "txt").into_iter().find(|vector| vector.name == "tetrahedra-labels").unwrap();
+    for stream in [samples::points(3, false, true), samples::partial(), tetrahedra.bytes] {
         let text = text_of(&stream);
         for end in 0..text.len() - 1 {
             let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).unwrap_err();
@@ -75,6 +78,41 @@ fn errors_name_the_line() {
 }
 
 #[test]
+fn errors_in_tetrahedra_and_labels_name_the_line() {
+    let vector = load("pass", "txt").into_iter().find(|vector| vector.name == "tetrahedra-labels").unwrap();
+    let text = text_of(&vector.bytes);
+    let cases = [
+        ("c 1 2 3 4", "c 1 2 3", "a field is missing"),
+        ("c 1 2 3 4", "c 1 2 3 4 5", "end of the line"),
+        ("c 1 2 3 4", "c 1 2 3 1", "uses a vertex twice"),
+        ("c 1 2 3 4", "c 1 2 3 5", "vertex 5 of 4"),
+        ("c 1 2 3 4", "f 1 2 3", "expected v, c, x, label or a comment"),
+        ("c 1 2 3 4\n", "", "END states"),
+        ("label 17", "label -17", "an integer"),
+        ("label 17", "label 18446744073709551616", "an integer"),
+        ("label 17", "label", "a field is missing"),
+        ("label 17", "label 17 4", "end of the line"),
+        ("label 17", "label 17\nlabel 17", "5 labels after 4 vertices"),
+        ("label 17\n", "", "4 labels of 5 vertices"),
+        ("# patch", "label 17\n# patch", "1 labels after 0 vertices"),
+        ("x 4\n", "", "4 of 5 vertices were finalized"),
+        ("v 2 2 1", "v 2 2 9", "outside of the header's bounding box"),
+        ("label 17", "w 1 2", "cannot have this line here"),
+        ("dims 3", "dims 2", "a tetrahedral mesh in 2 dimensions"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert!(text.contains(found), "{found} in {text}");
+        let damaged = text.replacen(found, replaced, 1);
+        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        let message = error.to_string();
+        assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+    }
+    let triangles = text_of(&samples::mesh(samples::grids()[0])).replacen("# patch", "label 1\n# patch", 1);
+    let error = converted(triangles.as_bytes(), Format::Text, Format::Spm).unwrap_err();
+    assert!(error.to_string().contains("a triangle mesh cannot have this line here"), "{error}");
+}
+
+#[test]
 fn lines_and_patches_have_a_maximum() {
     let line = [b"#spmesh version 1\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();
     let error = converted(&line, Format::Text, Format::Spm).unwrap_err();
@@ -88,10 +126,24 @@ fn lines_and_patches_have_a_maximum() {
 
 #[test]
 fn twins_of_the_vectors_are_those_of_the_specification() {
-    for vector in crate::vectors::load("pass", "txt") {
+    for vector in load("pass", "txt") {
         assert_eq!(text_of(&vector.bytes), vector.expected, "{}", vector.name);
         let back = converted(vector.expected.as_bytes(), Format::Text, Format::Spm).unwrap();
         assert_eq!(text_of(&back), vector.expected, "{}", vector.name);
+    }
+}
+
+#[test]
+fn the_examples_of_the_specification_are_twins() {
+    let text = std::fs::read_to_string(crate::vectors::repository("formats/text.md")).unwrap();
+    let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("    ")).collect();
+    let starts: Vec<usize> = (0..lines.len()).filter(|&i| lines[i] == "#spmesh version 1").collect();
+    assert_eq!(starts.len(), 2);
+    for (i, &start) in starts.iter().enumerate() {
+        let end = starts.get(i + 1).copied().unwrap_or(lines.len());
+        let example = lines[start..end].join("\n") + "\n";
+        let stream = converted(example.as_bytes(), Format::Text, Format::Spm).unwrap();
+        assert_eq!(text_of(&stream), example);
     }
 }
 

@@ -10,7 +10,7 @@ pub fn exact_points(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     points.iter().map(|p| p.map(times_2_1074)).collect()
 }
 
-fn times_2_1074(value: f64) -> BigInt {
+pub(super) fn times_2_1074(value: f64) -> BigInt {
     let bits = value.abs().to_bits();
     let exponent = bits >> 52;
     let significand = BigInt::from(bits & 0xf_ffff_ffff_ffff);
@@ -22,7 +22,7 @@ fn times_2_1074(value: f64) -> BigInt {
     if value < 0.0 { -integer } else { integer }
 }
 
-fn sign(value: &BigInt) -> i32 {
+pub(super) fn sign(value: &BigInt) -> i32 {
     match value.sign() {
         Sign::Minus => -1,
         Sign::NoSign => 0,

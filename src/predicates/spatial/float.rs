@@ -1,0 +1,161 @@
+//! Predicates of floating-point coordinates: filter, then expansions, then arbitrary precision.
+
+use super::filter::{insphere_is_certain, lift, orient3d_is_certain};
+use super::{Extent, Numbers, Point3, PredicateCounts, Predicates3, Sign};
+use crate::predicates::adaptive::{Estimate, difference};
+use crate::predicates::big;
+use robust::Coord3D;
+
+fn coord([x, y, z]: Point3) -> Coord3D<f64> {
+    Coord3D { x, y, z }
+}
+
+/// Differences of b, c, d to a.
+#[inline(always)]
+pub(super) fn differences_from<const N: usize>(a: Point3, others: [Point3; N]) -> [Point3; N] {
+    others.map(|point| difference(point, a))
+}
+
+/// The sign of the crate is that of det(a - d, b - d, c - d).
+#[cold]
+fn expansion_orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
+    Sign::of(-robust::orient3d(coord(a), coord(b), coord(c), coord(d)))
+}
+
+/// The crate's tetrahedra are oriented the other way.
+#[cold]
+fn expansion_insphere(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
+    Sign::of(-robust::insphere(coord(a), coord(b), coord(c), coord(d), coord(e)))
+}
+
+/// Filter, then expansions.
+///
+/// Domain: every coordinate is zero or its magnitude lies in [2^-132, 2^200]. Why this suffices:
+///
+/// * Underflow. All coordinates are multiples of g = 2^-184, the unit in the last place of 2^-132; so are their
+///   differences and the rounding errors of these. Every product that is formed has at most five such factors, so
+///   every term of an expansion is a multiple of g^5 = 2^-920 and, being above the least subnormal 2^-1074, exactly
+///   representable. The sum of magnitudes is zero (and with it the exact determinant, as a difference rounds to zero
+///   only if it is zero) or at least 2^-920, so that the smallest error bound formed from it, with a factor of 71 *
+///   2^-106 > 2^-100, is a normal number.
+/// * Overflow. Differences are below 2^201. The sum of magnitudes of `insphere` is at most 4 * 3 * 6 = 72 products of
+///   five of them, below 2^1012; last of all, the determinant of undiffered coordinates has at most 5 * 3 * 24 = 360
+///   products of five coordinates, below 2^1009. Only coordinates and products of at most four factors are split,
+///   which multiplies them by 2^27 + 1: at most 24 * 2^804 for the latter, so that the result stays below 2^840.
+#[derive(Debug, Default)]
+pub struct ExpansionPredicates3 {
+    counts: PredicateCounts,
+}
+
+impl ExpansionPredicates3 {
+    /// Least magnitude of a coordinate other than zero: 2^-132.
+    pub const LEAST_MAGNITUDE: f64 = f64::from_bits((1023 - 132) << 52);
+    /// Greatest magnitude of a coordinate: 2^200.
+    pub const GREATEST_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
+
+    /// Whether all points within `extent` are in the domain.
+    #[must_use]
+    pub fn covers(extent: &Extent<3>) -> bool {
+        extent.least_magnitude >= Self::LEAST_MAGNITUDE
+            && extent.greatest_magnitude() <= Self::GREATEST_MAGNITUDE
+    }
+
+    fn covers_point(point: &Point3) -> bool {
+        point.iter().all(|coordinate| {
+            *coordinate == 0.0
+                || (Self::LEAST_MAGNITUDE..=Self::GREATEST_MAGNITUDE).contains(&coordinate.abs())
+        })
+    }
+}
+
+impl Predicates3 for ExpansionPredicates3 {
+    const NUMBERS: Numbers = Numbers::Floats;
+
+    #[inline(always)]
+    fn orient3d(&mut self, a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
+        let estimate = Estimate::orient3d(differences_from(a, [b, c, d]));
+        if estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else {
+            self.counts.expansion += 1;
+            expansion_orient3d(a, b, c, d)
+        }
+    }
+
+    #[inline(always)]
+    fn insphere(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
+        let estimate = Estimate::insphere(differences_from(e, [a, b, c, d]));
+        if estimate.is_certain() {
+            self.counts.filter += 1;
+            Sign::of(estimate.value)
+        } else {
+            self.counts.expansion += 1;
+            expansion_insphere(a, b, c, d, e)
+        }
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
+    }
+}
+
+/// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk first.
+///
+/// The filters are those in terms of lengths, which hold for all of them. Expansions are used in the domain of
+/// [`ExpansionPredicates3`], arbitrary precision for the rest.
+#[derive(Debug, Default)]
+pub struct TotalPredicates3 {
+    counts: PredicateCounts,
+}
+
+fn greatest_lift(differences: &[Point3]) -> f64 {
+    differences.iter().fold(0.0, |greatest, &difference| lift(difference).max(greatest))
+}
+
+impl Predicates3 for TotalPredicates3 {
+    const NUMBERS: Numbers = Numbers::Any;
+
+    fn orient3d(&mut self, a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
+        let differences = differences_from(a, [b, c, d]);
+        let value = Estimate::orient3d(differences).value;
+        let lift = greatest_lift(&differences);
+        if orient3d_is_certain(value, lift * lift * lift) {
+            self.counts.filter += 1;
+            Sign::of(value)
+        } else if [a, b, c, d].iter().all(ExpansionPredicates3::covers_point) {
+            self.counts.expansion += 1;
+            expansion_orient3d(a, b, c, d)
+        } else {
+            self.counts.bigint += 1;
+            big::orient3d(a, b, c, d)
+        }
+    }
+
+    fn insphere(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
+        let differences = differences_from(e, [a, b, c, d]);
+        let value = Estimate::insphere(differences).value;
+        if insphere_is_certain(value, greatest_lift(&differences)) {
+            self.counts.filter += 1;
+            Sign::of(value)
+        } else if [a, b, c, d, e].iter().all(ExpansionPredicates3::covers_point) {
+            self.counts.expansion += 1;
+            expansion_insphere(a, b, c, d, e)
+        } else {
+            self.counts.bigint += 1;
+            big::insphere(a, b, c, d, e)
+        }
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+
+    fn counts_mut(&mut self) -> &mut PredicateCounts {
+        &mut self.counts
+    }
+}
