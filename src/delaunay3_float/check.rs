@@ -1,28 +1,23 @@
 //! Exact signs and values, to count the errors of rounded arithmetic with.
 
 use super::Stats;
-use super::mesh::faraway_corner;
+use super::mesh::{faraway_corner, finite_facet};
 use super::sphere::difference;
-use crate::predicates::Point3;
-use robust::{Coord, Coord3D};
+use crate::predicates::{Point3, Predicates2, Predicates3, Sign, TotalPredicates, TotalPredicates3};
 
 /// Integer differences below this have in-sphere determinants below 2^125.
 const INTEGER_LIMIT: f64 = 8_388_608.0;
 
-fn coord3(p: Point3) -> Coord3D<f64> {
-    Coord3D { x: p[0], y: p[1], z: p[2] }
-}
-
-/// A number with the sign of det(b - a, c - a, d - a).
-pub(super) fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
-    -robust::orient3d(coord3(a), coord3(b), coord3(c), coord3(d))
+/// Exact orientation of a tetrahedron.
+pub(super) fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
+    TotalPredicates3::default().orient3d(a, b, c, d)
 }
 
 /// Whether three points are on a line.
 pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
-        let [a, b, c] = [a, b, c].map(|p| Coord { x: p[i], y: p[j] });
-        robust::orient2d(a, b, c) == 0.0
+        let [a, b, c] = [a, b, c].map(|p| [p[i], p[j]]);
+        TotalPredicates::default().orient2d(a, b, c) == Sign::Zero
     })
 }
 
@@ -31,21 +26,19 @@ pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
 #[inline(never)]
 pub(super) fn check(points: &[Point3], vertices: &[u32; 4], p: Point3, value: f64, stats: &mut Stats) {
     let point = |corner: usize| points[vertices[corner] as usize];
-    let exact = match faraway_corner(vertices) {
-        None => {
-            let corners = [0, 1, 2, 3].map(point);
-            stats.rounded += u64::from(is_rounded(corners, p, value));
-            let [a, b, c, d] = corners.map(coord3);
-            -robust::insphere(a, b, c, d, coord3(p))
-        }
-        Some(1) => orient3d(point(0), point(2), point(3), p),
-        Some(2) => orient3d(point(0), point(3), point(1), p),
-        Some(_) => orient3d(point(0), point(1), point(2), p),
+    let exact = if let Some(corner) = faraway_corner(vertices) {
+        let [o, a, b] = finite_facet(corner).map(point);
+        orient3d(o, a, b, p)
+    } else {
+        let [a, b, c, d] = [0, 1, 2, 3].map(point);
+        stats.rounded += u64::from(is_rounded([a, b, c, d], p, value));
+        TotalPredicates3::default().insphere(a, b, c, d, p)
     };
-    if exact == 0.0 {
+    if exact == Sign::Zero {
         stats.wrong_zeros += u64::from(value != 0.0);
-    } else if !(value > 0.0 && exact > 0.0 || value < 0.0 && exact < 0.0) {
-        stats.wrong_signs += 1;
+    } else {
+        // No sign of one that is not a number is right.
+        stats.wrong_signs += u64::from(value.is_nan() || Sign::of(value) != exact);
     }
 }
 

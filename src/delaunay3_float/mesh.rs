@@ -1,8 +1,9 @@
 //! The tetrahedra of a triangulated 3-sphere: those of the points, and infinite ones at the faraway point.
 
+use super::check;
 use super::sphere::{Sphere, orientation};
 use crate::delaunay3::{Corner, Tetrahedron};
-use crate::predicates::Point3;
+use crate::predicates::{Point3, Sign};
 
 /// The faraway point (thesis 4.3), never the first vertex of a tetrahedron.
 pub(super) const FARAWAY: u32 = u32::MAX;
@@ -49,15 +50,22 @@ pub(super) fn faraway_corner(vertices: &[u32; 4]) -> Option<usize> {
     (1..4).find(|&corner| vertices[corner] == FARAWAY)
 }
 
+/// The other corners, such that these followed by one beyond their facet of the hull are positively oriented.
+#[inline(always)]
+pub(super) fn finite_facet(faraway_corner: usize) -> [usize; 3] {
+    [0, 1 + faraway_corner % 3, 1 + (faraway_corner + 1) % 3]
+}
+
 /// Sphere of a tetrahedron, or the half-space that its sphere at the faraway point comes to.
 #[inline(always)]
 pub(super) fn sphere_of(points: &[Point3], vertices: &[u32; 4]) -> Sphere {
     let point = |corner: usize| points[vertices[corner] as usize];
     match faraway_corner(vertices) {
         None => Sphere::through(point(0), point(1), point(2), point(3)),
-        Some(1) => Sphere::beyond(point(0), point(2), point(3)),
-        Some(2) => Sphere::beyond(point(0), point(3), point(1)),
-        Some(_) => Sphere::beyond(point(0), point(1), point(2)),
+        Some(corner) => {
+            let [o, a, b] = finite_facet(corner).map(point);
+            Sphere::beyond(o, a, b)
+        }
     }
 }
 
@@ -218,14 +226,14 @@ impl<'a> Mesh<'a> {
 /// The first point, the first that differs, the first that is not collinear with them, the first that is not coplanar.
 pub(super) fn first_tetrahedron(points: &[Point3]) -> Option<[u32; 4]> {
     let &[a, b, ..] = points else { return None };
-    let next = (2..points.len()).find(|&i| !super::check::are_collinear(a, b, points[i]))?;
+    let next = (2..points.len()).find(|&i| !check::are_collinear(a, b, points[i]))?;
     let c = points[next];
     (next + 1..points.len()).find_map(|i| {
-        let exact = super::check::orient3d(a, b, c, points[i]);
-        let rounded = orientation(a, b, c, points[i]);
+        let d = points[i];
+        let is_sound = |a, b| check::orient3d(a, b, c, d) == Sign::Positive && orientation(a, b, c, d) > 0.0;
         match () {
-            () if exact > 0.0 && rounded > 0.0 => Some([0, 1, next as u32, i as u32]),
-            () if exact < 0.0 && orientation(b, a, c, points[i]) > 0.0 => Some([1, 0, next as u32, i as u32]),
+            () if is_sound(a, b) => Some([0, 1, next as u32, i as u32]),
+            () if is_sound(b, a) => Some([1, 0, next as u32, i as u32]),
             () => None,
         }
     })
