@@ -50,11 +50,9 @@ fn in_sphere(corners: [Point; 4], e: Point) -> f64 {
 /// Checks all that holds whatever was rounded: the tetrahedra fit together; distinct points are vertices or missing.
 fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
     let distinct: HashSet<[u64; 3]> = points.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
-    assert_eq!(mesh.points.len(), distinct.len());
-    assert_eq!(mesh.indices.len() + mesh.duplicates.len(), points.len());
-    for (point, &index) in mesh.points.iter().zip(&mesh.indices) {
-        assert_eq!(*point, points[index as usize]);
-    }
+    assert_eq!(mesh.vertices().len(), distinct.len());
+    assert_eq!(mesh.vertices().len() + mesh.duplicates.len(), points.len());
+    assert!(mesh.vertices().iter().all(|vertex| vertex.at == points[vertex.index as usize]));
     for &[duplicate, other] in &mesh.duplicates {
         assert!(other < duplicate);
         assert_eq!(points[duplicate as usize], points[other as usize]);
@@ -83,7 +81,7 @@ fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
             assert_eq!(facets[&facet], if tetrahedron.across(side).is_some() { 2 } else { 1 });
         }
     }
-    assert_eq!(stats.missing as usize, mesh.points.len() - vertices.len());
+    assert_eq!(stats.missing as usize, mesh.vertices().len() - vertices.len());
     assert!(stats.created as usize >= mesh.tetrahedra().len());
 }
 
@@ -91,21 +89,21 @@ fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
 fn check_delaunay(mesh: &Tetrahedralization) {
     let mut hull = Vec::new();
     for tetrahedron in mesh.tetrahedra() {
-        let corners = tetrahedron.vertices.map(|v| mesh.points[v as usize]);
+        let corners = tetrahedron.vertices.map(|v| mesh.vertices()[v as usize].at);
         assert!(orientation(corners) > 0.0);
         for (side, facet) in FACETS.into_iter().enumerate() {
             match tetrahedron.across(side) {
                 Some(other) => {
                     let other =
                         &mesh.tetrahedra()[other.tetrahedron as usize].vertices[other.corner as usize];
-                    assert!(in_sphere(corners, mesh.points[*other as usize]) <= 0.0);
+                    assert!(in_sphere(corners, mesh.vertices()[*other as usize].at) <= 0.0);
                 }
                 None => hull.push(facet.map(|i| corners[i])),
             }
         }
     }
     for [a, b, c] in hull {
-        assert!(mesh.points.iter().all(|&p| orientation([p, a, b, c]) >= 0.0));
+        assert!(mesh.vertices().iter().all(|p| orientation([p.at, a, b, c]) >= 0.0));
     }
 }
 
@@ -207,7 +205,7 @@ fn the_same_tetrahedra_as_by_trying_all() {
                 .tetrahedra()
                 .iter()
                 .map(|tetrahedron| {
-                    let mut vertices = tetrahedron.vertices.map(|v| mesh.indices[v as usize]);
+                    let mut vertices = tetrahedron.vertices.map(|v| mesh.vertices()[v as usize].index);
                     vertices.sort_unstable();
                     vertices
                 })
@@ -310,7 +308,7 @@ fn a_run_depends_on_its_seed_alone() {
     let run = |seed| {
         let options = Options { curve: Curve::Random, seed, ..Options::default() };
         let (mesh, stats) = triangulate(&points, &options).expect("finite points");
-        (mesh.indices.clone(), stats.walk_steps)
+        (mesh.vertices().iter().map(|v| v.index).collect::<Vec<u32>>(), stats.walk_steps)
     };
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));

@@ -1,7 +1,11 @@
-"""The two kinds of measurement: the kernel alone, and whole pipes from file to file."""
+"""The kinds of measurement: the kernels alone, in 2D and in 3D, and whole pipes from file to file."""
 
+import statistics
+import sys
+from collections import defaultdict
 from dataclasses import dataclass, field
 
+import structures
 from inputs import count_of, program
 from measure import Contestant, compete
 
@@ -9,8 +13,21 @@ OURS = "spmesh"
 DECODER = "decode LAZ once (laz crate, 2 threads)"
 ALONE = "spdelaunay2d --threads {}"
 FROM_LAZ = "spmesh, LAZ"
+STRUCTURES, SWEEP = "structures", "sweep"
+TESS3 = "tess3 --threads {}"
 FULL_SETS = ["uniform-1M", "grid-1000", "uniform-10M", "flight-10M", "grid-3163", "pipe-10M"]
 QUICK_SETS = ["uniform-100k", "grid-300", "flight-100k", "pipe-100k"]
+FULL_SETS_3D = ["uniform3-1M", "protein3-1M", "surface3-1M", "tenbit3-100k", "grid3-100", "fcc3-63"]
+QUICK_SETS_3D = ["uniform3-20k", "protein3-20k", "surface3-20k", "tenbit3-20k", "grid3-25", "fcc3-16"]
+SETS = {"2d": (FULL_SETS, QUICK_SETS), "3d": (FULL_SETS_3D, QUICK_SETS_3D)}
+POINT3_BYTES = 24
+
+
+def dims_of(name):
+    """Of the points of a set, by its name; 0 if it has no peers."""
+    if name == SWEEP:
+        return 0
+    return 3 if name == STRUCTURES or name.split("-")[0].endswith("3") else 2
 
 
 @dataclass
@@ -22,10 +39,16 @@ class Contest:
     contestants: list
     # Peers that did not run, and why.
     absent: dict = field(default_factory=dict)
+    dims: int = 2
 
     @property
     def is_pipe(self):
         return self.name.startswith("pipe")
+
+    @property
+    def element(self):
+        """What a triangulation is made of."""
+        return "tetrahedra" if self.dims == 3 else "triangles"
 
     @property
     def seconds(self):
@@ -36,14 +59,21 @@ class Contest:
         return next((c for c in self.contestants if c.name == name and c.runs), None)
 
     def peers(self):
-        """Peers with figures, the fastest first."""
+        """Peers with figures, the fastest first; in 3D those on one thread, as ours is."""
         names = {OURS, DECODER, FROM_LAZ, ALONE.format(1), ALONE.format(2)}
         ran = [c for c in self.contestants if c.name not in names and c.runs and self.seconds(c)]
-        return sorted(ran, key=self.seconds)
+        return sorted((c for c in ran if self.dims == 2 or "threads" not in c.name), key=self.seconds)
 
-    def triangles(self):
+    def speed(self, contestant, other):
+        """How many times as fast as another a contestant is: median over the rounds, as a machine's pace drifts."""
+        if not other:
+            return None
+        pairs = zip(other.runs, contestant.runs)
+        return statistics.median(theirs.said["seconds"] / its.said["seconds"] for theirs, its in pairs)
+
+    def elements(self):
         """The number that most exact programs agree on, where there are any."""
-        counts = [c.said("triangles") for c in self.contestants if c.said("triangles")]
+        counts = [c.said(self.element) for c in self.contestants if c.said(self.element)]
         return max(counts, key=counts.count) if counts else None
 
     def as_json(self):
@@ -58,23 +88,50 @@ class Contests:
         self.inputs, self.peers, self.flags = inputs, peers, flags
         self.triangles = flags.dir / "triangles.bin"
         self.mesh = flags.dir / "mesh.spm"
-        self.per_point = {True: {}, False: {}}
+        # By dimension, and whether the points are in an order.
+        self.per_point = defaultdict(dict)
 
     def run(self, name):
         kind, size = name.split("-")
-        contest = self.pipe(name, size) if kind == "pipe" else self.kernel(name, kind)
+        if dims_of(name) == 3:
+            contest = self.kernel3(name, self.inputs.file(f"{name}.f64"))
+        else:
+            contest = self.pipe(name, size) if kind == "pipe" else self.kernel(name, kind)
         # Who does not sort its points is slow on those without order only.
-        per_point = self.per_point[kind in ("pipe", "flight")]
+        per_point = self.per_point[contest.dims, kind in ("pipe", "flight")]
         self.excuse_slow(contest, per_point)
-        chosen = [c for c in contest.contestants if self.is_wanted(c.name)]
-        contest.contestants = chosen
-        compete(chosen, self.flags.rounds, self.flags.limit)
-        for contestant in chosen:
+        self.compete(contest)
+        for contestant in contest.contestants:
             if contestant.failure.startswith("over"):
                 per_point[contestant.name] = self.flags.limit / contest.points
             elif contestant.runs:
                 per_point[contestant.name] = contestant.wall / contest.points
         return contest
+
+    def structures(self):
+        """A contest for each real structure, and those that cannot be read."""
+        files, unread = structures.prepare(self.flags.structures, self.inputs.folder / "structures")
+        contests = [self.kernel3(name, points) for name, points in files]
+        for contest in contests:
+            print(f"{contest.name}:", file=sys.stderr)
+            contest.contestants = [c for c in contest.contestants if "threads" not in c.name]
+            self.compete(contest)
+        return contests, unread
+
+    def sweep(self):
+        """All real structures in one go, on one thread and on two. That some of the files are bad is no failure."""
+        files = structures.find(self.flags.structures)
+        folder = self.flags.dir / "sweep"
+        command = [program("tess3"), "--quiet", "--out-dir", folder, *files, "--threads"]
+        both = [Contestant(TESS3.format(n), [[*command, n]], folder, accepts=(0, 1)) for n in (1, 2)]
+        contest = Contest(SWEEP, len(files), both, dims=0)
+        compete(both, self.flags.rounds, self.flags.limit, self.flags.lock)
+        return contest
+
+    def compete(self, contest):
+        chosen = [c for c in contest.contestants if self.is_wanted(c.name)]
+        contest.contestants = chosen
+        compete(chosen, self.flags.rounds, self.flags.limit, self.flags.lock)
 
     def is_wanted(self, name):
         return not self.flags.only or name.split(",")[0].split()[0].lower() in self.flags.only
@@ -84,20 +141,25 @@ class Contests:
         size = count_of(name.split("-")[1])
         ours = [program("examples/kernel_time"), points, self.triangles]
         contestants = [Contestant(OURS, [ours], self.triangles)]
-        contestants += [self.contestant(p, points) for p in self.peers if p.program and not p.whole_only]
-        return Contest(name, size * size if kind in ("grid", "decimals") else size, contestants, self.absent())
+        contestants += [self.contestant(p, points) for p in self.peers[2] if p.program and not p.whole_only]
+        return Contest(name, size * size if kind in ("grid", "decimals") else size, contestants, self.absent(2))
+
+    def kernel3(self, name, points):
+        contestants = [Contestant(OURS, [[program("examples/kernel3_time"), points]])]
+        contestants += [Contestant(p.name, [[p.program, points, p.threads]]) for p in self.peers[3] if p.program]
+        return Contest(name, points.stat().st_size // POINT3_BYTES, contestants, self.absent(3), dims=3)
 
     def pipe(self, name, size):
         las, laz = self.inputs.file(f"flight-{size}.las"), self.inputs.file(f"flight-{size}.laz")
         stream = self.inputs.finalized(las)
         contestants = [Contestant(OURS, self.from_file(las), self.mesh)]
-        contestants += [self.contestant(peer, las) for peer in self.peers if peer.program]
+        contestants += [self.contestant(peer, las) for peer in self.peers[2] if peer.program]
         contestants.append(Contestant(FROM_LAZ, self.from_file(laz), self.mesh))
         contestants.append(Contestant(DECODER, [[self.inputs.helpers / "decode", laz, 2]]))
         for threads in (1, 2):
             alone = [[*self.delaunay(), "--threads", threads, stream]]
             contestants.append(Contestant(ALONE.format(threads), alone, self.mesh))
-        return Contest(name, count_of(size), contestants, self.absent())
+        return Contest(name, count_of(size), contestants, self.absent(2))
 
     def contestant(self, peer, points):
         output = f"{self.triangles}.ply" if peer.whole_only else self.triangles
@@ -110,8 +172,8 @@ class Contests:
     def delaunay(self):
         return [program("spdelaunay2d"), "--stats=json", "-o", self.mesh]
 
-    def absent(self):
-        return {peer.name: f"not installed: {peer.reason}" for peer in self.peers if not peer.program}
+    def absent(self, dims):
+        return {peer.name: f"not installed: {peer.reason}" for peer in self.peers[dims] if not peer.program}
 
     def excuse_slow(self, contest, per_point):
         """Leaves out whoever would need too long, by what was measured on less."""

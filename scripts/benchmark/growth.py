@@ -25,7 +25,7 @@ class Growth:
         """One row per size and order."""
         chosen = [(size, order) for order in (COHERENT, PERMUTED) for size in self.sizes]
         contestants = [self.contestant(size, order) for size, order in chosen]
-        compete(contestants, self.flags.rounds, self.flags.growth_limit)
+        compete(contestants, self.flags.rounds, self.flags.growth_limit, self.flags.lock)
         rows = [row(size, order, c) for (size, order), c in zip(chosen, contestants)]
         if not self.flags.keep:
             self.inputs.remove_big()

@@ -8,6 +8,7 @@ from machine import ROOT
 UNITS = {"k": 10**3, "M": 10**6}
 # Inputs above this are not kept, unless asked for.
 KEPT_POINTS_MAX = 10**7
+EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar"]
 
 
 def count_of(text):
@@ -16,7 +17,8 @@ def count_of(text):
 
 
 class Inputs:
-    """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz, permuted-10M.las."""
+    """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz, permuted-10M.las; in
+    3D uniform3-1M.f64 and others, see rust/src/bin/inputs3.rs."""
 
     def __init__(self, folder, helpers):
         self.folder = folder / "inputs"
@@ -35,7 +37,8 @@ class Inputs:
         elif kind == "permuted":
             self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
         else:
-            self.make(self.helpers / "inputs", kind, count_of(size), part)
+            maker = "inputs3" if kind.endswith("3") else "inputs"
+            self.make(self.helpers / maker, kind, count_of(size), part)
         os.replace(part, path)
         return path
 
@@ -62,5 +65,6 @@ def program(name):
 
 def build():
     """Builds what is measured."""
-    command = ["cargo", "build", "--release", "--locked", "--quiet", "--bins", "--example", "kernel_time"]
-    subprocess.run([*command, "--example", "gen_lidar"], cwd=ROOT, check=True)
+    examples = [word for name in EXAMPLES for word in ("--example", name)]
+    command = ["cargo", "build", "--release", "--locked", "--quiet", "--bins", *examples]
+    subprocess.run(command, cwd=ROOT, check=True)

@@ -1,8 +1,11 @@
 """Runs programs: wall time, CPU time and peak memory of each, and rounds of many in turn."""
 
+import contextlib
+import fcntl
 import json
 import os
 import resource
+import shutil
 import statistics
 import subprocess
 import sys
@@ -30,11 +33,14 @@ class Run:
 
 @dataclass
 class Contestant:
-    """A pipeline to be timed. `commands` are argument lists, joined by pipes; `output` is removed after each run."""
+    """A pipeline to be timed. `commands` are argument lists, joined by pipes; `output` is removed after each run, be it
+    a file or a folder."""
 
     name: str
     commands: list
     output: str = ""
+    # Exit codes that are no failure.
+    accepts: tuple = (0,)
     runs: list = field(default_factory=list)
     failure: str = ""
 
@@ -65,7 +71,7 @@ def floor_bytes():
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
-def run(commands, limit_s):
+def run(commands, limit_s, accepts=(0,)):
     """Runs `commands` as a pipeline, and kills it after `limit_s` seconds."""
     with tempfile.TemporaryFile("w+") as texts:
         start = time.perf_counter()
@@ -82,7 +88,7 @@ def run(commands, limit_s):
         timer.cancel()
         texts.seek(0)
         said, words = parse(texts.read())
-    failed = [p.args[0] for p in processes if p.returncode]
+    failed = [p.args[0] for p in processes if p.returncode not in accepts]
     failure = f"over {limit_s:.0f} s" if overdue.is_set() else f"{failed} failed: {words[-300:]}" if failed else ""
     cpu = sum(u.ru_utime + u.ru_stime for u in usages)
     return Run(wall, cpu, [u.ru_maxrss * 1024 for u in usages], said, failure)
@@ -113,16 +119,34 @@ def parse(text):
     return said, " ".join(words)
 
 
-def compete(contestants, rounds, limit_s):
+def remove(output):
+    if output and os.path.isdir(output):
+        shutil.rmtree(output)
+    elif output and os.path.exists(output):
+        os.remove(output)
+
+
+@contextlib.contextmanager
+def alone(path):
+    """Holds a lock, if one is named: whoever else works on this machine may wait for it."""
+    if not path:
+        yield
+        return
+    with open(path, "w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield
+
+
+def compete(contestants, rounds, limit_s, lock=None):
     """Runs all contestants once per round, in turn, until each has its rounds, is too slow or fails."""
     for number in range(rounds):
         for contestant in contestants:
             slow = contestant.runs and contestant.runs[0].wall > ONCE_SECONDS and len(contestants) > 1
             if contestant.failure or slow:
                 continue
-            result = run(contestant.commands, limit_s)
-            if contestant.output and os.path.exists(contestant.output):
-                os.remove(contestant.output)
+            with alone(lock):
+                result = run(contestant.commands, limit_s, contestant.accepts)
+            remove(contestant.output)
             # What was written is on its way to the disk; the next one shall not wait for it.
             os.sync()
             told = result.failure or f"{result.wall:.2f} s"

@@ -1,6 +1,10 @@
 """Figures as markdown."""
 
-from contests import ALONE, DECODER, FROM_LAZ, OURS
+from contests import ALONE, DECODER, FROM_LAZ, OURS, TESS3
+from measure import floor_bytes
+from peers3 import CGAL, PEERS as PEERS3
+
+PEERS_OF_STRUCTURES = [peer.name for peer in PEERS3 if peer.threads == 1]
 
 
 def table(head, rows):
@@ -28,11 +32,11 @@ def spread(contestant, value):
     return f"{number(min(values))}-{number(max(values))}"
 
 
-def triangles(contest, contestant):
-    count = contestant.said("triangles")
+def elements(contest, contestant):
+    count = contestant.said(contest.element)
     if count is None:
         return ""
-    return f"{count:,.0f}" + ("" if count == contest.triangles() else " **differs**")
+    return f"{count:,.0f}" + ("" if count == contest.elements() else " **differs**")
 
 
 def ratio(contest, contestant):
@@ -45,22 +49,36 @@ def kernel_row(contest, c):
     seconds = c.said("seconds")
     span = spread(c, lambda run: run.said["seconds"])
     per_point = number(seconds / contest.points * 1e6, 3)
-    return [c.name, number(seconds), span, per_point, ratio(contest, c), megabytes(c.peaks), triangles(contest, c)]
+    return [c.name, number(seconds), span, per_point, ratio(contest, c), megabytes(c.peaks), elements(contest, c)]
+
+
+def kernel3_row(contest, c):
+    seconds = c.said("seconds")
+    span = spread(c, lambda run: run.said["seconds"])
+    per_point = number(seconds / contest.points * 1e6, 3)
+    speed = number(contest.speed(c, contest.get(CGAL)), 2)
+    # Below the floor, the peak is not the program's.
+    bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.peaks[0] > 1.1 * floor_bytes() else ""
+    cells = [per_point, ratio(contest, c), speed, megabytes(c.peaks), bytes_per_point, elements(contest, c)]
+    return [c.name, number(seconds), span, *cells]
 
 
 def pipe_row(contest, c):
     alone = c.said("seconds") if len(c.commands) == 1 else None
     cells = [number(c.wall), spread(c, lambda run: run.wall), number(c.median(lambda run: run.cpu)), number(alone)]
-    return [c.name, *cells, ratio(contest, c), megabytes(c.peaks), triangles(contest, c)]
+    return [c.name, *cells, ratio(contest, c), megabytes(c.peaks), elements(contest, c)]
 
 
 KERNEL_HEAD = ["program", "seconds", "range", "us/point", "times ours", "peak MB", "triangles"]
+KERNEL3_HEAD = [*KERNEL_HEAD[:5], "CGAL's times its", "peak MB", "bytes/point", "tetrahedra"]
 PIPE_HEAD = ["program", "wall s", "range", "CPU s", "triangulation s", "times ours", "peak MB", "triangles"]
 
 
 def contest(contest):
     """A table of one contest, with who is absent, and what follows from it."""
-    head, make = (PIPE_HEAD, pipe_row) if contest.is_pipe else (KERNEL_HEAD, kernel_row)
+    head, make = (KERNEL3_HEAD, kernel3_row) if contest.dims == 3 else (KERNEL_HEAD, kernel_row)
+    if contest.is_pipe:
+        head, make = PIPE_HEAD, pipe_row
     rows = []
     absent = dict(contest.absent)
     for contestant in contest.contestants:
@@ -81,6 +99,10 @@ def conclusions(contest):
         times = contest.seconds(best) / contest.seconds(ours)
         memory = 100 * sum(ours.peaks) / sum(best.peaks)
         yield f"{times:.2f} times as fast as {best.name}, the fastest peer, with {memory:.1f} % of its peak memory"
+    cgal = contest.get(CGAL)
+    if contest.dims == 3 and ours and cgal:
+        times, memory = contest.speed(ours, cgal), sum(ours.peaks) / contest.points
+        yield f"{times:.2f} times as fast as CGAL, with {memory:.0f} bytes per point"
     laz, decoder = contest.get(FROM_LAZ), contest.get(DECODER)
     one, two = (contest.get(ALONE.format(threads)) for threads in (1, 2))
     if one and two:
@@ -101,3 +123,38 @@ def machine(facts):
 def peers(peers):
     rows = [[p.name, p.version or f"not installed: {p.reason}", p.source, p.exact] for p in peers]
     return table(["peer", "version", "from", "exact"], rows)
+
+
+def structures(contests, unread):
+    """One row per structure, and all together: seconds of all programs on one thread."""
+    names = [OURS, *PEERS_OF_STRUCTURES]
+    rows, sums = [], dict.fromkeys(names, 0.0)
+    for contest in contests:
+        times = {name: c.said("seconds") for name in names if (c := contest.get(name))}
+        for name, time in times.items():
+            sums[name] += time
+        count = contest.elements()
+        start = [contest.name, f"{contest.points:,}", f"{count:,.0f}" if count else ""]
+        rows.append([*start, *[number(times.get(name)) for name in names]])
+    points = sum(contest.points for contest in contests)
+    rows.append(["all", f"{points:,}", "", *[number(sums[name] or None) for name in names]])
+    speeds = [number(sums[CGAL] / sums[name], 2) if sums[name] else "" for name in names]
+    rows.append(["CGAL's times its", "", "", *speeds])
+    left_out = "".join(f"\n* {name}: not read: {reason}" for name, reason in unread.items())
+    head = ["structure", "atoms", "tetrahedra", *[f"{name}, s" for name in names]]
+    return "### structures\n\n" + table(head, rows) + left_out + "\n"
+
+
+def sweep(contest):
+    """All structures in one go."""
+    rows = []
+    for c in contest.contestants:
+        span = spread(c, lambda run: run.wall) if c.runs else ""
+        cells = [number(c.median(lambda run: run.cpu)), megabytes(c.peaks)] if c.runs else ["", ""]
+        rows.append([c.name, number(c.wall) if c.runs else c.failure, span, *cells])
+    head = ["program", "wall s", "range", "CPU s", "peak MB"]
+    text = f"### sweep over {contest.points} files\n\n" + table(head, rows)
+    one, two = (contest.get(TESS3.format(threads)) for threads in (1, 2))
+    if one and two:
+        text += f"\n* two threads are {one.wall / two.wall:.2f} times as fast as one\n"
+    return text + "\n"

@@ -1,5 +1,6 @@
 //! What the kernel hands out: flat arrays.
 
+use super::stats::Stats;
 use crate::predicates::Point3;
 use bytemuck::{Pod, Zeroable};
 
@@ -15,20 +16,42 @@ pub struct Corner {
     pub corner: u32,
 }
 
+/// A vertex: half a cache line, with a word for the search of cavities.
+#[derive(Debug, Clone, Copy, Default, Pod, Zeroable)]
+#[repr(C, align(32))]
+pub struct Vertex {
+    /// Where it is.
+    pub at: Point3,
+    /// Index of the input point.
+    pub index: u32,
+    /// Number among the vertices of a cavity, if it is one of them: otherwise anything.
+    pub(super) local: u32,
+}
+
+impl Vertex {
+    /// The input point of this index.
+    pub(crate) fn new(at: Point3, index: u32) -> Vertex {
+        Vertex { at, index, local: 0 }
+    }
+}
+
 /// A tetrahedron with its neighbours: half a cache line.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(32))]
 pub struct Tetrahedron {
-    /// Vertices a, b, c, d, such that det(b - a, c - a, d - a) > 0.
+    /// Indices of its vertices a, b, c, d, such that det(b - a, c - a, d - a) > 0.
     pub vertices: [u32; 4],
     /// Where the facets opposite to the vertices are in the words of their other tetrahedra.
-    across: [u32; 4],
+    pub(super) across: [u32; 4],
 }
 
+/// Words of a tetrahedron.
+pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
+
 impl Tetrahedron {
-    /// A tetrahedron with what is across from each corner.
+    /// A tetrahedron made elsewhere, with what is across from each corner.
     pub(crate) fn new(vertices: [u32; 4], across: [Option<Corner>; 4]) -> Tetrahedron {
-        let word = |corner: Corner| corner.tetrahedron * 8 + corner.corner;
+        let word = |corner: Corner| corner.tetrahedron * WORDS as u32 + corner.corner;
         Tetrahedron { vertices, across: across.map(|corner| corner.map_or(NONE, word)) }
     }
 
@@ -38,33 +61,55 @@ impl Tetrahedron {
     #[must_use]
     pub fn across(&self, side: usize) -> Option<Corner> {
         let word = self.across[side];
-        (word != NONE).then_some(Corner { tetrahedron: word / 8, corner: word & 3 })
+        (word != NONE).then_some(Corner { tetrahedron: word / WORDS as u32, corner: word & 3 })
     }
 }
 
 /// A Delaunay tetrahedralization.
 #[derive(Debug, Default)]
 pub struct Tetrahedralization {
-    /// The vertices: the distinct points, in order along a curve.
-    pub points: Vec<Point3>,
-    /// Input index of each vertex.
-    pub indices: Vec<u32>,
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) tetrahedra: Vec<Tetrahedron>,
     /// Input points left out because an equal one of lesser index is there: `[duplicate, the other]`.
     pub duplicates: Vec<[u32; 2]>,
-    pub(super) tetrahedra: Vec<Tetrahedron>,
+    /// Number of facets of the hull.
+    pub hull_facets: usize,
+    /// What making it took.
+    pub stats: Stats,
 }
 
 impl Tetrahedralization {
-    /// Gives it tetrahedra that were made elsewhere.
-    pub(crate) fn set_tetrahedra(&mut self, tetrahedra: Vec<Tetrahedron>) {
-        self.tetrahedra = tetrahedra;
+    /// A tetrahedralization made elsewhere, without stats.
+    pub(crate) fn from_parts(
+        vertices: Vec<Vertex>,
+        duplicates: Vec<[u32; 2]>,
+        tetrahedra: Vec<Tetrahedron>,
+    ) -> Tetrahedralization {
+        let sides = tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.across);
+        let hull_facets = sides.filter(|&across| across == NONE).count();
+        Tetrahedralization { vertices, tetrahedra, duplicates, hull_facets, stats: Stats::default() }
     }
 
-    /// All tetrahedra, about in the order of the curve; vertices are indices of `points`. None if all points lie in
-    /// a plane.
+    /// The vertices, which are the distinct points, in order along a curve.
+    #[inline]
+    #[must_use]
+    pub fn vertices(&self) -> &[Vertex] {
+        &self.vertices
+    }
+
+    /// All tetrahedra, about in the order of the curve. None if all points lie in a plane.
     #[inline]
     #[must_use]
     pub fn tetrahedra(&self) -> &[Tetrahedron] {
         &self.tetrahedra
+    }
+
+    /// Empties everything, keeping the memory.
+    pub(super) fn clear(&mut self) {
+        self.vertices.clear();
+        self.tetrahedra.clear();
+        self.duplicates.clear();
+        self.hull_facets = 0;
+        self.stats = Stats::default();
     }
 }

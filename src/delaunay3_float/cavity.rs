@@ -117,7 +117,7 @@ impl Insertion<'_> {
         self.search(v, seed);
         let mut is_seen = true;
         for wall in &mut self.cavity.walls {
-            wall.sphere = sphere_of(self.mesh.points, &wall.vertices);
+            wall.sphere = sphere_of(self.mesh.vertices, &wall.vertices);
             is_seen &= wall.is_seen();
         }
         self.laps.end(Part::Predicates);
@@ -130,7 +130,7 @@ impl Insertion<'_> {
     #[inline(never)]
     pub(super) fn repair_star(&mut self, v: u32, seed: u32) -> bool {
         self.stats.repairs += 1;
-        let Some(seed) = self.containing(seed, self.mesh.points[v as usize]) else { return false };
+        let Some(seed) = self.containing(seed, self.mesh.vertices[v as usize].at) else { return false };
         let is_found = self.find_star_by_decisions(v, seed) || {
             self.cavity.is_narrow = true;
             self.find_star_by_decisions(v, seed)
@@ -155,7 +155,7 @@ impl Insertion<'_> {
     /// Collects the tetrahedra in conflict, breadth first, and the facets around them.
     #[inline(always)]
     fn search(&mut self, v: u32, seed: u32) {
-        let p = self.mesh.points[v as usize];
+        let p = self.mesh.vertices[v as usize].at;
         let limit = self.patience.limit(self.mesh.cells.len());
         self.cavity.begin(seed, self.mesh.cells.len());
         let mut next = 0;

@@ -3,6 +3,7 @@
 use super::Stats;
 use super::mesh::{faraway_corner, finite_facet};
 use super::sphere::difference;
+use crate::delaunay3::Vertex;
 use crate::predicates::{Point3, Predicates2, Predicates3, Sign, TotalPredicates, TotalPredicates3};
 
 /// Integer differences below this have in-sphere determinants below 2^125.
@@ -24,9 +25,9 @@ pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
 /// Compares the value of a sphere, or half-space, at `p` with the exact one.
 #[cold]
 #[inline(never)]
-pub(super) fn check(points: &[Point3], vertices: &[u32; 4], p: Point3, value: f64, stats: &mut Stats) {
-    let point = |corner: usize| points[vertices[corner] as usize];
-    let exact = if let Some(corner) = faraway_corner(vertices) {
+pub(super) fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f64, stats: &mut Stats) {
+    let point = |corner: usize| vertices[corners[corner] as usize].at;
+    let exact = if let Some(corner) = faraway_corner(corners) {
         let [o, a, b] = finite_facet(corner).map(point);
         orient3d(o, a, b, p)
     } else {

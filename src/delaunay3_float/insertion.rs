@@ -6,9 +6,9 @@ use super::mesh::{Cell, MAX_TETRAHEDRA, Mesh, corner_of, facet, faraway_corner, 
 use super::random::Random;
 use super::star::Star;
 use super::{Options, Stats};
-use crate::delaunay3::Tetrahedron;
+use crate::delaunay3::{Tetrahedron, Vertex};
 use crate::error::{Error, ErrorKind, Result};
-use crate::predicates::Point3;
+use std::time::Instant;
 
 /// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run endless.
 const WORK_PER_POINT: u64 = 10_000;
@@ -53,25 +53,36 @@ pub(super) struct Insertion<'a> {
 
 impl<'a> Insertion<'a> {
     /// Nothing inserted but the corners of `first`, which is positively oriented.
-    pub(super) fn new(points: &'a [Point3], options: &'a Options, first: [u32; 4]) -> Insertion<'a> {
-        let mesh = Mesh::new(points, first, options.cache_spheres);
+    pub(super) fn new(vertices: &'a [Vertex], options: &'a Options, first: [u32; 4]) -> Insertion<'a> {
+        let mesh = Mesh::new(vertices, first, options.cache_spheres);
         Insertion {
             stats: Stats { created: mesh.cells.len() as u64, ..Stats::default() },
             mesh,
             options,
             random: Random::new(options.seed),
             cavity: Cavity::default(),
-            patience: Patience { left: WORK_PER_POINT * points.len() as u64 },
+            patience: Patience { left: WORK_PER_POINT * vertices.len() as u64 },
             start: 0,
-            star: Star::new(points.len()),
+            star: Star::new(vertices.len()),
             laps: Laps::default(),
         }
     }
 
+    /// Inserts all other points: the finite tetrahedra, and what was done.
+    pub(super) fn run(mut self, first: [u32; 4]) -> Result<(Vec<Tetrahedron>, Stats)> {
+        self.insert_all(first)?;
+        self.stats.bytes = (self.mesh.bytes() + self.cavity.bytes() + self.star.bytes()) as u64;
+        let begin = Instant::now();
+        let tetrahedra = self.mesh.finite();
+        self.stats.missing = self.missing(&tetrahedra);
+        self.stats.seconds.extract = begin.elapsed().as_secs_f64();
+        Ok((tetrahedra, self.stats))
+    }
+
     /// Inserts all points but those of the `first` tetrahedron.
-    pub(super) fn insert_all(&mut self, first: [u32; 4]) -> Result<()> {
+    fn insert_all(&mut self, first: [u32; 4]) -> Result<()> {
         self.laps.begin_all();
-        for v in (0..self.mesh.points.len() as u32).filter(|v| !first.contains(v)) {
+        for v in (0..self.mesh.vertices.len() as u32).filter(|v| !first.contains(v)) {
             self.insert(v)?;
         }
         self.laps.end_all(&mut self.stats.seconds);
@@ -81,7 +92,7 @@ impl<'a> Insertion<'a> {
     /// Inserts a vertex; leaves it out if rounding makes it impossible.
     fn insert(&mut self, v: u32) -> Result<()> {
         self.laps.begin(v);
-        let seed = self.locate(self.mesh.points[v as usize]);
+        let seed = self.locate(self.mesh.vertices[v as usize].at);
         self.laps.end(Part::Locate);
         if seed.is_some_and(|seed| self.find_star(v, seed) || self.repair_star(v, seed)) {
             self.replace()?;
@@ -118,17 +129,12 @@ impl<'a> Insertion<'a> {
         Ok(())
     }
 
-    /// The finite tetrahedra, and what was done.
-    pub(super) fn finish(mut self) -> (Vec<Tetrahedron>, Stats) {
-        let bytes = self.mesh.bytes() + self.cavity.bytes() + self.star.bytes();
-        self.stats.bytes = (bytes + size_of_val(self.mesh.points)) as u64;
-        let points = self.mesh.points.len();
-        let tetrahedra = self.mesh.finite();
-        let mut is_vertex = vec![false; points];
+    /// Counts the vertices that are in none of the `tetrahedra`.
+    fn missing(&self, tetrahedra: &[Tetrahedron]) -> u64 {
+        let mut is_there = vec![false; self.mesh.vertices.len()];
         for vertex in tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.vertices) {
-            is_vertex[vertex as usize] = true;
+            is_there[vertex as usize] = true;
         }
-        self.stats.missing = is_vertex.iter().filter(|&&is_vertex| !is_vertex).count() as u64;
-        (tetrahedra, self.stats)
+        is_there.iter().filter(|&&is_there| !is_there).count() as u64
     }
 }

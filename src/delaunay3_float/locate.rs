@@ -163,8 +163,8 @@ impl Insertion<'_> {
         let (sphere, origin) = self.mesh.sphere(t);
         let value = sphere.value(origin, p);
         if self.options.check_signs {
-            let vertices = &self.mesh.cells[t as usize].vertices;
-            check(self.mesh.points, vertices, p, value, &mut self.stats);
+            let corners = &self.mesh.cells[t as usize].vertices;
+            check(self.mesh.vertices, corners, p, value, &mut self.stats);
         }
         Tested { value, volume: sphere.volume }
     }

@@ -2,7 +2,7 @@
 
 use super::check;
 use super::sphere::{Sphere, orientation};
-use crate::delaunay3::{Corner, Tetrahedron};
+use crate::delaunay3::{Corner, NONE, Tetrahedron, Vertex};
 use crate::predicates::{Point3, Sign};
 
 /// The faraway point (thesis 4.3), never the first vertex of a tetrahedron.
@@ -58,9 +58,9 @@ pub(super) fn finite_facet(faraway_corner: usize) -> [usize; 3] {
 
 /// Sphere of a tetrahedron, or the half-space that its sphere at the faraway point comes to.
 #[inline(always)]
-pub(super) fn sphere_of(points: &[Point3], vertices: &[u32; 4]) -> Sphere {
-    let point = |corner: usize| points[vertices[corner] as usize];
-    match faraway_corner(vertices) {
+pub(super) fn sphere_of(vertices: &[Vertex], corners: &[u32; 4]) -> Sphere {
+    let point = |corner: usize| vertices[corners[corner] as usize].at;
+    match faraway_corner(corners) {
         None => Sphere::through(point(0), point(1), point(2), point(3)),
         Some(corner) => {
             let [o, a, b] = finite_facet(corner).map(point);
@@ -72,7 +72,7 @@ pub(super) fn sphere_of(points: &[Point3], vertices: &[u32; 4]) -> Sphere {
 /// Points and tetrahedra.
 #[derive(Debug)]
 pub(super) struct Mesh<'a> {
-    pub(super) points: &'a [Point3],
+    pub(super) vertices: &'a [Vertex],
     pub(super) cells: Vec<Cell>,
     /// Of each tetrahedron, if they are kept.
     spheres: Option<Vec<Sphere>>,
@@ -82,16 +82,16 @@ pub(super) struct Mesh<'a> {
 
 impl<'a> Mesh<'a> {
     /// A positively oriented tetrahedron, and the four infinite ones around it.
-    pub(super) fn new(points: &'a [Point3], first: [u32; 4], keep_spheres: bool) -> Mesh<'a> {
+    pub(super) fn new(vertices: &'a [Vertex], first: [u32; 4], keep_spheres: bool) -> Mesh<'a> {
         let mut mesh =
-            Mesh { points, cells: Vec::new(), spheres: keep_spheres.then(Vec::new), free: Vec::new() };
+            Mesh { vertices, cells: Vec::new(), spheres: keep_spheres.then(Vec::new), free: Vec::new() };
         let around = FACETS.map(|corners| {
             let [a, b, c] = corners.map(|corner| first[corner]);
             [a, FARAWAY, b, c]
         });
-        for vertices in std::iter::once(first).chain(around) {
+        for corners in std::iter::once(first).chain(around) {
             let slot = mesh.slot().expect("five are not too many");
-            mesh.write(slot, Cell { vertices, across: [0; 4] }, &sphere_of(points, &vertices));
+            mesh.write(slot, Cell { vertices: corners, across: [0; 4] }, &sphere_of(vertices, &corners));
         }
         mesh.link_all();
         mesh
@@ -161,11 +161,11 @@ impl<'a> Mesh<'a> {
     /// The sphere of a tetrahedron, and the point that its equation is relative to.
     #[inline(always)]
     pub(super) fn sphere(&self, t: u32) -> (Sphere, Point3) {
-        let vertices = &self.cells[t as usize].vertices;
-        let origin = self.points[vertices[0] as usize];
+        let corners = &self.cells[t as usize].vertices;
+        let origin = self.vertices[corners[0] as usize].at;
         match &self.spheres {
             Some(spheres) => (spheres[t as usize], origin),
-            None => (sphere_of(self.points, vertices), origin),
+            None => (sphere_of(self.vertices, corners), origin),
         }
     }
 
@@ -173,7 +173,7 @@ impl<'a> Mesh<'a> {
     #[inline(always)]
     pub(super) fn is_beyond(&self, t: u32, side: usize, p: Point3) -> bool {
         let [a, b, c] =
-            FACETS[side].map(|corner| self.points[self.cells[t as usize].vertices[corner] as usize]);
+            FACETS[side].map(|corner| self.vertices[self.cells[t as usize].vertices[corner] as usize].at);
         orientation(p, a, b, c) < 0.0
     }
 
@@ -196,40 +196,32 @@ impl<'a> Mesh<'a> {
     }
 
     /// The finite tetrahedra, numbered anew.
-    pub(super) fn finite(self) -> Vec<Tetrahedron> {
-        drop(self.spheres);
-        let mut numbers = vec![u32::MAX; self.cells.len()];
-        let mut count = 0;
-        let is_finite =
-            |cell: &&Cell| cell.vertices[0] != DELETED && faraway_corner(&cell.vertices).is_none();
-        for (number, _) in numbers.iter_mut().zip(&self.cells).filter(|(_, cell)| is_finite(cell)) {
-            *number = count;
-            count += 1;
+    pub(super) fn finite(&mut self) -> Vec<Tetrahedron> {
+        self.spheres = None;
+        let count = self.cells.len() as u32;
+        let mut numbers = vec![NONE; self.cells.len()];
+        for (number, t) in (0..).zip((0..count).filter(|&t| self.is_finite(t))) {
+            numbers[t as usize] = number;
         }
         let across = |facet: Facet| {
             let tetrahedron = numbers[tetrahedron_of(facet) as usize];
-            (tetrahedron != u32::MAX).then(|| Corner { tetrahedron, corner: corner_of(facet) as u32 })
+            (tetrahedron != NONE).then_some(Corner { tetrahedron, corner: corner_of(facet) as u32 })
         };
-        let mut finite = Vec::with_capacity(count as usize);
-        finite.extend(
-            self.cells
-                .iter()
-                .filter(is_finite)
-                .map(|cell| Tetrahedron::new(cell.vertices, cell.across.map(across))),
-        );
-        finite
+        let cells = self.cells.iter().zip(&numbers).filter(|(_, number)| **number != NONE);
+        cells.map(|(cell, _)| Tetrahedron::new(cell.vertices, cell.across.map(across))).collect()
     }
 }
 
 /// Four points, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a plane.
 ///
 /// The first point, the first that differs, the first that is not collinear with them, the first that is not coplanar.
-pub(super) fn first_tetrahedron(points: &[Point3]) -> Option<[u32; 4]> {
-    let &[a, b, ..] = points else { return None };
-    let next = (2..points.len()).find(|&i| !check::are_collinear(a, b, points[i]))?;
-    let c = points[next];
-    (next + 1..points.len()).find_map(|i| {
-        let d = points[i];
+pub(super) fn first_tetrahedron(vertices: &[Vertex]) -> Option<[u32; 4]> {
+    let point = |i: usize| vertices[i].at;
+    let (a, b) = if vertices.len() < 4 { return None } else { (point(0), point(1)) };
+    let next = (2..vertices.len()).find(|&i| !check::are_collinear(a, b, point(i)))?;
+    let c = point(next);
+    (next + 1..vertices.len()).find_map(|i| {
+        let d = point(i);
         let is_sound = |a, b| check::orient3d(a, b, c, d) == Sign::Positive && orientation(a, b, c, d) > 0.0;
         match () {
             () if is_sound(a, b) => Some([0, 1, next as u32, i as u32]),

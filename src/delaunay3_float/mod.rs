@@ -148,22 +148,13 @@ pub fn triangulate(points: &[Point3], options: &Options) -> Result<(Tetrahedrali
         return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
             .at(format!("point {bad}")));
     }
-    let mut result = Tetrahedralization::default();
     let begin = Instant::now();
-    sequence::fill(&mut result, points, options);
+    let (vertices, duplicates) = sequence::fill(points, options);
     let order = begin.elapsed().as_secs_f64();
-    let mut stats = match mesh::first_tetrahedron(&result.points) {
-        Some(first) => {
-            let mut insertion = Insertion::new(&result.points, options, first);
-            insertion.insert_all(first)?;
-            let begin = Instant::now();
-            let (tetrahedra, mut stats) = insertion.finish();
-            stats.seconds.extract = begin.elapsed().as_secs_f64();
-            result.set_tetrahedra(tetrahedra);
-            stats
-        }
-        None => Stats { missing: result.points.len() as u64, ..Stats::default() },
+    let (tetrahedra, mut stats) = match mesh::first_tetrahedron(&vertices) {
+        Some(first) => Insertion::new(&vertices, options, first).run(first)?,
+        None => (Vec::new(), Stats { missing: vertices.len() as u64, ..Stats::default() }),
     };
     stats.seconds.order = order;
-    Ok((result, stats))
+    Ok((Tetrahedralization::from_parts(vertices, duplicates, tetrahedra), stats))
 }

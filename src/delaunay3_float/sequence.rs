@@ -2,9 +2,8 @@
 
 use super::random::mix;
 use super::{Curve, Options};
-use crate::delaunay3::Tetrahedralization;
-use crate::predicates::Point3;
-use std::cmp::Ordering;
+use crate::delaunay3::Vertex;
+use crate::predicates::{Point3, lexicographic};
 
 /// Low bits that levels look at.
 const LEVELS: u32 = 8;
@@ -12,8 +11,8 @@ const LEVELS: u32 = 8;
 /// Bits of each coordinate that make the place on a curve.
 const KEY_BITS: u32 = 21;
 
-/// Fills the points, indices, and duplicates of `out`: distinct points in the order of insertion.
-pub(super) fn fill(out: &mut Tetrahedralization, points: &[Point3], options: &Options) {
+/// The distinct points in the order of insertion, and the others with those that they equal.
+pub(super) fn fill(points: &[Point3], options: &Options) -> (Vec<Vertex>, Vec<[u32; 2]>) {
     let mut keyed = keys(points, options);
     let point = |item: &(u64, u32)| points[item.1 as usize];
     keyed.sort_unstable_by(|a, b| {
@@ -23,21 +22,16 @@ pub(super) fn fill(out: &mut Tetrahedralization, points: &[Point3], options: &Op
         let levels = levels(points);
         keyed.sort_by_key(|item| std::cmp::Reverse(levels[item.1 as usize]));
     }
-    out.points.reserve_exact(points.len());
-    out.indices.reserve_exact(points.len());
+    let mut duplicates = Vec::new();
+    let mut vertices: Vec<Vertex> = Vec::with_capacity(points.len());
     for (_, index) in keyed {
-        let point = points[index as usize];
-        if out.points.last() == Some(&point) {
-            out.duplicates.push([index, out.indices[out.indices.len() - 1]]);
-        } else {
-            out.points.push(point);
-            out.indices.push(index);
+        let at = points[index as usize];
+        match vertices.last() {
+            Some(last) if last.at == at => duplicates.push([index, last.index]),
+            _ => vertices.push(Vertex::new(at, index)),
         }
     }
-}
-
-fn lexicographic(a: Point3, b: Point3) -> Ordering {
-    a.partial_cmp(&b).unwrap_or(Ordering::Equal)
+    (vertices, duplicates)
 }
 
 /// Place on the curve, and index, of each point: equal places for equal points.

@@ -20,6 +20,7 @@ pub use counts::PredicateCounts;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};
 pub use perturbation::lexicographic;
+pub(crate) use spatial::filter::{INSPHERE_SQUARED_BOUND, TINY, insphere_is_certain};
 pub use spatial::{
     Arithmetic3, ExpansionPredicates3, IntegerPredicates3, Predicates3, SmallIntegerPredicates3,
     TotalPredicates3, Width3, WithPredicates3,

@@ -1,5 +1,7 @@
 //! What all peers in Rust share: points in, triangles out; see `native/points.hpp`, which does the same.
 
+pub mod random;
+
 use std::fs::File;
 use std::io::{BufWriter, Error, Read, Result, Seek, SeekFrom, Write};
 use std::path::PathBuf;
@@ -29,9 +31,7 @@ impl Paths {
         if self.points.extension().is_some_and(|ending| ending == "las") {
             return read_las(&mut file);
         }
-        let count = file.metadata()?.len() as usize / 16;
-        let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().expect("eight bytes"));
-        read_records(&mut file, count, 16, |record| [number(&record[..8]), number(&record[8..16])])
+        read_tuples(&mut file)
     }
 
     /// Writes three indices per triangle, and says on stdout what was done and in how many seconds.
@@ -96,12 +96,21 @@ fn read_las(file: &mut File) -> Result<Vec<[f64; 2]>> {
     })
 }
 
-fn read_records(
+/// Tuples of little-endian f64 to the end of the file.
+pub fn read_tuples<const DIMS: usize>(file: &mut File) -> Result<Vec<[f64; DIMS]>> {
+    let count = file.metadata()?.len() as usize / (8 * DIMS);
+    let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().expect("eight bytes"));
+    read_records(file, count, 8 * DIMS, |record| {
+        std::array::from_fn(|axis| number(&record[8 * axis..8 * axis + 8]))
+    })
+}
+
+fn read_records<const DIMS: usize>(
     file: &mut File,
     count: usize,
     record_len: usize,
-    point: impl Fn(&[u8]) -> [f64; 2],
-) -> Result<Vec<[f64; 2]>> {
+    point: impl Fn(&[u8]) -> [f64; DIMS],
+) -> Result<Vec<[f64; DIMS]>> {
     let mut points = Vec::with_capacity(count);
     let mut block = vec![0; BUFFER_BYTES / record_len * record_len];
     while points.len() < count {

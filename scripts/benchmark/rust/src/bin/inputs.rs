@@ -6,34 +6,9 @@ use std::fs::File;
 use std::io::{BufWriter, Error, Read, Result, Write};
 
 use spmesh_bench::LasHeader;
+use spmesh_bench::random::Random;
 
 const SEED: u64 = 1;
-
-/// SplitMix64 by Steele, Lea and Flood.
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// A permutation of the first numbers, by Fisher and Yates.
-    fn permutation(&mut self, count: usize) -> Vec<u32> {
-        let mut numbers: Vec<u32> = (0..count as u32).collect();
-        for i in (1..count).rev() {
-            numbers.swap(i, (self.bits() % (i as u64 + 1)) as usize);
-        }
-        numbers
-    }
-}
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();

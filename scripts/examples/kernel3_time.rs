@@ -1,0 +1,54 @@
+//! Times the 3D kernel, in one thread.
+//!
+//! `kernel3_time POINTS` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers, once. With
+//! a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the same buffers. POINTS has triples
+//! of little-endian f64; files that `scripts/bench` made are in its folder.
+
+#[path = "../benchmark/rust/src/lib.rs"]
+#[allow(dead_code, missing_docs)]
+mod files;
+
+use std::borrow::Cow;
+use std::error::Error;
+use std::fs::File;
+
+use files::{read_tuples, timed};
+use spmesh::delaunay3::{Kernel, Tetrahedralization};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    match &words[..] {
+        [points] => compare(read_tuples(&mut File::open(points)?)?),
+        [points, rounds] => tune(&read_tuples(&mut File::open(points)?)?, rounds.parse()?),
+        _ => Err("usage: kernel3_time POINTS [ROUNDS]".into()),
+    }
+}
+
+/// One round, fresh. The kernel is given the points: they are in memory once.
+fn compare(points: Vec<[f64; 3]>) -> Result<(), Box<dyn Error>> {
+    let count = points.len();
+    let mut mesh = Tetrahedralization::default();
+    let (result, seconds) = timed(|| Kernel::new().triangulate(Cow::Owned(points), &mut mesh));
+    result?;
+    let tetrahedra = mesh.tetrahedra().len();
+    println!("{{\"points\": {count}, \"tetrahedra\": {tetrahedra}, \"seconds\": {seconds:.6}}}");
+    Ok(())
+}
+
+/// Many rounds.
+fn tune(points: &[[f64; 3]], rounds: usize) -> Result<(), Box<dyn Error>> {
+    let (mut kernel, mut mesh) = (Kernel::new(), Tetrahedralization::default());
+    for round in 0..rounds {
+        let (result, seconds) = timed(|| kernel.triangulate(Cow::Borrowed(points), &mut mesh));
+        result?;
+        let name = if round == 0 { "first" } else { "again" };
+        println!("{name:<6} {seconds:8.3} s  {:7.3} us/point", seconds * 1e6 / points.len() as f64);
+    }
+    println!(
+        "{} points, {} tetrahedra, {} duplicates",
+        points.len(),
+        mesh.tetrahedra().len(),
+        mesh.duplicates.len()
+    );
+    Ok(())
+}

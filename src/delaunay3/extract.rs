@@ -1,0 +1,42 @@
+//! From the triangulated 3-sphere to a [`super::Tetrahedralization`], in place: infinite tetrahedra go.
+
+use super::complex::{Complex, DELETED};
+use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
+
+/// Leaves the finite tetrahedra and vertices in the arrays of the complex; returns the number of facets of the hull.
+pub(super) fn extract(complex: &mut Complex) -> usize {
+    let mut holes = Vec::new();
+    let mut hull_facets = 0;
+    for t in complex.words_of_tetrahedra() {
+        if complex.corners(t)[0] == DELETED {
+            holes.push(t);
+        } else if let Some(side) = complex.hull_facet(t) {
+            holes.push(t);
+            hull_facets += 1;
+            let inside = complex.across(side);
+            complex.set_across(inside, NONE);
+        }
+    }
+    holes.iter().for_each(|&t| complex.delete(t));
+    fill(complex, &holes);
+    complex.tetrahedra.truncate(complex.tetrahedra.len() - holes.len());
+    complex.vertices.pop();
+    hull_facets
+}
+
+/// Moves the last tetrahedra to the places of those that are not there.
+fn fill(complex: &mut Complex, holes: &[u32]) {
+    let count = complex.tetrahedra.len() - holes.len();
+    let mut last = complex.tetrahedra.len();
+    for &hole in holes.iter().take_while(|&&hole| (hole as usize) < count * WORDS) {
+        last -= 1;
+        while complex.tetrahedra[last].vertices[0] == DELETED {
+            last -= 1;
+        }
+        let Tetrahedron { vertices, across } = complex.tetrahedra[last];
+        complex.write(hole, vertices, across);
+        for (facet, other) in (hole..).zip(across).filter(|(_, other)| *other != NONE) {
+            complex.set_across(other, facet);
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Insertion of points: the tetrahedra in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
+//! 1981).
+
+use super::complex::{CORNERS, Complex, DELETED, Facet, tetrahedron_of};
+use super::lanes::Lanes;
+use super::locate::{is_in_conflict, walk, walk_exactly};
+use super::sight::{InSphere, Sight};
+use super::star::Star;
+use super::stats::{Clock, Stats};
+use super::tetrahedralization::Vertex;
+use super::tie::{EXACT, is_inside};
+use crate::predicates::{INSPHERE_SQUARED_BOUND, Numbers, Point3, Predicates3, TINY};
+use bytemuck::cast;
+
+/// A facet around the part of the cavity that is known, with the test of the tetrahedron beyond.
+#[derive(Debug, Clone, Copy)]
+struct Pending {
+    /// Positive if the new point is in the sphere of that tetrahedron, negative if it is not; NaN if rounding may have
+    /// changed the sign.
+    value: f64,
+    /// Numbers of the corners in the star, counterclockwise as the new point sees them.
+    corners: [u32; 3],
+    beyond: Facet,
+    /// The vertex opposite to `beyond`.
+    apex: u32,
+}
+
+/// Buffers of one insertion, to be used again.
+#[derive(Debug, Default)]
+pub(super) struct Cavity {
+    star: Star,
+    /// A queue, written without branches: longer than what is in it.
+    pending: Vec<Pending>,
+    end: usize,
+    /// For each vertex of the star, by number: where the new point sees it, and its lift.
+    sights: Vec<[f64; 4]>,
+}
+
+/// The tetrahedralization of the points inserted so far, and what inserting needs.
+pub(super) struct Insertion<'a, P, L> {
+    pub(super) complex: Complex,
+    pub(super) predicates: &'a mut P,
+    pub(super) cavity: &'a mut Cavity,
+    pub(super) stats: &'a mut Stats,
+    pub(super) clock: Clock,
+    /// The lift of the vertex at infinity: of about the size of others, for the sake of the filter; integer if
+    /// coordinates are.
+    pub(super) infinite_lift: f64,
+    /// In-sphere tests that the filter did not decide.
+    pub(super) unfiltered: u64,
+    pub(super) lanes: std::marker::PhantomData<L>,
+}
+
+impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
+    /// The complex. Adds the decisions made here to the counts of the predicates.
+    pub(super) fn finish(self) -> Complex {
+        self.predicates.counts_mut().filter += self.stats.insphere_tests - self.unfiltered;
+        self.complex
+    }
+
+    /// Inserts vertex `q`, which is no vertex yet; says where to start for a point nearby.
+    ///
+    /// Tests are made where facets are queued, and used when their turn comes: so no test waits for the branch before it.
+    #[inline(always)]
+    pub(super) fn insert(&mut self, q: u32, start: u32) -> u32 {
+        let at = self.complex.point(q);
+        self.open_cavity(at, start);
+        let mut next = 0;
+        while next < self.cavity.end {
+            let facet = self.cavity.pending[next];
+            next += 1;
+            if facet.value < 0.0 {
+                self.cavity.star.border.push((facet.corners, facet.beyond));
+            } else if self.complex.opposite(facet.beyond) == DELETED {
+                // Found through another facet meanwhile.
+            } else if facet.value > 0.0 || self.decide(at, &facet) {
+                self.take(at, &facet);
+            } else {
+                self.cavity.star.border.push((facet.corners, facet.beyond));
+            }
+        }
+        self.clock.lap(&mut self.stats.cavity);
+        self.stats.insphere_tests += next as u64;
+        self.stats.created += self.cavity.star.border.len() as u64;
+        let start = self.cavity.star.close(&mut self.complex, q);
+        self.clock.lap(&mut self.stats.update);
+        start
+    }
+
+    /// Makes a tetrahedron in conflict the whole cavity.
+    #[inline(always)]
+    fn open_cavity(&mut self, at: Point3, start: u32) {
+        let (t, sights) = self.find_conflict(at, start);
+        self.clock.lap(&mut self.stats.locate);
+        // So that differences to it vanish.
+        let infinite = self.complex.infinite();
+        self.complex.vertices[infinite as usize].at = at;
+        let corners = self.complex.corners(t);
+        self.cavity.star.open(t, corners, &mut self.complex.vertices);
+        self.cavity.end = 0;
+        self.make_room();
+        let rows = sights.map(|Sight { at: [x, y, z], lift }| [x, y, z, lift]);
+        self.cavity.sights[..4].copy_from_slice(&rows);
+        let beyond: [Facet; 4] = std::array::from_fn(|side| self.complex.across(t + side as u32));
+        self.complex.delete(t);
+        let apexes = beyond.map(|facet| self.complex.opposite(facet));
+        let [d, a, c, b] = rows;
+        let [va, vb, vc, _] = self.values(at, [a, b, c], d, [apexes[1], apexes[3], apexes[2]]).array();
+        for (side, value) in [f64::NAN, va, vc, vb].into_iter().enumerate() {
+            let corners = CORNERS[side].map(|i| i as u32);
+            self.cavity.pending[side] = Pending { value, corners, beyond: beyond[side], apex: apexes[side] };
+        }
+        self.cavity.end = 4;
+    }
+
+    /// Adds the tetrahedron beyond a facet to the cavity.
+    #[inline(always)]
+    fn take(&mut self, at: Point3, facet: &Pending) {
+        let [a, b, c] = facet.corners;
+        let beyond = self.complex.beyond(facet.beyond, self.cavity.star.vertex(a));
+        let apexes = beyond.map(|facet| self.complex.opposite(facet));
+        let t = tetrahedron_of(facet.beyond);
+        self.complex.delete(t);
+        self.cavity.star.slots.push(t);
+        let d = self.cavity.star.number(facet.apex, &mut self.complex.vertices);
+        let Sight { at: [x, y, z], lift } = self.sight(facet.apex, at);
+        let row = [x, y, z, lift];
+        self.make_room();
+        self.cavity.sights[d as usize] = row;
+        let rows = facet.corners.map(|number| self.cavity.sights[number as usize]);
+        let values = self.values(at, rows, row, apexes).array();
+        let corners = [[d, b, c], [a, d, c], [a, b, d]];
+        let room = &mut self.cavity.pending[self.cavity.end..][..3];
+        let mut len = 0;
+        for i in 0..3 {
+            // What is in the cavity already is overwritten, without a branch.
+            room[len.min(2)] =
+                Pending { value: values[i], corners: corners[i], beyond: beyond[i], apex: apexes[i] };
+            len += usize::from(apexes[i] != DELETED);
+        }
+        self.cavity.end += len;
+    }
+
+    /// Room for one more tetrahedron in the cavity.
+    #[inline(always)]
+    fn make_room(&mut self) {
+        let Cavity { star, pending, end, sights } = &mut *self.cavity;
+        if sights.len() < star.capacity() || pending.len() < *end + 4 {
+            let blank = Pending { value: 0.0, corners: [0; 3], beyond: 0, apex: 0 };
+            sights.resize(star.capacity(), [0.0; 4]);
+            pending.resize(2 * *end + 64, blank);
+        }
+    }
+
+    #[inline(always)]
+    fn sight(&self, vertex: u32, from: Point3) -> Sight {
+        Sight::new(&self.complex, vertex, from, self.infinite_lift)
+    }
+
+    /// The in-sphere tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order, given
+    /// the vertices opposite to the facets.
+    ///
+    /// In the lane of a facet without p, which is a, b or c, let n and m be the next two corners. With the new point as
+    /// origin, the determinant of the rows (x, lift) of d, n, m and the apex e has the sign wanted. Its minors are made
+    /// of n x m, and of d x p in the lanes of the other two facets. The vertex at infinity has the row (0, 0, 0, lift),
+    /// which makes it the sign of a volume. The bound of the filter holds all the more.
+    #[inline(always)]
+    fn values(&self, at: Point3, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
+        let [a, b, c] = abc;
+        let [px, py, pz, lift] = L::columns([L::new(a), L::new(b), L::new(c)]);
+        let p = [px, py, pz];
+        let (d, d_lift) = ([L::splat(d[0]), L::splat(d[1]), L::splat(d[2])], L::splat(d[3]));
+        let [ex, ey, ez, e_lift] = self.apexes(at, apexes);
+        let e = [ex, ey, ez];
+        let nm = next(cross(p, next(p)));
+        let dp = cross(d, p);
+        let (n_lift, m_lift) = (lift.next(), lift.previous());
+        let value = (d_lift * dot(e, nm) - n_lift * dot(e, previous(dp)))
+            + (m_lift * dot(e, next(dp)) - e_lift * dot(d, nm));
+        let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
+        let square = greatest * greatest;
+        let bound = L::splat(INSPHERE_SQUARED_BOUND) * (square * square * greatest) + L::splat(TINY);
+        value.where_greater(value * value, bound)
+    }
+
+    /// The sights of three vertices, column by column; anything for those of tetrahedra that are not there.
+    #[inline(always)]
+    fn apexes(&self, at: Point3, apexes: [u32; 3]) -> [L; 4] {
+        let infinite = self.complex.infinite();
+        let [u, v, w] =
+            apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
+        let [x, y, z, _] = L::columns([L::new(u), L::new(v), L::new(w)]);
+        let (x, y, z) = (x - L::splat(at[0]), y - L::splat(at[1]), z - L::splat(at[2]));
+        let mut lift = x * x + y * y + z * z;
+        if apexes.contains(&infinite) {
+            let mut lifts = lift.array();
+            for (lift, apex) in lifts.iter_mut().zip(apexes) {
+                *lift = if apex == infinite { self.infinite_lift } else { *lift };
+            }
+            lift = L::new(lifts);
+        }
+        [x, y, z, lift]
+    }
+
+    /// Whether the tetrahedron beyond a facet is in conflict, if the filter did not tell.
+    #[inline(never)]
+    fn decide(&mut self, at: Point3, facet: &Pending) -> bool {
+        let vertices = facet.corners.map(|number| self.cavity.star.vertex(number));
+        let [a, b, c] = vertices.map(|v| self.sight(v, at));
+        let test = InSphere::new([self.sight(facet.apex, at), a, c, b]);
+        if test.is_certain() {
+            return test.value > 0.0;
+        }
+        self.unfiltered += 1;
+        if P::NUMBERS == Numbers::Integers && test.greatest < EXACT {
+            let infinite = self.complex.infinite();
+            let is_finite = !vertices.contains(&infinite) && facet.apex != infinite;
+            let counts = self.predicates.counts_mut();
+            if test.value != 0.0 {
+                counts.integer += 1;
+                return test.value > 0.0;
+            }
+            if is_finite {
+                counts.integer += 1;
+                counts.perturbed += 1;
+                return is_inside(&test);
+            }
+        }
+        is_in_conflict(&self.complex, tetrahedron_of(facet.beyond), at, self.predicates)
+    }
+
+    /// A tetrahedron in conflict with a point, and what the point sees of its corners.
+    #[inline(always)]
+    fn find_conflict(&mut self, at: Point3, start: u32) -> (u32, [Sight; 4]) {
+        let t = walk(&self.complex, start, at);
+        let test = InSphere::new(self.complex.corners(t).map(|v| self.sight(v, at)));
+        if test.value > 0.0 && test.is_certain() {
+            return (t, test.corners);
+        }
+        let t = walk_exactly(&self.complex, start, at, self.predicates);
+        (t, self.complex.corners(t).map(|v| self.sight(v, at)))
+    }
+}
+
+// Closures and `map` would not be inlined into functions for one kind of processor.
+
+#[inline(always)]
+fn cross<L: Lanes>(p: [L; 3], q: [L; 3]) -> [L; 3] {
+    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
+    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+}
+
+#[inline(always)]
+fn next<L: Lanes>(p: [L; 3]) -> [L; 3] {
+    [p[0].next(), p[1].next(), p[2].next()]
+}
+
+#[inline(always)]
+fn previous<L: Lanes>(p: [L; 3]) -> [L; 3] {
+    [p[0].previous(), p[1].previous(), p[2].previous()]
+}

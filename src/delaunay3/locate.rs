@@ -1,0 +1,104 @@
+//! Where a new point begins to change the tetrahedralization: a tetrahedron in conflict with it.
+
+use super::complex::{CORNERS, Complex, DELETED, Facet, corner, tetrahedron_of};
+use super::sight::{difference, volume};
+use crate::predicates::{Point3, Predicates3, Sign};
+
+/// Steps after which the exact walk takes over: rounding may lead the other one in circles.
+const STEPS_MAX: usize = 10_000;
+
+/// Walks from `start` to a tetrahedron that probably contains the point at `q`, in rounded arithmetic.
+#[inline(always)]
+pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
+    let infinite = complex.infinite();
+    let t = complex.hull_facet(start).map_or(start, |side| tetrahedron_of(complex.across(side)));
+    let vertices = complex.corners(t);
+    let sights = vertices.map(|v| difference(complex.point(v), q));
+    let mut entered: Option<(Facet, u32, [Point3; 3])> = None;
+    for (side, [i, j, k]) in CORNERS.into_iter().enumerate() {
+        if volume(sights[i], sights[j], sights[k]) < 0.0 {
+            let facet = complex.across(t + side as u32);
+            entered = Some((facet, vertices[i], [sights[i], sights[j], sights[k]]));
+            break;
+        }
+    }
+    let Some((mut facet, mut first, [mut a, mut b, mut c])) = entered else { return t };
+    for _ in 0..STEPS_MAX {
+        let apex = complex.opposite(facet);
+        if apex == infinite {
+            break;
+        }
+        let d = difference(complex.point(apex), q);
+        let beyond = complex.beyond(facet, first);
+        if volume(d, b, c) < 0.0 {
+            (facet, first, a) = (beyond[0], apex, d);
+        } else if volume(a, d, c) < 0.0 {
+            (facet, b) = (beyond[1], d);
+        } else if volume(a, b, d) < 0.0 {
+            (facet, c) = (beyond[2], d);
+        } else {
+            break;
+        }
+    }
+    tetrahedron_of(facet)
+}
+
+/// Walks from `t` to a tetrahedron in conflict with `q`, exactly. In a Delaunay tetrahedralization this walk ends.
+#[cold]
+#[inline(never)]
+pub(super) fn walk_exactly<P: Predicates3>(
+    complex: &Complex,
+    mut t: u32,
+    q: Point3,
+    predicates: &mut P,
+) -> u32 {
+    if let Some(side) = complex.hull_facet(t) {
+        if is_in_conflict(complex, t, q, predicates) {
+            return t;
+        }
+        t = tetrahedron_of(complex.across(side));
+    }
+    loop {
+        let vertices = complex.corners(t);
+        if vertices.contains(&complex.infinite()) {
+            return t;
+        }
+        let side = CORNERS.iter().position(|corners| {
+            let [a, b, c] = corners.map(|i| complex.point(vertices[i]));
+            predicates.orient3d(q, a, b, c) == Sign::Negative
+        });
+        match side {
+            Some(side) => t = tetrahedron_of(complex.across(t + side as u32)),
+            None => return t,
+        }
+    }
+}
+
+/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, ties broken by the canonical perturbation. It
+/// does if `t` is no longer there: it gave way to `q`.
+///
+/// The sphere of an infinite tetrahedron is the open half-space beyond its facet of the hull, and what the sphere of
+/// the tetrahedron on the other side has in common with the plane between them (thesis 4.4).
+#[cold]
+#[inline(never)]
+pub(super) fn is_in_conflict<P: Predicates3>(
+    complex: &Complex,
+    t: u32,
+    q: Point3,
+    predicates: &mut P,
+) -> bool {
+    let vertices = complex.corners(t);
+    if vertices[0] == DELETED {
+        return true;
+    }
+    let Some(side) = complex.hull_facet(t) else {
+        let [a, b, c, d] = vertices.map(|v| complex.point(v));
+        return predicates.insphere_perturbed(a, b, c, d, q) == Sign::Positive;
+    };
+    let [a, b, c] = CORNERS[corner(side)].map(|i| complex.point(vertices[i]));
+    match predicates.orient3d(q, a, b, c) {
+        Sign::Positive => true,
+        Sign::Negative => false,
+        Sign::Zero => is_in_conflict(complex, tetrahedron_of(complex.across(side)), q, predicates),
+    }
+}
