@@ -130,9 +130,10 @@ pub struct Seconds {
 
 /// Tetrahedralizes `points` in rounded arithmetic.
 ///
-/// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order, in extents from 1e-60 to 1e60: products of
-/// five coordinates over- or underflow beyond, and points are left out. Equal points are one vertex, the one of least
-/// index. Points that all lie in a plane give no tetrahedra.
+/// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one of least
+/// index. Points that all lie in a plane give no tetrahedra. The result is about Delaunay if the extent is between 1e-35
+/// and 1e35: products of eight coordinates, or of five with other options, over- or underflow beyond, and points are left
+/// out.
 ///
 /// Errors: a coordinate that is not finite, too many points or tetrahedra.
 ///
