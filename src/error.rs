@@ -67,11 +67,12 @@ impl Error {
 
     /// An operating-system failure while doing `what` ("reading", "creating the temporary file").
     ///
-    /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file, [`ErrorKind::Malformed`].
+    /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file and invalid data,
+    /// [`ErrorKind::Malformed`].
     pub fn io(what: impl Into<String>, cause: io::Error) -> Self {
         let kind = match cause.kind() {
             io::ErrorKind::BrokenPipe => ErrorKind::ClosedPipe,
-            io::ErrorKind::UnexpectedEof => ErrorKind::Malformed,
+            io::ErrorKind::UnexpectedEof | io::ErrorKind::InvalidData => ErrorKind::Malformed,
             _ => ErrorKind::Io,
         };
         Error { kind, input: None, position: None, message: what.into(), cause: Some(cause) }

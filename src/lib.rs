@@ -24,3 +24,4 @@ pub mod sink;
 pub mod source;
 pub mod stream;
 pub mod system;
+pub mod tess3;

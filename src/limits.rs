@@ -13,6 +13,9 @@ pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 
+/// Longest line of a molecular structure, in bytes: mmCIF may hold a whole sequence in one.
+pub const STRUCTURE_LINE_MAX: usize = 1 << 24;
+
 /// Longest header line of a text twin, in bytes: it may hold a CRS, escaped.
 pub const TEXT_HEADER_LINE_MAX: usize = 1 << 23;
 

@@ -1,5 +1,7 @@
 //! The audit: it passes correct streams and names the fault of every other.
 
+#[path = "audit/census.rs"]
+mod census;
 #[path = "audit/command.rs"]
 mod command;
 #[path = "audit/exhaustive.rs"]
@@ -14,6 +16,12 @@ mod partial;
 mod points;
 #[path = "audit/reference.rs"]
 mod reference;
+#[path = "audit/solid.rs"]
+mod solid;
+#[path = "audit/tetrahedra.rs"]
+mod tetrahedra;
+#[path = "audit/tetrahedra_mutations.rs"]
+mod tetrahedra_mutations;
 
 use spmesh::audit::{Audit, PointSet, Report, Standard, Violation};
 use spmesh::bounds::Point;
@@ -107,7 +115,7 @@ impl Mesh {
 }
 
 fn given(points: &[[i32; 2]]) -> PointSet {
-    let mut set = PointSet::new(grid());
+    let mut set = PointSet::new(grid(), 2);
     set.extend(&points.iter().map(point).collect::<Vec<_>>());
     set.finish(&grid()).unwrap()
 }

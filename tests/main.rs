@@ -19,4 +19,5 @@ mod reference;
 mod sources;
 mod stream;
 mod system;
+mod tess3;
 mod vectors;

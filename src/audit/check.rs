@@ -7,21 +7,24 @@ use crate::stream::Header;
 /// One kind of claim that an audit proves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Check {
-    /// Every triangle is strictly counterclockwise.
+    /// Every simplex is strictly positively oriented: triangles are counterclockwise.
     Orientation,
     /// Every directed edge belongs to one triangle.
     Edges,
-    /// Every interior edge is locally Delaunay.
+    /// Every oriented facet belongs to one tetrahedron.
+    Facets,
+    /// Every interior edge of a triangle mesh, or facet of a tetrahedral mesh, is locally Delaunay.
     Delaunay,
-    /// Ties between cocircular points are resolved canonically.
+    /// Ties between cocircular or cospherical points are resolved canonically.
     Canonical,
-    /// Every vertex is used, and its triangles close around it or form one fan from boundary to boundary.
+    /// Every vertex is used, and its simplices close around it or go from boundary to boundary.
     Vertices,
     /// No vertex is used after it was finalized, and all are finalized at the end.
     Finalization,
-    /// The boundary is one convex cycle that turns once; or all vertices lie on a line.
+    /// The boundary is one convex cycle or surface that goes around once; or all vertices lie on a line, in space in a
+    /// plane.
     Hull,
-    /// Triangles, vertices and hull edges are as many as in a disk.
+    /// Simplices of all dimensions are as many as in a disk or ball.
     Euler,
     /// Counts of points add up.
     Counts,
@@ -29,6 +32,8 @@ pub enum Check {
     Bounds,
     /// The positions of the vertices are those of the given points.
     Points,
+    /// Labels follow their vertices, and all have one or none has.
+    Labels,
     /// Points lie in the region, or in the cube of the finalization tree.
     Region,
     /// No point follows the tag of its cell, and every tag is news.
@@ -43,9 +48,10 @@ pub enum Check {
 
 impl Check {
     /// Every check, in the order of reports.
-    pub const ALL: [Check; 16] = [
+    pub const ALL: [Check; 18] = [
         Check::Orientation,
         Check::Edges,
+        Check::Facets,
         Check::Delaunay,
         Check::Canonical,
         Check::Vertices,
@@ -55,6 +61,7 @@ impl Check {
         Check::Counts,
         Check::Bounds,
         Check::Points,
+        Check::Labels,
         Check::Region,
         Check::Cells,
         Check::Chunks,
@@ -76,17 +83,23 @@ impl Check {
 
     fn row(self) -> (&'static str, &'static str) {
         match self {
-            Check::Orientation => ("orientation", "every triangle is counterclockwise"),
+            Check::Orientation => ("orientation", "every simplex is positively oriented, none is flat"),
             Check::Edges => ("edges", "every directed edge belongs to one triangle"),
-            Check::Delaunay => ("delaunay", "every interior edge is locally Delaunay"),
-            Check::Canonical => ("canonical", "cocircular points are triangulated canonically"),
-            Check::Vertices => ("vertices", "every vertex has one fan of triangles"),
+            Check::Facets => ("facets", "every oriented facet belongs to one tetrahedron"),
+            Check::Delaunay => ("delaunay", "every interior edge or facet is locally Delaunay"),
+            Check::Canonical => {
+                ("canonical", "cocircular or cospherical points are triangulated canonically")
+            }
+            Check::Vertices => {
+                ("vertices", "the simplices of every vertex close around it, or up to the hull")
+            }
             Check::Finalization => ("finalization", "no vertex is used after its finalization"),
-            Check::Hull => ("hull", "the boundary is one convex cycle"),
-            Check::Euler => ("euler", "triangles = 2 vertices - 2 - hull edges"),
+            Check::Hull => ("hull", "the boundary is convex, closed, and goes around once"),
+            Check::Euler => ("euler", "simplices of all dimensions are as many as in a disk or ball"),
             Check::Counts => ("counts", "vertices, merged and unwritten points are all points"),
             Check::Bounds => ("bounds", "the bounding box holds all points"),
-            Check::Points => ("points", "the vertices are the given points in x and y"),
+            Check::Points => ("points", "the vertices are where the given points are"),
+            Check::Labels => ("labels", "all vertices have a label or none has, and it follows its vertex"),
             Check::Region => ("region", "every point lies in the region of the stream"),
             Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
             Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),

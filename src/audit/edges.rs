@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 
-use super::exact::Xy;
+use super::exact::plane::Xy;
 
 /// A vertex as the geometry sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]

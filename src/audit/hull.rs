@@ -7,7 +7,7 @@ use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
 use super::edges::{Corner, OpenEdges};
-use super::exact::{Xy, lexicographic, orientation};
+use super::exact::plane::{Xy, lexicographic, orientation};
 
 /// Corners of the boundary.
 ///

@@ -1,9 +1,11 @@
 //! Proves what a stream claims, block by block, in memory of the stream's width and its boundary.
 //!
 //! The audit shares nothing with the code that makes meshes: it has its own exact arithmetic and its own
-//! view of vertices, edges and cells. Only the reader of the container is common ground.
+//! view of vertices, edges, facets and cells. Only the reader of the container is common ground.
 //!
 //! # Why the checks of a whole mesh are enough
+//!
+//! (Of a triangle mesh; [`tetrahedra`] has the argument for tetrahedral meshes.)
 //!
 //! The audit sees each triangle once and forgets what is finalized. It never compares distant triangles, and
 //! need not. Let every triangle be strictly counterclockwise; let every directed edge meet its twin except the
@@ -38,39 +40,41 @@ mod partial;
 mod point_set;
 mod points;
 mod survey;
+mod tetrahedra;
 mod triangles;
 
 pub(crate) use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use point_set::PointSet;
 pub use survey::{CellPoints, PatchSize, Survey};
+pub use tetrahedra::{Census, Faults, Figures};
 pub use triangles::Standard;
 
 use check::Ledger;
 use mesh::{MESH_CHECKS, MeshAudit};
 use partial::{PARTIAL_CHECKS, PartialAudit};
 use points::{PointsAudit, points_checks};
-use triangles::Triangles;
+use tetrahedra::{TETRAHEDRA_CHECKS, TetrahedraAudit};
 
 use crate::bounds::Point;
 use crate::stream::{Event, Header, Kind};
 
 /// Audit of one stream of any kind: give it every event, and ask for the report.
 ///
-/// Domain: a stream in two dimensions, or points in two or three; the events must come from a
-/// [`crate::stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
 pub struct Audit {
     state: State,
     given: Option<PointSet>,
     ledger: Ledger,
     violation: Option<Violation>,
-    open_edges_max: usize,
+    open_max: usize,
 }
 
 enum State {
     Points(PointsAudit),
     Mesh(MeshAudit),
     Partial(PartialAudit),
+    Tetrahedra(TetrahedraAudit),
 }
 
 /// What an audit found so far.
@@ -82,8 +86,8 @@ pub struct Report {
     pub violation: Option<Violation>,
     /// Most vertices that were held at once.
     pub live_max: usize,
-    /// Most open edges that were held at once.
-    pub open_edges_max: usize,
+    /// Most open edges of triangles, or open facets of tetrahedra, that were held at once.
+    pub open_max: usize,
 }
 
 impl Audit {
@@ -96,13 +100,15 @@ impl Audit {
             Kind::PartialTriangleMesh => {
                 (State::Partial(PartialAudit::new(header, standard)), PARTIAL_CHECKS.to_vec())
             }
-            Kind::TetrahedralMesh => unimplemented!("audit of tetrahedral meshes"),
+            Kind::TetrahedralMesh => {
+                (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
+            }
         };
         let is_mesh = header.kind.vertices_per_simplex() > 0;
         checks.extend((is_mesh && standard == Standard::Canonical).then_some(Check::Canonical));
         checks.extend((is_mesh && given.is_some()).then_some(Check::Points));
         let ledger = Ledger::of(&checks);
-        Audit { state, given, ledger, violation: None, open_edges_max: 0 }
+        Audit { state, given, ledger, violation: None, open_max: 0 }
     }
 
     /// Checks the next event.
@@ -114,8 +120,7 @@ impl Audit {
             return Err(violation.clone());
         }
         let checked = self.check_given(event).and_then(|()| self.check(event));
-        let open_edges = self.triangles().map_or(0, |triangles| triangles.edges.len());
-        self.open_edges_max = self.open_edges_max.max(open_edges);
+        self.open_max = self.open_max.max(self.width().1);
         checked.inspect_err(|violation| self.violation = Some(violation.clone()))
     }
 
@@ -125,8 +130,8 @@ impl Audit {
         Report {
             lines: self.ledger.lines(self.violation.as_ref()),
             violation: self.violation.clone(),
-            live_max: self.triangles().map_or(0, Triangles::live_max),
-            open_edges_max: self.open_edges_max,
+            live_max: self.width().0,
+            open_max: self.open_max,
         }
     }
 
@@ -145,6 +150,9 @@ impl Audit {
                 Ok(())
             }
             (State::Partial(audit), Event::End(totals)) => audit.end(totals, ledger),
+            (State::Tetrahedra(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
+            (State::Tetrahedra(audit), Event::Labels(labels)) => audit.labels(labels, ledger),
+            (State::Tetrahedra(audit), Event::End(totals)) => audit.end(totals, ledger),
             _ => unreachable!("the reader lets no such block into a stream of this kind"),
         }
     }
@@ -165,11 +173,13 @@ impl Audit {
         }
     }
 
-    fn triangles(&self) -> Option<&Triangles> {
+    /// Most vertices that were live at once, and how many edges or facets are open now.
+    fn width(&self) -> (usize, usize) {
         match &self.state {
-            State::Points(_) => None,
-            State::Mesh(audit) => Some(audit.triangles()),
-            State::Partial(audit) => Some(audit.triangles()),
+            State::Points(_) => (0, 0),
+            State::Mesh(audit) => (audit.triangles().live_max(), audit.triangles().edges.len()),
+            State::Partial(audit) => (audit.triangles().live_max(), audit.triangles().edges.len()),
+            State::Tetrahedra(audit) => (audit.live_max(), audit.open_facets()),
         }
     }
 }

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
-use super::exact::lexicographic;
+use super::exact::plane::lexicographic;
 use super::triangles::{Standard, Triangles, Vertex};
 use crate::bounds::{Point, Region};
 use crate::stream::{Header, Patch, Totals};

@@ -5,37 +5,51 @@ use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::stream::Coordinates;
 
-/// The distinct x and y of points, and which of them a mesh has.
+/// The distinct positions of points, in the plane or in space, and which of them a mesh has.
 ///
-/// Memory: 8 bytes per point of integer coordinates, 16 of others, and a bit.
+/// Memory: 4 bytes per integer coordinate, 8 per other, and a bit per point.
 pub struct PointSet {
     coordinates: Coordinates,
     keys: Keys,
     found: Vec<u64>,
 }
 
+/// What tells positions apart, in order.
 enum Keys {
-    I32(Vec<u64>),
-    F64(Vec<u128>),
+    I32InPlane(Vec<[i32; 2]>),
+    F64InPlane(Vec<[u64; 2]>),
+    I32InSpace(Vec<[i32; 3]>),
+    F64InSpace(Vec<[u64; 3]>),
+}
+
+/// The same expression for the keys of any type.
+macro_rules! of_keys {
+    ($keys:expr, $bound:ident => $result:expr) => {
+        match $keys {
+            Keys::I32InPlane($bound) => $result,
+            Keys::F64InPlane($bound) => $result,
+            Keys::I32InSpace($bound) => $result,
+            Keys::F64InSpace($bound) => $result,
+        }
+    };
 }
 
 impl PointSet {
-    /// No points, in stored coordinates of this encoding.
+    /// No points, in stored coordinates of this encoding, in two or three dimensions.
     #[must_use]
-    pub fn new(coordinates: Coordinates) -> Self {
-        let keys = match coordinates {
-            Coordinates::I32 { .. } => Keys::I32(Vec::new()),
-            Coordinates::F64 => Keys::F64(Vec::new()),
+    pub fn new(coordinates: Coordinates, dims: u8) -> Self {
+        let keys = match (coordinates, dims) {
+            (Coordinates::I32 { .. }, 3) => Keys::I32InSpace(Vec::new()),
+            (Coordinates::I32 { .. }, _) => Keys::I32InPlane(Vec::new()),
+            (Coordinates::F64, 3) => Keys::F64InSpace(Vec::new()),
+            (Coordinates::F64, _) => Keys::F64InPlane(Vec::new()),
         };
         PointSet { coordinates, keys, found: Vec::new() }
     }
 
     /// Adds points; repeated positions count once.
     pub fn extend(&mut self, points: &[Point]) {
-        match &mut self.keys {
-            Keys::I32(keys) => keys.extend(points.iter().map(|&point| key_i32(point))),
-            Keys::F64(keys) => keys.extend(points.iter().map(|&point| key_f64(point))),
-        }
+        of_keys!(&mut self.keys, keys => add_keys(keys, points));
     }
 
     /// Puts the positions in order. `mesh` is the encoding of the mesh that will be compared.
@@ -43,15 +57,12 @@ impl PointSet {
     /// # Errors
     /// Usage, if the mesh stores its coordinates in another way, so that they cannot be equal.
     pub fn finish(mut self, mesh: &Coordinates) -> Result<Self> {
-        if !same_plane(&self.coordinates, mesh) {
+        if !same_positions(&self.coordinates, mesh, self.keys.dims()) {
             return Err(Error::usage(
                 "the points have another coordinate type, scale or offset than the mesh: cannot compare",
             ));
         }
-        let len = match &mut self.keys {
-            Keys::I32(keys) => sort_distinct(keys),
-            Keys::F64(keys) => sort_distinct(keys),
-        };
+        let len = of_keys!(&mut self.keys, keys => sort_distinct(keys));
         self.found = vec![0; len.div_ceil(64)];
         Ok(self)
     }
@@ -64,10 +75,7 @@ impl PointSet {
         ledger: &mut Ledger,
     ) -> std::result::Result<(), Violation> {
         ledger.add(Check::Points, 1);
-        let place = match &self.keys {
-            Keys::I32(keys) => keys.binary_search(&key_i32(at)),
-            Keys::F64(keys) => keys.binary_search(&key_f64(at)),
-        };
+        let place = of_keys!(&self.keys, keys => keys.binary_search(&Key::of(at)));
         let Ok(i) = place else {
             let message = "a vertex is at the position of no given point";
             return Err(Violation::new(Check::Points, message).with(id, at));
@@ -82,29 +90,36 @@ impl PointSet {
 
     /// Proves that every point was taken.
     pub(super) fn check_complete(&self) -> std::result::Result<(), Violation> {
-        let len = match &self.keys {
-            Keys::I32(keys) => keys.len(),
-            Keys::F64(keys) => keys.len(),
-        };
+        let len = of_keys!(&self.keys, keys => keys.len());
         let Some(i) = (0..len).find(|i| self.found[i / 64] >> (i % 64) & 1 == 0) else { return Ok(()) };
-        let at = match &self.keys {
-            Keys::I32(keys) => [(keys[i] >> 32) as u32, keys[i] as u32].map(|half| f64::from(half as i32)),
-            Keys::F64(keys) => [(keys[i] >> 64) as u64, keys[i] as u64].map(f64::from_bits),
-        };
+        let at = of_keys!(&self.keys, keys => keys[i].position());
         let message = "the mesh has no vertex at the position of a given point";
-        Err(Violation::new(Check::Points, message).with(None, [at[0], at[1], 0.0]))
+        Err(Violation::new(Check::Points, message).with(None, at))
     }
 }
 
-/// Whether x and y mean the same in both encodings.
-fn same_plane(a: &Coordinates, b: &Coordinates) -> bool {
+impl Keys {
+    fn dims(&self) -> usize {
+        match self {
+            Keys::I32InPlane(_) | Keys::F64InPlane(_) => 2,
+            Keys::I32InSpace(_) | Keys::F64InSpace(_) => 3,
+        }
+    }
+}
+
+/// Whether coordinates mean the same in both encodings.
+fn same_positions(a: &Coordinates, b: &Coordinates, dims: usize) -> bool {
     match (a, b) {
         (Coordinates::F64, Coordinates::F64) => true,
         (Coordinates::I32 { scale: s, offset: o }, Coordinates::I32 { scale: t, offset: p }) => {
-            s[..2] == t[..2] && o[..2] == p[..2]
+            s[..dims] == t[..dims] && o[..dims] == p[..dims]
         }
         _ => false,
     }
+}
+
+fn add_keys<K: Key>(keys: &mut Vec<K>, points: &[Point]) {
+    keys.extend(points.iter().map(|&point| K::of(point)));
 }
 
 fn sort_distinct<T: Ord>(keys: &mut Vec<T>) -> usize {
@@ -113,11 +128,29 @@ fn sort_distinct<T: Ord>(keys: &mut Vec<T>) -> usize {
     keys.len()
 }
 
-fn key_i32(point: Point) -> u64 {
-    u64::from(point[0] as i32 as u32) << 32 | u64::from(point[1] as i32 as u32)
+/// A position in a form that has an order.
+trait Key {
+    fn of(point: Point) -> Self;
+    fn position(self) -> Point;
+}
+
+impl<const D: usize> Key for [i32; D] {
+    fn of(point: Point) -> Self {
+        std::array::from_fn(|axis| point[axis] as i32)
+    }
+
+    fn position(self) -> Point {
+        std::array::from_fn(|axis| self.get(axis).map_or(0.0, |&value| f64::from(value)))
+    }
 }
 
 /// The bits, with one zero: adding 0 turns -0 into 0 and changes nothing else.
-fn key_f64(point: Point) -> u128 {
-    u128::from((point[0] + 0.0).to_bits()) << 64 | u128::from((point[1] + 0.0).to_bits())
+impl<const D: usize> Key for [u64; D] {
+    fn of(point: Point) -> Self {
+        std::array::from_fn(|axis| (point[axis] + 0.0).to_bits())
+    }
+
+    fn position(self) -> Point {
+        std::array::from_fn(|axis| self.get(axis).map_or(0.0, |&bits| f64::from_bits(bits)))
+    }
 }

@@ -8,7 +8,7 @@ use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
 use super::edges::{Corner, Meeting, OpenEdges};
-use super::exact::{Xy, in_circle, in_raised_circle, orientation};
+use super::exact::plane::{Xy, in_circle, in_raised_circle, orientation};
 use crate::bounds::Point;
 use crate::stream::Patch;
 

@@ -5,6 +5,7 @@ pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spfinalize;
 pub mod spinfo;
+pub mod tess3;
 
 use std::ffi::OsString;
 use std::io::Write;

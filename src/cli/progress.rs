@@ -17,42 +17,56 @@ pub enum When {
     Json,
 }
 
-/// Progress of one pass, counted in points.
+/// Progress of one pass, counted in points or in other units.
 pub struct Progress {
     bar: ProgressBar,
     json: Option<(String, Option<u64>, Instant)>,
+    /// What is counted, in the plural.
+    unit: &'static str,
 }
 
 impl Progress {
     /// Starts to show the pass `name`, of `total` points where that is known.
     #[must_use]
     pub fn new(common: &Common, name: &str, total: Option<u64>) -> Self {
+        Self::counting("points", common, name, total)
+    }
+
+    /// Starts to show the pass `name`, of `total` units where that is known.
+    #[must_use]
+    pub fn counting(unit: &'static str, common: &Common, name: &str, total: Option<u64>) -> Self {
         let show = common.progress == When::Auto && !common.quiet;
         let bar = match (show, total) {
             (false, _) => ProgressBar::hidden(),
             (true, Some(total)) => ProgressBar::new(total).with_style(
-                ProgressStyle::with_template("{prefix} {wide_bar} {human_pos}/{human_len} points {eta}")
+                ProgressStyle::with_template(&format!("{{prefix}} {{wide_bar}} {{human_pos}}/{{human_len}} {unit} {{eta}}"))
                     .expect("the template is valid"),
             ),
             (true, None) => ProgressBar::new_spinner().with_style(
-                ProgressStyle::with_template("{prefix} {spinner} {human_pos} points {elapsed}")
+                ProgressStyle::with_template(&format!("{{prefix}} {{spinner}} {{human_pos}} {unit} {{elapsed}}"))
                     .expect("the template is valid"),
             ),
         };
         bar.set_prefix(name.to_string());
         let json = (common.progress == When::Json).then(|| (name.to_string(), total, Instant::now()));
-        Progress { bar, json }
+        Progress { bar, json, unit }
     }
 
-    /// Says that `done` points are done.
+    /// Says that `done` units are done.
     pub fn set(&mut self, done: u64) {
         self.bar.set_position(done);
         if let Some((name, total, last)) = &mut self.json
             && last.elapsed() >= Duration::from_secs(1)
         {
             *last = Instant::now();
-            super::say(&format!("{}\n", serde_json::json!({"pass": name, "points": done, "total": total})));
+            let line = serde_json::json!({"pass": name, self.unit: done, "total": total});
+            super::say(&format!("{line}\n"));
         }
+    }
+
+    /// Prints on stderr, beside the bar.
+    pub fn say(&self, text: &str) {
+        self.bar.suspend(|| super::say(text));
     }
 }
 

@@ -1,5 +1,6 @@
 //! The tool `spinfo`.
 
+mod census;
 mod report;
 
 use std::io::{BufReader, Write};
@@ -9,11 +10,11 @@ use clap::{Parser, ValueEnum};
 
 use super::progress::Progress;
 use super::{Common, notice, open_input};
-use crate::audit::{Audit, PointSet, Standard, Survey};
-use crate::error::{Error, Result};
+use crate::audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey, Violation};
+use crate::error::{Error, ErrorKind, Result};
 use crate::output::Output;
 use crate::source::{Input, SourceOptions};
-use crate::stream::{Coordinates, Header, StreamReader};
+use crate::stream::{Coordinates, Event, Header, Kind, StreamReader};
 use report::Summary;
 
 const INPUT_BUFFER_LEN: usize = 1 << 18;
@@ -25,6 +26,8 @@ Examples:
                                           prove that the mesh is right
   spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
   spinfo --audit --points a.laz mesh.spm  and it has exactly these points
+  spinfo --audit --count-violations tetrahedra.spm
+                                          how wrong is it, exactly and in plain floating point
   spinfo --json mesh.spm | jq .counts     for programs
 
 Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
@@ -58,16 +61,21 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "audit")]
     points: Vec<PathBuf>,
 
+    /// Do not stop at the first violation but count them all, exactly and once more in plain floating-point
+    /// arithmetic; for tetrahedral meshes
+    #[arg(long, requires = "audit", conflicts_with = "points")]
+    count_violations: bool,
+
     #[command(flatten)]
     common: Common,
 }
 
-/// What `--audit` asks of the edges of a mesh.
+/// What `--audit` asks of the edges or facets of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum AuditStandard {
-    /// Interior edges are locally Delaunay, and ties are resolved as spdelaunay2d does
+    /// Interior edges or facets are locally Delaunay, and ties are resolved as spdelaunay2d and tess3 do
     Canonical,
-    /// Interior edges are locally Delaunay
+    /// Interior edges or facets are locally Delaunay
     Delaunay,
 }
 
@@ -88,15 +96,12 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let (input, name) = open_input(&flags.input)?;
     let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
     let header = reader.header().clone();
-    let mut audit = match flags.audit {
-        None => None,
-        Some(standard) => Some(Audit::new(&header, standard.into(), given_points(&flags, &header)?)),
-    };
+    let mut proof = Proof::of(&flags, &header)?;
     let mut survey = Survey::new(&header);
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
-        if let Some(violation) = audit.as_mut().and_then(|audit| audit.event(&event).err()) {
+        if let Err(violation) = proof.event(&event) {
             failure = Some(reader.locate(violation.to_error(&header)));
             break;
         }
@@ -104,16 +109,76 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         progress.set(survey.totals().points.max(survey.totals().vertices));
     }
     drop(progress);
+    let failure = failure.or_else(|| proof.verdict());
     let summary = Summary {
         name: reader.name(),
         header: &header,
         survey: &survey,
-        audit: audit.as_ref().map(Audit::report),
+        audit: proof.report(),
+        census: proof.figures(),
         failure: failure.as_ref(),
         bytes: reader.bytes_read(),
     };
     print(&if flags.json { summary.json() } else { summary.text() })?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// What is to be found out about the promises of a stream.
+enum Proof {
+    /// Nothing.
+    None,
+    /// Whether all are kept.
+    Audit(Box<Audit>),
+    /// How often they are not.
+    Census(Box<Census>, Standard),
+}
+
+impl Proof {
+    fn of(flags: &Flags, header: &Header) -> Result<Self> {
+        let Some(standard) = flags.audit.map(Standard::from) else { return Ok(Proof::None) };
+        if !flags.count_violations {
+            let audit = Audit::new(header, standard, given_points(flags, header)?);
+            return Ok(Proof::Audit(Box::new(audit)));
+        }
+        if header.kind != Kind::TetrahedralMesh {
+            let message =
+                format!("--count-violations goes with a tetrahedral mesh, not with {}", header.kind.name());
+            return Err(Error::usage(message));
+        }
+        Ok(Proof::Census(Box::default(), standard))
+    }
+
+    fn event(&mut self, event: &Event) -> std::result::Result<(), Violation> {
+        match self {
+            Proof::None => Ok(()),
+            Proof::Audit(audit) => audit.event(event),
+            Proof::Census(census, _) => census.event(event),
+        }
+    }
+
+    /// What a census says at the end; an audit has spoken before.
+    fn verdict(&self) -> Option<Error> {
+        match self {
+            Proof::Census(census, standard) if !census.figures().is_clean(*standard) => {
+                Some(Error::new(ErrorKind::Audit, "the mesh is wrong: the counts are in the report"))
+            }
+            _ => None,
+        }
+    }
+
+    fn report(&self) -> Option<Report> {
+        match self {
+            Proof::Audit(audit) => Some(audit.report()),
+            _ => None,
+        }
+    }
+
+    fn figures(&self) -> Option<&Figures> {
+        match self {
+            Proof::Census(census, _) => Some(census.figures()),
+            _ => None,
+        }
+    }
 }
 
 /// The points of `--points`, to be compared with the mesh.
@@ -135,7 +200,7 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
     let options = SourceOptions { dims: mesh.dims, grid, ..SourceOptions::default() };
     let input = Input::open(&flags.points, &options)?;
     input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
-    let mut points = PointSet::new(input.description().coordinates);
+    let mut points = PointSet::new(input.description().coordinates, mesh.dims);
     let (mut reader, mut batch) = (input.read()?, Vec::new());
     loop {
         reader.next_batch(&mut batch)?;

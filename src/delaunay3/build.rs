@@ -30,6 +30,7 @@ impl Build<'_> {
     pub(super) fn run<P: Predicates3, L: Lanes>(self, predicates: &mut P) -> Result<Complex, Self> {
         let Some(first) = self.first_tetrahedron(predicates) else { return Err(self) };
         let count = self.vertices.len() as u32 - 1;
+        self.cavity.clear();
         let mut insertion = Insertion::<P, L> {
             complex: Complex::new(self.vertices, self.tetrahedra, first),
             predicates,

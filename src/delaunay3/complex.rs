@@ -128,6 +128,19 @@ impl Complex {
         self.words()[facet as usize]
     }
 
+    /// Has the neighbours of the tetrahedron of a facet brought into the cache.
+    #[inline(always)]
+    pub(super) fn fetch_neighbours(&self, facet: Facet) {
+        #[cfg(target_arch = "x86_64")]
+        for other in self.tetrahedra[facet as usize / WORDS].across {
+            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+            // Safety: any address may be prefetched.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.words().as_ptr().wrapping_add(other as usize).cast()) };
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = facet;
+    }
+
     /// The facet of the other tetrahedron.
     #[inline(always)]
     pub(super) fn across(&self, facet: Facet) -> Facet {

@@ -8,15 +8,15 @@ use crate::predicates::Predicates3;
 /// Runs `build` with the widest lanes there are.
 pub(super) fn run<'a, P: Predicates3>(build: Build<'a>, predicates: &mut P) -> Result<Complex, Build<'a>> {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        // Safety: the processor has AVX2.
+    if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+        // Safety: the processor has AVX2 and FMA.
         return unsafe { run_avx2(build, predicates) };
     }
     build.run::<P, lanes::Portable>(predicates)
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn run_avx2<'a, P: Predicates3>(build: Build<'a>, predicates: &mut P) -> Result<Complex, Build<'a>> {
     build.run::<P, lanes::avx2::Avx2>(predicates)
 }

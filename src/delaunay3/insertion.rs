@@ -36,6 +36,13 @@ pub(super) struct Cavity {
     sights: Vec<[f64; 4]>,
 }
 
+impl Cavity {
+    /// Forgets tetrahedra of an earlier complex.
+    pub(super) fn clear(&mut self) {
+        self.pending.iter_mut().for_each(|facet| facet.beyond = 0);
+    }
+}
+
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
 pub(super) struct Insertion<'a, P, L> {
     pub(super) complex: Complex,
@@ -69,6 +76,9 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
         while next < self.cavity.end {
             let facet = self.cavity.pending[next];
             next += 1;
+            // Its neighbours will be wanted if it is taken. (What stands behind the end is of an earlier insertion.)
+            let later = &self.cavity.pending[(next + 1).min(self.cavity.pending.len() - 1)];
+            self.complex.fetch_neighbours(later.beyond);
             if facet.value < 0.0 {
                 self.cavity.star.border.push((facet.corners, facet.beyond));
             } else if self.complex.opposite(facet.beyond) == DELETED {
@@ -175,11 +185,12 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
         let nm = next(cross(p, next(p)));
         let dp = cross(d, p);
         let (n_lift, m_lift) = (lift.next(), lift.previous());
-        let value = (d_lift * dot(e, nm) - n_lift * dot(e, previous(dp)))
-            + (m_lift * dot(e, next(dp)) - e_lift * dot(d, nm));
+        let plus = m_lift.times_plus(dot(e, next(dp)), d_lift * dot(e, nm));
+        let value = plus - n_lift.times_plus(dot(e, previous(dp)), e_lift * dot(d, nm));
         let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
         let square = greatest * greatest;
-        let bound = L::splat(INSPHERE_SQUARED_BOUND) * (square * square * greatest) + L::splat(TINY);
+        let fifth = square * square * greatest;
+        let bound = fifth.times_plus(L::splat(INSPHERE_SQUARED_BOUND), L::splat(TINY));
         value.where_greater(value * value, bound)
     }
 
@@ -191,7 +202,7 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
             apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
         let [x, y, z, _] = L::columns([L::new(u), L::new(v), L::new(w)]);
         let (x, y, z) = (x - L::splat(at[0]), y - L::splat(at[1]), z - L::splat(at[2]));
-        let mut lift = x * x + y * y + z * z;
+        let mut lift = dot([x, y, z], [x, y, z]);
         if apexes.contains(&infinite) {
             let mut lifts = lift.array();
             for (lift, apex) in lifts.iter_mut().zip(apexes) {
@@ -246,12 +257,16 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
 
 #[inline(always)]
 fn cross<L: Lanes>(p: [L; 3], q: [L; 3]) -> [L; 3] {
-    [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
+    [
+        p[1].times_minus(q[2], p[2] * q[1]),
+        p[2].times_minus(q[0], p[0] * q[2]),
+        p[0].times_minus(q[1], p[1] * q[0]),
+    ]
 }
 
 #[inline(always)]
 fn dot<L: Lanes>(p: [L; 3], q: [L; 3]) -> L {
-    p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
+    p[0].times_plus(q[0], p[1].times_plus(q[1], p[2] * q[2]))
 }
 
 #[inline(always)]

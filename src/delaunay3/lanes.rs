@@ -14,6 +14,12 @@ pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Out
         Self::new([value; 4])
     }
 
+    /// `self * factor + summand`, rounded once or twice.
+    fn times_plus(self, factor: Self, summand: Self) -> Self;
+
+    /// `self * factor - subtrahend`, rounded once or twice.
+    fn times_minus(self, factor: Self, subtrahend: Self) -> Self;
+
     /// To each lane what the next one has, in a circle of three.
     fn next(self) -> Self;
 
@@ -72,6 +78,16 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn times_plus(self, factor: Portable, summand: Portable) -> Portable {
+        self * factor + summand
+    }
+
+    #[inline(always)]
+    fn times_minus(self, factor: Portable, subtrahend: Portable) -> Portable {
+        self * factor - subtrahend
+    }
+
+    #[inline(always)]
     fn next(self) -> Portable {
         let [a, b, c, d] = self.0;
         Portable([b, c, a, d])
@@ -106,9 +122,9 @@ impl Lanes for Portable {
 pub(super) mod avx2 {
     use super::Lanes;
     use std::arch::x86_64::{
-        __m256d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_max_pd, _mm256_mul_pd,
-        _mm256_permute2f128_pd, _mm256_permute4x64_pd, _mm256_set1_pd, _mm256_setr_pd, _mm256_sub_pd,
-        _mm256_unpackhi_pd, _mm256_unpacklo_pd,
+        __m256d, _CMP_GT_OQ, _mm256_add_pd, _mm256_blendv_pd, _mm256_cmp_pd, _mm256_fmadd_pd,
+        _mm256_fmsub_pd, _mm256_max_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_permute4x64_pd,
+        _mm256_set1_pd, _mm256_setr_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
     };
 
     /// A register of AVX2.
@@ -150,6 +166,16 @@ pub(super) mod avx2 {
         #[inline(always)]
         fn array(self) -> [f64; 4] {
             unsafe { std::mem::transmute(self.0) }
+        }
+
+        #[inline(always)]
+        fn times_plus(self, factor: Avx2, summand: Avx2) -> Avx2 {
+            unsafe { Avx2(_mm256_fmadd_pd(self.0, factor.0, summand.0)) }
+        }
+
+        #[inline(always)]
+        fn times_minus(self, factor: Avx2, subtrahend: Avx2) -> Avx2 {
+            unsafe { Avx2(_mm256_fmsub_pd(self.0, factor.0, subtrahend.0)) }
         }
 
         #[inline(always)]

@@ -1,5 +1,6 @@
 //! Many files as one input that can be read several times.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -80,6 +81,18 @@ impl Input {
         for path in paths {
             sources.push(Source::open(path, options, &mut notices)?);
         }
+        Input::of_sources(sources, options, notices)
+    }
+
+    /// As `open`, from one file that is open already; `name` is what messages call it.
+    pub(super) fn open_file(file: File, name: &str, options: &SourceOptions) -> Result<Input> {
+        let mut notices = Vec::new();
+        let origin = Origin::Open(Arc::new(file));
+        let source = Source::new(origin, name.to_string(), options, &mut notices)?;
+        Input::of_sources(vec![source], options, notices)
+    }
+
+    fn of_sources(sources: Vec<Source>, options: &SourceOptions, mut notices: Vec<String>) -> Result<Input> {
         let description = describe(&sources, options, &mut notices)?;
         Ok(Input { sources: sources.into(), options: options.clone(), description, notices })
     }
@@ -142,6 +155,15 @@ impl Source {
         let temp_dir = options.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
         let origin = Origin::new(path, &temp_dir, notices)?;
         let name = if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() };
+        Source::new(origin, name, options, notices)
+    }
+
+    fn new(
+        origin: Origin,
+        name: String,
+        options: &SourceOptions,
+        notices: &mut Vec<String>,
+    ) -> Result<Source> {
         let mut own_notices = Vec::new();
         let (content, mut stated) =
             Content::read(&origin, &name, &mut own_notices).map_err(|e| e.of_input(&name))?;

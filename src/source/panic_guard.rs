@@ -1,4 +1,5 @@
-//! Keeps a panic of a decoder library from ending the program: damaged input is an error, not a crash.
+//! Keeps a panic from ending the program: in a decoder library damaged input is an error, not a crash, and among many
+//! files one must not end the work on the others.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -13,7 +14,7 @@ static HOOK: Once = Once::new();
 /// Runs `decode` on this thread; a panic in it becomes `Err` with its message and prints nothing.
 ///
 /// The panic hook of the process is wrapped once; it stays as it was for all panics outside of `decode`.
-pub(super) fn guarded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
+pub(crate) fn guarded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
     HOOK.call_once(|| {
         let previous = panic::take_hook();
         panic::set_hook(Box::new(move |info| {

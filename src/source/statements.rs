@@ -16,12 +16,18 @@ pub(super) struct Lines<R> {
     line: Vec<u8>,
     number: u64,
     ended: bool,
+    longest: usize,
 }
 
 impl<R: Read> Lines<R> {
     pub(super) fn new(input: R, name: impl Into<String>) -> Self {
+        Lines::with_longest(input, name, TEXT_LINE_MAX)
+    }
+
+    /// As `new`, for formats whose lines may have up to `longest` bytes.
+    pub(super) fn with_longest(input: R, name: impl Into<String>, longest: usize) -> Self {
         let input = BufReader::with_capacity(1 << 17, input);
-        Lines { input, name: name.into(), line: Vec::new(), number: 0, ended: true }
+        Lines { input, name: name.into(), line: Vec::new(), number: 0, ended: true, longest }
     }
 
     /// The next line without its line end (LF or CR LF); `None` at the end of the input.
@@ -38,13 +44,13 @@ impl<R: Read> Lines<R> {
             if bytes.is_empty() {
                 break;
             }
-            let end = bytes.iter().position(|&byte| byte == b'\n');
+            let end = memchr::memchr(b'\n', bytes);
             self.line.extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
             let used = end.map_or(bytes.len(), |end| end + 1);
             self.input.consume(used);
             self.ended = end.is_some();
             let longest =
-                if self.line.starts_with(HEADER_START) { TEXT_HEADER_LINE_MAX } else { TEXT_LINE_MAX };
+                if self.line.starts_with(HEADER_START) { TEXT_HEADER_LINE_MAX } else { self.longest };
             if self.line.len() > longest {
                 let message = format!("line of more than {longest} bytes: not a text of this format");
                 return Err(self.locate(Error::malformed(message)));
@@ -64,6 +70,11 @@ impl<R: Read> Lines<R> {
     /// The line that was read last.
     pub(super) fn current(&self) -> &[u8] {
         &self.line
+    }
+
+    /// Number of the line that was read last, counted from 1.
+    pub(super) fn number(&self) -> u64 {
+        self.number
     }
 
     /// Whether the line that was read last has a line end: a text that was cut off mostly ends without one.

@@ -123,8 +123,11 @@ pub struct Totals {
 }
 
 impl Totals {
+    /// Number of totals.
+    pub(super) const FIELDS: usize = 7;
+
     /// The totals in the order of the END block.
-    pub(super) fn fields(&self) -> [u64; 7] {
+    pub(super) fn fields(&self) -> [u64; Self::FIELDS] {
         [
             self.points,
             self.cells,

@@ -4,6 +4,7 @@
 
 mod block;
 mod chunks;
+mod ending;
 mod event;
 mod finalized;
 mod header;
@@ -15,6 +16,7 @@ mod reader;
 mod tally;
 mod writer;
 
+pub use ending::ends_with_end;
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use header::{Coordinates, Crs, Header};

@@ -5,6 +5,7 @@ use std::process::Output;
 use serde_json::Value;
 use spmesh::stream::{Crs, Header, Kind, StreamWriter};
 
+use super::solid::{self, Solid, cubic};
 use super::{Mesh, grid, point};
 
 fn spinfo(arguments: &[&str], input: &[u8]) -> Output {
@@ -44,6 +45,52 @@ fn json_is_one_object() {
     assert_eq!(object["counts"]["cells"], 0);
     assert_eq!(object["bounds"]["min"][0], 1000.0);
     assert_eq!(object["audit"]["ok"], true);
+}
+
+#[test]
+fn tetrahedra_have_their_words() {
+    let mut mesh = Solid::canonical(&cubic(2));
+    mesh.labels = (1..=8).collect();
+    let text = String::from_utf8(spinfo(&["--audit"], &mesh.stream()).stdout).unwrap();
+    for line in [
+        "stdin: tetrahedral mesh",
+        "tetrahedra   6",
+        "labels       8",
+        "open facets",
+        "facets       ok",
+        "labels       ok",
+    ] {
+        assert!(text.contains(line), "{line:?} in\n{text}");
+    }
+    assert!(!text.contains("triangles"), "{text}");
+    let object = json(&spinfo(&["--audit", "--json"], &mesh.stream()));
+    assert_eq!(object["counts"]["tetrahedra"], 6);
+    assert_eq!(object["counts"]["labels"], 8);
+    assert_eq!(object["audit"]["ok"], true);
+    assert!(object["audit"]["open_facets_max"].is_number());
+    mesh.tetrahedra.pop();
+    let output = spinfo(&["--audit"], &mesh.stream());
+    assert_eq!(output.status.code(), Some(4));
+    assert!(String::from_utf8_lossy(&output.stderr).contains(" check failed: "));
+}
+
+#[test]
+fn points_in_space_are_compared_in_all_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("points.spm");
+    let mut points = cubic(2);
+    let mesh = Solid::canonical(&points);
+    for (is_equal, status) in [(true, 0), (false, 4)] {
+        if !is_equal {
+            points[3][2] += 1;
+        }
+        let header = Header::new(Kind::Points, solid::grid(), 3, false);
+        let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+        writer.points(&points.iter().map(solid::position).collect::<Vec<_>>()).unwrap();
+        std::fs::write(&path, writer.end(0, 0).unwrap()).unwrap();
+        let output = spinfo(&["--audit", "--points", path.to_str().unwrap()], &mesh.stream());
+        assert_eq!(output.status.code(), Some(status), "{}", String::from_utf8_lossy(&output.stderr));
+    }
 }
 
 #[test]

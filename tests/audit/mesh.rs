@@ -235,7 +235,7 @@ fn given_points_must_match() {
 
 #[test]
 fn given_points_of_floats_know_one_zero() {
-    let mut set = PointSet::new(Coordinates::F64);
+    let mut set = PointSet::new(Coordinates::F64, 2);
     set.extend(&[[-0.0, 0.25, 7.0], [0.0, 0.25, 8.0], [1e300, -0.0, 0.0], [-5e-324, -1.5, 0.0]]);
     let set = set.finish(&Coordinates::F64).unwrap();
     let mut writer =
@@ -249,7 +249,7 @@ fn given_points_of_floats_know_one_zero() {
 
 #[test]
 fn given_points_of_another_encoding_cannot_be_compared() {
-    let error = PointSet::new(Coordinates::F64).finish(&grid()).map(|_| ()).unwrap_err();
+    let error = PointSet::new(Coordinates::F64, 2).finish(&grid()).map(|_| ()).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Usage);
 }
 
@@ -323,5 +323,5 @@ fn memory_is_the_width_of_the_stream() {
     }
     let report = audit(&writer.end(rows * columns, 0).unwrap(), CANONICAL, None).unwrap();
     assert_eq!(report.live_max as u64, 2 * columns);
-    assert!(report.open_edges_max as u64 <= 2 * (rows + columns));
+    assert!(report.open_max as u64 <= 2 * (rows + columns));
 }

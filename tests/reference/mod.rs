@@ -5,6 +5,7 @@ pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
 pub mod sets;
+pub mod tetrahedra;
 
 /// A triangle as its vertex indices, counterclockwise, the least first.
 pub fn normalised(triangle: [u32; 3]) -> [u32; 3] {

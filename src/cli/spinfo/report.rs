@@ -2,11 +2,12 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::{Report, Survey, shortest};
+use super::census;
+use crate::audit::{Figures, Report, Survey, shortest};
 use crate::bounds::Point;
 use crate::error::Error;
 use crate::source::crs_name;
-use crate::stream::{Coordinates, Crs, Header};
+use crate::stream::{Coordinates, Crs, Header, Kind};
 
 /// Everything that is known of a stream after it was read.
 pub(super) struct Summary<'a> {
@@ -14,6 +15,7 @@ pub(super) struct Summary<'a> {
     pub(super) header: &'a Header,
     pub(super) survey: &'a Survey,
     pub(super) audit: Option<Report>,
+    pub(super) census: Option<&'a Figures>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
 }
@@ -45,7 +47,10 @@ impl Summary<'_> {
         }
         self.figures(&mut line);
         if let Some(report) = &self.audit {
-            text += &audit_text(report);
+            text += &self.audit_text(report);
+        }
+        if let Some(figures) = self.census {
+            text += &census::text(figures);
         }
         text
     }
@@ -57,7 +62,8 @@ impl Summary<'_> {
             ("points", totals.points),
             ("merged", totals.merged),
             ("vertices", totals.vertices),
-            ("triangles", totals.simplices),
+            (self.simplices(), totals.simplices),
+            ("labels", self.survey.labels()),
             ("cells", totals.cells),
             ("residual", totals.residual_points),
             ("walls", totals.walls),
@@ -73,9 +79,10 @@ impl Summary<'_> {
             line(
                 "patches",
                 format!(
-                    "{}, largest: {} triangles, {} new and {} imported vertices",
+                    "{}, largest: {} {}, {} new and {} imported vertices",
                     self.survey.patches(),
                     largest.simplices,
+                    self.simplices(),
                     largest.new,
                     largest.imported
                 ),
@@ -118,7 +125,8 @@ impl Summary<'_> {
             "counts": {
                 "points": totals.points,
                 "vertices": totals.vertices,
-                "triangles": totals.simplices,
+                self.simplices(): totals.simplices,
+                "labels": self.survey.labels(),
                 "cells": totals.cells,
                 "merged": totals.merged,
                 "residual_points": totals.residual_points,
@@ -127,11 +135,12 @@ impl Summary<'_> {
             "width": self.survey.width(),
             "patches": self.survey.patches(),
             "largest_patch": {
-                "triangles": largest.simplices, "new": largest.new, "imported": largest.imported,
+                self.simplices(): largest.simplices, "new": largest.new, "imported": largest.imported,
             },
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
             "audit": self.audit.as_ref().map(|report| self.audit_json(report)),
+            "census": self.census.map(census::json),
         });
         format!("{object:#}\n")
     }
@@ -167,7 +176,7 @@ impl Summary<'_> {
             "checks": checks,
             "violation": violation,
             "live_max": report.live_max,
-            "open_edges_max": report.open_edges_max,
+            if self.is_solid() { "open_facets_max" } else { "open_edges_max" }: report.open_max,
         })
     }
 
@@ -199,27 +208,38 @@ impl Summary<'_> {
         let world = self.header.coordinates.to_world(stored);
         world[..self.header.coordinates_per_point()].to_vec()
     }
-}
 
-fn audit_text(report: &Report) -> String {
-    let verdict = if report.violation.is_none() { "passed" } else { "FAILED" };
-    let mut text = format!("audit {verdict}");
-    if report.live_max > 0 {
-        text += &format!(
-            ", with at most {} vertices and {} open edges in memory",
-            report.live_max, report.open_edges_max
-        );
+    /// What the simplices of the stream are called.
+    fn simplices(&self) -> &'static str {
+        if self.is_solid() { "tetrahedra" } else { "triangles" }
     }
-    text.push('\n');
-    for line in &report.lines {
-        let (verdict, name) = (if line.passed { "ok" } else { "FAILED" }, line.check.name());
-        text += &format!("  {name:<12} {verdict:<6} {:>11} tests", line.tests);
-        if line.exactly > 0 {
-            text += &format!(" ({} exact)", line.exactly);
+
+    fn is_solid(&self) -> bool {
+        self.header.kind == Kind::TetrahedralMesh
+    }
+
+    fn audit_text(&self, report: &Report) -> String {
+        let verdict = if report.violation.is_none() { "passed" } else { "FAILED" };
+        let mut text = format!("audit {verdict}");
+        if report.live_max > 0 {
+            text += &format!(
+                ", with at most {} vertices and {} open {} in memory",
+                report.live_max,
+                report.open_max,
+                if self.is_solid() { "facets" } else { "edges" }
+            );
         }
-        text += &format!(": {}\n", line.check.claim());
+        text.push('\n');
+        for line in &report.lines {
+            let (verdict, name) = (if line.passed { "ok" } else { "FAILED" }, line.check.name());
+            text += &format!("  {name:<12} {verdict:<6} {:>11} tests", line.tests);
+            if line.exactly > 0 {
+                text += &format!(" ({} exact)", line.exactly);
+            }
+            text += &format!(": {}\n", line.check.claim());
+        }
+        text
     }
-    text
 }
 
 fn coordinates_json(coordinates: &Coordinates) -> Value {

@@ -1,39 +1,26 @@
-//! The audit's own exact arithmetic: orientation, in-circle, and how the canonical triangulation breaks ties.
-//!
-//! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Else the
-//! coordinates are multiplied by a common power of two that makes them integers, and where their differences
-//! have at most 61 bits the determinants are evaluated in i128. What is left goes to integers without limit.
+//! Orientation and in-circle in the plane.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
 use num_bigint::BigInt;
 
-/// A position in the plane, in stored coordinates. Both are finite.
-pub(super) type Xy = [f64; 2];
+use super::dyadic::{differences, integers, small_differences};
+use super::wide::Wide;
+use super::{Decided, ROUNDING, decide, decided, power_of_two};
 
-/// The sign of an expression, as its order to zero, and whether the filter left it to exact arithmetic.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Decided {
-    pub(super) sign: Ordering,
-    pub(super) exactly: bool,
-}
+/// A position in the plane, in stored coordinates. Both are finite.
+pub(in crate::audit) type Xy = [f64; 2];
 
 /// Whether `a`, `b`, `c` turn left (`Greater`), right (`Less`) or lie on a line (`Equal`).
-pub(super) fn orientation(a: Xy, b: Xy, c: Xy) -> Decided {
-    match filtered_orientation(a, b, c) {
-        Some(sign) => Decided { sign, exactly: false },
-        None => Decided { sign: exact_orientation(a, b, c), exactly: true },
-    }
+pub(in crate::audit) fn orientation(a: Xy, b: Xy, c: Xy) -> Decided {
+    decided(filtered_orientation(a, b, c), || exact_orientation(a, b, c))
 }
 
 /// Whether `d` lies inside (`Greater`), outside (`Less`) or on (`Equal`) the circle of the counterclockwise
 /// triangle `a`, `b`, `c`.
-pub(super) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
-    match filtered_in_circle(a, b, c, d) {
-        Some(sign) => Decided { sign, exactly: false },
-        None => Decided { sign: exact_in_circle(a, b, c, d), exactly: true },
-    }
+pub(in crate::audit) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
+    decided(filtered_in_circle(a, b, c, d), || exact_in_circle(a, b, c, d))
 }
 
 /// Whether `d`, which lies on the circle of the counterclockwise triangle `a`, `b`, `c`, counts as inside or
@@ -44,7 +31,7 @@ pub(super) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
 /// The in-circle determinant is linear in the lifts, so that the largest point whose coefficient is not zero
 /// decides: the coefficient of a vertex of the triangle is the orientation of the three other points with the
 /// vertex replaced by `d`; that of `d` is minus the orientation of the triangle.
-pub(super) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
+pub(in crate::audit) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
     let mut by_rank = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
     by_rank.sort_by(|(p, _), (q, _)| lexicographic(*q, *p));
     by_rank
@@ -55,12 +42,9 @@ pub(super) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
 }
 
 /// Order by x, then by y.
-pub(super) fn lexicographic(p: Xy, q: Xy) -> Ordering {
+pub(in crate::audit) fn lexicographic(p: Xy, q: Xy) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")
 }
-
-/// Half a unit in the last place of 1: the largest relative error of one rounding.
-const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// Each of the two products of `(a - c) x (b - c)` passes four roundings (two differences, the product, the
 /// last difference), hence an error of at most 4.1 `ROUNDING` times the sum of their magnitudes; 8 covers the
@@ -74,7 +58,7 @@ fn filtered_orientation(a: Xy, b: Xy, c: Xy) -> Option<Ordering> {
 }
 
 /// 2^-1000.
-const UNDERFLOW_OF_AREA: f64 = f64::from_bits((1023 - 1000) << 52);
+const UNDERFLOW_OF_AREA: f64 = power_of_two(-1000);
 
 /// Each monomial passes at most 11 roundings: four differences, a square and its sum, a product and its
 /// difference, the product of both and two sums. So the error is below 12 `ROUNDING` times the sum of the
@@ -83,7 +67,7 @@ const UNDERFLOW_OF_AREA: f64 = f64::from_bits((1023 - 1000) << 52);
 /// Underflow: a product errs by at most 2^-1075 on top. With all lifts below 2^400, differences are below
 /// 2^200 and lifts and minors below 2^402, so that all such errors together stay below 2^-600.
 fn filtered_in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Option<Ordering> {
-    let [ax, ay, bx, by, cx, cy] = differences([a, b, c], d);
+    let [[ax, ay], [bx, by], [cx, cy]] = [a, b, c].map(|p| [p[0] - d[0], p[1] - d[1]]);
     let lifts = [ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy];
     let products = [[bx * cy, by * cx], [cx * ay, cy * ax], [ax * by, ay * bx]];
     let (mut determinant, mut magnitude) = (0.0, 0.0);
@@ -96,136 +80,52 @@ fn filtered_in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Option<Ordering> {
 }
 
 /// 2^400.
-const LIFT_OF_FILTER: f64 = f64::from_bits((1023 + 400) << 52);
+const LIFT_OF_FILTER: f64 = power_of_two(400);
 
 /// 2^-600.
-const UNDERFLOW_OF_CIRCLE: f64 = f64::from_bits((1023 - 600) << 52);
-
-fn decide(determinant: f64, error: f64) -> Option<Ordering> {
-    if determinant > error {
-        Some(Ordering::Greater)
-    } else if determinant < -error {
-        Some(Ordering::Less)
-    } else {
-        None
-    }
-}
+const UNDERFLOW_OF_CIRCLE: f64 = power_of_two(-600);
 
 fn exact_orientation(a: Xy, b: Xy, c: Xy) -> Ordering {
-    match small_integers([a, b, c]) {
+    match small_differences([a, b, c]) {
         // Products of two differences of 61 bits have 122, their difference 123.
-        Some([a, b, c]) => area(differences([a, b], c)).cmp(&0),
+        Some([a, b, _]) => area([a, b].map(|point| point.map(i128::from))).cmp(&0),
         None => {
             let [a, b, c] = integers([a, b, c]);
-            area(differences([a, b], c)).cmp(&BigInt::ZERO)
+            area(differences([a, b], &c)).cmp(&BigInt::ZERO)
         }
     }
 }
 
-fn area<T: Clone + Mul<Output = T> + Sub<Output = T>>([ax, ay, bx, by]: [T; 4]) -> T {
+fn area<T: Clone + Mul<Output = T> + Sub<Output = T>>([[ax, ay], [bx, by]]: [[T; 2]; 2]) -> T {
     ax * by - ay * bx
 }
 
 fn exact_in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
-    let Some([a, b, c, d]) = small_integers([a, b, c, d]) else {
+    let Some([a, b, c, _]) = small_differences([a, b, c, d]) else {
         let [a, b, c, d] = integers([a, b, c, d]);
-        let terms = lifts_and_minors(differences([a, b, c], d));
+        let terms = lifts_and_minors(differences([a, b, c], &d));
         return terms.into_iter().map(|(lift, minor)| lift * minor).sum::<BigInt>().cmp(&BigInt::ZERO);
     };
-    let differences = differences([a, b, c], d);
-    let is_short = differences.iter().all(|&difference| difference.abs() <= 1 << 30);
-    let terms = lifts_and_minors(differences);
+    let is_short = [a, b, c].as_flattened().iter().all(|&difference| difference.abs() <= 1 << 30);
     if is_short {
         // Lifts and minors have at most 61 bits, a product 122, the sum of three 124.
+        let terms = lifts_and_minors([a, b, c].map(|point| point.map(i128::from)));
         terms.into_iter().map(|(lift, minor)| lift * minor).sum::<i128>().cmp(&0)
     } else {
-        // Lifts and minors have at most 123 bits.
-        let product = |(lift, minor)| BigInt::from(lift) * BigInt::from(minor);
-        terms.into_iter().map(product).sum::<BigInt>().cmp(&BigInt::ZERO)
+        let terms = lifts_and_minors([a, b, c].map(|point| point.map(Wide::from)));
+        let products = terms.map(|(lift, minor)| lift * minor);
+        (products[0] + products[1] + products[2]).sign()
     }
 }
 
 /// The in-circle determinant is the sum of the products of these three pairs.
-fn lifts_and_minors<T>([ax, ay, bx, by, cx, cy]: [T; 6]) -> [(T, T); 3]
+fn lifts_and_minors<T>([a, b, c]: [[T; 2]; 3]) -> [(T, T); 3]
 where
     T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
 {
-    let lift = |x: &T, y: &T| x.clone() * x.clone() + y.clone() * y.clone();
-    let minor = |px: &T, py: &T, qx: &T, qy: &T| px.clone() * qy.clone() - py.clone() * qx.clone();
-    [
-        (lift(&ax, &ay), minor(&bx, &by, &cx, &cy)),
-        (lift(&bx, &by), minor(&cx, &cy, &ax, &ay)),
-        (lift(&cx, &cy), minor(&ax, &ay, &bx, &by)),
-    ]
-}
-
-/// x and y of each point relative to `origin`.
-fn differences<T, const N: usize, const M: usize>(points: [[T; 2]; N], origin: [T; 2]) -> [T; M]
-where
-    T: Clone + Sub<Output = T>,
-{
-    const { assert!(M == 2 * N) };
-    std::array::from_fn(|i| points[i / 2][i % 2].clone() - origin[i % 2].clone())
-}
-
-/// The points times a common power of two, where all their differences then have at most 61 bits.
-fn small_integers<const N: usize>(points: [Xy; N]) -> Option<[[i128; 2]; N]> {
-    let (dyadics, unit) = dyadics(points);
-    let fits = |value: &Dyadic| value.mantissa == 0 || value.exponent - unit <= 70;
-    if !dyadics.as_flattened().iter().all(fits) {
-        return None;
-    }
-    let integers = dyadics.map(|point| {
-        point.map(|value| match value.mantissa {
-            0 => 0,
-            mantissa => i128::from(mantissa) << (value.exponent - unit),
-        })
-    });
-    let near = |point: &[i128; 2]| (0..2).all(|axis| (point[axis] - integers[N - 1][axis]).abs() <= 1 << 61);
-    integers.iter().all(near).then_some(integers)
-}
-
-/// The points times a common power of two.
-fn integers<const N: usize>(points: [Xy; N]) -> [[BigInt; 2]; N] {
-    let (dyadics, unit) = dyadics(points);
-    dyadics.map(|point| {
-        point.map(|value| match value.mantissa {
-            0 => BigInt::ZERO,
-            mantissa => BigInt::from(mantissa) << (value.exponent - unit),
-        })
-    })
-}
-
-/// A finite f64 as `mantissa * 2^exponent`, the mantissa odd or zero.
-#[derive(Debug, Clone, Copy)]
-struct Dyadic {
-    mantissa: i64,
-    exponent: i32,
-}
-
-impl Dyadic {
-    fn of(value: f64) -> Self {
-        let bits = value.to_bits();
-        let fraction = (bits & ((1 << 52) - 1)) as i64;
-        let (magnitude, exponent) = match (bits >> 52 & 0x7ff) as i32 {
-            0 => (fraction, -1074),
-            biased => (fraction | 1 << 52, biased - 1075),
-        };
-        if magnitude == 0 {
-            return Dyadic { mantissa: 0, exponent: 0 };
-        }
-        let zeros = magnitude.trailing_zeros();
-        let odd = magnitude >> zeros;
-        Dyadic { mantissa: if value < 0.0 { -odd } else { odd }, exponent: exponent + zeros as i32 }
-    }
-}
-
-/// The coordinates taken apart, and their smallest exponent.
-fn dyadics<const N: usize>(points: [Xy; N]) -> ([[Dyadic; 2]; N], i32) {
-    let dyadics = points.map(|point| point.map(Dyadic::of));
-    let exponents = dyadics.as_flattened().iter().filter(|value| value.mantissa != 0);
-    let unit = exponents.map(|value| value.exponent).min().unwrap_or(0);
-    (dyadics, unit)
+    let lift = |[x, y]: &[T; 2]| x.clone() * x.clone() + y.clone() * y.clone();
+    let minor = |p: &[T; 2], q: &[T; 2]| area([p.clone(), q.clone()]);
+    [(lift(&a), minor(&b, &c)), (lift(&b), minor(&c, &a)), (lift(&c), minor(&a, &b))]
 }
 
 #[cfg(test)]
@@ -234,7 +134,7 @@ mod tests {
 
     const SQUARE: [Xy; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-    /// Every route of the arithmetic: i128, products without limit, everything without limit.
+    /// Every route of the arithmetic: 128 bits, 320 bits, and without limit.
     #[test]
     fn cocircular_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e5 / 3.0, 1e9 / 7.0, 2f64.powi(40) + 1.0, 1e300, 5e-324, 1e-200] {

@@ -1,0 +1,48 @@
+//! The audit's own exact arithmetic: orientation, in-circle, in-sphere, and how the canonical triangulation breaks
+//! ties.
+//!
+//! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Else the
+//! coordinates are multiplied by a common power of two that makes them integers, and where their differences
+//! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to integers
+//! without limit.
+
+mod dyadic;
+pub(super) mod plane;
+pub(super) mod space;
+mod wide;
+
+use std::cmp::Ordering;
+
+/// The sign of an expression, as its order to zero, and whether the filter left it to exact arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Decided {
+    pub(super) sign: Ordering,
+    pub(super) exactly: bool,
+}
+
+/// What the filter says, or what exact arithmetic says where it says nothing.
+fn decided(filtered: Option<Ordering>, exact: impl FnOnce() -> Ordering) -> Decided {
+    match filtered {
+        Some(sign) => Decided { sign, exactly: false },
+        None => Decided { sign: exact(), exactly: true },
+    }
+}
+
+/// Half a unit in the last place of 1: the largest relative error of one rounding.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// The sign of a determinant that errs by at most `error`, if that tells. Infinities and what is no number do not.
+fn decide(determinant: f64, error: f64) -> Option<Ordering> {
+    if determinant > error {
+        Some(Ordering::Greater)
+    } else if determinant < -error {
+        Some(Ordering::Less)
+    } else {
+        None
+    }
+}
+
+/// 2 to the power of `exponent`, of a normal number.
+const fn power_of_two(exponent: i64) -> f64 {
+    f64::from_bits(((1023 + exponent) as u64) << 52)
+}

@@ -1,0 +1,47 @@
+//! Faces between live vertices that were seen: to count each once.
+
+use std::collections::HashSet;
+
+use foldhash::fast::RandomState;
+
+/// Edges (`N` = 2) or facets (`N` = 3) that a later tetrahedron may have too, as increasing ids.
+///
+/// Memory: up to twice as many as there have been between live vertices, and some thousand. Those of finalized
+/// vertices are swept out each time that the number has doubled, so that forgetting costs a constant per face.
+#[derive(Debug, Default)]
+pub(super) struct SeenFaces<const N: usize> {
+    faces: HashSet<[u64; N], RandomState>,
+    after_sweep: usize,
+    seen: u64,
+}
+
+/// Fewer faces are not worth a sweep.
+const SWEEP_LEN_MIN: usize = 1 << 12;
+
+impl<const N: usize> SeenFaces<N> {
+    /// Adds a face; whether it is new.
+    pub(super) fn add(&mut self, face: [u64; N]) -> bool {
+        debug_assert!(face.is_sorted(), "increasing ids");
+        let is_new = self.faces.insert(face);
+        self.seen += u64::from(is_new);
+        is_new
+    }
+
+    /// Whether the face was added, and its vertices have been live since.
+    pub(super) fn contains(&self, face: [u64; N]) -> bool {
+        self.faces.contains(&face)
+    }
+
+    /// Forgets the faces of vertices that are not live, if that pays.
+    pub(super) fn sweep(&mut self, is_live: impl Fn(u64) -> bool) {
+        if self.faces.len() >= SWEEP_LEN_MIN.max(2 * self.after_sweep) {
+            self.faces.retain(|face| face.iter().all(|&id| is_live(id)));
+            self.after_sweep = self.faces.len();
+        }
+    }
+
+    /// Number of faces so far.
+    pub(super) fn seen(&self) -> u64 {
+        self.seen
+    }
+}

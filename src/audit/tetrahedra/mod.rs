@@ -1,0 +1,218 @@
+//! Audit of a whole tetrahedral mesh.
+//!
+//! # Why the checks are enough
+//!
+//! The argument is that of triangle meshes, one dimension up. Let every tetrahedron be strictly positive; let every
+//! oriented facet meet its twin except those of one convex surface, once around ([`hull`] proves that); let every
+//! vertex have a tetrahedron.
+//!
+//! *The tetrahedra tile the hull.* The boundaries of the tetrahedra, added up as chains, cancel along every pair of
+//! twins, and what is left is the surface. So for every point off all facets, the number of tetrahedra that cover it
+//! is how often the surface winds around it: once inside of the hull, never outside. No two tetrahedra overlap and
+//! none is missing.
+//!
+//! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a vertex, its
+//! tetrahedra are positive triangles on a small sphere, joined side to side. If it has no open facets, they have no
+//! border, so they cover every direction equally often, which is at least once: all of its neighbourhood. If it has,
+//! it is a corner of the surface, which passes each of its positions once, and the border of the triangles is the
+//! outline of the convex cone inside of the surface there; so they cover the directions inside of the cone once more
+//! often than the others, which is at least once. A tetrahedron around the place that is not one of these, or that of
+//! a second vertex there, would cover directions inside of the hull a second time. In particular a vertex on the hull
+//! has open facets, so it is a corner of the surface, also inside of a flat part of it.
+//!
+//! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is used
+//! again while it is open is reported at once, one that is used again later by its consequences.
+//!
+//! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear function over the
+//! hull that interpolates the lifts is convex across every interior facet, because that is locally Delaunay. Along a
+//! segment between two points of the hull, which lies in it, a function that is convex at each facet crossed is
+//! convex; segments that meet an edge are limits of others. So the function is convex, the graph is the lower hull of
+//! the lifted vertices, and the whole is Delaunay. With perturbed lifts the same argument shows that the tetrahedra
+//! are those of the canonical tetrahedralization, of which there is one only: no five perturbed lifts lie in a
+//! hyperplane if four of the points are not in a plane.
+//!
+//! *Flat parts of the hull.* There the boundary facets are the Delaunay triangulation in their plane, canonical if
+//! the mesh is. This needs no check: the sphere of the tetrahedron at a boundary facet is empty, and so is the circle
+//! that it cuts from the plane; restricted to the plane, the convex function above is the one whose graph is the lower
+//! hull of the lifts of the points there.
+//!
+//! The links of vertices and Euler's relation follow too. They are checked as a test of the audit itself, and because
+//! a fault found at its vertex is easier to understand than one found in the hull at the end.
+
+mod census;
+mod coplanar;
+mod faces;
+mod facets;
+mod hull;
+mod live;
+mod vertices;
+
+use super::Standard;
+use super::check::{Check, Ledger, Violation};
+use super::extent::Extent;
+use crate::stream::{Header, Patch, Totals};
+pub use census::{Census, Faults, Figures};
+use coplanar::check_plane;
+use facets::Corner;
+use hull::Hull;
+use live::LiveTetrahedra;
+use vertices::Vertex;
+
+/// State of the audit of a tetrahedral mesh.
+///
+/// Memory: live vertices, their edges, open facets, and the hull. Facets of finalized vertices are forgotten, unless
+/// they are open.
+pub(super) struct TetrahedraAudit {
+    tetrahedra: LiveTetrahedra,
+    hull: Hull,
+    /// Vertices that were finalized without a tetrahedron: legal while there are no tetrahedra at all.
+    unused: Vec<Corner>,
+    labels: u64,
+    extent: Extent,
+}
+
+/// Checks that a tetrahedral mesh must pass, in any case.
+pub(super) const TETRAHEDRA_CHECKS: [Check; 9] = [
+    Check::Orientation,
+    Check::Facets,
+    Check::Delaunay,
+    Check::Vertices,
+    Check::Finalization,
+    Check::Hull,
+    Check::Euler,
+    Check::Counts,
+    Check::Bounds,
+];
+
+impl TetrahedraAudit {
+    pub(super) fn new(header: &Header, standard: Standard) -> Self {
+        TetrahedraAudit {
+            tetrahedra: LiveTetrahedra::new(standard),
+            hull: Hull::default(),
+            unused: Vec::new(),
+            labels: 0,
+            extent: Extent::new(header),
+        }
+    }
+
+    pub(super) fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
+        patch.new.iter().for_each(|&at| self.extent.add(at));
+        let (hull, unused) = (&mut self.hull, &mut self.unused);
+        self.tetrahedra.patch(patch, ledger, |vertex, ledger| finalize(vertex, hull, unused, ledger))?;
+        self.check_unused()
+    }
+
+    /// A label follows its vertex.
+    pub(super) fn labels(&mut self, labels: &[u64], ledger: &mut Ledger) -> Result<(), Violation> {
+        ledger.add(Check::Labels, labels.len() as u64);
+        self.labels += labels.len() as u64;
+        let vertices = self.tetrahedra.seen().vertices;
+        if self.labels > vertices {
+            let message = format!("{} labels, but only {vertices} vertices so far", self.labels);
+            return Err(Violation::new(Check::Labels, message));
+        }
+        Ok(())
+    }
+
+    pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
+        if let Some(vertex) = self.tetrahedra.vertices.first_live() {
+            let message = format!("vertex {} is never finalized", vertex.id);
+            return Err(Violation::new(Check::Finalization, message).with(vertex.id, vertex.at));
+        }
+        if self.tetrahedra.seen().tetrahedra == 0 {
+            check_plane(&mut self.unused, ledger)?;
+        } else {
+            self.hull.check(self.tetrahedra.facets.iter(), ledger)?;
+            self.check_euler(ledger)?;
+        }
+        self.check_counts(totals, ledger)?;
+        self.extent.check_holds(ledger)
+    }
+
+    /// Number of open facets.
+    pub(super) fn open_facets(&self) -> usize {
+        self.tetrahedra.facets.len()
+    }
+
+    /// Most vertices that were live at once.
+    pub(super) fn live_max(&self) -> usize {
+        self.tetrahedra.vertices.live_max()
+    }
+
+    fn check_unused(&self) -> Result<(), Violation> {
+        match self.unused.first() {
+            Some(corner) if self.tetrahedra.seen().tetrahedra > 0 => {
+                let message = format!("no tetrahedron uses vertex {}", corner.id);
+                Err(Violation::new(Check::Vertices, message).with(corner.id, corner.at))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The mesh is a ball and its surface a sphere.
+    fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
+        let seen = self.tetrahedra.seen();
+        let (hull_facets, hull_vertices) = (self.tetrahedra.facets.len() as u64, self.hull.len());
+        ledger.add(Check::Euler, 2);
+        if seen.vertices + seen.facets != seen.edges + seen.tetrahedra + 1 {
+            let message = format!(
+                "{} vertices - {} edges + {} facets - {} tetrahedra is not 1",
+                seen.vertices, seen.edges, seen.facets, seen.tetrahedra
+            );
+            return Err(Violation::new(Check::Euler, message));
+        }
+        if hull_facets + 4 != 2 * hull_vertices {
+            let message = format!("the hull has {hull_facets} facets, but {hull_vertices} vertices");
+            return Err(Violation::new(Check::Euler, message));
+        }
+        Ok(())
+    }
+
+    fn check_counts(&self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
+        let vertices = self.tetrahedra.seen().vertices;
+        ledger.add(Check::Counts, 1);
+        if vertices.checked_add(totals.merged) != Some(totals.points) {
+            let message = format!(
+                "{vertices} vertices and {} merged points are not the {} points of the input",
+                totals.merged, totals.points
+            );
+            return Err(Violation::new(Check::Counts, message));
+        }
+        if self.labels > 0 && self.labels != vertices {
+            let message = format!("{} labels, but {vertices} vertices", self.labels);
+            return Err(Violation::new(Check::Labels, message));
+        }
+        Ok(())
+    }
+}
+
+/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation.
+///
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
+/// are one edge, or half an edge if it is inner.
+fn finalize(
+    vertex: &Vertex,
+    hull: &mut Hull,
+    unused: &mut Vec<Corner>,
+    ledger: &mut Ledger,
+) -> Result<(), Violation> {
+    ledger.add(Check::Vertices, 1);
+    let &Vertex { id, at, tetrahedra, edges, open } = vertex;
+    if tetrahedra == 0 {
+        unused.push(vertex.corner());
+        return Ok(());
+    }
+    if open > 0 {
+        hull.add(vertex.corner());
+    }
+    // Twice V - E + F, with 2 E = 3 F + border.
+    let (twice, shape) = if open > 0 { (2, "half ball") } else { (4, "ball") };
+    if 2 * edges != tetrahedra + open + twice {
+        let message = format!(
+            "the tetrahedra around vertex {id} are no {shape}: {tetrahedra} of them, with {edges} edges \
+             and {open} open facets"
+        );
+        return Err(Violation::new(Check::Vertices, message).with(id, at));
+    }
+    Ok(())
+}

@@ -1,0 +1,302 @@
+//! `tess3`: flags.
+
+mod report;
+mod selection;
+
+use std::ffi::OsStr;
+use std::io::{BufRead, BufReader};
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::{Parser, ValueEnum};
+
+use super::{Common, StatsFormat, notice, open_input, progress::Progress};
+use crate::error::{Error, ErrorKind, Result};
+use crate::output::Output;
+use crate::source::structure::{Format, Structure, read_structure};
+use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
+use crate::tess3::{self, Options, Product, Radius, Stats};
+use selection::SelectionFlags;
+
+const SUMMARY_NAME: &str = "summary.tsv";
+
+const EXAMPLES: &str = "\
+Examples:
+  The mesh of all atoms, and an exact proof that it is right:
+    tess3 1abc.cif.gz -o 1abc.spm
+    spinfo --audit 1abc.spm
+  Contacts between residues: edges of the triangulation of the alpha carbons of two chains:
+    tess3 1abc.pdb --chain A,B --atoms ca --contacts -o contacts.tsv
+  Tetrahedra with circumradius and volume; only those of the alpha complex of radius 4 Å:
+    tess3 1abc.pdb --hetatm off --alpha 4 --table | sort -gk10
+  Many structures, two at a time; later only what is new or changed:
+    find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
+    find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
+
+Defaults: what the file shows of one molecule. That is its first model; all atoms, hydrogen too; HETATM records, with
+ligands, ions and water; and of alternate locations, for each residue, those of the conformer that is occupied most.
+
+Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or truncated
+input, 141 output closed by its reader.";
+
+/// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
+///
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ and LAS, plain or compressed (.gz),
+/// and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of points only.
+#[derive(Debug, Parser)]
+#[command(name = "tess3", version, after_help = EXAMPLES)]
+pub struct Flags {
+    /// Structure or points; - is stdin. Several only with --out-dir
+    #[arg(value_name = "FILE")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the mesh or the table goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-", conflicts_with = "out_dir")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    selection: SelectionFlags,
+
+    /// Write a table of the tetrahedra: atoms, circumradius and volume (Å, Å³), instead of the mesh
+    #[arg(long, conflicts_with = "contacts")]
+    table: bool,
+
+    /// Write a table of the edges: pairs of atoms, distance (Å), and the number of tetrahedra around
+    #[arg(long)]
+    contacts: bool,
+
+    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere of
+    /// at most that radius
+    #[arg(long, value_name = "RADIUS")]
+    alpha: Option<Radius>,
+
+    /// What the input is, if its content does not tell
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    from: Option<FormatFlag>,
+
+    /// Sweep: write an output for each file to this folder, and a summary
+    #[arg(long, value_name = "FOLDER")]
+    out_dir: Option<PathBuf>,
+
+    /// File with names of input files, one per line; - is stdin
+    #[arg(long, value_name = "FILE", requires = "out_dir")]
+    lof: Option<PathBuf>,
+
+    /// Files of a sweep that are worked on at the same time [default: one per core]
+    #[arg(long, value_name = "N", requires = "out_dir", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Where the summary of a sweep goes, a line per mesh; - is stdout [default: summary.tsv in the folder]
+    #[arg(long, value_name = "FILE", requires = "out_dir")]
+    summary: Option<PathBuf>,
+
+    /// Leave out the files that an earlier sweep to the same folder has done with the same flags
+    #[arg(long, requires = "out_dir")]
+    resume: bool,
+
+    /// Go on with the other files when one fails; this is the default
+    #[arg(long, requires = "out_dir", conflicts_with = "strict")]
+    keep_going: bool,
+
+    /// Stop a sweep at the first file that fails
+    #[arg(long, requires = "out_dir")]
+    strict: bool,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--from` can say.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormatFlag {
+    /// PDB
+    Pdb,
+    /// PDBx/mmCIF
+    Mmcif,
+    /// XYZ of chemistry: number of atoms, comment, and lines of element x y z
+    Xyz,
+    /// Points as spfinalize reads them: lines of x y z, streams, LAS
+    Points,
+    /// Vertices of a PLY file
+    Ply,
+    /// Vertices of an OBJ file
+    Obj,
+}
+
+impl From<FormatFlag> for Format {
+    fn from(flag: FormatFlag) -> Self {
+        match flag {
+            FormatFlag::Pdb => Format::Pdb,
+            FormatFlag::Mmcif => Format::Mmcif,
+            FormatFlag::Xyz => Format::Xyz,
+            FormatFlag::Points => Format::Points,
+            FormatFlag::Ply => Format::Ply,
+            FormatFlag::Obj => Format::Obj,
+        }
+    }
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`tess3::run`] and [`sweep`]; and if files of a sweep failed.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let stats = match &flags.out_dir {
+        Some(folder) => run_sweep(&flags, folder)?,
+        None => run_one(&flags)?,
+    };
+    report::print(flags.stats, &stats.stats, started.elapsed());
+    stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
+}
+
+/// What was done, and why it is not a success for all that.
+struct Finished {
+    stats: Stats,
+    failure: Option<Error>,
+}
+
+fn run_one(flags: &Flags) -> Result<Finished> {
+    let [input] = &flags.inputs[..] else {
+        let message = match flags.inputs.len() {
+            0 => "no input: give a file, or - for stdin (see --help)",
+            _ => "several files need a folder for their outputs: --out-dir FOLDER",
+        };
+        return Err(Error::usage(message));
+    };
+    if input == Path::new("-") {
+        refuse_terminal()?;
+    }
+    let started = Instant::now();
+    let structure = read_structure(input, flags.from.map(Into::into))?;
+    let options = flags.options();
+    structure.warnings.iter().for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
+    check_models(&structure, &options, flags)?;
+    let read = started.elapsed();
+    let is_binary = options.product == Product::Mesh;
+    let reports = tess3::run(structure, &options, &mut |_| Output::create(&flags.output, is_binary))?;
+    let mut stats = Stats::default();
+    for report in &reports {
+        report::degeneracy(report, reports.len()).into_iter().for_each(|text| flags.notice(&text));
+        stats.add(report);
+    }
+    stats.sums.times.read = read;
+    Ok(Finished { stats, failure: None })
+}
+
+/// Refuses what would need several outputs.
+fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
+    let models = structure.models.len();
+    if options.product == Product::Mesh && flags.selection.wants_all_models() && models > 1 {
+        let message = format!("{models} models need a folder for their meshes: --out-dir FOLDER");
+        return Err(Error::usage(message).of_input(&structure.name));
+    }
+    Ok(())
+}
+
+fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
+    let summary = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
+    if flags.resume && summary == Path::new("-") {
+        return Err(Error::usage("--resume reads the summary of the earlier run: give it a file with --summary"));
+    }
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let options = flags.options();
+    let wanted = Sweep {
+        files: flags.files()?,
+        format: flags.from.map(Into::into),
+        options_text: flags.options_text(),
+        options,
+        folder: folder.to_path_buf(),
+        summary: summary.clone(),
+        threads: flags.threads.map_or(cores, usize::from),
+        resume: flags.resume,
+        strict: flags.strict,
+    };
+    let mut progress = None;
+    let mut done = 0;
+    let outcome = sweep(&wanted, &mut |news| {
+        match news {
+            News::Files(files) => {
+                progress = Some(Progress::counting("files", &flags.common, "triangulating", Some(files)));
+            }
+            News::Done => done += 1,
+            News::Failed(error) => {
+                done += 1;
+                progress.iter().for_each(|bar| bar.say(&format!("tess3: {error}\n")));
+            }
+        }
+        progress.iter_mut().for_each(|bar| bar.set(done));
+    })?;
+    drop(progress);
+    let Outcome { done, skipped, failed, stats } = outcome;
+    let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
+    let summary = if summary == Path::new("-") { String::new() } else { format!("; see {}", summary.display()) };
+    if failed > 0 {
+        let files = done + skipped + failed;
+        let message = format!("{failed} of {files} files failed{before}{summary}");
+        return Ok(Finished { stats, failure: Some(Error::new(ErrorKind::Io, message)) });
+    }
+    flags.notice(&format!("{done} files done{before}{summary}"));
+    Ok(Finished { stats, failure: None })
+}
+
+impl Flags {
+    fn options(&self) -> Options {
+        let product = match (self.table, self.contacts) {
+            (true, _) => Product::Tetrahedra,
+            (_, true) => Product::Contacts,
+            _ => Product::Mesh,
+        };
+        Options { selection: self.selection.selection(), product, alpha: self.alpha.clone() }
+    }
+
+    /// What decides on the content of the outputs.
+    fn options_text(&self) -> String {
+        let mut text = self.selection.to_string();
+        if let Some(radius) = &self.alpha {
+            text += &format!(" --alpha {radius}");
+        }
+        for (flag, name) in [(self.table, " --table"), (self.contacts, " --contacts")] {
+            text += if flag { name } else { "" };
+        }
+        text
+    }
+
+    /// The files of the command line, then those of `--lof`.
+    fn files(&self) -> Result<Vec<PathBuf>> {
+        let mut files = self.inputs.clone();
+        if let Some(path) = &self.lof {
+            let (list, name) = open_input(path)?;
+            for line in BufReader::new(list).split(b'\n') {
+                let line = line.map_err(|e| Error::io("reading", e).of_input(&name))?;
+                let line = line.strip_suffix(b"\r").unwrap_or(&line);
+                if !line.is_empty() {
+                    files.push(OsStr::from_bytes(line).into());
+                }
+            }
+        }
+        if self.lof.as_deref() == Some(Path::new("-")) && files.iter().any(|file| file == Path::new("-")) {
+            return Err(Error::usage("the list of files and a file cannot both come from stdin"));
+        }
+        if files.is_empty() {
+            return Err(Error::usage("no input: give files, or a list of them with --lof (see --help)"));
+        }
+        if files.iter().any(|file| file == Path::new("-")) {
+            refuse_terminal()?;
+        }
+        Ok(files)
+    }
+
+    fn notice(&self, message: &str) {
+        notice("tess3", &self.common, message);
+    }
+}
+
+fn refuse_terminal() -> Result<()> {
+    open_input(&"-".into()).map(drop)
+}

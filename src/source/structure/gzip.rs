@@ -1,0 +1,99 @@
+//! Inputs as they are or compressed with gzip, which is told by the first bytes.
+
+use std::io::{self, BufReader, Chain, Cursor, ErrorKind, Read};
+
+use flate2::bufread::MultiGzDecoder;
+
+/// First bytes of gzip data.
+const MAGIC: [u8; 2] = [0x1f, 0x8b];
+
+/// Bytes read at once.
+const BUFFER_LEN: usize = 1 << 17;
+
+/// The start of an input that was looked at, and the rest.
+type Whole<R> = Chain<Cursor<Vec<u8>>, R>;
+
+/// The plain bytes of an input.
+pub(super) enum Plain<R> {
+    AsIs(Whole<R>),
+    Gzip(Box<Gunzip<Whole<R>>>),
+}
+
+impl<R: Read> Plain<R> {
+    /// Looks at the first bytes of `input`.
+    pub(super) fn new(mut input: R) -> io::Result<Self> {
+        let mut start = Vec::new();
+        (&mut input).take(MAGIC.len() as u64).read_to_end(&mut start)?;
+        let is_gzip = start == MAGIC;
+        let whole = Cursor::new(start).chain(input);
+        Ok(if is_gzip { Plain::Gzip(Box::new(Gunzip::new(whole))) } else { Plain::AsIs(whole) })
+    }
+
+    /// Whether the input is compressed.
+    pub(super) fn is_compressed(&self) -> bool {
+        matches!(self, Plain::Gzip(_))
+    }
+}
+
+impl<R: Read> Read for Plain<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        match self {
+            Plain::AsIs(input) => input.read(buffer),
+            Plain::Gzip(input) => input.read(buffer),
+        }
+    }
+}
+
+/// Decompresses gzip data of any number of members. What is damaged is an error that names the byte.
+pub(super) struct Gunzip<R> {
+    decoder: MultiGzDecoder<BufReader<Counted<R>>>,
+}
+
+impl<R: Read> Gunzip<R> {
+    fn new(input: R) -> Self {
+        let input = Counted { input, bytes: 0, failed: false };
+        Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
+    }
+
+    /// Says where in the compressed data decompression failed, and marks the failure as one of the data.
+    #[cold]
+    fn locate(&self, error: io::Error) -> io::Error {
+        let input = self.decoder.get_ref();
+        if input.get_ref().failed {
+            return error;
+        }
+        let byte = input.get_ref().bytes - input.buffer().len() as u64;
+        let found = match error.kind() {
+            ErrorKind::UnexpectedEof => "ends early: it was cut off".to_string(),
+            _ => format!("is damaged ({error})"),
+        };
+        io::Error::new(ErrorKind::InvalidData, format!("the gzip data {found} at byte {byte} of the file"))
+    }
+}
+
+impl<R: Read> Read for Gunzip<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.decoder.read(buffer).map_err(|e| match e.kind() {
+            ErrorKind::Interrupted => e,
+            _ => self.locate(e),
+        })
+    }
+}
+
+/// Counts the bytes that are read, and remembers whether reading itself failed.
+struct Counted<R> {
+    input: R,
+    bytes: u64,
+    failed: bool,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let result = self.input.read(buffer);
+        match &result {
+            Ok(len) => self.bytes += *len as u64,
+            Err(e) => self.failed |= e.kind() != ErrorKind::Interrupted,
+        }
+        result
+    }
+}

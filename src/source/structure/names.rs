@@ -1,0 +1,60 @@
+//! Short texts kept once: atoms are many, and their names are few.
+
+use std::collections::HashMap;
+
+use foldhash::fast::FixedState;
+
+/// A text of a [`Names`] table; that of [`Name::EMPTY`] is empty in all tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Name(u32);
+
+impl Name {
+    /// The empty text.
+    pub const EMPTY: Name = Name(0);
+
+    /// Whether the text is empty: not stated by the input.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self == Name::EMPTY
+    }
+}
+
+/// A table of texts, each held once.
+#[derive(Debug, Clone)]
+pub struct Names {
+    texts: Vec<Box<str>>,
+    by_text: HashMap<Box<str>, Name, FixedState>,
+}
+
+impl Default for Names {
+    fn default() -> Self {
+        let mut names = Names { texts: Vec::new(), by_text: HashMap::default() };
+        names.intern("");
+        names
+    }
+}
+
+impl Names {
+    /// The name of `text`, which becomes part of the table.
+    pub fn intern(&mut self, text: &str) -> Name {
+        if let Some(&name) = self.by_text.get(text) {
+            return name;
+        }
+        let name = Name(u32::try_from(self.texts.len()).expect("fewer than 2^32 different names"));
+        self.texts.push(text.into());
+        self.by_text.insert(text.into(), name);
+        name
+    }
+
+    /// The name of `text`, if the table has it.
+    #[must_use]
+    pub fn find(&self, text: &str) -> Option<Name> {
+        self.by_text.get(text).copied()
+    }
+
+    /// The text of a name of this table.
+    #[must_use]
+    pub fn text(&self, name: Name) -> &str {
+        &self.texts[name.0 as usize]
+    }
+}

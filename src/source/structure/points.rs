@@ -1,0 +1,101 @@
+//! Points without names: whatever `spfinalize` reads, and the vertices of meshes.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::model::{Model, Structure};
+use super::names::Names;
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::source::{EventSource, Input, SourceOptions};
+use crate::stream::{Coordinates, Event};
+
+/// Reads the points of a file that can be read several times.
+///
+/// # Errors
+/// As [`Input::open`], and if there is no point.
+pub(super) fn read_file(path: &Path) -> Result<Structure> {
+    read_input(&Input::open(&[path.to_path_buf()], &options())?)
+}
+
+/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call it.
+///
+/// # Errors
+/// As [`Input::open`], and if there is no point.
+pub(super) fn read_copy(mut input: impl Read, name: &str) -> Result<Structure> {
+    let folder: PathBuf = std::env::temp_dir();
+    let in_folder = |e| Error::io(format!("copying to a temporary file in {}", folder.display()), e);
+    let mut file = tempfile::tempfile_in(&folder).map_err(in_folder)?;
+    copy(&mut input, &mut file).map_err(|e| e.of_input(name))?;
+    read_input(&Input::open_file(file, name, &options())?)
+}
+
+fn options() -> SourceOptions {
+    SourceOptions { dims: 3, ..SourceOptions::default() }
+}
+
+/// Copies all bytes. What fails is told apart: reading, or writing.
+fn copy(input: &mut impl Read, file: &mut File) -> Result<()> {
+    use std::io::Write;
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match input.read(&mut buffer) {
+            Ok(0) => return Ok(()),
+            Ok(len) => {
+                file.write_all(&buffer[..len]).map_err(|e| Error::io("writing a temporary file", e))?;
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(Error::io("reading", e)),
+        }
+    }
+}
+
+fn read_input(input: &Input) -> Result<Structure> {
+    let mut reader = input.read()?;
+    let (mut points, mut batch) = (Vec::new(), Vec::new());
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            break;
+        }
+        points.extend_from_slice(&batch);
+    }
+    structure(points, input.description().coordinates, &input.name(), input.notices().to_vec())
+}
+
+/// Reads the points, or the vertices, of an input that is read as events.
+///
+/// # Errors
+/// If it is malformed or has none.
+pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Result<Structure> {
+    let coordinates = source.header().coordinates;
+    let mut all = Vec::new();
+    while let Some(event) = source.next_event()? {
+        match event {
+            Event::Points(points) => all.extend(points),
+            Event::Patch(patch) => all.extend(patch.new),
+            _ => {}
+        }
+    }
+    structure(all, coordinates, name, source.notices())
+}
+
+fn structure(
+    points: Vec<Point>,
+    coordinates: Coordinates,
+    name: &str,
+    warnings: Vec<String>,
+) -> Result<Structure> {
+    if points.is_empty() {
+        return Err(Error::malformed("found no point").of_input(name));
+    }
+    Ok(Structure {
+        name: name.to_string(),
+        coordinates,
+        models: vec![Model { number: 1, points, atoms: Vec::new() }],
+        residues: Vec::new(),
+        names: Names::default(),
+        warnings,
+    })
+}

@@ -1,0 +1,181 @@
+//! The canonical Delaunay tetrahedralization by definition: every four points, tried against every fifth, in O(n^5)
+//! and in integers without limit. For up to about 60 points. Shares no code with the library.
+//!
+//! The perturbation is written out: the lift of the point of rank r in lexicographic order is raised by
+//! epsilon^(n - r). The in-sphere determinant is then a polynomial in infinitesimals of falling size, whose sign is
+//! that of its first coefficient that is not zero: the determinant itself, or the cofactor of the lift of the largest
+//! point that has one.
+
+use num_bigint::BigInt;
+
+use super::exact::sign;
+use super::exact3::{self, ExactPoint, orientation};
+
+/// The points as integers that are not all even: times a power of two.
+pub fn exact_points(points: &[[f64; 3]]) -> Vec<ExactPoint> {
+    let integers = exact3::exact_points(points);
+    let zeros = integers.as_flattened().iter().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
+    integers.into_iter().map(|p| p.map(|c| c >> zeros)).collect()
+}
+
+fn minus(p: &ExactPoint, q: &ExactPoint) -> ExactPoint {
+    [0, 1, 2].map(|i| &p[i] - &q[i])
+}
+
+fn cross(u: &ExactPoint, v: &ExactPoint) -> ExactPoint {
+    [[1, 2], [2, 0], [0, 1]].map(|[i, j]| &u[i] * &v[j] - &u[j] * &v[i])
+}
+
+fn dot(u: &ExactPoint, v: &ExactPoint) -> BigInt {
+    &u[0] * &v[0] + &u[1] * &v[1] + &u[2] * &v[2]
+}
+
+/// det(b - a, c - a, d - a): six times the volume.
+fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
+    dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
+}
+
+/// The sphere of a positive tetrahedron: a point is inside, on it or outside as `side` is positive, zero or negative.
+struct Sphere<'a> {
+    origin: &'a ExactPoint,
+    normal: ExactPoint,
+    volume: BigInt,
+}
+
+impl<'a> Sphere<'a> {
+    /// `volume * |p - a|^2 = normal * (p - a)` holds for the four points, by Cramer's rule.
+    fn of([a, b, c, d]: [&'a ExactPoint; 4]) -> Self {
+        let [b, c, d] = [b, c, d].map(|p| minus(p, a));
+        let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
+        let (over_b, over_c, over_d) = (dot(&b, &b), dot(&c, &c), dot(&d, &d));
+        let normal = [0, 1, 2].map(|i| &over_b * &cd[i] + &over_c * &db[i] + &over_d * &bc[i]);
+        Sphere { origin: a, normal, volume: dot(&b, &cd) }
+    }
+
+    fn side(&self, p: &ExactPoint) -> i32 {
+        let p = minus(p, self.origin);
+        sign(&(dot(&self.normal, &p) - &self.volume * dot(&p, &p)))
+    }
+}
+
+/// The side of e if it is on the sphere: the sign of the first cofactor by descending rank.
+fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
+    let mut cofactors = [
+        (a, volume([e, b, c, d])),
+        (b, volume([a, e, c, d])),
+        (c, volume([a, b, e, d])),
+        (d, volume([a, b, c, e])),
+        (e, -volume([a, b, c, d])),
+    ];
+    cofactors.sort_by(|(p, _), (q, _)| q.cmp(p));
+    cofactors.iter().map(|(_, cofactor)| sign(cofactor)).find(|&sign| sign != 0).unwrap_or(0)
+}
+
+/// Canonical Delaunay tetrahedra of distinct points, as [`as_set`] has them. None if all points lie in a plane.
+pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
+    let exact = exact_points(points);
+    let count = points.len();
+    let mut found = Vec::new();
+    for a in 0..count {
+        for b in a + 1..count {
+            for c in b + 1..count {
+                for d in c + 1..count {
+                    let positive = match orientation([a, b, c, d].map(|i| &exact[i])) {
+                        0 => continue,
+                        1 => [a, b, c, d],
+                        _ => [a, b, d, c],
+                    };
+                    if is_empty(&exact, positive) {
+                        found.push(positive.map(|v| v as u32));
+                    }
+                }
+            }
+        }
+    }
+    as_set(found)
+}
+
+fn is_empty(points: &[ExactPoint], tetrahedron: [usize; 4]) -> bool {
+    let [a, b, c, d] = tetrahedron.map(|i| &points[i]);
+    let sphere = Sphere::of([a, b, c, d]);
+    (0..points.len()).filter(|e| !tetrahedron.contains(e)).all(|e| match sphere.side(&points[e]) {
+        0 => {
+            let side = tie([a, b, c, d, &points[e]]);
+            assert_ne!(side, 0, "the perturbation decides");
+            side < 0
+        }
+        side => side < 0,
+    })
+}
+
+/// A tetrahedron as its vertex indices: in increasing order, but for the last two if that keeps the orientation.
+pub fn normalised(tetrahedron: [u32; 4]) -> [u32; 4] {
+    let mut sorted = tetrahedron;
+    let mut is_odd = false;
+    for end in (1..4).rev() {
+        for i in 0..end {
+            if sorted[i] > sorted[i + 1] {
+                sorted.swap(i, i + 1);
+                is_odd = !is_odd;
+            }
+        }
+    }
+    if is_odd {
+        sorted.swap(2, 3);
+    }
+    sorted
+}
+
+/// Tetrahedra as a sorted set.
+pub fn as_set(tetrahedra: impl IntoIterator<Item = [u32; 4]>) -> Vec<[u32; 4]> {
+    let mut set: Vec<[u32; 4]> = tetrahedra.into_iter().map(normalised).collect();
+    set.sort_unstable();
+    set
+}
+
+/// The perturbation made real: with a base that no coefficient reaches, the lift of the point of rank r is
+/// `|p|^2 * base^n + base^r`, and no five lifts are in a hyperplane.
+#[test]
+fn the_perturbation_is_that_of_real_lifts() {
+    let mut random = super::sets::Random::new(5);
+    for round in 0..40 {
+        let (count, side) = (6 + round % 4, 1 + i64::from(round > 20));
+        let mut points: Vec<[f64; 3]> =
+            (0..count).map(|_| [0; 3].map(|_| random.integer(0, side) as f64)).collect();
+        points.sort_by(|p, q| p.partial_cmp(q).unwrap());
+        points.dedup();
+        let exact = exact_points(&points);
+        let base = BigInt::from(1u64 << 32);
+        let lifts: Vec<BigInt> = (0u32..)
+            .zip(&exact)
+            .map(|(rank, p)| dot(p, p) * base.pow(points.len() as u32) + base.pow(rank))
+            .collect();
+        let height = |corners: [usize; 4], e: usize| {
+            let mut height = &lifts[e] * volume(corners.map(|i| &exact[i]));
+            for (i, &corner) in corners.iter().enumerate() {
+                let mut replaced = corners.map(|i| &exact[i]);
+                replaced[i] = &exact[e];
+                height -= &lifts[corner] * volume(replaced);
+            }
+            sign(&height)
+        };
+        let mut lower = Vec::new();
+        for i in 0..points.len().pow(4) {
+            let corners = [0, 1, 2, 3].map(|digit| i / points.len().pow(digit) % points.len());
+            if orientation(corners.map(|i| &exact[i])) <= 0 {
+                continue;
+            }
+            let [a, b, c, d] = corners.map(|i| &exact[i]);
+            let others = (0..points.len()).filter(|e| !corners.contains(e));
+            let heights: Vec<i32> = others.clone().map(|e| height(corners, e)).collect();
+            let depths = others.map(|e| -exact3::insphere_perturbed([a, b, c, d, &exact[e]]));
+            assert_eq!(heights, depths.collect::<Vec<_>>(), "{corners:?} of {points:?}");
+            if heights.iter().all(|&height| height > 0) {
+                lower.push(corners.map(|v| v as u32));
+            }
+        }
+        let mut lower = as_set(lower);
+        lower.dedup();
+        assert_eq!(tetrahedra(&points), lower, "{points:?}");
+    }
+}

@@ -1,0 +1,152 @@
+//! Wrong usage, damaged input, and outputs that cannot be written.
+
+use std::fs;
+use std::io::Read;
+use std::process::Stdio;
+
+use super::molecules::{Folder, cloud, pdb};
+use crate::programs::{outcome, run, start};
+
+#[test]
+fn wrong_usage_says_what_would_be_right() {
+    let folder = Folder::new();
+    let file = folder.write("a.pdb", pdb(&cloud(10, 9_000, 1)));
+    let other = folder.write("b.pdb", pdb(&cloud(10, 9_000, 1)));
+    let out = folder.path("out");
+    let cases: [(&[&str], &str); 12] = [
+        (&[], "no input"),
+        (&[&file, &other], "--out-dir"),
+        (&["--out-dir", &out], "--lof"),
+        (&["--out-dir", &out, "-o", "x", &file], "--out-dir"),
+        (&["--resume", &file], "--out-dir"),
+        (&["--out-dir", &out, "--resume", "--summary", "-", &file], "--summary"),
+        (&["--out-dir", &out, "--lof", "-", "-"], "stdin"),
+        (&["--strict", "--keep-going", "--out-dir", &out, &file], "--keep-going"),
+        (&["--table", "--contacts", &file], "--contacts"),
+        (&["--model", "one", &file], "neither the number of a model nor all"),
+        (&["--hetatm", "maybe", &file], "on"),
+        (&["--out-dir", &out, "--threads", "0", &file], "0"),
+    ];
+    for (arguments, word) in cases {
+        let (code, message) = outcome(&run("tess3", arguments, &[]));
+        assert_eq!(code, Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(word), "{arguments:?}: {message}");
+    }
+    assert!(!fs::exists(&out).unwrap());
+}
+
+#[test]
+fn damaged_input_is_named_and_leaves_nothing() {
+    let folder = Folder::new();
+    let good = pdb(&cloud(10, 9_000, 1));
+    let cases = [
+        ("bad.pdb", good.replacen("1.000", "1.0x0", 1), 3),
+        ("empty.pdb", String::new(), 3),
+        ("header.pdb", "HEADER    NOTHING\nEND\n".into(), 3),
+        ("words.txt", "not a structure\n".into(), 3),
+    ];
+    for (name, text, expected) in cases {
+        let file = folder.write(name, text);
+        for product in [&[][..], &["--table"]] {
+            let output = folder.path("result");
+            let (code, message) = outcome(&run("tess3", &[product, &["-o", &output, &file]].concat(), &[]));
+            assert_eq!(code, Some(expected), "{message}");
+            assert!(message.contains(name) && !message.contains("panicked"), "{message}");
+            assert!(!fs::exists(&output).unwrap());
+        }
+    }
+    let (code, message) = outcome(&run("tess3", &["no/such/file.pdb"], &[]));
+    assert_eq!(code, Some(1));
+    assert!(message.contains("no/such/file.pdb"), "{message}");
+}
+
+#[test]
+fn a_closed_pipe_is_silent() {
+    let folder = Folder::new();
+    let file = folder.write("a.pdb", pdb(&cloud(6_000, 60_000, 1)));
+    for product in ["--table", "--contacts", "--alpha=100"] {
+        let mut child = start("tess3", &["-q", product, &file], Stdio::null());
+        let mut head = [0; 100];
+        child.stdout.take().unwrap().read_exact(&mut head).unwrap();
+        let (code, message) = outcome(&child.wait_with_output().unwrap());
+        assert_eq!((code, &message[..]), (Some(141), ""), "{product}");
+    }
+}
+
+#[test]
+fn a_summary_that_nobody_reads_ends_the_sweep_silently() {
+    let folder = Folder::new();
+    let files: Vec<String> =
+        (0..40).map(|i| folder.write(&format!("{i}.pdb"), pdb(&cloud(400, 60_000, i)))).collect();
+    let out = folder.path("out");
+    let mut arguments = vec!["--out-dir", &out[..], "--summary", "-", "--threads", "2"];
+    arguments.extend(files.iter().map(String::as_str));
+    let mut child = start("tess3", &arguments, Stdio::null());
+    let mut head = [0; 100];
+    child.stdout.take().unwrap().read_exact(&mut head).unwrap();
+    let (code, message) = outcome(&child.wait_with_output().unwrap());
+    assert_eq!((code, &message[..]), (Some(141), ""));
+}
+
+#[test]
+fn a_full_disk_is_an_error_with_its_reason() {
+    let text = pdb(&cloud(300, 9_000, 1));
+    let folder = Folder::new();
+    let out = folder.path("out");
+    let file = folder.write("a.pdb", &text);
+    let cases: [&[&str]; 4] = [
+        &["-o", "/dev/full", "-"],
+        &["--table", "-o", "/dev/full", "-"],
+        &["--contacts", "-o", "/dev/full", "-"],
+        &["--out-dir", &out, "--summary", "/dev/full", &file],
+    ];
+    for arguments in cases {
+        let (code, message) = outcome(&run("tess3", arguments, text.as_bytes()));
+        assert_eq!(code, Some(1), "{arguments:?}: {message}");
+        assert!(message.contains("No space left on device"), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_made_are_failures_of_their_files() {
+    let folder = Folder::new();
+    let file = folder.write("a.pdb", pdb(&cloud(10, 9_000, 1)));
+    let in_the_way = folder.write("out", "a file");
+    let (code, message) = outcome(&run("tess3", &["--out-dir", &in_the_way, &file], &[]));
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("out"), "{message}");
+    // A stream of points beside its own mesh: the mesh would replace it.
+    let points = folder.write("points.spm", run("spfinalize", &["-"], b"1 2 3\n4 5 7\n8 2 1\n3 3 9\n").stdout);
+    let before = fs::read(&points).unwrap();
+    let (code, message) = outcome(&run("tess3", &["--out-dir", &folder.path(""), &points], &[]));
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("would replace its input"), "{message}");
+    assert_eq!(fs::read(&points).unwrap(), before);
+}
+
+#[test]
+fn other_files_are_no_summaries() {
+    let folder = Folder::new();
+    let file = folder.write("a.pdb", pdb(&cloud(10, 9_000, 1)));
+    let other = folder.write("notes.txt", "dear diary\n");
+    let arguments = ["--out-dir", &folder.path("out"), "--resume", "--summary", &other, &file];
+    let (code, message) = outcome(&run("tess3", &arguments, &[]));
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("notes.txt") && message.contains("not a summary"), "{message}");
+    assert_eq!(fs::read_to_string(&other).unwrap(), "dear diary\n");
+}
+
+#[test]
+fn statistics_are_text_or_json() {
+    let text = pdb(&cloud(100, 9_000, 1));
+    let output = run("tess3", &["--stats=json", "-o", "/dev/null", "-"], text.as_bytes());
+    let (code, message) = outcome(&output);
+    assert_eq!(code, Some(0), "{message}");
+    let stats: serde_json::Value = serde_json::from_str(&message).unwrap();
+    assert_eq!(stats["points"], 100);
+    assert!(stats["tetrahedra"].as_u64().unwrap() > 300);
+    assert!(stats["seconds"].as_f64().unwrap() > 0.0);
+    let (_, message) = outcome(&run("tess3", &["--stats", "-o", "/dev/null", "-"], text.as_bytes()));
+    assert!(message.contains("tetrahedra"), "{message}");
+    assert!(message.lines().all(|line| line.len() <= 60), "{message}");
+}

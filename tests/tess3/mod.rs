@@ -1,0 +1,9 @@
+//! `tess3`: structures in, meshes and tables out.
+
+mod alpha;
+mod failures;
+mod meshes;
+mod molecules;
+mod selections;
+mod sweeps;
+mod tables;
