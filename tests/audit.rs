@@ -22,6 +22,8 @@ mod solid;
 mod tetrahedra;
 #[path = "audit/tetrahedra_mutations.rs"]
 mod tetrahedra_mutations;
+#[path = "audit/tetrahedralized.rs"]
+mod tetrahedralized;
 
 use spmesh::audit::{Audit, PointSet, Report, Standard, Violation};
 use spmesh::bounds::Point;

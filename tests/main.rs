@@ -11,6 +11,7 @@ mod finalize;
 mod kernel;
 mod kernel_predicates;
 mod kernel_predicates3;
+mod order;
 mod output;
 mod pipelines;
 mod programs;

@@ -5,6 +5,11 @@ mod grids;
 mod las;
 mod las_file;
 mod sp;
+mod structure;
+mod structure_cif;
+mod structure_damage;
+mod structure_pdb;
+mod structure_selection;
 mod text;
 
 use std::path::{Path, PathBuf};

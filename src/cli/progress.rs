@@ -39,12 +39,16 @@ impl Progress {
         let bar = match (show, total) {
             (false, _) => ProgressBar::hidden(),
             (true, Some(total)) => ProgressBar::new(total).with_style(
-                ProgressStyle::with_template(&format!("{{prefix}} {{wide_bar}} {{human_pos}}/{{human_len}} {unit} {{eta}}"))
-                    .expect("the template is valid"),
+                ProgressStyle::with_template(&format!(
+                    "{{prefix}} {{wide_bar}} {{human_pos}}/{{human_len}} {unit} {{eta}}"
+                ))
+                .expect("the template is valid"),
             ),
             (true, None) => ProgressBar::new_spinner().with_style(
-                ProgressStyle::with_template(&format!("{{prefix}} {{spinner}} {{human_pos}} {unit} {{elapsed}}"))
-                    .expect("the template is valid"),
+                ProgressStyle::with_template(&format!(
+                    "{{prefix}} {{spinner}} {{human_pos}} {unit} {{elapsed}}"
+                ))
+                .expect("the template is valid"),
             ),
         };
         bar.set_prefix(name.to_string());

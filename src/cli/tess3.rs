@@ -202,7 +202,9 @@ fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Resu
 fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let summary = flags.summary.clone().unwrap_or_else(|| folder.join(SUMMARY_NAME));
     if flags.resume && summary == Path::new("-") {
-        return Err(Error::usage("--resume reads the summary of the earlier run: give it a file with --summary"));
+        return Err(Error::usage(
+            "--resume reads the summary of the earlier run: give it a file with --summary",
+        ));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let options = flags.options();
@@ -235,7 +237,8 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     drop(progress);
     let Outcome { done, skipped, failed, stats } = outcome;
     let before = if skipped > 0 { format!(", {skipped} had been done before") } else { String::new() };
-    let summary = if summary == Path::new("-") { String::new() } else { format!("; see {}", summary.display()) };
+    let summary =
+        if summary == Path::new("-") { String::new() } else { format!("; see {}", summary.display()) };
     if failed > 0 {
         let files = done + skipped + failed;
         let message = format!("{failed} of {files} files failed{before}{summary}");

@@ -1,6 +1,6 @@
 //! Points with equal coordinates, found without a triangulation.
 
-use crate::order::HilbertOrder;
+use crate::order::{Curve, SpatialOrder};
 use crate::predicates::{Extent, Point2, lexicographic};
 
 /// For each point, the least index of a point with equal coordinates: its own, if it is the first.
@@ -8,10 +8,10 @@ use crate::predicates::{Extent, Point2, lexicographic};
 /// Domain: finite coordinates; `-0.0` equals `0.0`. Cost: a sort.
 #[must_use]
 pub fn distinct(points: &[Point2]) -> Vec<u32> {
-    let mut order = HilbertOrder::default();
+    let mut order = SpatialOrder::default();
     let mut representatives = vec![0; points.len()];
     let mut first: Option<u32> = None;
-    for index in order.sort(points, &Extent::of(points)) {
+    for index in order.sort(points, &Extent::of(points), Curve::Hilbert) {
         let representative = match first {
             Some(first) if lexicographic(points[first as usize], points[index as usize]).is_eq() => first,
             _ => index,

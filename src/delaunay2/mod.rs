@@ -1,7 +1,7 @@
 //! The bulk kernel in 2D: the canonical Delaunay triangulation of an array of points.
 //!
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve (`rounds`), so that the next point is near and finds small triangles around it. `sphere` is the
+//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `sphere` is the
 //! data structure, `locate` the walk to the next point, `insertion` what it changes, `extract` what comes out.
 
 mod build;
@@ -9,7 +9,6 @@ mod distinct;
 mod extract;
 mod insertion;
 mod locate;
-mod rounds;
 mod sphere;
 mod triangulation;
 
@@ -17,7 +16,7 @@ pub use distinct::distinct;
 pub use triangulation::{Corner, NONE, Triangle, Triangulation};
 
 use crate::error::{Error, Result};
-use crate::order::HilbertOrder;
+use crate::order::{Curve, Rounds, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
 use build::Build;
 use extract::Extraction;
@@ -31,7 +30,7 @@ const _: () = assert!(16 * (MAX_POINTS + 2) < u32::MAX as usize);
 /// The kernel with its buffers. One that is used again touches no new page: faster than a fresh one.
 #[derive(Debug, Default)]
 pub struct Kernel {
-    order: HilbertOrder,
+    order: SpatialOrder,
     /// Input index of each vertex.
     indices: Vec<u32>,
     /// The vertices: one at infinity, then the distinct points, in order along the curve.
@@ -74,7 +73,9 @@ impl Kernel {
         }
         triangulation.clear();
         self.take_sorted(points, &extent, &mut triangulation.duplicates);
-        rounds::fill(&mut self.sequence, self.points.len() - 1);
+        self.sequence.clear();
+        self.sequence.reserve_exact(self.points.len() - 1);
+        self.sequence.extend(Rounds::new(self.points.len() - 1).map(|place| place + 1));
         let build = Build {
             points: &self.points,
             room: triangulation.memory.room(self.points.len()),
@@ -114,7 +115,7 @@ impl Kernel {
         self.indices.push(NONE);
         self.points.push([f64::NAN; 2]);
         let mut last = ([f64::NAN; 2], NONE);
-        for index in self.order.sort(points, extent) {
+        for index in self.order.sort(points, extent, Curve::Hilbert) {
             let point = points[index as usize];
             if point == last.0 {
                 duplicates.push([index, last.1]);

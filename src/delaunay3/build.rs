@@ -1,11 +1,12 @@
 //! The first tetrahedron, then point after point.
 
+use super::MAX_POINTS;
 use super::complex::Complex;
 use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
-use super::rounds;
 use super::stats::{Clock, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
+use crate::order::Insertions;
 use crate::predicates::{Point3, Predicates3, Sign};
 use std::marker::PhantomData;
 
@@ -18,18 +19,34 @@ pub(super) struct Build<'a> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
+    /// The numbers of the vertices in the order of insertion.
+    pub(super) insertions: Insertions,
     /// See [`Insertion`].
     pub(super) infinite_lift: f64,
 }
 
+/// What came of it.
+pub(super) enum Built {
+    /// The whole.
+    Complex(Complex),
+    /// Nothing, because all points lie in a plane; the memory is given back.
+    Flat(Vec<Vertex>, Vec<Tetrahedron>),
+    /// More tetrahedra than can be numbered.
+    TooMany,
+}
+
+/// Most tetrahedra, so that there is room in the numbers for one more star of all vertices.
+pub(super) const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
+
 impl Build<'_> {
-    /// The complex; all is given back if the points lie in a plane.
+    /// The complex.
     ///
     /// Inlined, like all that it calls with lanes, into functions for one kind of processor each.
     #[inline(always)]
-    pub(super) fn run<P: Predicates3, L: Lanes>(self, predicates: &mut P) -> Result<Complex, Self> {
-        let Some(first) = self.first_tetrahedron(predicates) else { return Err(self) };
-        let count = self.vertices.len() as u32 - 1;
+    pub(super) fn run<P: Predicates3, L: Lanes>(self, predicates: &mut P) -> Built {
+        let Some(first) = self.first_tetrahedron(predicates) else {
+            return Built::Flat(self.vertices, self.tetrahedra);
+        };
         self.cavity.clear();
         let mut insertion = Insertion::<P, L> {
             complex: Complex::new(self.vertices, self.tetrahedra, first),
@@ -43,18 +60,21 @@ impl Build<'_> {
         };
         insertion.stats.created = 5;
         let mut start = 0;
-        for vertex in rounds::strided(count) {
+        for vertex in self.insertions {
             if !first.contains(&vertex) {
                 start = insertion.insert(vertex, start);
+                if insertion.complex.tetrahedra.len() > TETRAHEDRA_MAX {
+                    return Built::TooMany;
+                }
             }
         }
-        Ok(insertion.finish())
+        Built::Complex(insertion.finish())
     }
 
     /// The first four vertices that are not in a plane, positively oriented.
     fn first_tetrahedron<P: Predicates3>(&self, predicates: &mut P) -> Option<[u32; 4]> {
         let point = |v: u32| self.vertices[v as usize].at;
-        let mut sequence = rounds::strided(self.vertices.len() as u32 - 1);
+        let mut sequence = self.insertions.clone();
         let (a, b) = (sequence.next()?, sequence.next()?);
         let c = sequence.find(|&c| !is_line(point(a), point(b), point(c), predicates))?;
         let mut orientation = Sign::Zero;

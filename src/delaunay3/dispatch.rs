@@ -1,12 +1,11 @@
 //! The same insertion in the instructions of the processor at hand.
 
-use super::build::Build;
-use super::complex::Complex;
+use super::build::{Build, Built};
 use super::lanes;
 use crate::predicates::Predicates3;
 
 /// Runs `build` with the widest lanes there are.
-pub(super) fn run<'a, P: Predicates3>(build: Build<'a>, predicates: &mut P) -> Result<Complex, Build<'a>> {
+pub(super) fn run<P: Predicates3>(build: Build, predicates: &mut P) -> Built {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
         // Safety: the processor has AVX2 and FMA.
@@ -17,6 +16,6 @@ pub(super) fn run<'a, P: Predicates3>(build: Build<'a>, predicates: &mut P) -> R
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2<'a, P: Predicates3>(build: Build<'a>, predicates: &mut P) -> Result<Complex, Build<'a>> {
+fn run_avx2<P: Predicates3>(build: Build, predicates: &mut P) -> Built {
     build.run::<P, lanes::avx2::Avx2>(predicates)
 }

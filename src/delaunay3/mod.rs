@@ -1,9 +1,9 @@
 //! The bulk kernel in 3D: the canonical Delaunay tetrahedralization of an array of points.
 //!
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve (`rounds`), so that the next point is near and finds small tetrahedra around it. `complex` is the
-//! data structure, `locate` the walk to the next point, `insertion` the search of the cavity, `star` what takes its
-//! place, `extract` what comes out.
+//! along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small tetrahedra
+//! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
+//! cavity, `star` what takes its place, `extract` what comes out.
 
 mod build;
 mod complex;
@@ -12,7 +12,6 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
-mod rounds;
 mod sight;
 mod star;
 mod stats;
@@ -22,12 +21,10 @@ mod tie;
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 
-use crate::error::{Error, Result};
-use crate::predicates::{
-    Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3, lexicographic,
-};
-use build::Build;
-use complex::Complex;
+use crate::error::{Error, ErrorKind, Result};
+use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
+use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
+use build::{Build, Built};
 use insertion::Cavity;
 use std::borrow::Cow;
 use std::time::Instant;
@@ -41,6 +38,12 @@ pub const MAX_POINTS: usize = 60_000_000;
 pub struct Kernel {
     cavity: Cavity,
     counts: PredicateCounts,
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first (thesis 3.4.1).
+    pub by_bit_levels: bool,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
 }
@@ -59,7 +62,8 @@ impl Kernel {
     /// least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input of every kind is
     /// fine: cospherical points are triangulated canonically, and points in a plane give no tetrahedra.
     ///
-    /// Errors: a coordinate that is not finite, too many points; the mesh is as it was then.
+    /// Errors: a coordinate that is not finite, too many points: the mesh is as it was then; too many tetrahedra, which
+    /// not even [`MAX_POINTS`] points have unless they are quite special.
     ///
     /// Cost: O(n) for points that are spread evenly in space, about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
@@ -76,7 +80,8 @@ impl Kernel {
         }
         mesh.clear();
         let started = Instant::now();
-        take_sorted(points, &extent, mesh);
+        self.take_sorted(points, &extent, mesh);
+        let insertions = self.insertions(&mesh.vertices);
         mesh.stats.order = started.elapsed();
         let started = Instant::now();
         // The vertex at infinity.
@@ -88,20 +93,49 @@ impl Kernel {
             cavity: &mut self.cavity,
             stats: &mut mesh.stats,
             is_timed: self.is_timed,
+            insertions,
         };
-        let (vertices, tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
-            Ok(mut complex) => {
+        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
+            Built::Complex(mut complex) => {
                 mesh.hull_facets = extract::extract(&mut complex);
                 (complex.vertices, complex.tetrahedra)
             }
-            Err(mut build) => {
-                build.vertices.pop();
-                (build.vertices, build.tetrahedra)
+            Built::Flat(mut vertices, tetrahedra) => {
+                vertices.pop();
+                (vertices, tetrahedra)
+            }
+            Built::TooMany => {
+                mesh.clear();
+                let limit = build::TETRAHEDRA_MAX;
+                return Err(Error::new(
+                    ErrorKind::Io,
+                    format!("more than {limit} tetrahedra, the kernel's maximum"),
+                ));
             }
         };
-        (mesh.vertices, mesh.tetrahedra) = (vertices, tetrahedra);
         mesh.stats.insertion = started.elapsed();
         Ok(())
+    }
+
+    /// Fills the vertices with the distinct points in order along the curve.
+    fn take_sorted(&self, points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
+        let mut order = SpatialOrder::default();
+        mesh.vertices.reserve_exact(points.len() + 1);
+        for index in order.sort(&points, extent, self.curve) {
+            let at = points[index as usize];
+            match mesh.vertices.last() {
+                Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
+                _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
+            }
+        }
+    }
+
+    fn insertions(&self, vertices: &[Vertex]) -> Insertions {
+        if !self.by_bit_levels {
+            return self.sequence.of(vertices.len());
+        }
+        let points: Vec<Point3> = vertices.iter().map(|vertex| vertex.at).collect();
+        self.sequence.by_levels(&points, Suffixes::MostCommon)
     }
 
     /// Decisions of the predicates in all runs of this kernel so far.
@@ -111,10 +145,10 @@ impl Kernel {
     }
 }
 
-impl<'a> WithPredicates3 for Build<'a> {
-    type Output = std::result::Result<Complex, Build<'a>>;
+impl WithPredicates3 for Build<'_> {
+    type Output = Built;
 
-    fn with(self, predicates: &mut impl Predicates3) -> Self::Output {
+    fn with(self, predicates: &mut impl Predicates3) -> Built {
         dispatch::run(self, predicates)
     }
 }
@@ -125,60 +159,4 @@ fn infinite_lift(extent: &Extent<3>, vertices: usize) -> f64 {
     let side = (extent.max_difference() / (vertices as f64).powf(0.4)).clamp(1e-75, 1e75);
     let lift = side * side;
     if extent.integral { lift.round().clamp(1.0, EXACT / 2.0) } else { lift }
-}
-
-/// Fills the vertices with the distinct points in order along the curve.
-fn take_sorted(points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
-    let side = extent.max_difference();
-    let scale = 1023.999 / side.max(1e-300);
-    let mut keys: Vec<(u64, u32)> = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| (hilbert([0, 1, 2].map(|k| ((p[k] - extent.lower[k]) * scale) as u32), 10), i as u32))
-        .collect();
-    keys.sort_unstable_by(|a, b| {
-        a.0.cmp(&b.0)
-            .then_with(|| lexicographic(points[a.1 as usize], points[b.1 as usize]))
-            .then(a.1.cmp(&b.1))
-    });
-    mesh.vertices.reserve_exact(points.len() + 1);
-    for &(_, index) in &keys {
-        let at = points[index as usize];
-        match mesh.vertices.last() {
-            Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
-            _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
-        }
-    }
-}
-
-fn hilbert(mut x: [u32; 3], bits: u32) -> u64 {
-    let m = 1u32 << (bits - 1);
-    let mut q = m;
-    while q > 1 {
-        let p = q - 1;
-        for i in 0..3 {
-            if x[i] & q != 0 {
-                x[0] ^= p
-            } else {
-                let t = (x[0] ^ x[i]) & p;
-                x[0] ^= t;
-                x[i] ^= t;
-            }
-        }
-        q >>= 1;
-    }
-    for i in 1..3 {
-        x[i] ^= x[i - 1];
-    }
-    let mut t = 0;
-    q = m;
-    while q > 1 {
-        if x[2] & q != 0 {
-            t ^= q - 1;
-        }
-        q >>= 1;
-    }
-    let x = x.map(|v| v ^ t);
-    let spread = |x: u32| (0..10).fold(0u64, |r, i| r | u64::from(x >> i & 1) << (3 * i));
-    spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2])
 }

@@ -17,6 +17,8 @@ pub(super) struct Lines<R> {
     number: u64,
     ended: bool,
     longest: usize,
+    /// The last line of the input, if it has no line end.
+    unended: Option<u64>,
 }
 
 impl<R: Read> Lines<R> {
@@ -27,7 +29,7 @@ impl<R: Read> Lines<R> {
     /// As `new`, for formats whose lines may have up to `longest` bytes.
     pub(super) fn with_longest(input: R, name: impl Into<String>, longest: usize) -> Self {
         let input = BufReader::with_capacity(1 << 17, input);
-        Lines { input, name: name.into(), line: Vec::new(), number: 0, ended: true, longest }
+        Lines { input, name: name.into(), line: Vec::new(), number: 0, ended: true, longest, unended: None }
     }
 
     /// The next line without its line end (LF or CR LF); `None` at the end of the input.
@@ -59,6 +61,9 @@ impl<R: Read> Lines<R> {
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
+        if !self.ended && !self.line.is_empty() {
+            self.unended = Some(self.number);
+        }
         Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
     }
 
@@ -75,6 +80,11 @@ impl<R: Read> Lines<R> {
     /// Number of the line that was read last, counted from 1.
     pub(super) fn number(&self) -> u64 {
         self.number
+    }
+
+    /// Number of the line without a line end, at the end of the input.
+    pub(super) fn unended(&self) -> Option<u64> {
+        self.unended
     }
 
     /// Whether the line that was read last has a line end: a text that was cut off mostly ends without one.

@@ -34,10 +34,12 @@ impl<'m> AlphaComplex<'m> {
     /// Cost: a few sphere equations per tetrahedron; a bit of memory for each.
     #[must_use]
     pub fn new(mesh: &'m Tetrahedralization, radius: Radius) -> Self {
-        let fits = |vertices: &[u32; 4]| tetrahedron_fits(vertices.map(|v| mesh.vertices()[v as usize].at), &radius);
-        let tetrahedra = mesh.tetrahedra().chunks(64).map(|chunk| {
-            chunk.iter().rev().fold(0, |bits, t| bits << 1 | u64::from(fits(&t.vertices)))
-        });
+        let fits =
+            |vertices: &[u32; 4]| tetrahedron_fits(vertices.map(|v| mesh.vertices()[v as usize].at), &radius);
+        let tetrahedra = mesh
+            .tetrahedra()
+            .chunks(64)
+            .map(|chunk| chunk.iter().rev().fold(0, |bits, t| bits << 1 | u64::from(fits(&t.vertices))));
         let tetrahedra = tetrahedra.collect();
         AlphaComplex { mesh, radius, tetrahedra }
     }
@@ -62,7 +64,8 @@ impl<'m> AlphaComplex<'m> {
             return false;
         }
         let is_inside = |&v: &u32| is_in_sphere_of_edge([a, b, self.point(v)], &self.radius);
-        !ring.link.iter().any(is_inside) || ring.tetrahedra.iter().any(|&t| self.has_triangle_at(t, ring.ends))
+        !ring.link.iter().any(is_inside)
+            || ring.tetrahedra.iter().any(|&t| self.has_triangle_at(t, ring.ends))
     }
 
     /// Whether one of the two triangles of tetrahedron `t` at an edge belongs to the complex.

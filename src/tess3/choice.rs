@@ -64,5 +64,8 @@ fn describe(all: &Selected<'_>) -> String {
     let count = all.points().len();
     let plural = if chains.len() == 1 { "" } else { "s" };
     let atoms = count - hetatm;
-    format!(" of {count}: {atoms} ATOM and {hetatm} HETATM records in the chain{plural} {}", chains.join(", "))
+    format!(
+        " of {count}: {atoms} ATOM and {hetatm} HETATM records in the chain{plural} {}",
+        chains.join(", ")
+    )
 }

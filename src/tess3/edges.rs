@@ -106,7 +106,8 @@ impl Walker {
         if self.is_done {
             return None;
         }
-        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].across(self.exit) else {
+        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].across(self.exit)
+        else {
             self.is_done = true;
             return None;
         };

@@ -78,7 +78,8 @@ impl Job<'_> {
             choice::select(structure, &self.options.selection)?;
         }
         let plain = is_plain.then(|| std::mem::take(&mut structure.models[at].points));
-        let selected = plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
+        let selected =
+            plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
         let points = match (plain, selected) {
             (Some(points), _) => Cow::Owned(points),
@@ -125,7 +126,11 @@ impl Job<'_> {
         Ok(self.table.as_mut().expect("there is one now"))
     }
 
-    fn write_mesh(&mut self, triangulated: &Triangulated<'_>, alpha: Option<&AlphaComplex<'_>>) -> Result<()> {
+    fn write_mesh(
+        &mut self,
+        triangulated: &Triangulated<'_>,
+        alpha: Option<&AlphaComplex<'_>>,
+    ) -> Result<()> {
         let Triangulated { name, structure, selected, mesh } = *triangulated;
         let merged = mesh.duplicates.len() as u64;
         let points = mesh.vertices().len() as u64 + merged;

@@ -7,8 +7,8 @@
 use num_bigint::BigInt;
 
 use super::exact::{
-    Approximate, Number, Polynomial, Vector, cross, difference, dot, integers, root_of_quotient, sign, square,
-    sum, times,
+    Approximate, Number, Polynomial, Vector, cross, difference, dot, integers, root_of_quotient, sign,
+    square, sum, times,
 };
 use super::radius::Radius;
 use crate::predicates::{Point3, Sign};
@@ -17,8 +17,7 @@ use crate::predicates::{Point3, Sign};
 fn sphere<T: Number>([a, b, c, d]: &[Vector<T>; 4]) -> (Vector<T>, T) {
     let (b, c, d) = (difference(b, a), difference(c, a), difference(d, a));
     let (bc, cd, db) = (cross(&b, &c), cross(&c, &d), cross(&d, &b));
-    let n =
-        sum(&sum(&times(&square(&b), &cd), &times(&square(&c), &db)), &times(&square(&d), &bc));
+    let n = sum(&sum(&times(&square(&b), &cd), &times(&square(&c), &db)), &times(&square(&d), &bc));
     (n, dot(&b, &cd))
 }
 
@@ -117,7 +116,10 @@ pub fn measure(points: [Point3; 4]) -> Measure {
     let n_square = square(&n);
     if n_square.is_accurate() && determinant.is_accurate() {
         let determinant = determinant.value.abs();
-        return Measure { circumradius: n_square.value.sqrt() / (2.0 * determinant), volume: determinant / 6.0 };
+        return Measure {
+            circumradius: n_square.value.sqrt() / (2.0 * determinant),
+            volume: determinant / 6.0,
+        };
     }
     measure_exactly(points)
 }

@@ -127,7 +127,9 @@ fn a_radius_on_the_threshold_is_enough_and_nothing_less_is() {
         );
     }
     // The edges of the brick: four of length 1 and eight of length 2, all with empty spheres of half the length.
-    for (radius, edges) in [("0.5", 4), ("0.49999999999999999999", 0), ("0.99999999999999999999", 4), ("1", 12)] {
+    for (radius, edges) in
+        [("0.5", 4), ("0.49999999999999999999", 0), ("0.99999999999999999999", 4), ("1", 12)]
+    {
         assert_eq!(table(&brick(), &["--contacts", "--alpha", radius]).len(), edges, "{radius}");
     }
 }

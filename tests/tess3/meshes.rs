@@ -114,7 +114,8 @@ fn from(origin: Point, point: Point) -> [i128; 3] {
 }
 
 fn determinant([a, b, c]: [[i128; 3]; 3]) -> i128 {
-    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
+    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
 /// det(b - a, c - a, d - a).
@@ -226,7 +227,8 @@ fn flat_structures_are_all_vertices_with_a_notice() {
 #[test]
 fn long_meshes_come_in_patches() {
     let atoms = cloud(4_000, 30_000, 5);
-    let mesh = mesh_of(&pdb(&atoms.into_iter().map(|atom| Record { serial: 1, ..atom }).collect::<Vec<_>>()), &[]);
+    let mesh =
+        mesh_of(&pdb(&atoms.into_iter().map(|atom| Record { serial: 1, ..atom }).collect::<Vec<_>>()), &[]);
     assert!(mesh.patches > 2, "{} patches", mesh.patches);
     assert_eq!(mesh.points.len() as u64 + mesh.merged, 4_000);
 }

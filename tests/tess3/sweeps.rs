@@ -22,7 +22,8 @@ fn files() -> (Folder, Vec<String>) {
 fn sweep(folder: &Folder, arguments: &[&str], files: &[String]) -> (Option<i32>, String) {
     let out = folder.path("out");
     let files = files.iter().map(String::as_str);
-    let arguments: Vec<&str> = ["--out-dir", &out].into_iter().chain(arguments.iter().copied()).chain(files).collect();
+    let arguments: Vec<&str> =
+        ["--out-dir", &out].into_iter().chain(arguments.iter().copied()).chain(files).collect();
     outcome(&run("tess3", &arguments, &[]))
 }
 
@@ -125,7 +126,8 @@ fn a_bad_file_does_not_stop_the_others_unless_asked_to() {
         assert!(message.contains("4 of 7 files failed"), "{message}");
         let rows = summary(&folder);
         assert_eq!(rows.len(), 7);
-        for (name, word) in [("bad.pdb", "line 1"), ("empty.pdb", "empty"), ("missing.pdb", "No such file"), ("/in", "")]
+        for (name, word) in
+            [("bad.pdb", "line 1"), ("empty.pdb", "empty"), ("missing.pdb", "No such file"), ("/in", "")]
         {
             let row = rows.of_file(name);
             let error = rows.text(row, "error");
@@ -242,11 +244,15 @@ fn a_resumed_sweep_does_not_take_the_name_of_what_is_there() {
 fn models_are_meshes_of_their_own() {
     let folder = Folder::new();
     let file = folder.write("nmr.pdb", models(&[cloud(20, 9_000, 1), cloud(30, 9_000, 2)]));
-    let again = folder.write("twice.pdb", models(&[cloud(20, 9_000, 1), cloud(30, 9_000, 2)]).replace("     2\n", "     1\n"));
+    let again = folder.write(
+        "twice.pdb",
+        models(&[cloud(20, 9_000, 1), cloud(30, 9_000, 2)]).replace("     2\n", "     1\n"),
+    );
     let (code, message) = sweep(&folder, &["--model", "all"], &[file, again]);
     assert_eq!(code, Some(0), "{message}");
     let names = folder.names("out");
-    let expected = ["nmr.model1.spm", "nmr.model2.spm", "summary.tsv", "twice.model1.spm", "twice.model2.spm"];
+    let expected =
+        ["nmr.model1.spm", "nmr.model2.spm", "summary.tsv", "twice.model1.spm", "twice.model2.spm"];
     assert_eq!(names, expected);
     let rows = summary(&folder);
     assert_eq!(rows.len(), 4);

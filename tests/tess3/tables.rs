@@ -29,7 +29,8 @@ fn from_lengths(p: [[f64; 3]; 4]) -> (f64, f64) {
     let x = ac + ad - square(2, 3);
     let y = ab + ad - square(1, 3);
     let z = ab + ac - square(1, 2);
-    let volume = (4.0 * ab * ac * ad - ab * x * x - ac * y * y - ad * z * z + x * y * z).max(0.0).sqrt() / 12.0;
+    let volume =
+        (4.0 * ab * ac * ad - ab * x * x - ac * y * y - ad * z * z + x * y * z).max(0.0).sqrt() / 12.0;
     let products = heron(d(0, 1) * d(2, 3), d(0, 2) * d(1, 3), d(0, 3) * d(1, 2));
     (volume, products / (6.0 * volume))
 }
@@ -53,7 +54,11 @@ fn volumes_and_circumradii_are_those_of_the_tetrahedra() {
         let tolerance = 1e-6 * (1.0 + 1.0 / volume);
         let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < tolerance;
         assert!(close(rows.number(row, "volume"), volume), "{:?}: {volume}", rows.rows[row]);
-        assert!(close(rows.number(row, "circumradius"), circumradius), "{:?}: {circumradius}", rows.rows[row]);
+        assert!(
+            close(rows.number(row, "circumradius"), circumradius),
+            "{:?}: {circumradius}",
+            rows.rows[row]
+        );
         assert_eq!(rows.text(row, "model"), "1");
         found.push(serials);
     }

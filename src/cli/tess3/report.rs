@@ -68,7 +68,8 @@ fn text(stats: &Stats, elapsed: Duration) -> String {
 
 fn json(stats: &Stats, elapsed: Duration) -> String {
     let mut object = serde_json::Map::new();
-    object.extend(times(stats, elapsed).into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
+    object
+        .extend(times(stats, elapsed).into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
     object.extend(counts(stats).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
     serde_json::Value::Object(object).to_string()
 }

@@ -8,6 +8,8 @@ use crate::error::{Error, Result};
 /// An atom as a file has it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'a> {
+    /// Line in which it ends, counted from 1.
+    pub(super) line: u64,
     /// `None` if the file has none that can be read.
     pub(super) serial: Option<u64>,
     pub(super) name: &'a str,
@@ -50,19 +52,12 @@ pub(super) struct StructureBuilder {
     /// Index of the model that atoms go to.
     model: usize,
     residues: Vec<Residue>,
-    /// Texts of the last residue, so that the next atom of it needs no table.
-    last: ResidueTexts,
     names: Names,
     /// First line and number of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
     warnings: Vec<String>,
-}
-
-#[derive(Debug, Default)]
-struct ResidueTexts {
-    chain: String,
-    name: String,
-    insertion_code: String,
+    /// Line of the last atom.
+    last_line: u64,
 }
 
 impl StructureBuilder {
@@ -102,6 +97,13 @@ impl StructureBuilder {
         self.warnings.push(warning.into());
     }
 
+    /// Notes which line has no line end, if there is one: an atom in it may have lost its last columns.
+    pub(super) fn end(&mut self, unended: Option<u64>) {
+        if unended.is_some_and(|line| line == self.last_line) {
+            self.warn("the last atom's line has no line end: the file may have been cut off there");
+        }
+    }
+
     /// Adds an atom to the model.
     ///
     /// # Errors
@@ -110,6 +112,7 @@ impl StructureBuilder {
         if self.models.is_empty() {
             self.start_model(1);
         }
+        self.last_line = record.line;
         let residue = self.residue(record)?;
         let point = self.quantum.store(record.place, &mut self.models);
         let model = &mut self.models[self.model];
@@ -130,29 +133,15 @@ impl StructureBuilder {
 
     /// Index of the residue of an atom: that of the atom before, or a new one.
     fn residue(&mut self, record: &Record) -> Result<u32> {
-        let ResidueTexts { chain, name, insertion_code } = &self.last;
-        if let Some(last) = self.residues.last()
-            && last.number == record.residue_number
-            && chain == record.chain
-            && name == record.residue_name
-            && insertion_code == record.insertion_code
-        {
-            return Ok((self.residues.len() - 1) as u32);
-        }
         let residue = Residue {
             chain: self.names.intern(record.chain),
             name: self.names.intern(record.residue_name),
             number: record.residue_number,
             insertion_code: self.names.intern(record.insertion_code),
         };
-        let ResidueTexts { chain, name, insertion_code } = &mut self.last;
-        for (text, now) in
-            [(chain, record.chain), (name, record.residue_name), (insertion_code, record.insertion_code)]
-        {
-            text.clear();
-            text.push_str(now);
+        if self.residues.last() != Some(&residue) {
+            self.residues.push(residue);
         }
-        self.residues.push(residue);
         u32::try_from(self.residues.len() - 1)
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
     }
@@ -187,8 +176,9 @@ impl StructureBuilder {
 ///
 /// # Errors
 /// If it is not; `what` says what it should be.
-pub(super) fn text<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
-    let text = std::str::from_utf8(bytes).ok().filter(|text| !text.chars().any(char::is_control));
+pub(super) fn printable<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
+    let is_printable = bytes.iter().all(|&byte| byte >= b' ' && byte != 0x7f);
+    let text = if is_printable { std::str::from_utf8(bytes).ok() } else { None };
     text.ok_or_else(|| {
         crate::source::statements::unexpected(bytes, &format!("{what} in printable characters"))
     })

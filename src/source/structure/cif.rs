@@ -69,6 +69,11 @@ impl<R: Read> Tokens<R> {
         self.lines.number()
     }
 
+    /// The line without a line end, at the end of the input.
+    pub(super) fn unended(&self) -> Option<u64> {
+        self.lines.unended()
+    }
+
     /// Reads the next token.
     ///
     /// # Errors

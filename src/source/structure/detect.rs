@@ -1,18 +1,17 @@
 //! Recognizes formats by their content.
 
-use super::Format;
+use super::{Format, off};
 use crate::error::{Error, Result};
 use crate::source::lines::number;
 
 /// Bytes from the start of an input that are looked at.
 pub(super) const HEAD_LEN: u64 = 1 << 16;
 
-/// Records of PDB by which it is recognized.
-const PDB_RECORDS: [&[u8]; 33] = [
-    b"HEADER", b"OBSLTE", b"TITLE", b"SPLIT", b"CAVEAT", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA",
-    b"NUMMDL", b"MDLTYP", b"AUTHOR", b"REVDAT", b"SPRSDE", b"JRNL", b"REMARK", b"DBREF", b"DBREF1",
-    b"SEQADV", b"SEQRES", b"MODRES", b"HET", b"HETNAM", b"FORMUL", b"HELIX", b"SHEET", b"SSBOND", b"LINK",
-    b"CRYST1", b"ORIGX1", b"MODEL", b"ATOM", b"HETATM",
+/// Records by which PDB is recognized, but for those of atoms: words that start a line of few other texts.
+const PDB_RECORDS: [&[u8]; 22] = [
+    b"HEADER", b"OBSLTE", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"NUMMDL", b"AUTHOR", b"REVDAT",
+    b"SPRSDE", b"JRNL", b"REMARK", b"DBREF", b"SEQADV", b"SEQRES", b"MODRES", b"HETNAM", b"FORMUL",
+    b"SSBOND", b"CRYST1", b"ORIGX1", b"MODEL",
 ];
 
 /// First bytes of files that are given by mistake, and what to do about it.
@@ -56,28 +55,22 @@ fn detect_text(head: &[u8]) -> Format {
 
 /// The format that only one has such a line of.
 fn by_line(line: &[u8]) -> Option<Format> {
-    let start = &line[..line.len().min(6)];
-    let is_record = |record: &&[u8]| start.trim_ascii_end().eq_ignore_ascii_case(record);
-    let word = line.split(|byte| byte.is_ascii_whitespace()).find(|word| !word.is_empty())?;
-    let starts_with =
-        |prefix: &[u8]| word.get(..prefix.len()).is_some_and(|w| w.eq_ignore_ascii_case(prefix));
+    let mut fields = line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty());
+    let word = fields.next()?;
+    let starts_with = |start: &[u8]| word.get(..start.len()).is_some_and(|w| w.eq_ignore_ascii_case(start));
     if starts_with(b"data_") || starts_with(b"loop_") || starts_with(b"_atom_site.") {
         return Some(Format::Mmcif);
     }
-    if PDB_RECORDS.iter().any(is_record) || is_numbered_atom(line) {
+    if off::is_kind(word) {
+        return Some(Format::Off);
+    }
+    // The serial number may touch the name of the record.
+    let is_atom = |name: &[u8]| starts_with(name) && word[name.len()..].iter().all(u8::is_ascii_digit);
+    if line[0] == word[0] && (PDB_RECORDS.contains(&word) || is_atom(b"ATOM") || is_atom(b"HETATM")) {
         return Some(Format::Pdb);
     }
-    let mut fields = line.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty()).skip(1);
     (word == b"v" && fields.clone().count() >= 3 && fields.all(|field| number(field).is_some()))
         .then_some(Format::Obj)
-}
-
-/// Whether the line is that of an atom whose number touches the name of the record.
-fn is_numbered_atom(line: &[u8]) -> bool {
-    let after = |name: &[u8]| {
-        line.get(..name.len())?.eq_ignore_ascii_case(name).then(|| line.get(name.len()))?.copied()
-    };
-    after(b"HETATM").or(after(b"ATOM")).is_some_and(|byte| byte.is_ascii_digit())
 }
 
 /// Whether the text starts with a count, a comment and an atom: `element x y z`.

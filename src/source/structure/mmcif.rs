@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::ops::Range;
 
-use super::builder::{Oddity, Record, StructureBuilder, text};
+use super::builder::{Oddity, Record, StructureBuilder, printable};
 use super::cif::{Token, Tokens};
 use super::decimal::Number;
 use crate::error::{Error, Result};
@@ -116,6 +116,7 @@ impl<R: Read> MmcifReader<'_, R> {
                 }
             }
         }
+        self.builder.end(self.tokens.unended());
         if self.blocks > 1 {
             let others = self.blocks - 1;
             self.builder
@@ -271,7 +272,7 @@ impl Row {
     /// The text of the first of the items that is stated.
     fn text(&self, items: [Item; 2]) -> Result<&str> {
         match items.into_iter().find_map(|item| Some((item, self.value(item)?))) {
-            Some((item, value)) => text(value, ITEMS[item as usize].1),
+            Some((item, value)) => printable(value, ITEMS[item as usize].1),
             None => Ok(""),
         }
     }
@@ -301,6 +302,7 @@ impl Row {
             builder.note(Oddity::Occupancy, line);
         }
         builder.push(&Record {
+            line,
             serial,
             name: self.text([Item::AuthAtom, Item::LabelAtom])?,
             element: self.text([Item::Symbol; 2])?,

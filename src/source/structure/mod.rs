@@ -1,5 +1,5 @@
 //! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this project and
-//! its kin, PLY and OBJ, each plain or compressed with gzip. The format is told by the content.
+//! its kin, PLY, OBJ and OFF, each plain or compressed with gzip. The format is told by the content.
 //!
 //! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data, refuses others
 //! that hold all their atoms, and takes longer than the triangulation.
@@ -13,6 +13,7 @@ mod gzip;
 mod mmcif;
 mod model;
 mod names;
+mod off;
 mod pdb;
 mod points;
 mod selection;
@@ -32,6 +33,7 @@ use super::statements::Lines;
 use super::{open_obj, open_ply};
 use crate::error::{Error, Result};
 use crate::limits::STRUCTURE_LINE_MAX;
+use crate::stream::Coordinates;
 
 /// Format of a structure or a file of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +48,8 @@ pub enum Format {
     Ply,
     /// Vertices of an OBJ file.
     Obj,
+    /// Vertices of an OFF file.
+    Off,
     /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text twins, LAS.
     Points,
 }
@@ -106,6 +110,9 @@ fn read(
         Format::Xyz => xyz::read(&mut lines(input), &mut builder),
         Format::Ply => return points::read_events(open_ply(input, name, 3)?, name),
         Format::Obj => return points::read_events(open_obj(input, name), name),
+        Format::Off => {
+            return points::structure(off::read(&mut lines(input))?, Coordinates::F64, name, Vec::new());
+        }
         Format::Points => {
             return match path {
                 Some(path) => points::read_file(path),

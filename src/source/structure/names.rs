@@ -19,16 +19,22 @@ impl Name {
     }
 }
 
+/// Longest text that is looked up by its bytes as one number.
+const SHORT_MAX: usize = 7;
+
 /// A table of texts, each held once.
 #[derive(Debug, Clone)]
 pub struct Names {
     texts: Vec<Box<str>>,
+    /// Nearly all texts have a few bytes: numbers are compared faster than texts.
+    by_number: HashMap<u64, Name, FixedState>,
     by_text: HashMap<Box<str>, Name, FixedState>,
 }
 
 impl Default for Names {
     fn default() -> Self {
-        let mut names = Names { texts: Vec::new(), by_text: HashMap::default() };
+        let mut names =
+            Names { texts: Vec::new(), by_number: HashMap::default(), by_text: HashMap::default() };
         names.intern("");
         names
     }
@@ -37,19 +43,25 @@ impl Default for Names {
 impl Names {
     /// The name of `text`, which becomes part of the table.
     pub fn intern(&mut self, text: &str) -> Name {
-        if let Some(&name) = self.by_text.get(text) {
+        if let Some(name) = self.find(text) {
             return name;
         }
         let name = Name(u32::try_from(self.texts.len()).expect("fewer than 2^32 different names"));
         self.texts.push(text.into());
-        self.by_text.insert(text.into(), name);
+        match short(text) {
+            Some(number) => self.by_number.insert(number, name),
+            None => self.by_text.insert(text.into(), name),
+        };
         name
     }
 
     /// The name of `text`, if the table has it.
     #[must_use]
     pub fn find(&self, text: &str) -> Option<Name> {
-        self.by_text.get(text).copied()
+        match short(text) {
+            Some(number) => self.by_number.get(&number).copied(),
+            None => self.by_text.get(text).copied(),
+        }
     }
 
     /// The text of a name of this table.
@@ -57,4 +69,9 @@ impl Names {
     pub fn text(&self, name: Name) -> &str {
         &self.texts[name.0 as usize]
     }
+}
+
+/// The bytes of a short text as digits behind a 1, which keeps texts of different lengths apart.
+fn short(text: &str) -> Option<u64> {
+    (text.len() <= SHORT_MAX).then(|| text.bytes().fold(1, |number, byte| number << 8 | u64::from(byte)))
 }

@@ -32,6 +32,7 @@ pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder)
         reader.number += 1;
         reader.line(line).map_err(|e| lines.locate(e))?;
     }
+    builder.end(lines.unended());
     Ok(())
 }
 
@@ -101,6 +102,7 @@ impl PdbReader<'_> {
         }
         let element = columns(text, 76, 78);
         self.builder.push(&Record {
+            line: self.number,
             serial,
             name: columns(text, 12, 16),
             // Older files have their code and a line number in the last columns.
@@ -178,7 +180,10 @@ fn overflow(line: &[u8], expected: &str) -> Error {
 /// The columns that matter, as text of one byte per column.
 fn ascii(line: &[u8]) -> Result<&str> {
     let line = &line[..line.len().min(LINE_LEN)];
-    if let Some(at) = line.iter().position(|byte| !matches!(byte, b' '..=b'~')) {
+    let is_printable = |byte: &u8| matches!(byte, b' '..=b'~');
+    // Nearly all lines are: without an early exit the loop takes many bytes at once.
+    if !line.iter().fold(true, |all, byte| all & is_printable(byte)) {
+        let at = line.iter().position(|byte| !is_printable(byte)).expect("one is not");
         let found = format!("byte {:#04x} in column {}", line[at], at + 1);
         return Err(Error::malformed(format!("{found}, expected printable ASCII")));
     }

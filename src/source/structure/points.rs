@@ -81,7 +81,11 @@ pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Resul
     structure(all, coordinates, name, source.notices())
 }
 
-fn structure(
+/// A structure of points without names; `name` is what messages call it.
+///
+/// # Errors
+/// If there is no point.
+pub(super) fn structure(
     points: Vec<Point>,
     coordinates: Coordinates,
     name: &str,

@@ -104,12 +104,10 @@ impl Structure {
         let mut members = Vec::new();
         for &model in &models {
             let filter = Filter::new(self, model, selection, &chains);
-            let wanted = (0..self.models[model].points.len()).filter(|&atom| filter.wants(atom));
-            if let [model] = models[..]
-                && filter.wants_all()
-            {
+            if models.len() == 1 && filter.wants_all() {
                 return Ok(self.whole(model));
             }
+            let wanted = (0..self.models[model].points.len()).filter(|&atom| filter.wants(atom));
             members.extend(wanted.map(|atom| [model as u32, atom as u32]));
         }
         if let [model] = models[..]
@@ -209,8 +207,8 @@ impl<'s> Filter<'s> {
 
     /// Whether nothing is filtered.
     fn wants_all(&self) -> bool {
-        let by_atom = !self.hetatm || self.atoms != Atoms::All || !self.residues.is_empty();
-        self.model.atoms.is_empty() || !(by_atom || !self.locations.is_empty())
+        let every_kind = self.hetatm && self.atoms == Atoms::All;
+        self.model.atoms.is_empty() || (every_kind && self.residues.is_empty() && self.locations.is_empty())
     }
 
     fn wants(&self, index: usize) -> bool {

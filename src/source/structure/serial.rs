@@ -49,8 +49,9 @@ impl Serials {
 /// The number of a residue: decimal, hybrid-36, or hexadecimal.
 pub(super) fn residue_number(text: &str) -> Option<i32> {
     let number = text.parse().ok().or_else(|| hybrid36(text)).or_else(|| {
-        let digits = text.bytes().all(|byte| byte.is_ascii_hexdigit()).then_some(text)?;
-        i64::from_str_radix(digits, 16).ok()
+        // Only a number that is too great for decimal digits is hexadecimal, and that fills its columns.
+        let is_full = text.len() == 4 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
+        if is_full { i64::from_str_radix(text, 16).ok() } else { None }
     })?;
     i32::try_from(number).ok()
 }

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::builder::{Record, StructureBuilder, text};
+use super::builder::{Record, StructureBuilder, printable};
 use super::decimal::Number;
 use crate::error::{Error, Result};
 use crate::source::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
@@ -19,13 +19,15 @@ pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder)
         if lines.next_line()?.is_none() {
             return Err(lines.locate(truncated("the comment of the frame")));
         }
+        let first = lines.number();
         for serial in 1..=atoms {
             let Some(line) = lines.next_line()? else {
                 return Err(lines.locate(truncated(&format!("atom {serial} of {atoms}"))));
             };
-            read_atom(line, serial, builder).map_err(|e| lines.locate(e))?;
+            read_atom(line, [serial, first + serial], builder).map_err(|e| lines.locate(e))?;
         }
     }
+    builder.end(lines.unended());
     Ok(())
 }
 
@@ -41,15 +43,17 @@ fn read_count(lines: &mut Lines<impl Read>) -> Result<Option<u64>> {
     Ok(None)
 }
 
-fn read_atom(line: &[u8], serial: u64, builder: &mut StructureBuilder) -> Result<()> {
-    let mut fields = fields(line);
-    let element = text(next_field(&mut fields)?, "an element")?;
+/// Reads an atom; `serial` and `line` are its numbers in the frame and in the file.
+fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuilder) -> Result<()> {
+    let mut fields = fields(text);
+    let element = printable(next_field(&mut fields)?, "an element")?;
     let mut place = [Number::Float(0.0); 3];
     for (number, axis) in place.iter_mut().zip(["x", "y", "z"]) {
         let field = next_field(&mut fields)?;
         *number = Number::parse(field).ok_or_else(|| unexpected(field, &format!("a number for {axis}")))?;
     }
     builder.push(&Record {
+        line,
         serial: Some(serial),
         name: element,
         element,

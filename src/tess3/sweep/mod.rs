@@ -77,7 +77,8 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     let mut done = if sweep.resume { Done::read(&sweep.summary)? } else { Done::default() };
     let mut outcome = Outcome::default();
     let mut seen = HashSet::new();
-    let files: Vec<&Path> = sweep.files.iter().filter(|&file| seen.insert(file)).map(PathBuf::as_path).collect();
+    let files: Vec<&Path> =
+        sweep.files.iter().filter(|&file| seen.insert(file)).map(PathBuf::as_path).collect();
     listener(News::Files(files.len() as u64));
     let files = left_to_do(files, &mut done, sweep, &mut |_| {
         outcome.skipped += 1;
@@ -85,23 +86,28 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     });
     let jobs = jobs(files, &done);
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    crew::run(sweep.threads, &jobs, |job| file::run(job, sweep), |job, end| {
-        summary.add(end.lines(job.file, &sweep.options_text))?;
-        match end.result {
-            Ok(written) => {
-                outcome.done += 1;
-                written.iter().for_each(|model| outcome.stats.add(&model.report));
-                listener(News::Done);
-                Ok(())
+    crew::run(
+        sweep.threads,
+        &jobs,
+        |job| file::run(job, sweep),
+        |job, end| {
+            summary.add(end.lines(job.file, &sweep.options_text))?;
+            match end.result {
+                Ok(written) => {
+                    outcome.done += 1;
+                    written.iter().for_each(|model| outcome.stats.add(&model.report));
+                    listener(News::Done);
+                    Ok(())
+                }
+                Err(error) if sweep.strict || error.kind() == ErrorKind::ClosedPipe => Err(error),
+                Err(error) => {
+                    outcome.failed += 1;
+                    listener(News::Failed(&error));
+                    Ok(())
+                }
             }
-            Err(error) if sweep.strict || error.kind() == ErrorKind::ClosedPipe => Err(error),
-            Err(error) => {
-                outcome.failed += 1;
-                listener(News::Failed(&error));
-                Ok(())
-            }
-        }
-    })?;
+        },
+    )?;
     Ok(outcome)
 }
 
@@ -131,11 +137,8 @@ fn left_to_do<'f>(
 /// The jobs, the largest file first: if it came last, all threads but one would wait for it.
 fn jobs<'f>(files: Vec<&'f Path>, done: &Done) -> Vec<Job<'f>> {
     let stems = names::stems(&files, &done.stems());
-    let mut jobs: Vec<(u64, Job<'f>)> = files
-        .into_iter()
-        .zip(stems)
-        .map(|(file, stem)| (work(file), Job { file, stem }))
-        .collect();
+    let mut jobs: Vec<(u64, Job<'f>)> =
+        files.into_iter().zip(stems).map(|(file, stem)| (work(file), Job { file, stem })).collect();
     jobs.sort_by_key(|(work, _)| std::cmp::Reverse(*work));
     jobs.into_iter().map(|(_, job)| job).collect()
 }

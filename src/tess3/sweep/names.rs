@@ -18,7 +18,8 @@ pub(super) fn stems(inputs: &[&Path], taken: &HashSet<PathBuf>) -> Vec<PathBuf> 
     let levels_max: Vec<usize> = inputs.iter().map(|input| parts(input).len()).collect();
     let mut levels = vec![0; inputs.len()];
     loop {
-        let stems: Vec<PathBuf> = inputs.iter().zip(&levels).map(|(input, &level)| stem(input, level)).collect();
+        let stems: Vec<PathBuf> =
+            inputs.iter().zip(&levels).map(|(input, &level)| stem(input, level)).collect();
         let mut uses: HashMap<OsString, usize> = HashMap::new();
         stems.iter().for_each(|stem| *uses.entry(folded(stem)).or_default() += 1);
         let mut changed = false;

@@ -6,9 +6,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::tess3::Report;
 use crate::error::{Error, Result};
 use crate::output::Output;
+use crate::tess3::Report;
 
 const COLUMNS: &str = "file\tmodel\tatoms\tunique_points\ttetrahedra\thull_facets\tseconds\tpeak_memory_bytes\t\
                        output\toutput_bytes\toptions\terror";
@@ -53,7 +53,8 @@ impl Line<'_> {
             Ok(Written { report, output, bytes }) => {
                 let Report { model, atoms, vertices, tetrahedra, hull_facets, .. } = report;
                 fields[1] = model.to_string();
-                for (field, count) in fields[2..6].iter_mut().zip([atoms, vertices, tetrahedra, hull_facets]) {
+                for (field, count) in fields[2..6].iter_mut().zip([atoms, vertices, tetrahedra, hull_facets])
+                {
                     *field = count.to_string();
                 }
                 fields[OUTPUT] = escaped(&output.to_string_lossy());
@@ -148,7 +149,8 @@ impl Done {
     }
 
     fn lines(&self) -> Vec<&str> {
-        let mut lines: Vec<&str> = self.by_file.values().flat_map(|file| &file.lines).map(|line| &line[..]).collect();
+        let mut lines: Vec<&str> =
+            self.by_file.values().flat_map(|file| &file.lines).map(|line| &line[..]).collect();
         lines.sort_unstable();
         lines
     }
@@ -184,8 +186,11 @@ impl Summary {
     /// # Errors
     /// If it cannot be written.
     pub(super) fn create(path: &Path, done: &Done) -> Result<Summary> {
-        let mut summary =
-            Summary { name: path.display().to_string(), output: Box::new(std::io::sink()), text: String::new() };
+        let mut summary = Summary {
+            name: path.display().to_string(),
+            output: Box::new(std::io::sink()),
+            text: String::new(),
+        };
         summary.text = std::iter::once(COLUMNS).chain(done.lines()).flat_map(|line| [line, "\n"]).collect();
         if path == Path::new("-") {
             summary.output = Box::new(Output::create(path, false)?);

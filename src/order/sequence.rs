@@ -1,0 +1,112 @@
+//! In which sequence points along a curve are inserted.
+
+use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
+use super::rounds::Rounds;
+use std::ops::Range;
+
+/// The sequence in which points are inserted that are stored along a curve.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Sequence {
+    /// In [`Rounds`] along the curve.
+    #[default]
+    Rounds,
+    /// Once along the curve.
+    Pass,
+    /// At random, each sequence with the same probability.
+    Random {
+        /// The same seed gives the same sequence.
+        seed: u64,
+    },
+}
+
+impl Sequence {
+    /// The numbers from 0 to `count - 1`, which are places along the curve, in this sequence.
+    ///
+    /// Domain: `count` at most 2^32. Cost: nothing; `Random`: O(n), 4 bytes per point.
+    #[must_use]
+    pub fn of(self, count: usize) -> Insertions {
+        Insertions(match self {
+            Sequence::Rounds => Form::Rounds(Rounds::new(count)),
+            Sequence::Pass => Form::Pass(0..count as u64),
+            Sequence::Random { seed } => Form::Stored(shuffled(count, seed).into_iter()),
+        })
+    }
+
+    /// The numbers of `points`, which are stored along a curve, by their [`BitLevels`], the highest first; those of one
+    /// level in this sequence.
+    ///
+    /// All points inserted so far then have as many bits in common as the level of the last one says. Where the
+    /// thesis (3.4.1) has them in "reverse order", it calls level 0 the first, which contradicts its purpose.
+    ///
+    /// Domain: finite coordinates, at most 2^32 points. Cost: O(n), 5 bytes per point.
+    #[must_use]
+    pub fn by_levels<const D: usize>(self, points: &[[f64; D]], suffixes: Suffixes) -> Insertions {
+        let bit_levels = BitLevels::of(points, suffixes);
+        let rank = |point: &[f64; D]| (BIT_LEVEL_MAX - bit_levels.level(*point)) as u8;
+        let ranks: Vec<u8> = points.iter().map(rank).collect();
+        let mut places = [0usize; BIT_LEVEL_MAX as usize + 1];
+        ranks.iter().for_each(|&rank| places[usize::from(rank)] += 1);
+        let mut next = 0;
+        for place in &mut places {
+            next += std::mem::replace(place, next);
+        }
+        let mut stored = vec![0; points.len()];
+        for number in self.of(points.len()) {
+            let place = &mut places[usize::from(ranks[number as usize])];
+            stored[*place] = number;
+            *place += 1;
+        }
+        Insertions(Form::Stored(stored.into_iter()))
+    }
+}
+
+/// Numbers of points in the sequence of their insertion.
+#[derive(Debug, Clone)]
+pub struct Insertions(Form);
+
+#[derive(Debug, Clone)]
+enum Form {
+    Rounds(Rounds),
+    Pass(Range<u64>),
+    Stored(std::vec::IntoIter<u32>),
+}
+
+impl Iterator for Insertions {
+    type Item = u32;
+
+    #[inline]
+    fn next(&mut self) -> Option<u32> {
+        match &mut self.0 {
+            Form::Rounds(rounds) => rounds.next(),
+            Form::Pass(numbers) => numbers.next().map(|number| number as u32),
+            Form::Stored(numbers) => numbers.next(),
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        match &self.0 {
+            Form::Rounds(rounds) => rounds.size_hint(),
+            Form::Pass(numbers) => numbers.size_hint(),
+            Form::Stored(numbers) => numbers.size_hint(),
+        }
+    }
+}
+
+impl ExactSizeIterator for Insertions {}
+
+/// The numbers from 0 to `count - 1` shuffled (Fisher and Yates; numbers by SplitMix64 of Steele, Lea and Flood, 2014).
+///
+/// Each choice scales 64 random bits to the numbers that are left, whose probabilities differ by less than 2^-32 of
+/// themselves.
+fn shuffled(count: usize, seed: u64) -> Vec<u32> {
+    let mut numbers: Vec<u32> = (0..count as u64).map(|number| number as u32).collect();
+    let mut state = seed;
+    for last in (1..count).rev() {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        numbers.swap(last, ((u128::from(bits) * (last as u128 + 1)) >> 64) as usize);
+    }
+    numbers
+}
