@@ -3,32 +3,30 @@
 use crate::reference::sets::Random;
 use robust::{Coord3D, insphere, orient3d};
 use spmesh::delaunay3::{Corner, Tetrahedralization};
-use spmesh::delaunay3_float::{Curve, Options, Stats, triangulate};
+use spmesh::delaunay3_float::{Options, Stats, triangulate};
+use spmesh::order::{Curve, Sequence};
 use std::collections::{HashMap, HashSet};
 
 type Point = [f64; 3];
-
-const CURVES: [Curve; 5] = [Curve::Hilbert, Curve::Morton, Curve::Gray, Curve::RowMajor, Curve::Random];
 
 /// Corners of the facet opposite to each corner, such that the corner followed by these is positively oriented.
 const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Every way to run it, with signs checked.
 fn all_options() -> Vec<Options> {
-    let mut all = Vec::new();
-    for curve in CURVES {
-        for flags in 0..8 {
-            all.push(Options {
-                curve,
-                bit_levels: flags & 1 != 0,
-                seed: 7 + flags,
-                check_signs: true,
-                cache_spheres: flags & 2 != 0,
-                orientation_from_spheres: flags & 4 != 0,
-            });
-        }
-    }
-    all
+    let passes = Curve::ALL.into_iter().map(|curve| (curve, Sequence::Pass));
+    let sequences = [Sequence::Rounds, Sequence::Random { seed: 3 }];
+    let orders = passes.chain(sequences.into_iter().map(|sequence| (Curve::Hilbert, sequence)));
+    let options = |(curve, sequence), flags: u64| Options {
+        curve,
+        sequence,
+        by_bit_levels: flags & 1 != 0,
+        seed: 7 + flags,
+        check_signs: true,
+        cache_spheres: flags & 2 != 0,
+        orientation_from_spheres: flags & 4 != 0,
+    };
+    orders.flat_map(|order| (0..8).map(move |flags| options(order, flags))).collect()
 }
 
 fn coord([x, y, z]: Point) -> Coord3D<f64> {
@@ -306,23 +304,22 @@ fn coordinates_that_are_not_finite_are_refused() {
 fn a_run_depends_on_its_seed_alone() {
     let points = uniform(&mut Random::new(8), 2000, 20);
     let run = |seed| {
-        let options = Options { curve: Curve::Random, seed, ..Options::default() };
-        let (mesh, stats) = triangulate(&points, &options).expect("finite points");
-        (mesh.vertices().iter().map(|v| v.index).collect::<Vec<u32>>(), stats.walk_steps)
+        let options = Options { seed, ..Options::default() };
+        triangulate(&points, &options).expect("finite points").1.walk_steps
     };
     assert_eq!(run(1), run(1));
     assert_ne!(run(1), run(2));
 }
 
 #[test]
-fn curves_and_levels_shorten_walks() {
+fn order_along_a_curve_shortens_walks() {
     let points = uniform(&mut Random::new(9), 20_000, 16);
-    let steps = |curve, bit_levels| {
-        let options = Options { curve, bit_levels, ..Options::default() };
+    let steps = |sequence, by_bit_levels| {
+        let options = Options { sequence, by_bit_levels, ..Options::default() };
         let (_, stats) = triangulate(&points, &options).expect("finite points");
         stats.walk_steps as f64 / points.len() as f64
     };
-    assert!(steps(Curve::Hilbert, false) < 4.0);
-    assert!(steps(Curve::Hilbert, true) < 6.0);
-    assert!(steps(Curve::Random, false) > 15.0);
+    assert!(steps(Sequence::Pass, false) < 4.0);
+    assert!(steps(Sequence::Pass, true) < 4.0);
+    assert!(steps(Sequence::Random { seed: 1 }, false) > 15.0);
 }

@@ -8,6 +8,7 @@ use super::star::Star;
 use super::{Options, Stats};
 use crate::delaunay3::{Tetrahedron, Vertex};
 use crate::error::{Error, ErrorKind, Result};
+use crate::order::Insertions;
 use std::time::Instant;
 
 /// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run endless.
@@ -68,25 +69,20 @@ impl<'a> Insertion<'a> {
         }
     }
 
-    /// Inserts all other points: the finite tetrahedra, and what was done.
-    pub(super) fn run(mut self, first: [u32; 4]) -> Result<(Vec<Tetrahedron>, Stats)> {
-        self.insert_all(first)?;
+    /// Inserts the other vertices: the finite tetrahedra, and what was done.
+    pub(super) fn run(mut self, insertions: Insertions) -> Result<(Vec<Tetrahedron>, Stats)> {
+        let first = self.mesh.cells[0].vertices;
+        self.laps.begin_all();
+        for v in insertions.filter(|v| !first.contains(v)) {
+            self.insert(v)?;
+        }
+        self.laps.end_all(&mut self.stats.seconds);
         self.stats.bytes = (self.mesh.bytes() + self.cavity.bytes() + self.star.bytes()) as u64;
         let begin = Instant::now();
         let tetrahedra = self.mesh.finite();
         self.stats.missing = self.missing(&tetrahedra);
         self.stats.seconds.extract = begin.elapsed().as_secs_f64();
         Ok((tetrahedra, self.stats))
-    }
-
-    /// Inserts all points but those of the `first` tetrahedron.
-    fn insert_all(&mut self, first: [u32; 4]) -> Result<()> {
-        self.laps.begin_all();
-        for v in (0..self.mesh.vertices.len() as u32).filter(|v| !first.contains(v)) {
-            self.insert(v)?;
-        }
-        self.laps.end_all(&mut self.stats.seconds);
-        Ok(())
     }
 
     /// Inserts a vertex; leaves it out if rounding makes it impossible.

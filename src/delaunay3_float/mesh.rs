@@ -3,6 +3,7 @@
 use super::check;
 use super::sphere::{Sphere, orientation};
 use crate::delaunay3::{Corner, NONE, Tetrahedron, Vertex};
+use crate::order::Insertions;
 use crate::predicates::{Point3, Sign};
 
 /// The faraway point (thesis 4.3), never the first vertex of a tetrahedron.
@@ -212,21 +213,17 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// Four points, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a plane.
+/// Four vertices, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a plane.
 ///
-/// The first point, the first that differs, the first that is not collinear with them, the first that is not coplanar.
-pub(super) fn first_tetrahedron(vertices: &[Vertex]) -> Option<[u32; 4]> {
-    let point = |i: usize| vertices[i].at;
-    let (a, b) = if vertices.len() < 4 { return None } else { (point(0), point(1)) };
-    let next = (2..vertices.len()).find(|&i| !check::are_collinear(a, b, point(i)))?;
-    let c = point(next);
-    (next + 1..vertices.len()).find_map(|i| {
-        let d = point(i);
-        let is_sound = |a, b| check::orient3d(a, b, c, d) == Sign::Positive && orientation(a, b, c, d) > 0.0;
-        match () {
-            () if is_sound(a, b) => Some([0, 1, next as u32, i as u32]),
-            () if is_sound(b, a) => Some([1, 0, next as u32, i as u32]),
-            () => None,
-        }
-    })
+/// The first to be inserted, the second, the first that is not collinear with them, the first after that that is not
+/// coplanar.
+pub(super) fn first_tetrahedron(vertices: &[Vertex], mut insertions: Insertions) -> Option<[u32; 4]> {
+    let at = |v: u32| vertices[v as usize].at;
+    let (a, b) = (insertions.next()?, insertions.next()?);
+    let c = insertions.find(|&v| !check::are_collinear(at(a), at(b), at(v)))?;
+    let is_positive = |a, b, c, d| {
+        check::orient3d(at(a), at(b), at(c), at(d)) == Sign::Positive
+            && orientation(at(a), at(b), at(c), at(d)) > 0.0
+    };
+    insertions.flat_map(|d| [[a, b, c, d], [b, a, c, d]]).find(|&[a, b, c, d]| is_positive(a, b, c, d))
 }

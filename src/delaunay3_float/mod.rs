@@ -24,37 +24,25 @@ mod star;
 
 use crate::delaunay3::Tetrahedralization;
 use crate::error::{Error, Result};
-use crate::predicates::Point3;
+use crate::order::{Curve, Sequence};
+use crate::predicates::{Extent, Point3};
 use insertion::Insertion;
+use sequence::Sorted;
 use std::time::Instant;
 
 /// Greatest number of points.
 pub const MAX_POINTS: usize = 60_000_000;
 
-/// In which order the points of a level are inserted: cells of a grid along a curve.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Curve {
-    /// Along a Hilbert curve.
-    #[default]
-    Hilbert,
-    /// By the interleaved bits of the coordinates (Z-order).
-    Morton,
-    /// Interleaved bits, in the order of the reflected binary code.
-    Gray,
-    /// Row by row.
-    RowMajor,
-    /// In random order.
-    Random,
-}
-
 /// How [`triangulate`] goes about it.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Order of insertion within a level.
+    /// The curve along which points are stored and inserted.
     pub curve: Curve,
-    /// Whether points that share many low bits are inserted before those that share fewer.
-    pub bit_levels: bool,
-    /// Seed of the random order and of the choices in walks.
+    /// In which sequence they are inserted, within each level.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first.
+    pub by_bit_levels: bool,
+    /// Seed of the choices in walks.
     pub seed: u64,
     /// Whether every in-sphere test is compared with the exact sign: many times slower.
     pub check_signs: bool,
@@ -69,7 +57,8 @@ impl Default for Options {
     fn default() -> Options {
         Options {
             curve: Curve::Hilbert,
-            bit_levels: true,
+            sequence: Sequence::Pass,
+            by_bit_levels: true,
             seed: 1,
             check_signs: false,
             cache_spheres: true,
@@ -145,15 +134,17 @@ pub fn triangulate(points: &[Point3], options: &Options) -> Result<(Tetrahedrali
             points.len()
         )));
     }
-    if let Some(bad) = points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+    let extent = Extent::of(points);
+    if !extent.finite {
+        let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
         return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
             .at(format!("point {bad}")));
     }
     let begin = Instant::now();
-    let (vertices, duplicates) = sequence::fill(points, options);
+    let Sorted { vertices, duplicates, insertions } = sequence::sort(points, &extent, options);
     let order = begin.elapsed().as_secs_f64();
-    let (tetrahedra, mut stats) = match mesh::first_tetrahedron(&vertices) {
-        Some(first) => Insertion::new(&vertices, options, first).run(first)?,
+    let (tetrahedra, mut stats) = match mesh::first_tetrahedron(&vertices, insertions.clone()) {
+        Some(first) => Insertion::new(&vertices, options, first).run(insertions)?,
         None => (Vec::new(), Stats { missing: vertices.len() as u64, ..Stats::default() }),
     };
     stats.seconds.order = order;
