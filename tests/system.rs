@@ -58,9 +58,10 @@ fn every_tool_widens_the_pipe_that_it_reads_from() {
     let points = run("spfinalize", &["-"], b"1 2 3\n4 5 6\n7 1 2\n").stdout;
     let (_narrow, probe) = std::io::pipe().expect("a pipe");
     let expected = widest(&probe);
-    let cases: [(&str, &[&str]); 4] = [
+    let cases: [(&str, &[&str]); 5] = [
         ("spfinalize", &["-"]),
         ("spdelaunay2d", &[]),
+        ("tess3", &["-"]),
         ("spinfo", &["-"]),
         ("spconvert", &["-", "--to", "text"]),
     ];

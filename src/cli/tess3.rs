@@ -255,7 +255,12 @@ impl Flags {
             (_, true) => Product::Contacts,
             _ => Product::Mesh,
         };
-        Options { selection: self.selection.selection(), product, alpha: self.alpha.clone() }
+        Options {
+            selection: self.selection.selection(),
+            product,
+            alpha: self.alpha.clone(),
+            is_timed: self.stats.is_some(),
+        }
     }
 
     /// What decides on the content of the outputs.

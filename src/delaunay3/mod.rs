@@ -8,6 +8,7 @@
 mod build;
 mod complex;
 mod dispatch;
+mod exact;
 mod extract;
 mod insertion;
 mod lanes;

@@ -58,7 +58,7 @@ impl Approximate {
 
     /// Whether all but about the last five of its digits can be relied upon.
     pub(super) fn is_accurate(self) -> bool {
-        self.error <= self.value.abs() * 1e-11
+        self.value.is_finite() && self.error <= self.value.abs() * 1e-11
     }
 }
 

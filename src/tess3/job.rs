@@ -87,8 +87,11 @@ impl Job<'_> {
         };
         let mut report = Report::new(name.number, points.len());
         let mut mesh = Tetrahedralization::default();
-        Kernel::new().triangulate(points, &mut mesh)?;
-        report.count(&mesh);
+        let mut kernel = Kernel::new();
+        kernel.is_timed = self.options.is_timed;
+        kernel.triangulate(points, &mut mesh)?;
+        report.count(&kernel, &mesh);
+        drop(kernel);
         report.times.triangulate = started.elapsed();
         let triangulated = Triangulated { name, structure, selected, mesh: &mesh };
         self.write(&triangulated, &mut report)?;

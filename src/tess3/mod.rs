@@ -25,7 +25,8 @@ pub use spheres::{Measure, measure};
 
 use std::time::Duration;
 
-use crate::delaunay3::Tetrahedralization;
+use crate::delaunay3::{Kernel, Tetrahedralization};
+use crate::predicates::PredicateCounts;
 use crate::source::structure::Selection;
 
 /// What is written of a triangulation.
@@ -48,6 +49,8 @@ pub struct Options {
     pub product: Product,
     /// Write only simplices of the alpha complex with this radius, in world units.
     pub alpha: Option<Radius>,
+    /// Measure the parts of insertions, too, which takes some time itself.
+    pub is_timed: bool,
 }
 
 /// What was done with one model.
@@ -63,6 +66,12 @@ pub struct Report {
     pub tetrahedra: u64,
     /// Facets of the convex hull.
     pub hull_facets: u64,
+    /// Tetrahedra that the kernel made, infinite ones included; most of them did not last.
+    pub created: u64,
+    /// Greatest number of bytes that the kernel and its result held at once.
+    pub kernel_bytes: u64,
+    /// Decisions of the predicates.
+    pub predicates: PredicateCounts,
     /// Time.
     pub times: Times,
 }
@@ -70,14 +79,22 @@ pub struct Report {
 impl Report {
     /// Of a model with the given number of atoms, before anything is done.
     fn new(model: i64, atoms: usize) -> Self {
-        let times = Times::default();
-        Report { model, atoms: atoms as u64, vertices: 0, tetrahedra: 0, hull_facets: 0, times }
+        Report { model, atoms: atoms as u64, ..Report::default() }
     }
 
-    fn count(&mut self, mesh: &Tetrahedralization) {
+    /// Takes over what the kernel has to say.
+    fn count(&mut self, kernel: &Kernel, mesh: &Tetrahedralization) {
+        let stats = mesh.stats;
         self.vertices = mesh.vertices().len() as u64;
         self.tetrahedra = mesh.tetrahedra().len() as u64;
         self.hull_facets = mesh.hull_facets as u64;
+        self.created = stats.created;
+        self.kernel_bytes = stats.bytes;
+        self.predicates = *kernel.counts();
+        self.times.order = stats.order;
+        self.times.locate = stats.locate;
+        self.times.cavity = stats.cavity;
+        self.times.update = stats.update;
     }
 }
 
@@ -88,6 +105,15 @@ pub struct Times {
     pub read: Duration,
     /// Selecting atoms and triangulating.
     pub triangulate: Duration,
+    /// Of that, ordering the points.
+    pub order: Duration,
+    /// Of that, if it was to be measured, the walks to the points; the search of cavities, with the predicates; and
+    /// putting new tetrahedra in their place.
+    pub locate: Duration,
+    /// See `locate`.
+    pub cavity: Duration,
+    /// See `locate`.
+    pub update: Duration,
     /// Measuring, formatting and writing.
     pub write: Duration,
 }
@@ -98,6 +124,17 @@ impl Times {
     pub fn total(&self) -> Duration {
         self.read + self.triangulate + self.write
     }
+
+    fn add(&mut self, other: &Times) {
+        let Times { read, triangulate, order, locate, cavity, update, write } = self;
+        *read += other.read;
+        *triangulate += other.triangulate;
+        *order += other.order;
+        *locate += other.locate;
+        *cavity += other.cavity;
+        *update += other.update;
+        *write += other.write;
+    }
 }
 
 /// What was done with all models together.
@@ -105,21 +142,25 @@ impl Times {
 pub struct Stats {
     /// Models.
     pub models: u64,
-    /// Sums; the number of the model means nothing.
+    /// Sums of the models, and the greatest [`Report::kernel_bytes`]; the number of the model means nothing.
     pub sums: Report,
+    /// Greatest number of atoms of a model.
+    pub atoms_max: u64,
 }
 
 impl Stats {
     /// Adds a model.
     pub fn add(&mut self, report: &Report) {
-        let Stats { models, sums } = self;
+        let Stats { models, sums, atoms_max } = self;
         *models += 1;
+        *atoms_max = report.atoms.max(*atoms_max);
         sums.atoms += report.atoms;
         sums.vertices += report.vertices;
         sums.tetrahedra += report.tetrahedra;
         sums.hull_facets += report.hull_facets;
-        sums.times.read += report.times.read;
-        sums.times.triangulate += report.times.triangulate;
-        sums.times.write += report.times.write;
+        sums.created += report.created;
+        sums.kernel_bytes = report.kernel_bytes.max(sums.kernel_bytes);
+        sums.predicates.merge(&report.predicates);
+        sums.times.add(&report.times);
     }
 }

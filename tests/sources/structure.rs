@@ -97,7 +97,8 @@ fn an_atom_is_small() {
 
 #[test]
 fn coordinates_are_multiples_of_a_quantum_where_one_serves_all() {
-    let cases: [(&[&str], Option<f64>, &[[f64; 3]]); 12] = [
+    type Case<'c> = (&'c [&'c str], Option<f64>, &'c [[f64; 3]]);
+    let cases: [Case; 12] = [
         (&["1.5 -2 0.001"], Some(1e-3), &[[1500.0, -2000.0, 1.0]]),
         (&["+1. -.5 -0.000"], Some(1e-3), &[[1000.0, -500.0, 0.0]]),
         (&["1.50000000 -2.00000 3"], Some(1e-3), &[[1500.0, -2000.0, 3000.0]]),

@@ -5,7 +5,7 @@ use std::io::Read;
 use std::process::Stdio;
 
 use super::molecules::{Folder, cloud, pdb};
-use crate::programs::{outcome, run, start};
+use crate::programs::{cloud as scattered, outcome, run, start};
 
 #[test]
 fn wrong_usage_says_what_would_be_right() {
@@ -40,7 +40,7 @@ fn damaged_input_is_named_and_leaves_nothing() {
     let folder = Folder::new();
     let good = pdb(&cloud(10, 9_000, 1));
     let cases = [
-        ("bad.pdb", good.replacen("1.000", "1.0x0", 1), 3),
+        ("bad.pdb", good.replacen("A  10       ", "A  10    x  ", 1), 3),
         ("empty.pdb", String::new(), 3),
         ("header.pdb", "HEADER    NOTHING\nEND\n".into(), 3),
         ("words.txt", "not a structure\n".into(), 3),
@@ -63,7 +63,7 @@ fn damaged_input_is_named_and_leaves_nothing() {
 #[test]
 fn a_closed_pipe_is_silent() {
     let folder = Folder::new();
-    let file = folder.write("a.pdb", pdb(&cloud(6_000, 60_000, 1)));
+    let file = folder.write("a.xyz", scattered(20_000));
     for product in ["--table", "--contacts", "--alpha=100"] {
         let mut child = start("tess3", &["-q", product, &file], Stdio::null());
         let mut head = [0; 100];

@@ -29,7 +29,7 @@ impl Record {
             altloc: ' ',
             residue: "ALA",
             chain: 'A',
-            number: serial as i32,
+            number: (serial % 10_000) as i32,
             at,
             occupancy: 1.0,
             element: "C",
@@ -58,7 +58,7 @@ pub fn pdb(atoms: &[Record]) -> String {
 pub fn models(models: &[Vec<Record>]) -> String {
     let mut text = String::new();
     for (number, atoms) in (1..).zip(models) {
-        write!(text, "MODEL     {number:>4}\n").unwrap();
+        writeln!(text, "MODEL     {number:>4}").unwrap();
         atoms.iter().for_each(|atom| text += &atom.line());
         text += "ENDMDL\n";
     }

@@ -31,28 +31,48 @@ pub(super) fn print(format: Option<StatsFormat>, stats: &Stats, elapsed: Duratio
     }
 }
 
-/// Times: a label for people, a key for programs, the value.
-fn times(stats: &Stats, elapsed: Duration) -> [(&'static str, &'static str, f64); 4] {
+/// Times in seconds: a label for people, a key for programs, the value. With the counts these are the columns of
+/// thesis table 3.3.
+fn times(stats: &Stats, elapsed: Duration) -> [(&'static str, &'static str, f64); 8] {
     let times = stats.sums.times;
+    let seconds = |time: Duration| time.as_secs_f64();
     [
-        ("time (s)", "seconds", elapsed.as_secs_f64()),
-        ("reading (s)", "seconds_read", times.read.as_secs_f64()),
-        ("triangulating (s)", "seconds_triangulate", times.triangulate.as_secs_f64()),
-        ("writing (s)", "seconds_write", times.write.as_secs_f64()),
+        ("time (s)", "seconds", seconds(elapsed)),
+        ("reading (s)", "seconds_read", seconds(times.read)),
+        ("triangulating (s)", "seconds_triangulate", seconds(times.triangulate)),
+        ("  ordering (s)", "seconds_order", seconds(times.order)),
+        ("  point location (s)", "seconds_locate", seconds(times.locate)),
+        ("  cavities: predicates (s)", "seconds_predicates", seconds(times.cavity)),
+        ("  cavities: update (s)", "seconds_update", seconds(times.update)),
+        ("writing (s)", "seconds_write", seconds(times.write)),
     ]
 }
 
 /// Counts: a label for people, a key for programs, the value.
-fn counts(stats: &Stats) -> [(&'static str, &'static str, u64); 6] {
-    let Stats { models, sums } = stats;
+fn counts(stats: &Stats) -> [(&'static str, &'static str, u64); 14] {
+    let Stats { models, sums, atoms_max } = stats;
+    let predicates = sums.predicates;
     [
         ("models", "models", *models),
         ("points", "points", sums.atoms),
+        ("points of the largest model", "points_max", *atoms_max),
         ("vertices", "vertices", sums.vertices),
         ("tetrahedra", "tetrahedra", sums.tetrahedra),
         ("facets of the hull", "hull_facets", sums.hull_facets),
+        ("tetrahedra created", "tetrahedra_created", sums.created),
+        ("kernel memory (bytes)", "kernel_bytes", sums.kernel_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+        ("predicates: filter", "predicates_filter", predicates.filter),
+        ("predicates: integer", "predicates_integer", predicates.integer),
+        ("predicates: expansion", "predicates_expansion", predicates.expansion),
+        ("predicates: big integer", "predicates_bigint", predicates.bigint),
+        ("predicates: ties broken", "predicates_perturbed", predicates.perturbed),
     ]
+}
+
+/// Bytes that the kernel held per point, of the model that took most.
+fn bytes_per_point(stats: &Stats) -> f64 {
+    stats.sums.kernel_bytes as f64 / stats.atoms_max.max(1) as f64
 }
 
 fn text(stats: &Stats, elapsed: Duration) -> String {
@@ -63,7 +83,7 @@ fn text(stats: &Stats, elapsed: Duration) -> String {
     for (label, _, count) in counts(stats) {
         text += &format!("{label:<30} {count:>15}\n");
     }
-    text
+    text + &format!("{:<30} {:>15.1}\n", "kernel bytes per point", bytes_per_point(stats))
 }
 
 fn json(stats: &Stats, elapsed: Duration) -> String {
@@ -71,5 +91,6 @@ fn json(stats: &Stats, elapsed: Duration) -> String {
     object
         .extend(times(stats, elapsed).into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
     object.extend(counts(stats).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
+    object.insert("kernel_bytes_per_point".into(), bytes_per_point(stats).into());
     serde_json::Value::Object(object).to_string()
 }

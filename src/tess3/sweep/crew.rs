@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use crate::error::Result;
 
 /// Does `work` on all jobs, about in their order, and hands each result to `finish` on the calling thread. When that
-/// fails, no more jobs are begun; those under way are finished and handed over as well.
+/// fails, or `is_last` of a result, no more jobs are begun; those under way are finished and handed over as well.
 ///
 /// # Errors
 /// The first error of `finish`.
@@ -13,6 +13,7 @@ pub(super) fn run<Job: Sync, End: Send>(
     threads: usize,
     jobs: &[Job],
     work: impl Fn(&Job) -> End + Sync,
+    is_last: impl Fn(&End) -> bool + Sync,
     mut finish: impl FnMut(&Job, End) -> Result<()>,
 ) -> Result<()> {
     let next = AtomicUsize::new(0);
@@ -20,10 +21,14 @@ pub(super) fn run<Job: Sync, End: Send>(
     std::thread::scope(|scope| {
         let (sender, receiver) = crossbeam_channel::bounded(threads);
         for _ in 0..threads.min(jobs.len()) {
-            let (sender, next, work) = (sender.clone(), &next, &work);
+            let (sender, next, work, is_last) = (sender.clone(), &next, &work, &is_last);
             scope.spawn(move || {
                 while let Some(job) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    if sender.send((job, work(job))).is_err() {
+                    let end = work(job);
+                    if is_last(&end) {
+                        next.store(jobs.len(), Ordering::Relaxed);
+                    }
+                    if sender.send((job, end)).is_err() {
                         return;
                     }
                 }

@@ -140,6 +140,6 @@ pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> boo
             let is_mesh = path.extension().is_some_and(|ending| ending == "spm");
             Ok(output.metadata()?.len() == *bytes && (!is_mesh || ends_with_end(&mut output)?))
         };
-        is_complete().unwrap_or(false) && !(input_changed > changed(&path))
+        is_complete().unwrap_or(false) && input_changed <= changed(&path)
     })
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::{Options, Stats};
 use crate::error::{Error, ErrorKind, Result};
 use crate::source::structure::Format;
-use file::Job;
+use file::{End, Job};
 use summary::{Done, Summary};
 
 /// A sweep to be done.
@@ -86,28 +86,25 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     });
     let jobs = jobs(files, &done);
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    crew::run(
-        sweep.threads,
-        &jobs,
-        |job| file::run(job, sweep),
-        |job, end| {
-            summary.add(end.lines(job.file, &sweep.options_text))?;
-            match end.result {
-                Ok(written) => {
-                    outcome.done += 1;
-                    written.iter().for_each(|model| outcome.stats.add(&model.report));
-                    listener(News::Done);
-                    Ok(())
-                }
-                Err(error) if sweep.strict || error.kind() == ErrorKind::ClosedPipe => Err(error),
-                Err(error) => {
-                    outcome.failed += 1;
-                    listener(News::Failed(&error));
-                    Ok(())
-                }
+    let work = |job: &Job<'_>| file::run(job, sweep);
+    let is_last = |end: &End| sweep.strict && end.result.is_err();
+    crew::run(sweep.threads, &jobs, work, is_last, |job, end| {
+        summary.add(end.lines(job.file, &sweep.options_text))?;
+        match end.result {
+            Ok(written) => {
+                outcome.done += 1;
+                written.iter().for_each(|model| outcome.stats.add(&model.report));
+                listener(News::Done);
+                Ok(())
             }
-        },
-    )?;
+            Err(error) if sweep.strict || error.kind() == ErrorKind::ClosedPipe => Err(error),
+            Err(error) => {
+                outcome.failed += 1;
+                listener(News::Failed(&error));
+                Ok(())
+            }
+        }
+    })?;
     Ok(outcome)
 }
 
