@@ -6,6 +6,7 @@ mod cell_grid;
 mod circle;
 mod cli;
 mod convert;
+mod delaunay3_float;
 mod finalize;
 mod kernel;
 mod kernel3;
