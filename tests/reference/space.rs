@@ -72,7 +72,7 @@ fn is_ordinary(square: f64) -> bool {
 
 /// The sign of a value that errs by at most `error`.
 fn certain(value: f64, error: f64) -> Option<i32> {
-    (value.abs() > error).then(|| if value > 0.0 { 1 } else { -1 })
+    (value.abs() > error).then_some(if value > 0.0 { 1 } else { -1 })
 }
 
 /// The sum of the magnitudes of the products is at most 2/sqrt(3) times the product of the lengths, and 8 roundings
