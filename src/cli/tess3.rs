@@ -1,5 +1,6 @@
 //! `tess3`: flags.
 
+mod method;
 mod report;
 mod selection;
 
@@ -17,6 +18,7 @@ use crate::output::Output;
 use crate::source::structure::{Format, Structure, read_structure};
 use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
 use crate::tess3::{self, Options, Product, Radius, Stats};
+use method::MethodFlags;
 use selection::SelectionFlags;
 
 const SUMMARY_NAME: &str = "summary.tsv";
@@ -102,6 +104,9 @@ pub struct Flags {
     /// Stop a sweep at the first file that fails
     #[arg(long, requires = "out_dir")]
     strict: bool,
+
+    #[command(flatten)]
+    method: MethodFlags,
 
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
@@ -259,7 +264,7 @@ impl Flags {
             selection: self.selection.selection(),
             product,
             alpha: self.alpha.clone(),
-            is_timed: self.stats.is_some(),
+            method: self.method.method(),
         }
     }
 

@@ -7,6 +7,7 @@
 
 mod build;
 mod complex;
+mod corners;
 mod dispatch;
 mod extract;
 mod insertion;
@@ -18,6 +19,7 @@ mod stats;
 mod tetrahedralization;
 mod tie;
 
+pub use corners::{CornerParts, Corners};
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

@@ -26,6 +26,7 @@ pub use spheres::{Measure, measure};
 use std::time::Duration;
 
 use crate::delaunay3::{Kernel, Tetrahedralization};
+use crate::order::{Curve, Sequence};
 use crate::predicates::PredicateCounts;
 use crate::source::structure::Selection;
 
@@ -49,8 +50,33 @@ pub struct Options {
     pub product: Product,
     /// Write only simplices of the alpha complex with this radius, in world units.
     pub alpha: Option<Radius>,
+    /// How the kernel is to go about it; nothing that is written depends on it but the order.
+    pub method: Method,
+}
+
+/// How the kernel works, for experiments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Method {
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first.
+    pub by_bit_levels: bool,
     /// Measure the parts of insertions, too, which takes some time itself.
     pub is_timed: bool,
+}
+
+impl Method {
+    fn kernel(&self) -> Kernel {
+        let Method { curve, sequence, by_bit_levels, is_timed } = *self;
+        let mut kernel = Kernel::new();
+        kernel.curve = curve;
+        kernel.sequence = sequence;
+        kernel.by_bit_levels = by_bit_levels;
+        kernel.is_timed = is_timed;
+        kernel
+    }
 }
 
 /// What was done with one model.
