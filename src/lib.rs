@@ -12,6 +12,7 @@ pub mod cli;
 pub mod convert;
 pub mod delaunay2;
 pub mod delaunay3;
+pub mod delaunay3_float;
 pub mod error;
 pub mod finalize;
 pub mod limits;

@@ -22,6 +22,8 @@ mod solid;
 mod tetrahedra;
 #[path = "audit/tetrahedra_mutations.rs"]
 mod tetrahedra_mutations;
+#[path = "audit/tetrahedra_streams.rs"]
+mod tetrahedra_streams;
 #[path = "audit/tetrahedralized.rs"]
 mod tetrahedralized;
 

@@ -2,12 +2,13 @@
 
 use super::MAX_POINTS;
 use super::complex::Complex;
+use super::exact::Exact;
 use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
 use super::stats::{Clock, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
 use crate::order::Insertions;
-use crate::predicates::{Point3, Predicates3, Sign};
+use crate::predicates::{Point3, Sign};
 use std::marker::PhantomData;
 
 /// Tetrahedralizes distinct points, all in one arithmetic.
@@ -19,6 +20,8 @@ pub(super) struct Build<'a> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
+    /// Whether only instructions that every processor has are used.
+    pub(super) is_portable: bool,
     /// The numbers of the vertices in the order of insertion.
     pub(super) insertions: Insertions,
     /// See [`Insertion`].
@@ -43,12 +46,12 @@ impl Build<'_> {
     ///
     /// Inlined, like all that it calls with lanes, into functions for one kind of processor each.
     #[inline(always)]
-    pub(super) fn run<P: Predicates3, L: Lanes>(self, predicates: &mut P) -> Built {
+    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact) -> Built {
         let Some(first) = self.first_tetrahedron(predicates) else {
             return Built::Flat(self.vertices, self.tetrahedra);
         };
         self.cavity.clear();
-        let mut insertion = Insertion::<P, L> {
+        let mut insertion = Insertion::<L> {
             complex: Complex::new(self.vertices, self.tetrahedra, first),
             predicates,
             cavity: self.cavity,
@@ -72,7 +75,7 @@ impl Build<'_> {
     }
 
     /// The first four vertices that are not in a plane, positively oriented.
-    fn first_tetrahedron<P: Predicates3>(&self, predicates: &mut P) -> Option<[u32; 4]> {
+    fn first_tetrahedron(&self, predicates: &mut dyn Exact) -> Option<[u32; 4]> {
         let point = |v: u32| self.vertices[v as usize].at;
         let mut sequence = self.insertions.clone();
         let (a, b) = (sequence.next()?, sequence.next()?);
@@ -87,7 +90,7 @@ impl Build<'_> {
 }
 
 /// Whether three points lie on a line: so do then their projections along all axes.
-fn is_line<P: Predicates3>(a: Point3, b: Point3, c: Point3, predicates: &mut P) -> bool {
+fn is_line(a: Point3, b: Point3, c: Point3, predicates: &mut dyn Exact) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let [p, q, r] = [a, b, c].map(|point| [point[i], point[j], 0.0]);
         predicates.orient3d(p, q, r, [p[0], p[1], 1.0]) == Sign::Zero

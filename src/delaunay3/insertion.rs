@@ -2,6 +2,7 @@
 //! 1981).
 
 use super::complex::{CORNERS, Complex, DELETED, Facet, tetrahedron_of};
+use super::exact::Exact;
 use super::lanes::Lanes;
 use super::locate::{is_in_conflict, walk, walk_exactly};
 use super::sight::{InSphere, Sight};
@@ -9,7 +10,7 @@ use super::star::Star;
 use super::stats::{Clock, Stats};
 use super::tetrahedralization::Vertex;
 use super::tie::{EXACT, is_inside};
-use crate::predicates::{INSPHERE_SQUARED_BOUND, Numbers, Point3, Predicates3, TINY};
+use crate::predicates::{INSPHERE_SQUARED_BOUND, Point3, TINY};
 use bytemuck::cast;
 
 /// A facet around the part of the cavity that is known, with the test of the tetrahedron beyond.
@@ -44,9 +45,9 @@ impl Cavity {
 }
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
-pub(super) struct Insertion<'a, P, L> {
+pub(super) struct Insertion<'a, L> {
     pub(super) complex: Complex,
-    pub(super) predicates: &'a mut P,
+    pub(super) predicates: &'a mut dyn Exact,
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) clock: Clock,
@@ -58,7 +59,7 @@ pub(super) struct Insertion<'a, P, L> {
     pub(super) lanes: std::marker::PhantomData<L>,
 }
 
-impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
+impl<L: Lanes> Insertion<'_, L> {
     /// The complex. Adds the decisions made here to the counts of the predicates.
     pub(super) fn finish(self) -> Complex {
         self.predicates.counts_mut().filter += self.stats.insphere_tests - self.unfiltered;
@@ -223,7 +224,7 @@ impl<P: Predicates3, L: Lanes> Insertion<'_, P, L> {
             return test.value > 0.0;
         }
         self.unfiltered += 1;
-        if P::NUMBERS == Numbers::Integers && test.greatest < EXACT {
+        if self.predicates.is_integer() && test.greatest < EXACT {
             let infinite = self.complex.infinite();
             let is_finite = !vertices.contains(&infinite) && facet.apex != infinite;
             let counts = self.predicates.counts_mut();

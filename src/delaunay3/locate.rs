@@ -1,8 +1,9 @@
 //! Where a new point begins to change the tetrahedralization: a tetrahedron in conflict with it.
 
 use super::complex::{CORNERS, Complex, DELETED, Facet, corner, tetrahedron_of};
+use super::exact::Exact;
 use super::sight::{difference, volume};
-use crate::predicates::{Point3, Predicates3, Sign};
+use crate::predicates::{Point3, Sign};
 
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.
 const STEPS_MAX: usize = 10_000;
@@ -46,12 +47,7 @@ pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
 /// Walks from `t` to a tetrahedron in conflict with `q`, exactly. In a Delaunay tetrahedralization this walk ends.
 #[cold]
 #[inline(never)]
-pub(super) fn walk_exactly<P: Predicates3>(
-    complex: &Complex,
-    mut t: u32,
-    q: Point3,
-    predicates: &mut P,
-) -> u32 {
+pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates: &mut dyn Exact) -> u32 {
     if let Some(side) = complex.hull_facet(t) {
         if is_in_conflict(complex, t, q, predicates) {
             return t;
@@ -81,12 +77,7 @@ pub(super) fn walk_exactly<P: Predicates3>(
 /// the tetrahedron on the other side has in common with the plane between them (thesis 4.4).
 #[cold]
 #[inline(never)]
-pub(super) fn is_in_conflict<P: Predicates3>(
-    complex: &Complex,
-    t: u32,
-    q: Point3,
-    predicates: &mut P,
-) -> bool {
+pub(super) fn is_in_conflict(complex: &Complex, t: u32, q: Point3, predicates: &mut dyn Exact) -> bool {
     let vertices = complex.corners(t);
     if vertices[0] == DELETED {
         return true;

@@ -9,6 +9,7 @@ mod build;
 mod complex;
 mod corners;
 mod dispatch;
+mod exact;
 mod extract;
 mod insertion;
 mod lanes;
@@ -16,6 +17,8 @@ mod locate;
 mod sight;
 mod star;
 mod stats;
+#[cfg(test)]
+mod tests;
 mod tetrahedralization;
 mod tie;
 
@@ -48,6 +51,8 @@ pub struct Kernel {
     pub by_bit_levels: bool,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
+    /// Whether only instructions that every processor has are used: for tests.
+    is_portable: bool,
 }
 
 impl Kernel {
@@ -95,6 +100,7 @@ impl Kernel {
             cavity: &mut self.cavity,
             stats: &mut mesh.stats,
             is_timed: self.is_timed,
+            is_portable: self.is_portable,
             insertions,
         };
         (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {

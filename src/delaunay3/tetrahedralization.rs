@@ -28,6 +28,13 @@ pub struct Vertex {
     pub(super) local: u32,
 }
 
+impl Vertex {
+    /// The input point of this index.
+    pub(crate) fn new(at: Point3, index: u32) -> Vertex {
+        Vertex { at, index, local: 0 }
+    }
+}
+
 /// A tetrahedron with its neighbours: half a cache line.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C, align(32))]
@@ -42,6 +49,12 @@ pub struct Tetrahedron {
 pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
 
 impl Tetrahedron {
+    /// A tetrahedron made elsewhere, with what is across from each corner.
+    pub(crate) fn new(vertices: [u32; 4], across: [Option<Corner>; 4]) -> Tetrahedron {
+        let word = |corner: Corner| corner.tetrahedron * WORDS as u32 + corner.corner;
+        Tetrahedron { vertices, across: across.map(|corner| corner.map_or(NONE, word)) }
+    }
+
     /// The tetrahedron across the facet opposite to a corner, as its corner opposite to that facet; `None` beyond the
     /// hull.
     #[inline]
@@ -66,6 +79,17 @@ pub struct Tetrahedralization {
 }
 
 impl Tetrahedralization {
+    /// A tetrahedralization made elsewhere, without stats.
+    pub(crate) fn from_parts(
+        vertices: Vec<Vertex>,
+        duplicates: Vec<[u32; 2]>,
+        tetrahedra: Vec<Tetrahedron>,
+    ) -> Tetrahedralization {
+        let sides = tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.across);
+        let hull_facets = sides.filter(|&across| across == NONE).count();
+        Tetrahedralization { vertices, tetrahedra, duplicates, hull_facets, stats: Stats::default() }
+    }
+
     /// The vertices, which are the distinct points, in order along a curve.
     #[inline]
     #[must_use]

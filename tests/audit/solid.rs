@@ -7,6 +7,12 @@ use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamWriter};
 use super::{Verdict, audit};
 use crate::reference::tetrahedra;
 
+/// Two tetrahedra on a triangle, whose apexes see each other through it.
+pub const BIPYRAMID: [[i32; 3]; 5] = [[0, 0, -30], [20, 0, 0], [-10, 17, 0], [-10, -17, 0], [0, 1, 31]];
+
+/// Its Delaunay tetrahedralization.
+pub const TWO: [[usize; 4]; 2] = [[0, 1, 2, 3], [1, 2, 3, 4]];
+
 /// A mesh to be written as a stream: vertex `i` gets the id `i`.
 #[derive(Debug, Clone)]
 pub struct Solid {

@@ -10,7 +10,8 @@ pub fn exact_points(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     points.iter().map(|p| p.map(times_2_1074)).collect()
 }
 
-pub(super) fn times_2_1074(value: f64) -> BigInt {
+/// A finite `f64` times 2^1074, which is an integer.
+pub fn times_2_1074(value: f64) -> BigInt {
     let bits = value.abs().to_bits();
     let exponent = bits >> 52;
     let significand = BigInt::from(bits & 0xf_ffff_ffff_ffff);

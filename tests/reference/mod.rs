@@ -1,10 +1,12 @@
 //! Independent canonical Delaunay triangulations, slow and plain. They share no code with the library.
 
+pub mod clouds;
 pub mod exact;
 pub mod exact3;
 pub mod exhaustive;
 pub mod incremental;
 pub mod sets;
+pub mod space;
 pub mod tetrahedra;
 
 /// A triangle as its vertex indices, counterclockwise, the least first.

@@ -30,8 +30,9 @@ fn centre(points: &[Point]) -> Option<Point> {
         }
         for other in (0..n).filter(|&other| other != i) {
             let factor = rows[other][i] / rows[i][i];
-            for column in i..=n {
-                rows[other][column] -= factor * rows[i][column];
+            let pivot_row = rows[i].clone();
+            for (value, pivot) in rows[other].iter_mut().zip(pivot_row).skip(i) {
+                *value -= factor * pivot;
             }
         }
     }

@@ -58,7 +58,7 @@ pub fn pdb(atoms: &[Record]) -> String {
 pub fn models(models: &[Vec<Record>]) -> String {
     let mut text = String::new();
     for (number, atoms) in (1..).zip(models) {
-        write!(text, "MODEL     {number:>4}\n").unwrap();
+        writeln!(text, "MODEL     {number:>4}").unwrap();
         atoms.iter().for_each(|atom| text += &atom.line());
         text += "ENDMDL\n";
     }

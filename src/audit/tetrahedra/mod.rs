@@ -23,13 +23,13 @@
 //! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is used
 //! again while it is open is reported at once, one that is used again later by its consequences.
 //!
-//! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear function over the
-//! hull that interpolates the lifts is convex across every interior facet, because that is locally Delaunay. Along a
-//! segment between two points of the hull, which lies in it, a function that is convex at each facet crossed is
-//! convex; segments that meet an edge are limits of others. So the function is convex, the graph is the lower hull of
-//! the lifted vertices, and the whole is Delaunay. With perturbed lifts the same argument shows that the tetrahedra
-//! are those of the canonical tetrahedralization, of which there is one only: no five perturbed lifts lie in a
-//! hyperplane if four of the points are not in a plane.
+//! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear function
+//! over the hull that interpolates the lifts is convex across every interior facet, because that is locally Delaunay.
+//! Along a segment between two points of the hull, which lies in it, a function that is convex at each facet crossed
+//! is convex; segments that meet an edge are limits of others. So the function is convex, the graph is the lower hull
+//! of the lifted vertices, and the whole is Delaunay. With perturbed lifts the same argument shows that the
+//! tetrahedra are those of the canonical tetrahedralization, of which there is one only: no five perturbed lifts lie
+//! in a hyperplane if four of the points are not in a plane.
 //!
 //! *Flat parts of the hull.* There the boundary facets are the Delaunay triangulation in their plane, canonical if
 //! the mesh is. This needs no check: the sphere of the tetrahedron at a boundary facet is empty, and so is the circle
