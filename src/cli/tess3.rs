@@ -156,7 +156,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
-    report::print(flags.stats, &stats.stats, started.elapsed());
+    report::print(flags.stats, &stats.stats, &flags.method.method()?, started.elapsed());
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -177,9 +177,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     if input == Path::new("-") {
         refuse_terminal()?;
     }
+    let options = flags.options()?;
     let started = Instant::now();
     let structure = read_structure(input, flags.from.map(Into::into))?;
-    let options = flags.options();
     structure.warnings.iter().for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
@@ -212,7 +212,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         ));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let options = flags.options();
+    let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,
         format: flags.from.map(Into::into),
@@ -254,18 +254,18 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 }
 
 impl Flags {
-    fn options(&self) -> Options {
+    fn options(&self) -> Result<Options> {
         let product = match (self.table, self.contacts) {
             (true, _) => Product::Tetrahedra,
             (_, true) => Product::Contacts,
             _ => Product::Mesh,
         };
-        Options {
+        Ok(Options {
             selection: self.selection.selection(),
             product,
             alpha: self.alpha.clone(),
-            method: self.method.method(),
-        }
+            method: self.method.method()?,
+        })
     }
 
     /// What decides on the content of the outputs.
@@ -274,6 +274,7 @@ impl Flags {
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");
         }
+        text += &self.method.to_string();
         for (flag, name) in [(self.table, " --table"), (self.contacts, " --contacts")] {
             text += if flag { name } else { "" };
         }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::alpha::AlphaComplex;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
-use super::{Options, Product, Report, choice};
+use super::{Arithmetic, Options, Product, Report, choice};
 use crate::bounds::Bounds;
 use crate::delaunay3::Tetrahedralization;
 use crate::error::Result;
@@ -86,11 +86,7 @@ impl Job<'_> {
             (None, selected) => Cow::Borrowed(selected.map_or(&[][..], Selected::points)),
         };
         let mut report = Report::new(name.number, points.len());
-        let mut mesh = Tetrahedralization::default();
-        let mut kernel = self.options.method.kernel();
-        kernel.triangulate(points, &mut mesh)?;
-        report.count(&kernel, &mesh);
-        drop(kernel);
+        let mesh = self.options.method.triangulate(points, &mut report)?;
         report.times.triangulate = started.elapsed();
         let model = Model { name, coordinates: structure.coordinates, selected };
         match (selected, self.options.product) {
@@ -159,8 +155,13 @@ impl Job<'_> {
     }
 
     fn header(&self, coordinates: Coordinates, mesh: &Tetrahedralization, points: u64) -> Header {
-        let alpha = self.options.alpha.as_ref();
-        let alpha = alpha.map_or(String::new(), |radius| format!(", alpha complex of radius {radius}"));
+        let mut producer = format!("tess3 {}", env!("CARGO_PKG_VERSION"));
+        if let Some(radius) = &self.options.alpha {
+            producer += &format!(", alpha complex of radius {radius}");
+        }
+        if self.options.method.arithmetic != Arithmetic::Exact {
+            producer += ", in floating-point arithmetic";
+        }
         Header {
             kind: Kind::TetrahedralMesh,
             coordinates,
@@ -172,7 +173,7 @@ impl Job<'_> {
             region: None,
             chunked: false,
             crs: Crs::Unknown,
-            producer: format!("tess3 {}{alpha}", env!("CARGO_PKG_VERSION")),
+            producer,
         }
     }
 }
