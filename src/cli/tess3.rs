@@ -1,5 +1,6 @@
 //! `tess3`: flags.
 
+mod method;
 mod report;
 mod selection;
 
@@ -17,6 +18,7 @@ use crate::output::Output;
 use crate::source::structure::{Format, Structure, read_structure};
 use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
 use crate::tess3::{self, Options, Product, Radius, Stats};
+use method::MethodFlags;
 use selection::SelectionFlags;
 
 const SUMMARY_NAME: &str = "summary.tsv";
@@ -103,6 +105,9 @@ pub struct Flags {
     #[arg(long, requires = "out_dir")]
     strict: bool,
 
+    #[command(flatten)]
+    method: MethodFlags,
+
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -151,7 +156,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,
     };
-    report::print(flags.stats, &stats.stats, started.elapsed());
+    report::print(flags.stats, &stats.stats, &flags.method.method()?, started.elapsed());
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -172,9 +177,9 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     if input == Path::new("-") {
         refuse_terminal()?;
     }
+    let options = flags.options()?;
     let started = Instant::now();
     let structure = read_structure(input, flags.from.map(Into::into))?;
-    let options = flags.options();
     structure.warnings.iter().for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
@@ -207,7 +212,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
         ));
     }
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let options = flags.options();
+    let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,
         format: flags.from.map(Into::into),
@@ -249,18 +254,18 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
 }
 
 impl Flags {
-    fn options(&self) -> Options {
+    fn options(&self) -> Result<Options> {
         let product = match (self.table, self.contacts) {
             (true, _) => Product::Tetrahedra,
             (_, true) => Product::Contacts,
             _ => Product::Mesh,
         };
-        Options {
+        Ok(Options {
             selection: self.selection.selection(),
             product,
             alpha: self.alpha.clone(),
-            is_timed: self.stats.is_some(),
-        }
+            method: self.method.method()?,
+        })
     }
 
     /// What decides on the content of the outputs.
@@ -269,6 +274,7 @@ impl Flags {
         if let Some(radius) = &self.alpha {
             text += &format!(" --alpha {radius}");
         }
+        text += &self.method.to_string();
         for (flag, name) in [(self.table, " --table"), (self.contacts, " --contacts")] {
             text += if flag { name } else { "" };
         }

@@ -7,6 +7,7 @@
 
 mod build;
 mod complex;
+mod corners;
 mod dispatch;
 mod exact;
 mod extract;
@@ -21,6 +22,7 @@ mod tests;
 mod tetrahedralization;
 mod tie;
 
+pub use corners::{CornerParts, Corners};
 pub use stats::Stats;
 pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
 

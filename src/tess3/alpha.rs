@@ -51,6 +51,12 @@ impl<'m> AlphaComplex<'m> {
         self.tetrahedra[t / 64] >> (t % 64) & 1 == 1
     }
 
+    /// The bits of all tetrahedra: that of tetrahedron `t` is bit `t % 64` of word `t / 64`.
+    #[must_use]
+    pub fn into_bits(self) -> Vec<u64> {
+        self.tetrahedra
+    }
+
     /// Number of tetrahedra of the complex.
     #[must_use]
     pub fn tetrahedra(&self) -> u64 {

@@ -54,9 +54,10 @@ unsafe impl GlobalAlloc for CountingHeap {
 
 /// Does `work`, and says how many bytes more this thread held at a time than before; `None` without [`CountingHeap`].
 pub fn peak_during<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
-    let before = LIVE.get();
+    let (before, outer) = (LIVE.get(), PEAK.get());
     PEAK.set(before);
     let result = work();
-    let peak = PEAK.get() - before;
-    (result, u64::try_from(peak).ok().filter(|&peak| peak > 0))
+    let peak = PEAK.get();
+    PEAK.set(outer.max(peak));
+    (result, u64::try_from(peak - before).ok().filter(|&peak| peak > 0))
 }

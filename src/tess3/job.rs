@@ -7,9 +7,9 @@ use std::time::Instant;
 use super::alpha::AlphaComplex;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
-use super::{Options, Product, Report, choice};
+use super::{Arithmetic, Options, Product, Report, choice};
 use crate::bounds::Bounds;
-use crate::delaunay3::{Kernel, Tetrahedralization};
+use crate::delaunay3::Tetrahedralization;
 use crate::error::Result;
 use crate::output::Output;
 use crate::source::structure::{Models, Selected, Structure};
@@ -86,33 +86,42 @@ impl Job<'_> {
             (None, selected) => Cow::Borrowed(selected.map_or(&[][..], Selected::points)),
         };
         let mut report = Report::new(name.number, points.len());
-        let mut mesh = Tetrahedralization::default();
-        let mut kernel = Kernel::new();
-        kernel.is_timed = self.options.is_timed;
-        kernel.triangulate(points, &mut mesh)?;
-        report.count(&kernel, &mesh);
-        drop(kernel);
+        let mesh = self.options.method.triangulate(points, &mut report)?;
         report.times.triangulate = started.elapsed();
-        let triangulated = Triangulated { name, structure, selected, mesh: &mesh };
-        self.write(&triangulated, &mut report)?;
+        let model = Model { name, coordinates: structure.coordinates, selected };
+        match (selected, self.options.product) {
+            (Some(selected), Product::Tetrahedra | Product::Contacts) => {
+                self.write_table(&model, selected, &mesh, &mut report)?;
+            }
+            _ => self.write_mesh(&model, mesh, &mut report)?,
+        }
         report.times.write = started.elapsed() - report.times.triangulate;
         Ok(report)
     }
 
-    /// Writes the mesh or the rows of a table.
-    fn write(&mut self, triangulated: &Triangulated<'_>, report: &mut Report) -> Result<()> {
-        let Triangulated { structure, mesh, .. } = *triangulated;
-        let scale = scale(&structure.coordinates);
-        let radius = self.options.alpha.as_ref();
-        let alpha = radius.map(|radius| AlphaComplex::new(mesh, radius.in_steps(scale)));
-        let alpha = alpha.as_ref();
-        if let Some(alpha) = alpha {
-            report.tetrahedra = alpha.tetrahedra();
-        }
-        let Some(selected) = triangulated.selected.filter(|_| self.options.product != Product::Mesh) else {
-            return self.write_mesh(triangulated, alpha);
-        };
-        let rows = Rows { number: triangulated.name.number, selected, mesh, alpha, scale };
+    /// The alpha complex that is wanted, if one is.
+    fn alpha<'m>(
+        &self,
+        model: &Model<'_>,
+        mesh: &'m Tetrahedralization,
+        report: &mut Report,
+    ) -> Option<AlphaComplex<'m>> {
+        let radius = self.options.alpha.as_ref()?;
+        let alpha = AlphaComplex::new(mesh, radius.in_steps(model.scale()));
+        report.tetrahedra = alpha.tetrahedra();
+        Some(alpha)
+    }
+
+    fn write_table(
+        &mut self,
+        model: &Model<'_>,
+        selected: &Selected<'_>,
+        mesh: &Tetrahedralization,
+        report: &mut Report,
+    ) -> Result<()> {
+        let alpha = self.alpha(model, mesh, report);
+        let (number, scale) = (model.name.number, model.scale());
+        let rows = Rows { number, selected, mesh, alpha: alpha.as_ref(), scale };
         let is_contacts = self.options.product == Product::Contacts;
         let table = self.table()?;
         if is_contacts { rows.write_contacts(table) } else { rows.write_tetrahedra(table) }
@@ -129,30 +138,30 @@ impl Job<'_> {
         Ok(self.table.as_mut().expect("there is one now"))
     }
 
-    fn write_mesh(
-        &mut self,
-        triangulated: &Triangulated<'_>,
-        alpha: Option<&AlphaComplex<'_>>,
-    ) -> Result<()> {
-        let Triangulated { name, structure, selected, mesh } = *triangulated;
+    fn write_mesh(&mut self, model: &Model<'_>, mesh: Tetrahedralization, report: &mut Report) -> Result<()> {
+        let kept = self.alpha(model, &mesh, report).map(AlphaComplex::into_bits);
         let merged = mesh.duplicates.len() as u64;
         let points = mesh.vertices().len() as u64 + merged;
-        let header = self.header(structure.coordinates, mesh, points);
-        let mut writer = StreamWriter::new((self.open)(Some(name))?, header)?;
-        let label = |v: u32| {
-            let index = mesh.vertices()[v as usize].index;
-            selected.map_or(u64::from(index) + 1, |selected| selected.label(index as usize))
+        let header = self.header(model.coordinates, &mesh, points);
+        let mut writer = StreamWriter::new((self.open)(Some(model.name))?, header)?;
+        let is_kept = |t: usize| kept.as_ref().is_none_or(|bits| bits[t / 64] >> (t % 64) & 1 == 1);
+        let mut corners = mesh.into_corners(is_kept);
+        let label = |index: u32| match model.selected {
+            Some(selected) => selected.label(index as usize),
+            None => u64::from(index) + 1,
         };
-        match alpha {
-            None => write_mesh(&mut writer, mesh, |_| true, label)?,
-            Some(alpha) => write_mesh(&mut writer, mesh, |t| alpha.has_tetrahedron(t), label)?,
-        }
+        write_mesh(&mut writer, &mut corners, label)?;
         writer.end(points, merged)?.commit()
     }
 
     fn header(&self, coordinates: Coordinates, mesh: &Tetrahedralization, points: u64) -> Header {
-        let alpha = self.options.alpha.as_ref();
-        let alpha = alpha.map_or(String::new(), |radius| format!(", alpha complex of radius {radius}"));
+        let mut producer = format!("tess3 {}", env!("CARGO_PKG_VERSION"));
+        if let Some(radius) = &self.options.alpha {
+            producer += &format!(", alpha complex of radius {radius}");
+        }
+        if self.options.method.arithmetic != Arithmetic::Exact {
+            producer += ", in floating-point arithmetic";
+        }
         Header {
             kind: Kind::TetrahedralMesh,
             coordinates,
@@ -164,19 +173,27 @@ impl Job<'_> {
             region: None,
             chunked: false,
             crs: Crs::Unknown,
-            producer: format!("tess3 {}{alpha}", env!("CARGO_PKG_VERSION")),
+            producer,
         }
     }
 }
 
-/// A model with its triangulation.
-#[derive(Clone, Copy)]
-struct Triangulated<'s> {
+/// What is written beside the mesh.
+struct Model<'s> {
     name: ModelName,
-    structure: &'s Structure,
+    coordinates: Coordinates,
     /// The atoms, if they are more than points.
     selected: Option<&'s Selected<'s>>,
-    mesh: &'s Tetrahedralization,
+}
+
+impl Model<'_> {
+    /// World units per stored unit, which is the same for all axes of structures.
+    fn scale(&self) -> f64 {
+        match self.coordinates {
+            Coordinates::F64 => 1.0,
+            Coordinates::I32 { scale, .. } => scale[0],
+        }
+    }
 }
 
 fn bounds(mesh: &Tetrahedralization) -> Option<Bounds> {
@@ -184,12 +201,4 @@ fn bounds(mesh: &Tetrahedralization) -> Option<Bounds> {
     let mut bounds = Bounds::of_point(first.at);
     rest.iter().for_each(|vertex| bounds.extend(vertex.at));
     Some(bounds)
-}
-
-/// World units per stored unit, which is the same for all axes of structures.
-fn scale(coordinates: &Coordinates) -> f64 {
-    match coordinates {
-        Coordinates::F64 => 1.0,
-        Coordinates::I32 { scale, .. } => scale[0],
-    }
 }

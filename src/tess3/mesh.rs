@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::delaunay3::Tetrahedralization;
+use crate::delaunay3::{CornerParts, Corners, Vertex};
 use crate::error::Result;
 use crate::stream::{Patch, StreamWriter};
 
@@ -20,32 +20,36 @@ const NONE: u32 = u32::MAX;
 /// less: they are words of eight per tetrahedron to the kernel.
 const IMPORTED: u32 = 1 << 31;
 
-/// Writes the tetrahedra that `keep` wants, with their vertices and the vertices' labels; then the vertices that are in
-/// none. A vertex comes with its first patch, and is finalized by its last.
+/// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A vertex comes with
+/// its first patch, and is finalized by its last. `label` is told the index of a vertex among the points of the input.
 ///
-/// Memory: 8 bytes per vertex, and a patch.
+/// Memory: 8 bytes per vertex, which are those that the mesh has to spare, and a patch.
 ///
 /// # Errors
 /// If writing fails, or a coordinate does not fit the encoding of the stream.
 pub fn write_mesh<W: Write>(
     writer: &mut StreamWriter<W>,
-    mesh: &Tetrahedralization,
-    keep: impl Fn(usize) -> bool,
+    mesh: &mut Corners,
     label: impl Fn(u32) -> u64,
 ) -> Result<()> {
-    let kept = || mesh.tetrahedra().iter().enumerate().filter(|&(t, _)| keep(t)).map(|(_, t)| &t.vertices);
-    let mut builder = PatchBuilder::new(mesh, label);
-    for (i, vertices) in kept().enumerate() {
-        vertices.iter().for_each(|&v| builder.last_patches[v as usize] = (i / PATCH_TETRAHEDRA) as u32);
-    }
-    for (i, vertices) in kept().enumerate() {
-        if i > 0 && i.is_multiple_of(PATCH_TETRAHEDRA) {
-            builder.close(writer)?;
+    let CornerParts { vertices, tetrahedra, spare } = mesh.parts();
+    let mut own = Vec::new();
+    let words = match spare.get_mut(..2 * vertices.len()) {
+        Some(words) => words,
+        None => {
+            own.resize(2 * vertices.len(), 0);
+            &mut own[..]
         }
-        vertices.iter().for_each(|&v| builder.corner(v));
+    };
+    let mut builder = PatchBuilder::new(vertices, label, words);
+    for (number, corners) in (0..).zip(tetrahedra.chunks(PATCH_TETRAHEDRA)) {
+        corners.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = number);
     }
-    builder.close(writer)?;
-    for v in 0..mesh.vertices().len() as u32 {
+    for corners in tetrahedra.chunks(PATCH_TETRAHEDRA) {
+        corners.as_flattened().iter().for_each(|&v| builder.corner(v));
+        builder.close(writer)?;
+    }
+    for v in 0..vertices.len() as u32 {
         builder.single(v);
         if builder.new.len() == PATCH_VERTICES {
             builder.close(writer)?;
@@ -56,14 +60,14 @@ pub fn write_mesh<W: Write>(
 
 /// Builds one patch after the other.
 struct PatchBuilder<'m, Label> {
-    mesh: &'m Tetrahedralization,
+    vertices: &'m [Vertex],
     label: Label,
-    /// Number of the last patch that uses a vertex.
-    last_patches: Vec<u32>,
+    /// Number of the last patch that uses a vertex; anything as long as there is none.
+    last_patches: &'m mut [u32],
     /// Number of the current patch.
     number: u32,
     /// Id of each vertex, [`NONE`], or [`IMPORTED`] and its place in `imported`.
-    ids: Vec<u32>,
+    ids: &'m mut [u32],
     /// New vertices of the patch.
     new: Vec<u32>,
     /// Ids and vertices that the patch imports, in order of appearance.
@@ -76,15 +80,17 @@ struct PatchBuilder<'m, Label> {
 }
 
 impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
-    fn new(mesh: &'m Tetrahedralization, label: Label) -> Self {
-        let vertices = mesh.vertices().len();
-        assert!(vertices < IMPORTED as usize, "more vertices than the kernel can number");
+    /// Needs two words per vertex.
+    fn new(vertices: &'m [Vertex], label: Label, words: &'m mut [u32]) -> Self {
+        assert!(vertices.len() < IMPORTED as usize, "more vertices than the kernel can number");
+        let (last_patches, ids) = words.split_at_mut(vertices.len());
+        ids.fill(NONE);
         PatchBuilder {
-            mesh,
+            vertices,
             label,
-            last_patches: vec![0; vertices],
+            last_patches,
             number: 0,
-            ids: vec![NONE; vertices],
+            ids,
             new: Vec::new(),
             imported: Vec::new(),
             locals: Vec::new(),
@@ -133,10 +139,10 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         let vertices = self.new.iter().copied().chain(self.imported.iter().map(|&(_, v)| v));
         let is_last = |v: u32| self.last_patches[v as usize] == self.number;
         self.patch.finalized.extend((0..).zip(vertices).filter(|&(_, v)| is_last(v)).map(|(local, _)| local));
-        self.patch.new.extend(self.new.iter().map(|&v| self.mesh.vertices()[v as usize].at));
+        self.patch.new.extend(self.new.iter().map(|&v| self.vertices[v as usize].at));
         self.patch.imported.extend(self.imported.iter().map(|&(id, _)| u64::from(id)));
         writer.patch(&self.patch)?;
-        self.labels.extend(self.new.iter().map(|&v| (self.label)(v)));
+        self.labels.extend(self.new.iter().map(|&v| (self.label)(self.vertices[v as usize].index)));
         if !self.labels.is_empty() {
             writer.labels(&self.labels)?;
         }

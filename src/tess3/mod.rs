@@ -10,6 +10,7 @@ mod exact;
 pub mod heap;
 mod job;
 mod mesh;
+mod method;
 mod names;
 mod number;
 mod radius;
@@ -20,12 +21,12 @@ mod tables;
 pub use alpha::AlphaComplex;
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
+pub use method::{Arithmetic, Method};
 pub use radius::Radius;
 pub use spheres::{Measure, measure};
 
 use std::time::Duration;
 
-use crate::delaunay3::{Kernel, Tetrahedralization};
 use crate::predicates::PredicateCounts;
 use crate::source::structure::Selection;
 
@@ -49,8 +50,8 @@ pub struct Options {
     pub product: Product,
     /// Write only simplices of the alpha complex with this radius, in world units.
     pub alpha: Option<Radius>,
-    /// Measure the parts of insertions, too, which takes some time itself.
-    pub is_timed: bool,
+    /// How the kernel is to go about it.
+    pub method: Method,
 }
 
 /// What was done with one model.
@@ -68,10 +69,14 @@ pub struct Report {
     pub hull_facets: u64,
     /// Tetrahedra that the kernel made, infinite ones included; most of them did not last.
     pub created: u64,
-    /// Greatest number of bytes that the kernel and its result held at once.
+    /// In-sphere tests of the search for cavities.
+    pub in_sphere_tests: u64,
+    /// Most bytes that the kernel and its result held at a time, the points of the input included; 0 if not known.
     pub kernel_bytes: u64,
-    /// Decisions of the predicates.
+    /// Decisions of the predicates, if they are exact.
     pub predicates: PredicateCounts,
+    /// What went wrong, if they are not.
+    pub rounding: Rounding,
     /// Time.
     pub times: Times,
 }
@@ -81,20 +86,29 @@ impl Report {
     fn new(model: i64, atoms: usize) -> Self {
         Report { model, atoms: atoms as u64, ..Report::default() }
     }
+}
 
-    /// Takes over what the kernel has to say.
-    fn count(&mut self, kernel: &Kernel, mesh: &Tetrahedralization) {
-        let stats = mesh.stats;
-        self.vertices = mesh.vertices().len() as u64;
-        self.tetrahedra = mesh.tetrahedra().len() as u64;
-        self.hull_facets = mesh.hull_facets as u64;
-        self.created = stats.created;
-        self.kernel_bytes = stats.bytes;
-        self.predicates = *kernel.counts();
-        self.times.order = stats.order;
-        self.times.locate = stats.locate;
-        self.times.cavity = stats.cavity;
-        self.times.update = stats.update;
+/// What rounding did to a triangulation in floating-point arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rounding {
+    /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known only if
+    /// signs are checked.
+    pub wrong_signs: u64,
+    /// In-sphere tests whose exact value is zero, and the computed one is not.
+    pub wrong_zeros: u64,
+    /// In-sphere tests whose value was not the exact one.
+    pub rounded: u64,
+    /// Distinct points that are in no tetrahedron.
+    pub missing: u64,
+}
+
+impl Rounding {
+    fn add(&mut self, other: &Rounding) {
+        let Rounding { wrong_signs, wrong_zeros, rounded, missing } = self;
+        *wrong_signs += other.wrong_signs;
+        *wrong_zeros += other.wrong_zeros;
+        *rounded += other.rounded;
+        *missing += other.missing;
     }
 }
 
@@ -111,7 +125,7 @@ pub struct Times {
     /// putting new tetrahedra in their place.
     pub locate: Duration,
     /// See `locate`.
-    pub cavity: Duration,
+    pub predicates: Duration,
     /// See `locate`.
     pub update: Duration,
     /// Measuring, formatting and writing.
@@ -126,12 +140,12 @@ impl Times {
     }
 
     fn add(&mut self, other: &Times) {
-        let Times { read, triangulate, order, locate, cavity, update, write } = self;
+        let Times { read, triangulate, order, locate, predicates, update, write } = self;
         *read += other.read;
         *triangulate += other.triangulate;
         *order += other.order;
         *locate += other.locate;
-        *cavity += other.cavity;
+        *predicates += other.predicates;
         *update += other.update;
         *write += other.write;
     }
@@ -159,8 +173,10 @@ impl Stats {
         sums.tetrahedra += report.tetrahedra;
         sums.hull_facets += report.hull_facets;
         sums.created += report.created;
+        sums.in_sphere_tests += report.in_sphere_tests;
         sums.kernel_bytes = report.kernel_bytes.max(sums.kernel_bytes);
         sums.predicates.merge(&report.predicates);
+        sums.rounding.add(&report.rounding);
         sums.times.add(&report.times);
     }
 }

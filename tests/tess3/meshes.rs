@@ -14,6 +14,8 @@ pub struct Mesh {
     pub tetrahedra: Vec<[usize; 4]>,
     pub merged: u64,
     pub patches: usize,
+    /// Most vertices that are live at a time.
+    pub width: usize,
     pub producer: String,
 }
 
@@ -31,9 +33,11 @@ impl Mesh {
             tetrahedra: Vec::new(),
             merged: 0,
             patches: 0,
+            width: 0,
             producer: header.producer,
         };
         let mut is_final: Vec<bool> = Vec::new();
+        let mut live = 0;
         while let Some(event) = reader.next_event().unwrap() {
             match event {
                 Event::Patch(patch) => {
@@ -45,6 +49,9 @@ impl Mesh {
                         assert!(ids.iter().all(|&id| !is_final[id]));
                         mesh.tetrahedra.push(ids);
                     }
+                    live += patch.new.len();
+                    mesh.width = mesh.width.max(live);
+                    live -= patch.finalized.len();
                     for &local in &patch.finalized {
                         let id = patch.id(local) as usize;
                         assert!(!std::mem::replace(&mut is_final[id], true));
@@ -226,9 +233,12 @@ fn flat_structures_are_all_vertices_with_a_notice() {
 
 #[test]
 fn long_meshes_come_in_patches() {
-    let mesh = mesh_of(&pdb(&cloud(4_000, 30_000, 5)), &[]);
-    assert!(mesh.patches > 2, "{} patches", mesh.patches);
-    assert_eq!(mesh.points.len() as u64 + mesh.merged, 4_000);
+    let text: String = cloud(30_000, 90_000, 5).iter().map(|atom| format!("{:?}\n", atom.at)).collect();
+    let mesh = mesh_of(&text.replace(['[', ']'], ""), &["--sequence", "rounds"]);
+    assert_eq!(mesh.points.len() as u64 + mesh.merged, 30_000);
+    assert!(mesh.patches > 20, "{} patches", mesh.patches);
+    // Along the curve few vertices are in use at a time.
+    assert!(mesh.width < 12_000, "{} live vertices", mesh.width);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use crate::cli::{StatsFormat, peak_memory, say};
-use crate::tess3::{Report, Stats};
+use crate::tess3::{Arithmetic, Method, Report, Stats};
 
 /// What the user should know of a model: nothing, mostly.
 pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
@@ -14,6 +14,11 @@ pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
         let verb = if merged == 1 { "coincides" } else { "coincide" };
         texts.push(format!("{which}{merged} of {} points {verb} with an earlier one", report.atoms));
     }
+    let missing = report.rounding.missing;
+    if missing > 0 && report.hull_facets > 0 {
+        let message = "points are in no tetrahedron: rounding in floating-point arithmetic left them out";
+        texts.push(format!("{which}{missing} of {} {message}", report.vertices));
+    }
     if report.hull_facets == 0 {
         let reason =
             if report.vertices < 4 { "fewer than four different points" } else { "all points in a plane" };
@@ -23,36 +28,40 @@ pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
 }
 
 /// Prints what `--stats` asks for.
-pub(super) fn print(format: Option<StatsFormat>, stats: &Stats, elapsed: Duration) {
+pub(super) fn print(format: Option<StatsFormat>, stats: &Stats, method: &Method, elapsed: Duration) {
     match format {
-        Some(StatsFormat::Text) => say(&text(stats, elapsed)),
-        Some(StatsFormat::Json) => say(&format!("{}\n", json(stats, elapsed))),
+        Some(StatsFormat::Text) => say(&text(stats, method, elapsed)),
+        Some(StatsFormat::Json) => say(&format!("{}\n", json(stats, method, elapsed))),
         None => {}
     }
 }
 
-/// Times in seconds: a label for people, a key for programs, the value. With the counts these are the columns of
-/// thesis table 3.3.
-fn times(stats: &Stats, elapsed: Duration) -> [(&'static str, &'static str, f64); 8] {
+/// A label for people, a key for programs, the value.
+type Row<T> = (&'static str, &'static str, T);
+
+/// Times in seconds. With the counts these are the columns of thesis table 3.3, as far as they were measured.
+fn times(stats: &Stats, elapsed: Duration) -> Vec<Row<f64>> {
     let times = stats.sums.times;
-    let seconds = |time: Duration| time.as_secs_f64();
-    [
-        ("time (s)", "seconds", seconds(elapsed)),
-        ("reading (s)", "seconds_read", seconds(times.read)),
-        ("triangulating (s)", "seconds_triangulate", seconds(times.triangulate)),
-        ("  ordering (s)", "seconds_order", seconds(times.order)),
-        ("  point location (s)", "seconds_locate", seconds(times.locate)),
-        ("  cavities: predicates (s)", "seconds_predicates", seconds(times.cavity)),
-        ("  cavities: update (s)", "seconds_update", seconds(times.update)),
-        ("writing (s)", "seconds_write", seconds(times.write)),
-    ]
+    let rows = [
+        ("time (s)", "seconds", Some(elapsed)),
+        ("reading (s)", "seconds_read", Some(times.read)),
+        ("triangulating (s)", "seconds_triangulate", Some(times.triangulate)),
+        ("  ordering (s)", "seconds_order", Some(times.order)),
+        ("  point location (s)", "seconds_locate", measured(times.locate)),
+        ("  predicates (s)", "seconds_predicates", measured(times.predicates)),
+        ("  update (s)", "seconds_update", measured(times.update)),
+        ("writing (s)", "seconds_write", Some(times.write)),
+    ];
+    rows.into_iter().filter_map(|(label, key, time)| Some((label, key, time?.as_secs_f64()))).collect()
 }
 
-/// Counts: a label for people, a key for programs, the value.
-fn counts(stats: &Stats) -> [(&'static str, &'static str, u64); 14] {
+fn measured(time: Duration) -> Option<Duration> {
+    (time > Duration::ZERO).then_some(time)
+}
+
+fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
     let Stats { models, sums, atoms_max } = stats;
-    let predicates = sums.predicates;
-    [
+    let mut rows = vec![
         ("models", "models", *models),
         ("points", "points", sums.atoms),
         ("points of the largest model", "points_max", *atoms_max),
@@ -60,14 +69,32 @@ fn counts(stats: &Stats) -> [(&'static str, &'static str, u64); 14] {
         ("tetrahedra", "tetrahedra", sums.tetrahedra),
         ("facets of the hull", "hull_facets", sums.hull_facets),
         ("tetrahedra created", "tetrahedra_created", sums.created),
+        ("in-sphere tests", "in_sphere_tests", sums.in_sphere_tests),
         ("kernel memory (bytes)", "kernel_bytes", sums.kernel_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
-        ("predicates: filter", "predicates_filter", predicates.filter),
-        ("predicates: integer", "predicates_integer", predicates.integer),
-        ("predicates: expansion", "predicates_expansion", predicates.expansion),
-        ("predicates: big integer", "predicates_bigint", predicates.bigint),
-        ("predicates: ties broken", "predicates_perturbed", predicates.perturbed),
-    ]
+        ("seed", "seed", method.seed),
+    ];
+    let (predicates, rounding) = (sums.predicates, sums.rounding);
+    match method.arithmetic {
+        Arithmetic::Exact => rows.extend([
+            ("predicates: filter", "predicates_filter", predicates.filter),
+            ("predicates: integer", "predicates_integer", predicates.integer),
+            ("predicates: expansion", "predicates_expansion", predicates.expansion),
+            ("predicates: big integer", "predicates_bigint", predicates.bigint),
+            ("predicates: ties broken", "predicates_perturbed", predicates.perturbed),
+        ]),
+        Arithmetic::Float { check_signs } => {
+            rows.push(("points in no tetrahedron", "missing", rounding.missing));
+            if check_signs {
+                rows.extend([
+                    ("in-sphere: wrong signs", "wrong_signs", rounding.wrong_signs),
+                    ("in-sphere: zeros not seen", "wrong_zeros", rounding.wrong_zeros),
+                    ("in-sphere: rounded values", "rounded", rounding.rounded),
+                ]);
+            }
+        }
+    }
+    rows
 }
 
 /// Bytes that the kernel held per point, of the model that took most.
@@ -75,22 +102,22 @@ fn bytes_per_point(stats: &Stats) -> f64 {
     stats.sums.kernel_bytes as f64 / stats.atoms_max.max(1) as f64
 }
 
-fn text(stats: &Stats, elapsed: Duration) -> String {
+fn text(stats: &Stats, method: &Method, elapsed: Duration) -> String {
     let mut text = String::new();
     for (label, _, seconds) in times(stats, elapsed) {
         text += &format!("{label:<30} {seconds:>15.3}\n");
     }
-    for (label, _, count) in counts(stats) {
+    for (label, _, count) in counts(stats, method) {
         text += &format!("{label:<30} {count:>15}\n");
     }
     text + &format!("{:<30} {:>15.1}\n", "kernel bytes per point", bytes_per_point(stats))
 }
 
-fn json(stats: &Stats, elapsed: Duration) -> String {
+fn json(stats: &Stats, method: &Method, elapsed: Duration) -> String {
     let mut object = serde_json::Map::new();
     object
         .extend(times(stats, elapsed).into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
-    object.extend(counts(stats).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
+    object.extend(counts(stats, method).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
     object.insert("kernel_bytes_per_point".into(), bytes_per_point(stats).into());
     serde_json::Value::Object(object).to_string()
 }
