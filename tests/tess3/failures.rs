@@ -63,7 +63,7 @@ fn damaged_input_is_named_and_leaves_nothing() {
 #[test]
 fn a_closed_pipe_is_silent() {
     let folder = Folder::new();
-    let file = folder.write("a.xyz", scattered(20_000));
+    let file = folder.write("a.xyz", scattered(60_000));
     for product in ["--table", "--contacts", "--alpha=100"] {
         let mut child = start("tess3", &["-q", product, &file], Stdio::null());
         let mut head = [0; 100];

@@ -38,10 +38,12 @@ impl Mesh {
         };
         let mut is_final: Vec<bool> = Vec::new();
         let mut live = 0;
+        let mut stored: Vec<[f64; 3]> = Vec::new();
         while let Some(event) = reader.next_event().unwrap() {
             match event {
                 Event::Patch(patch) => {
                     mesh.patches += 1;
+                    stored.extend(&patch.new);
                     mesh.points.extend(patch.new.iter().map(|point| point.map(|value| value as i64)));
                     is_final.resize(mesh.points.len(), false);
                     for tetrahedron in patch.tetrahedra() {
@@ -66,7 +68,7 @@ impl Mesh {
         assert_eq!(mesh.labels.len(), mesh.points.len());
         if let Some(bounds) = header.bounds {
             for axis in 0..3 {
-                let values = || mesh.points.iter().map(|point| point[axis] as f64);
+                let values = || stored.iter().map(|point| point[axis]);
                 assert_eq!(values().fold(f64::INFINITY, f64::min), bounds.min[axis]);
                 assert_eq!(values().fold(f64::NEG_INFINITY, f64::max), bounds.max[axis]);
             }
