@@ -126,7 +126,7 @@ pub struct Seconds {
 ///
 /// Errors: a coordinate that is not finite, too many points or tetrahedra.
 ///
-/// Cost: O(n) for points that are spread evenly, apart from the sort. About 620 bytes per point.
+/// Cost: O(n) for points that are spread evenly, apart from the sort; 580 to 730 bytes per point, 310 to 390 if spheres are not kept.
 pub fn triangulate(points: &[Point3], options: &Options) -> Result<(Tetrahedralization, Stats)> {
     if points.len() > MAX_POINTS {
         return Err(Error::usage(format!(
