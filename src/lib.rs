@@ -8,6 +8,7 @@ pub mod bounds;
 pub mod cell_grid;
 mod cell_index;
 pub mod cells;
+pub mod cells4;
 pub mod cli;
 pub mod convert;
 pub mod delaunay2;
