@@ -20,6 +20,7 @@ pub mod limits;
 pub mod order;
 pub mod output;
 pub mod predicates;
+mod random;
 pub mod reduce;
 pub mod sink;
 pub mod source;

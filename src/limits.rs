@@ -24,3 +24,24 @@ pub const QUADTREE_DEPTH_MAX: u8 = 31;
 
 /// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
 pub const OCTREE_DEPTH_MAX: u8 = 20;
+
+/// Most points of four dimensions that are read: 10 GB with values. A diagram of them needs a hundred times as much.
+pub const POINTS4_MAX: u64 = 1 << 28;
+
+/// Most sites of a grid of four dimensions, of which points are chosen: going over them takes hours.
+pub const SITES4_MAX: u64 = 1 << 40;
+
+/// Longest header of an NRRD file, in bytes.
+pub const NRRD_HEADER_MAX: u64 = 1 << 20;
+
+/// Most data files of an NRRD file.
+pub const NRRD_FILES_MAX: usize = 1 << 16;
+
+/// Longest number of a volume that is text, in bytes.
+pub const VOLUME_NUMBER_MAX: usize = 128;
+
+/// Longest condition on points, in bytes.
+pub const CONDITION_LEN_MAX: usize = 1 << 12;
+
+/// Deepest parentheses of a condition.
+pub const CONDITION_DEPTH_MAX: usize = 32;

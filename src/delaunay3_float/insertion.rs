@@ -3,12 +3,12 @@
 use super::cavity::Cavity;
 use super::laps::{Laps, Part};
 use super::mesh::{Cell, MAX_TETRAHEDRA, Mesh, corner_of, facet, faraway_corner, tetrahedron_of};
-use super::random::Random;
 use super::star::Star;
 use super::{Options, Stats};
 use crate::delaunay3::{Tetrahedron, Vertex};
 use crate::error::{Error, ErrorKind, Result};
 use crate::order::Insertions;
+use crate::random::Random;
 use std::time::Instant;
 
 /// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run endless.

@@ -17,7 +17,6 @@ mod insertion;
 mod laps;
 mod locate;
 mod mesh;
-mod random;
 mod sequence;
 mod sphere;
 mod star;

@@ -31,6 +31,10 @@ impl ByteOrder {
         bytes
     }
 
+    pub(super) fn u16(self, bytes: &[u8]) -> u16 {
+        u16::from_le_bytes(self.little(bytes))
+    }
+
     pub(super) fn u32(self, bytes: &[u8]) -> u32 {
         u32::from_le_bytes(self.little(bytes))
     }

@@ -13,7 +13,7 @@ use crate::stream::{Coordinates, Crs};
 
 /// What separates the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Delimiter {
+pub(super) enum Delimiter {
     WhiteSpace,
     Byte(u8),
 }
@@ -120,7 +120,7 @@ fn named_axes<Name: AsRef<[u8]>>(names: &[Name]) -> Option<Vec<usize>> {
 }
 
 /// The line up to a `#`, or nothing if it starts with `//`.
-fn without_comment(line: &[u8]) -> &[u8] {
+pub(super) fn without_comment(line: &[u8]) -> &[u8] {
     if line.starts_with(b"//") {
         return &[];
     }
@@ -128,7 +128,7 @@ fn without_comment(line: &[u8]) -> &[u8] {
     line[..end].trim_ascii_end()
 }
 
-fn delimiter_of(line: &[u8]) -> Delimiter {
+pub(super) fn delimiter_of(line: &[u8]) -> Delimiter {
     let is_number = |word: &[u8]| number(word).is_some();
     if let Some(&byte) = [b';', b','].iter().find(|byte| line.contains(byte)) {
         return Delimiter::Byte(byte);
@@ -138,7 +138,7 @@ fn delimiter_of(line: &[u8]) -> Delimiter {
     if line.contains(&b'\t') && !has_numbers { Delimiter::Byte(b'\t') } else { Delimiter::WhiteSpace }
 }
 
-fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = &[u8]> {
+pub(super) fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = &[u8]> {
     let is_white_space = delimiter == Delimiter::WhiteSpace;
     line.split(move |&byte| match delimiter {
         Delimiter::WhiteSpace => byte.is_ascii_whitespace(),

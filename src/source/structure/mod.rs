@@ -9,7 +9,6 @@ mod cif;
 mod conformers;
 mod decimal;
 mod detect;
-mod gzip;
 mod mmcif;
 mod model;
 mod names;
@@ -28,7 +27,7 @@ pub use names::{Name, Names};
 pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;
-use self::gzip::Plain;
+use super::gzip::Plain;
 use super::statements::Lines;
 use super::{open_obj, open_ply};
 use crate::error::{Error, Result};

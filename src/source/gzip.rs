@@ -50,7 +50,7 @@ pub(super) struct Gunzip<R> {
 }
 
 impl<R: Read> Gunzip<R> {
-    fn new(input: R) -> Self {
+    pub(super) fn new(input: R) -> Self {
         let input = Counted { input, bytes: 0, failed: false };
         Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
     }

@@ -1,0 +1,5 @@
+//! `dd4`: flags.
+
+mod source;
+
+pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};

@@ -1,0 +1,132 @@
+//! Flags that say where points come from, and which of them are wanted.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::open_input;
+use crate::error::{Error, Result};
+use crate::source::points4::{
+    Condition, From4, Points4, RawLayout, Request, Selection, Share, Spacing, parse_sizes, read_points4,
+};
+
+/// Examples for the end of the help.
+pub const EXAMPLES: &str = "\
+  Two fifths of the points of a grid of 16 sites along each axis, always the same ones:
+    dd4 --grid 16x16x16x16 --sample 0.4 --seed 7 -o grid.spm
+  Where a series of volumes is brighter than 0.3, in its second half:
+    dd4 heart.nrrd --where 'value > 0.3 and t >= 10' -o heart.spm
+  100,000 of those points; values without a header, 20 time steps of 64 x 64 x 64:
+    dd4 heart.raw --raw 64x64x64x20:f32le --where 'value > 0.3' --count 100000 -o heart.spm";
+
+/// Where points come from, and which of them are wanted.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Points")]
+pub struct SourceFlags {
+    /// Points or a volume, plain or compressed (.gz); - is stdin. Lines of x y z t, or of x y z t value; NRRD (.nrrd,
+    /// .nhdr) or NIfTI-1 (.nii) of three dimensions and time
+    #[arg(value_name = "FILE", help_heading = None)]
+    input: Option<PathBuf>,
+
+    /// A full grid of so many points along x, y, z and t, instead of a file; coordinates start at 0
+    #[arg(long, value_name = "XxYxZxT", conflicts_with_all = ["input", "raw"], value_parser = parse_sizes)]
+    grid: Option<[u64; 4]>,
+
+    /// The file holds nothing but the values of a volume, x fastest: sizes, and a type of i8, u8, i16, u16, i32, u32,
+    /// i64, u64, f32 or f64 with its byte order, as in 64x64x64x20:f32le
+    #[arg(long, value_name = "XxYxZxT:TYPE", requires = "input")]
+    raw: Option<RawLayout>,
+
+    /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and rounded; the
+    /// axes must be those of the world
+    #[arg(long, value_enum, default_value_t = SpacingFlag::Index, value_name = "index|world", hide_possible_values = true)]
+    spacing: SpacingFlag,
+
+    /// Only points that fulfil a condition: <, <=, >, >=, == or != between numbers and value, x, y, z, t, joined by and,
+    /// or, and parentheses
+    #[arg(long = "where", value_name = "CONDITION")]
+    condition: Option<Condition>,
+
+    /// Keep points whose value is missing (NaN); no comparison with that is true
+    #[arg(long)]
+    keep_nan: bool,
+
+    /// Only this part of the points, between 0 and 1, chosen at random; the number is rounded
+    #[arg(long, value_name = "SHARE", conflicts_with = "count", value_parser = parse_share)]
+    sample: Option<f64>,
+
+    /// Only so many of the points, chosen at random
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    count: Option<u64>,
+
+    /// Seed of --sample and --count: the same points are chosen again with the same one
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+/// What `--spacing` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SpacingFlag {
+    /// Grid indices
+    Index,
+    /// World units
+    World,
+}
+
+impl SourceFlags {
+    /// Reads the points that are asked for.
+    ///
+    /// # Errors
+    /// As [`read_points4`]; usage, if nothing is asked for, or stdin is a terminal.
+    pub fn read(&self) -> Result<Points4> {
+        read_points4(&self.request()?)
+    }
+
+    fn request(&self) -> Result<Request> {
+        let from = match (&self.input, self.grid, self.raw) {
+            (_, Some(lens), _) => From4::Grid(lens),
+            (Some(path), _, Some(layout)) => From4::Raw(path.clone(), layout),
+            (Some(path), _, None) => From4::File(path.clone()),
+            (None, None, _) => {
+                return Err(Error::usage("no input: give a file, - for stdin, or --grid (see --help)"));
+            }
+        };
+        if let From4::File(path) | From4::Raw(path, _) = &from
+            && path.as_os_str() == "-"
+        {
+            open_input(path)?;
+        }
+        let share = self.sample.map(Share::Part).or(self.count.map(Share::Count));
+        let spacing = match self.spacing {
+            SpacingFlag::Index => Spacing::Index,
+            SpacingFlag::World => Spacing::World,
+        };
+        let condition = self.condition.clone();
+        let selection = Selection { condition, keep_nan: self.keep_nan, share, seed: self.seed };
+        Ok(Request { from, spacing, selection, temp_dir: None })
+    }
+}
+
+/// The flags as they could be given, but for the file.
+impl fmt::Display for SourceFlags {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut flags = Vec::new();
+        flags.extend(self.grid.map(|[x, y, z, t]| format!("--grid {x}x{y}x{z}x{t}")));
+        flags.extend(self.raw.map(|layout| format!("--raw {layout}")));
+        flags.extend((self.spacing == SpacingFlag::World).then(|| "--spacing world".to_string()));
+        flags.extend(self.condition.as_ref().map(|condition| format!("--where '{condition}'")));
+        flags.extend(self.keep_nan.then(|| "--keep-nan".to_string()));
+        if let Some(share) = self.sample.map(Share::Part).or(self.count.map(Share::Count)) {
+            flags.push(format!("{share} --seed {}", self.seed));
+        }
+        f.write_str(&flags.join(" "))
+    }
+}
+
+fn parse_share(text: &str) -> std::result::Result<f64, String> {
+    let share = text.parse().ok().filter(|share| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| {
+        format!("{text:?} is not a share above 0 and up to 1; for a number of points use --count")
+    })
+}
