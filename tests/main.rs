@@ -15,6 +15,7 @@ mod kernel_predicates3;
 mod order;
 mod output;
 mod pipelines;
+mod points4;
 mod programs;
 mod reduction;
 mod reference;

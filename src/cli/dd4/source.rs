@@ -130,3 +130,68 @@ fn parse_share(text: &str) -> std::result::Result<f64, String> {
         format!("{text:?} is not a share above 0 and up to 1; for a number of points use --count")
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Debug, Parser)]
+    struct Flags {
+        #[command(flatten)]
+        source: SourceFlags,
+    }
+
+    fn flags(arguments: &[&str]) -> std::result::Result<SourceFlags, clap::Error> {
+        let program = std::iter::once(&"dd4");
+        Flags::try_parse_from(program.chain(arguments)).map(|flags| flags.source)
+    }
+
+    #[test]
+    fn flags_are_read_and_written() {
+        for text in [
+            "",
+            "--grid 16x16x16x16 --sample 0.4 --seed 7",
+            "--raw 64x64x64x20:f32le --where 'value>0.3' --keep-nan --count 100000 --seed 1",
+            "--spacing world",
+        ] {
+            let mut arguments: Vec<String> =
+                text.split_whitespace().map(|word| word.replace('\'', "")).collect();
+            if !text.starts_with("--grid") {
+                arguments.push("volume".to_string());
+            }
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            assert_eq!(flags(&arguments).unwrap().to_string(), text);
+        }
+    }
+
+    #[test]
+    fn the_points_of_a_grid_are_made() {
+        let points = flags(&["--grid", "4x4x4x4", "--sample", "0.4", "--seed", "7"]).unwrap().read().unwrap();
+        assert_eq!(points.points.len(), 102);
+        assert_eq!(points.name, "grid 4x4x4x4");
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_refused() {
+        let cases: [(&[&str], &str); 11] = [
+            (&["--grid", "4x4x4x4", "points.txt"], "cannot be used"),
+            (&["--raw", "4x4x4x4:u8"], "FILE"),
+            (&["--grid", "4x4x4"], "16x16x16x16"),
+            (&["a", "--sample", "0.5", "--count", "5"], "cannot be used"),
+            (&["a", "--sample", "0"], "use --count"),
+            (&["a", "--sample", "1.5"], "use --count"),
+            (&["a", "--sample", "nan"], "use --count"),
+            (&["a", "--count", "0"], "0 is not in"),
+            (&["a", "--where", "value >"], "column 8"),
+            (&["a", "--raw", "4x4x4x4:f32"], "f32le"),
+            (&["a", "--spacing", "metric"], "metric"),
+        ];
+        for (arguments, part) in cases {
+            let error = flags(arguments).unwrap_err().to_string();
+            assert!(error.contains(part), "{arguments:?}: {error}");
+        }
+        assert!(flags(&[]).unwrap().read().unwrap_err().to_string().contains("no input"));
+    }
+}

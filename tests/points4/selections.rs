@@ -1,0 +1,59 @@
+//! Points of volumes that are chosen by their values and at random.
+
+use spmesh::source::points4::{From4, Share, read_points4};
+
+use super::{Folder, all, with_condition};
+
+/// A raw volume of 8 x 8 x 8 x 4 values that grow with their number; every tenth is missing.
+fn volume(folder: &Folder) -> From4 {
+    let value = |number: u32| if number % 10 == 9 { f32::NAN } else { number as f32 / 2048.0 };
+    let bytes: Vec<u8> = (0..2048).flat_map(|number| value(number).to_le_bytes()).collect();
+    From4::Raw(folder.file("volume.raw", bytes), "8x8x8x4:f32le".parse().expect("a layout"))
+}
+
+#[test]
+fn values_decide_and_go_with_their_points() {
+    let folder = Folder::new();
+    let points = read_points4(&with_condition(volume(&folder), "value >= 0.5 and x != 3")).unwrap();
+    let values = points.values.unwrap();
+    // Of 1024 numbers 102 end with 9; an eighth has x = 3, of which 25 end with 9 (1059 and every 40th).
+    assert_eq!((points.points.len(), values.len()), (1024 - 102 - (128 - 25), 819));
+    for ([x, y, z, t], value) in points.points.iter().zip(values) {
+        assert_eq!((x + 8.0 * (y + 8.0 * (z + 8.0 * t))) / 2048.0, value);
+        assert!(value >= 0.5 && *x != 3.0);
+    }
+    assert_eq!(points.warnings, ["204 of 2048 points have no value (NaN) and are left out"]);
+}
+
+#[test]
+fn a_share_is_one_of_the_points_that_fulfil_the_condition() {
+    let folder = Folder::new();
+    let mut request = with_condition(volume(&folder), "value >= 0.5");
+    let whole = read_points4(&request).unwrap();
+    assert_eq!(whole.points.len(), 922);
+    request.selection.share = Some(Share::Part(0.25));
+    request.selection.seed = 5;
+    let part = read_points4(&request).unwrap();
+    assert_eq!(part.points.len(), 231);
+    assert_eq!(part, read_points4(&request).unwrap());
+    assert!(part.points.iter().all(|point| whole.points.contains(point)));
+    assert!(part.values.as_ref().unwrap().iter().all(|&value| value >= 0.5));
+    request.selection.share = Some(Share::Count(922));
+    assert_eq!(read_points4(&request).unwrap().points, whole.points);
+    request.selection.share = Some(Share::Count(923));
+    assert!(read_points4(&request).is_err());
+}
+
+#[test]
+fn a_volume_and_a_grid_of_its_size_give_the_same_choice() {
+    let folder = Folder::new();
+    let raw = From4::Raw(folder.file("volume.raw", vec![0; 2048]), "8x8x8x4:u8".parse().unwrap());
+    let [raw, grid] = [raw, From4::Grid([8, 8, 8, 4])].map(|from| {
+        let mut request = all(from);
+        request.selection.share = Some(Share::Part(0.1));
+        request.selection.seed = 9;
+        read_points4(&request).unwrap().points
+    });
+    assert_eq!(raw.len(), 205);
+    assert_eq!(raw, grid);
+}
