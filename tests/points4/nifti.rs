@@ -129,7 +129,7 @@ fn world_units_follow_sform_then_qform_then_the_distances() {
         &["axes of the world", "grid indices"],
     );
     let quarter = Header::new(false).with(252, 1i16.to_le_bytes()).with(264, 0.5f32.to_le_bytes());
-    assert_fails(last(quarter).map(|_| unreachable!()), ErrorKind::Usage, &["axes of the world"]);
+    assert_fails(read_world(&quarter.file()), ErrorKind::Usage, &["axes of the world"]);
     let flat = Header::new(false).with(80, 0f32.to_le_bytes());
     assert_fails(read_world(&flat.file()), ErrorKind::Usage, &["apart"]);
 }
