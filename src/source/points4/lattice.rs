@@ -62,8 +62,16 @@ impl Lattice {
     }
 
     /// Puts the sites elsewhere.
-    pub(super) fn place(&mut self, frame: Frame) {
+    ///
+    /// # Errors
+    /// Usage, if one of them would be at infinity.
+    pub(super) fn place(&mut self, frame: Frame) -> Result<()> {
         self.frame = frame;
+        if self.largest().iter().all(|largest| largest.is_finite()) {
+            return Ok(());
+        }
+        let Frame { mins, steps } = frame;
+        Err(Error::usage(format!("sites {steps:?} apart, starting at {mins:?}, go beyond all numbers")))
     }
 
     /// Where the site of this number is.
@@ -102,19 +110,33 @@ impl Lattice {
         point
     }
 
-    /// Whether the coordinates of one of `points`, which are sites, are not exactly where its indices are.
-    pub(super) fn rounds(&self, points: &[Point4]) -> bool {
+    /// The largest size of a coordinate, for each of them.
+    fn largest(&self) -> [f64; 4] {
         let Frame { mins, steps } = &self.frame;
-        let is_rounded = |axis: usize, coordinate: f64| {
-            let [min, step] = [mins[axis], steps[axis]];
-            let index = ((coordinate - min) / step).round();
-            let offset = index * step;
-            // What is lost by the product, and by the sum (Knuth's two-sum).
-            let sum = min + offset;
-            let min_part = sum - offset;
-            index.mul_add(step, -offset) != 0.0 || (min - min_part) + (offset - (sum - min_part)) != 0.0
-        };
-        points.iter().any(|point| (0..4).any(|axis| is_rounded(axis, point[axis])))
+        let mut largest = [0.0; 4];
+        for (len, at) in self.lens.into_iter().zip(self.coordinates) {
+            largest[at] = mins[at].abs() + (len - 1) as f64 * steps[at].abs();
+        }
+        largest
+    }
+
+    /// Whether every coordinate is exactly `min + index * step`: both are multiples of a power of two that no coordinate
+    /// has more than 2^53 of.
+    pub(super) fn is_exact(&self) -> bool {
+        let Frame { mins, steps } = &self.frame;
+        let largest = self.largest();
+        (0..4).all(|at| largest[at] < lowest_bit(mins[at]).min(lowest_bit(steps[at])) * (1u64 << 53) as f64)
+    }
+}
+
+/// The value of the lowest bit of a number; infinite for 0.
+fn lowest_bit(number: f64) -> f64 {
+    const FRACTION: u64 = (1 << 52) - 1;
+    let bits = number.abs().to_bits();
+    match (bits, bits & FRACTION) {
+        (0, _) => f64::INFINITY,
+        (_, 0) => number.abs(),
+        _ => number.abs() - f64::from_bits(bits & (bits - 1)),
     }
 }
 
@@ -144,17 +166,21 @@ mod tests {
 
     #[test]
     fn rounding_of_world_units_is_noticed() {
-        let mut lattice = Lattice::new([5, 1, 1, 2]).unwrap();
-        for (min, step, is_rounded) in [
-            (32.0, -4.0, false),
-            (0.5, 0.25, false),
-            (0.0, 0.1, true),
-            (1e17, 1.0, true),
-            (-2.0, 1.0 / 3.0, true),
+        let mut lattice = Lattice::along([2, 5, 1, 1], [3, 0, 1, 2]).unwrap();
+        for (min, step, is_exact) in [
+            (32.0, -4.0, true),
+            (0.5, 0.25, true),
+            (0.0, 0.1, false),
+            (1e15, 1.0, true),
+            (1e17, 1.0, false),
+            (-2.0, 1.0 / 3.0, false),
+            (0.0, f64::from_bits(1), true),
+            (1.0, f64::from_bits(1), false),
         ] {
-            lattice.place(Frame { mins: [min, 0.0, 0.0, 0.0], steps: [step, 1.0, 1.0, 1.0] });
-            let points: Vec<Point4> = lattice.iter().collect();
-            assert_eq!(lattice.rounds(&points), is_rounded, "{min} {step}");
+            lattice.place(Frame { mins: [min, 0.0, 0.0, 0.0], steps: [step, 1.0, 1.0, 1.0] }).unwrap();
+            assert_eq!(lattice.is_exact(), is_exact, "{min} {step}");
         }
+        let far = Frame { mins: [0.0; 4], steps: [1e308, 1.0, 1.0, 1.0] };
+        assert!(lattice.place(far).unwrap_err().to_string().contains("beyond all numbers"));
     }
 }

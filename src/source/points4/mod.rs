@@ -133,15 +133,15 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
         supply.place_in_world().map_err(|e| e.of_input(&name))?;
     }
     let mut points = select::select(&supply, &request.selection).map_err(|e| e.of_input(&name))?;
-    if request.spacing == Spacing::World && supply.rounds(&points.points) {
+    if request.spacing == Spacing::World && supply.is_rounded() {
         points.warnings.push(ROUNDED.to_string());
     }
     points.warnings.splice(0..0, warnings);
     Ok(Points4 { name, ..points })
 }
 
-const ROUNDED: &str = "coordinates in world units are rounded, so sites of the grid may be cospherical no more: \
-    cells are those of the rounded points";
+const ROUNDED: &str = "coordinates in world units are rounded: sites that are cospherical in the grid may be so no \
+    more, or coincide; cells are those of the rounded points";
 
 /// An error of usage that says that something is too much.
 fn too_many(what: &str, count: u64, most: u64, remedy: &str) -> Error {

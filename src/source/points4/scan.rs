@@ -50,8 +50,8 @@ impl Supply {
         }
     }
 
-    /// Whether a coordinate of `points` is not exactly where the volume states that it is.
-    pub(super) fn rounds(&self, points: &[Point4]) -> bool {
-        matches!(self, Supply::Volume(volume) if volume.lattice.rounds(points))
+    /// Whether coordinates are not exactly where the header of a volume states that they are.
+    pub(super) fn is_rounded(&self) -> bool {
+        matches!(self, Supply::Volume(volume) if !volume.lattice.is_exact())
     }
 }

@@ -39,10 +39,7 @@ impl Volume {
     pub(super) fn place_in_world(&mut self) -> Result<()> {
         match &self.world {
             Ok(frame) => self.lattice.place(*frame),
-            Err(reason) => {
-                return Err(Error::usage(format!("{reason}: coordinates can only be grid indices")));
-            }
+            Err(reason) => Err(Error::usage(format!("{reason}: coordinates can only be grid indices"))),
         }
-        Ok(())
     }
 }
