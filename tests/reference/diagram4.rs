@@ -79,12 +79,11 @@ fn subsets(len: usize, size: usize) -> Vec<Vec<usize>> {
     subsets
 }
 
-/// Sets of points in a hyperplane that has no points on one of its sides, of which each five are a cell and the like:
-/// the zero sets of those forms that are not negative on any row, or on none positive where `both`.
+/// The rows on each hyperplane through rows that has none below, or where `both`, that has none on one of its sides.
 fn supported(rows: &[Vec<i128>], both: bool) -> BTreeSet<Vec<u32>> {
-    let size = rows.first().map_or(0, Vec::len);
     let mut found = BTreeSet::new();
-    for subset in subsets(rows.len(), size.saturating_sub(1)) {
+    let Some(size) = rows.first().map(Vec::len) else { return found };
+    for subset in subsets(rows.len(), size - 1) {
         let chosen: Vec<Vec<i128>> = subset.iter().map(|&i| rows[i].clone()).collect();
         let form = complement(&chosen);
         if form.iter().all(|&x| x == 0) {
@@ -123,12 +122,18 @@ fn facets(points: &[Point], cell: &[u32]) -> Vec<Vec<u32>> {
 /// Ridges of a facet, which is one of all facets of a cell.
 fn ridges(points: &[Point], facet: &[u32], facets: &[Vec<u32>]) -> BTreeSet<Vec<u32>> {
     let others = facets.iter().filter(|other| *other != facet);
-    let shared = others.map(|other| facet.iter().copied().filter(|v| other.contains(v)).collect::<Vec<u32>>());
+    let shared =
+        others.map(|other| facet.iter().copied().filter(|v| other.contains(v)).collect::<Vec<u32>>());
     let is_ridge = |list: &Vec<u32>| {
         let at: Vec<Point> = list.iter().map(|&v| points[v as usize]).collect();
         at.len() >= 3 && dimension(&at) == 2
     };
     shared.filter(is_ridge).collect()
+}
+
+/// det(b - a, c - a, d - a, e - a).
+pub fn orientation(simplex: [Point; 5]) -> i128 {
+    determinant(&simplex.map(|point| row(&point, false)))
 }
 
 /// The diagram of distinct points in lexicographic order: finite cells by their vertices, then infinite cells by

@@ -27,8 +27,12 @@ pub(super) struct CellsAudit<'a> {
 
 impl<'a> CellsAudit<'a> {
     pub(super) fn new(points: &'a [Point4], cells: &'a Cells4, finite: usize) -> Self {
-        let proof =
-            Proof { vertices: points.len(), cells: finite, infinite: cells.len() - finite, ..Proof::default() };
+        let proof = Proof {
+            vertices: points.len(),
+            cells: finite,
+            infinite: cells.len() - finite,
+            ..Proof::default()
+        };
         CellsAudit {
             points,
             cells,
@@ -48,7 +52,8 @@ impl<'a> CellsAudit<'a> {
             Covering::check_flat(&mut self.sites, self.points)?;
         } else {
             let inside = self.cells.get(self.finite / 2).vertices;
-            self.covering = Covering::new(self.finite, &mut self.sites, self.points, inside, self.finite / 2)?;
+            self.covering =
+                Covering::new(self.finite, &mut self.sites, self.points, inside, self.finite / 2)?;
         }
         for number in 0..self.finite {
             let cell = self.cells.get(number);
@@ -91,7 +96,8 @@ impl<'a> CellsAudit<'a> {
         match self.sites.ask(&asked, &Sphere { own }) {
             Roundness::Round { others: Ordering::Greater, .. } => Ok(()),
             Roundness::Round { others, worst, .. } => {
-                let (vertex, place) = (asked[own + 1 + worst], if others.is_lt() { "inside of" } else { "on" });
+                let (vertex, place) =
+                    (asked[own + 1 + worst], if others.is_lt() { "inside of" } else { "on" });
                 let message = format!(
                     "vertex {vertex} of cell {} is {place} the sphere of cell {number}",
                     later[worst]
@@ -147,9 +153,10 @@ impl<'a> CellsAudit<'a> {
                 Claim::Facets,
                 format!("does not separate them: vertex {} is on the side of cell {number}", asked[i + 1]),
             ),
-            Separation::Concave(i) => {
-                (Claim::Boundary, format!("is at a concave part of the boundary: vertex {} is beyond it", asked[i + 1]))
-            }
+            Separation::Concave(i) => (
+                Claim::Boundary,
+                format!("is at a concave part of the boundary: vertex {} is beyond it", asked[i + 1]),
+            ),
             _ => (Claim::Facets, "has less than three dimensions".to_string()),
         };
         let message = format!("what cells {number} and {beyond} share {message}");
@@ -208,7 +215,8 @@ impl<'a> CellsAudit<'a> {
     }
 
     fn violation(&self, claim: Claim, message: String, cells: &[usize]) -> Violation {
-        let vertices: Vec<u32> = cells.iter().flat_map(|&cell| self.cells.get(cell).vertices).copied().collect();
+        let vertices: Vec<u32> =
+            cells.iter().flat_map(|&cell| self.cells.get(cell).vertices).copied().collect();
         Violation::new(claim, message).of_cells(cells).at(self.points, &vertices)
     }
 }

@@ -132,7 +132,9 @@ impl Faces {
         for facet in 0..self.facets.len() {
             let around = &self.around[facet];
             self.polygons.clear();
-            around.iter().for_each(|&i| self.polygons.push(self.ridges.common.get(i as usize).iter().copied()));
+            around
+                .iter()
+                .for_each(|&i| self.polygons.push(self.ridges.common.get(i as usize).iter().copied()));
             self.edges.find(&self.polygons, vertices, 2);
             self.found.clear();
             self.found.resize(around.len(), 0);
@@ -171,7 +173,11 @@ impl Faces {
 
     /// Ridges of the cell, after [`Faces::check`]: the facets on both sides, and the vertices.
     pub(super) fn ridges(&self) -> impl Iterator<Item = ([usize; 2], &[u32])> {
-        self.ridges.pairs.iter().zip(self.ridges.common.iter()).map(|(pair, list)| (pair.map(|i| i as usize), list))
+        self.ridges
+            .pairs
+            .iter()
+            .zip(self.ridges.common.iter())
+            .map(|(pair, list)| (pair.map(|i| i as usize), list))
     }
 }
 
@@ -204,9 +210,8 @@ mod tests {
     /// The facets of a simplex of four dimensions, of the cube, and of a prism over a square pyramid.
     fn polytopes() -> Vec<(usize, Vec<Vec<u32>>)> {
         let simplex = (0..5).map(|left| (0..5).filter(|&v| v != left).collect()).collect();
-        let cube = (0..8)
-            .map(|facet| (0..16).filter(|v| v >> (facet / 2) & 1 == facet % 2).collect())
-            .collect();
+        let cube =
+            (0..8).map(|facet| (0..16).filter(|v| v >> (facet / 2) & 1 == facet % 2).collect()).collect();
         let pyramid: [&[u32]; 5] = [&[0, 1, 2, 3], &[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[0, 3, 4]];
         let raised = |list: &[u32]| -> Vec<u32> { list.iter().map(|v| v + 5).collect() };
         let mut prism: Vec<Vec<u32>> =

@@ -55,7 +55,8 @@ pub(super) fn check_cells(points: &[Point4], cells: &Cells4) -> Result<usize, Vi
         for &neighbour in cell.neighbours {
             let back = cells.get(neighbour as usize).neighbours;
             if neighbour as usize == number || back.binary_search(&(number as u32)).is_err() {
-                let message = format!("cell {number} names cell {neighbour} as neighbour, which does not name it");
+                let message =
+                    format!("cell {number} names cell {neighbour} as neighbour, which does not name it");
                 return refuse(Claim::Neighbours, message);
             }
         }

@@ -140,8 +140,7 @@ mod tests {
                 .minus(&ball(a, near).times(&ball(c, d)))
                 .times(&ball(e, a))
                 .plus(&ball(a, c));
-            let exact: BigInt =
-                (big(a, b) * big(c, d) - big(a, near) * big(c, d)) * big(e, a) + big(a, c);
+            let exact: BigInt = (big(a, b) * big(c, d) - big(a, near) * big(c, d)) * big(e, a) + big(a, c);
             if let Some(sign) = found.sign() {
                 assert_eq!(Some(sign), exact.sign().cmp(&num_bigint::Sign::NoSign).into());
                 decided += 1;

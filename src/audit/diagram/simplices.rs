@@ -27,7 +27,8 @@ use crate::cells4::Point4;
 pub fn check_simplices(points: &[Point4], simplices: &[[u32; 5]]) -> Result<Proof, Violation> {
     check_finite(points)?;
     check_distinct(points)?;
-    let mut audit = SimplicesAudit { points, simplices, sites: Sites::new(points), covering: Covering::default() };
+    let mut audit =
+        SimplicesAudit { points, simplices, sites: Sites::new(points), covering: Covering::default() };
     if simplices.is_empty() {
         Covering::check_flat(&mut audit.sites, points)?;
         return Ok(Proof { vertices: points.len(), questions: audit.sites.asked, ..Proof::default() });
@@ -162,7 +163,8 @@ impl SimplicesAudit<'_> {
         match self.sites.ask(&asked, &Sphere { own: 4 }) {
             Roundness::Round { others: Ordering::Greater | Ordering::Equal, .. } => Ok(()),
             _ => {
-                let message = format!("vertex {far} of simplex {other} is inside of the sphere of simplex {one}");
+                let message =
+                    format!("vertex {far} of simplex {other} is inside of the sphere of simplex {one}");
                 Err(self.violation(Claim::Delaunay, message, &[one, other]))
             }
         }
@@ -197,8 +199,9 @@ impl SimplicesAudit<'_> {
             Separation::Good { is_near } => self.covering.pass(number, None, is_near, self.points, facet),
             Separation::Concave(i) => {
                 let vertex = asked[i + 1];
-                let message =
-                    format!("the boundary is concave at {facet:?} of simplex {number}: vertex {vertex} is beyond it");
+                let message = format!(
+                    "the boundary is concave at {facet:?} of simplex {number}: vertex {vertex} is beyond it"
+                );
                 Err(self.violation(Claim::Boundary, message, &[number]).at(self.points, &[vertex]))
             }
             _ => Err(self.violation(Claim::Facets, format!("simplex {number} is flat"), &[number])),

@@ -55,7 +55,8 @@ impl Question for Sphere {
             return Some(answer);
         }
         let power = Power::of(b, c, d, e);
-        let side = |p: &Vector<T>| power.at(p).sign().map(|sign| if turn.is_lt() { sign.reverse() } else { sign });
+        let side =
+            |p: &Vector<T>| power.at(p).sign().map(|sign| if turn.is_lt() { sign.reverse() } else { sign });
         for (i, p) in own.iter().enumerate().filter(|(i, _)| !basis.chosen.contains(i)) {
             if side(p)? != Ordering::Equal {
                 return Some(Roundness::Off(i));
