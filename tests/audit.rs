@@ -4,6 +4,10 @@
 mod census;
 #[path = "audit/command.rs"]
 mod command;
+#[path = "audit/diagram.rs"]
+mod diagram;
+#[path = "audit/diagram_damage.rs"]
+mod diagram_damage;
 #[path = "audit/exhaustive.rs"]
 mod exhaustive;
 #[path = "audit/mesh.rs"]

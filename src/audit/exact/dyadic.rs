@@ -63,13 +63,13 @@ pub(super) fn differences<const N: usize, const D: usize>(
 
 /// A finite f64 as `mantissa * 2^exponent`, the mantissa odd or zero.
 #[derive(Debug, Clone, Copy)]
-struct Dyadic {
-    mantissa: i64,
-    exponent: i32,
+pub(in crate::audit) struct Dyadic {
+    pub(in crate::audit) mantissa: i64,
+    pub(in crate::audit) exponent: i32,
 }
 
 impl Dyadic {
-    fn of(value: f64) -> Self {
+    pub(in crate::audit) fn of(value: f64) -> Self {
         let bits = value.to_bits();
         let fraction = (bits & ((1 << 52) - 1)) as i64;
         let (magnitude, exponent) = match (bits >> 52 & 0x7ff) as i32 {

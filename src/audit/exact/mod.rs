@@ -6,7 +6,7 @@
 //! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to integers
 //! without limit.
 
-mod dyadic;
+pub(super) mod dyadic;
 pub(super) mod plane;
 pub(super) mod space;
 mod wide;

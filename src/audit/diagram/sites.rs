@@ -1,0 +1,136 @@
+//! The points as the arithmetics take them, and questions asked in the cheapest that can answer.
+
+use num_bigint::BigInt;
+
+use super::number::{Ball, Number};
+use crate::audit::exact::dyadic::Dyadic;
+use crate::cells4::Point4;
+
+/// A question about points relative to one of them.
+pub(super) trait Question {
+    type Answer;
+
+    /// Whether no number in the answer has more than 127 bits.
+    fn fits(&self, extent: Extent) -> bool;
+
+    /// How many vectors [`Extent::first`] is about.
+    fn first(&self) -> usize;
+
+    /// The answer, if the arithmetic can tell.
+    fn answer<T: Number>(&self, vectors: &[[T; 4]]) -> Option<Self::Answer>;
+}
+
+/// The largest coordinates of the first vectors of a question and of the others.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    pub(super) first: u64,
+    pub(super) rest: u64,
+}
+
+/// The points, and how many questions about them were answered.
+///
+/// Memory: 32 bytes per point.
+pub(super) struct Sites<'a> {
+    points: &'a [Point4],
+    /// The points times a power of two, if that makes all of them integers below 2^61.
+    integers: Option<Vec<[i64; 4]>>,
+    /// The power of two that divides all coordinates.
+    unit: i32,
+    /// Questions asked.
+    pub(super) asked: u64,
+    /// Questions that were left to integers without limit.
+    pub(super) exactly: u64,
+}
+
+impl<'a> Sites<'a> {
+    /// Domain: all coordinates are finite.
+    pub(super) fn new(points: &'a [Point4]) -> Self {
+        let nonzero = points.as_flattened().iter().map(|&value| Dyadic::of(value));
+        let exponents = nonzero.filter(|value| value.mantissa != 0).map(|value| value.exponent);
+        let unit = exponents.min().unwrap_or(0);
+        let integers = points.iter().map(|point| small(point, unit)).collect();
+        Sites { points, integers, unit, asked: 0, exactly: 0 }
+    }
+
+    /// The point of this number.
+    pub(super) fn at(&self, number: u32) -> Point4 {
+        self.points[number as usize]
+    }
+
+    /// Asks about points relative to the first of them.
+    pub(super) fn ask<Q: Question>(&mut self, numbers: &[u32], question: &Q) -> Q::Answer {
+        self.asked += 1;
+        let Some((&origin, numbers)) = numbers.split_first() else {
+            return question.answer::<i128>(&[]).expect("integers tell");
+        };
+        if let Some(answer) = self.ask_small(origin, numbers, question) {
+            return answer;
+        }
+        let from = self.at(origin);
+        let vectors: Vec<[Ball; 4]> = numbers
+            .iter()
+            .map(|&number| {
+                let to = self.at(number);
+                [0, 1, 2, 3].map(|i| Ball::difference(to[i], from[i]))
+            })
+            .collect();
+        if let Some(answer) = question.answer(&vectors) {
+            return answer;
+        }
+        self.exactly += 1;
+        let from = large(&from, self.unit);
+        let vectors: Vec<[BigInt; 4]> = numbers
+            .iter()
+            .map(|&number| {
+                let to = large(&self.at(number), self.unit);
+                [0, 1, 2, 3].map(|i| &to[i] - &from[i])
+            })
+            .collect();
+        question.answer(&vectors).expect("integers tell")
+    }
+
+    /// The answer in integers of 128 bits, if they are enough.
+    fn ask_small<Q: Question>(&self, origin: u32, numbers: &[u32], question: &Q) -> Option<Q::Answer> {
+        let integers = self.integers.as_ref()?;
+        let from = integers[origin as usize];
+        let vector = |&number: &u32| {
+            let to = integers[number as usize];
+            [0, 1, 2, 3].map(|i| to[i] - from[i])
+        };
+        let vectors: Vec<[i64; 4]> = numbers.iter().map(vector).collect();
+        let largest = |vectors: &[[i64; 4]]| {
+            vectors.as_flattened().iter().map(|value| value.unsigned_abs()).max().unwrap_or(0)
+        };
+        let (first, rest) = vectors.split_at(question.first());
+        if !question.fits(Extent { first: largest(first), rest: largest(rest) }) {
+            return None;
+        }
+        let vectors: Vec<[i128; 4]> = vectors.iter().map(|vector| vector.map(i128::from)).collect();
+        Some(question.answer(&vectors).expect("integers tell"))
+    }
+}
+
+/// The point in units of 2^unit, if that is below 2^61.
+fn small(point: &Point4, unit: i32) -> Option<[i64; 4]> {
+    let mut integers = [0; 4];
+    for (integer, &value) in integers.iter_mut().zip(point) {
+        let Dyadic { mantissa, exponent } = Dyadic::of(value);
+        if mantissa == 0 {
+            continue;
+        }
+        let shift = exponent - unit;
+        if shift + (64 - mantissa.unsigned_abs().leading_zeros() as i32) > 61 {
+            return None;
+        }
+        *integer = mantissa << shift;
+    }
+    Some(integers)
+}
+
+/// The point in units of 2^unit.
+fn large(point: &Point4, unit: i32) -> [BigInt; 4] {
+    point.map(|value| match Dyadic::of(value) {
+        Dyadic { mantissa: 0, .. } => BigInt::ZERO,
+        Dyadic { mantissa, exponent } => BigInt::from(mantissa) << (exponent - unit),
+    })
+}

@@ -1,0 +1,191 @@
+//! Delaunay diagrams of four dimensions by definition: every five points, tried against all others, in integers of 128
+//! bits. Shares no code with the library.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A point of small integers.
+pub type Point = [i64; 4];
+
+/// Whether the cell is infinite, its vertices, and its neighbours.
+pub type Cell = (bool, Vec<u32>, Vec<u32>);
+
+/// The points in lexicographic order, without repetitions.
+pub fn sorted(mut points: Vec<Point>) -> Vec<Point> {
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+/// Determinant of a square matrix, along its first row.
+fn determinant(rows: &[Vec<i128>]) -> i128 {
+    let Some((first, rest)) = rows.split_first() else { return 1 };
+    let without = |column: usize| -> Vec<Vec<i128>> {
+        rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
+    };
+    (0..first.len())
+        .filter(|&column| first[column] != 0)
+        .map(|column| first[column] * determinant(&without(column)) * if column % 2 == 0 { 1 } else { -1 })
+        .sum()
+}
+
+/// The signed minors of one row less than columns: their product with a row is the determinant with it as first row.
+fn complement(rows: &[Vec<i128>]) -> Vec<i128> {
+    let minor = |column: usize| -> Vec<Vec<i128>> {
+        rows.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
+    };
+    (0..=rows.len()).map(|c| determinant(&minor(c)) * if c % 2 == 0 { 1 } else { -1 }).collect()
+}
+
+/// (1, x, y, z, t), and the lift where `is_lifted`.
+fn row(point: &Point, is_lifted: bool) -> Vec<i128> {
+    let point = point.map(i128::from);
+    let lift = point.iter().map(|x| x * x).sum();
+    std::iter::once(1).chain(point).chain(is_lifted.then_some(lift)).collect()
+}
+
+fn dot(u: &[i128], v: &[i128]) -> i128 {
+    u.iter().zip(v).map(|(x, y)| x * y).sum()
+}
+
+/// Dimension of the affine hull, by elimination.
+fn dimension(points: &[Point]) -> usize {
+    let mut rows: Vec<Vec<i128>> = points.iter().map(|point| row(point, false)).collect();
+    let mut rank = 0;
+    for column in 0..5 {
+        let Some(pivot) = (rank..rows.len()).find(|&i| rows[i][column] != 0) else { continue };
+        rows.swap(rank, pivot);
+        let (done, rest) = rows.split_at_mut(rank + 1);
+        for other in rest {
+            let (by, from) = (done[rank][column], other[column]);
+            other.iter_mut().zip(&done[rank]).for_each(|(x, y)| *x = *x * by - from * y);
+        }
+        rank += 1;
+    }
+    rank - 1
+}
+
+/// Subsets of `size` of 0..len.
+fn subsets(len: usize, size: usize) -> Vec<Vec<usize>> {
+    let mut subsets = vec![Vec::new()];
+    for _ in 0..size {
+        subsets = subsets
+            .iter()
+            .flat_map(|subset: &Vec<usize>| {
+                let next = subset.last().map_or(0, |last| last + 1);
+                (next..len).map(move |i| [&subset[..], &[i]].concat())
+            })
+            .collect();
+    }
+    subsets
+}
+
+/// The rows on each hyperplane through rows that has none below, or where `both`, that has none on one of its sides.
+fn supported(rows: &[Vec<i128>], both: bool) -> BTreeSet<Vec<u32>> {
+    let mut found = BTreeSet::new();
+    let Some(size) = rows.first().map(Vec::len) else { return found };
+    for subset in subsets(rows.len(), size - 1) {
+        let chosen: Vec<Vec<i128>> = subset.iter().map(|&i| rows[i].clone()).collect();
+        let form = complement(&chosen);
+        if form.iter().all(|&x| x == 0) {
+            continue;
+        }
+        let up = form[size - 1].signum();
+        if !both && up == 0 {
+            continue;
+        }
+        let sides: Vec<i128> = rows.iter().map(|row| dot(&form, row).signum()).collect();
+        let is_supported = if both {
+            sides.iter().all(|&side| side >= 0) || sides.iter().all(|&side| side <= 0)
+        } else {
+            sides.iter().all(|&side| side * up >= 0)
+        };
+        if is_supported {
+            found.insert((0..).zip(&sides).filter(|(_, side)| **side == 0).map(|(i, _)| i).collect());
+        }
+    }
+    found
+}
+
+/// Vertices of the finite cells.
+fn finite_cells(points: &[Point]) -> Vec<Vec<u32>> {
+    let lifted: Vec<Vec<i128>> = points.iter().map(|point| row(point, true)).collect();
+    supported(&lifted, false).into_iter().collect()
+}
+
+/// Vertices of the facets of a cell.
+fn facets(points: &[Point], cell: &[u32]) -> Vec<Vec<u32>> {
+    let rows: Vec<Vec<i128>> = cell.iter().map(|&v| row(&points[v as usize], false)).collect();
+    let places = supported(&rows, true);
+    places.into_iter().map(|list| list.into_iter().map(|i| cell[i as usize]).collect()).collect()
+}
+
+/// Ridges of a facet, which is one of all facets of a cell.
+fn ridges(points: &[Point], facet: &[u32], facets: &[Vec<u32>]) -> BTreeSet<Vec<u32>> {
+    let others = facets.iter().filter(|other| *other != facet);
+    let shared =
+        others.map(|other| facet.iter().copied().filter(|v| other.contains(v)).collect::<Vec<u32>>());
+    let is_ridge = |list: &Vec<u32>| {
+        let at: Vec<Point> = list.iter().map(|&v| points[v as usize]).collect();
+        at.len() >= 3 && dimension(&at) == 2
+    };
+    shared.filter(is_ridge).collect()
+}
+
+/// det(b - a, c - a, d - a, e - a).
+pub fn orientation(simplex: [Point; 5]) -> i128 {
+    determinant(&simplex.map(|point| row(&point, false)))
+}
+
+/// The diagram of distinct points in lexicographic order: finite cells by their vertices, then infinite cells by
+/// theirs, with the numbers of their neighbours. None if all points lie in a hyperplane.
+///
+/// Domain: coordinates below 1000 in magnitude, and up to about 30 points: O(n^6).
+pub fn diagram(points: &[Point]) -> Vec<Cell> {
+    let finite = finite_cells(points);
+    let facets: Vec<Vec<Vec<u32>>> = finite.iter().map(|cell| facets(points, cell)).collect();
+    let mut cells_of: BTreeMap<&Vec<u32>, Vec<usize>> = BTreeMap::new();
+    for (i, list) in facets.iter().enumerate() {
+        list.iter().for_each(|facet| cells_of.entry(facet).or_default().push(i));
+    }
+    let mut cells: Vec<Cell> = finite.iter().map(|list| (false, list.clone(), Vec::new())).collect();
+    let mut links = BTreeSet::new();
+    let mut infinite_of: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
+    for (facet, of) in &cells_of {
+        match of[..] {
+            [one] => {
+                let infinite = cells.len();
+                cells.push((true, (*facet).clone(), Vec::new()));
+                links.insert([one, infinite]);
+                for ridge in ridges(points, facet, &facets[one]) {
+                    infinite_of.entry(ridge).or_default().push(infinite);
+                }
+            }
+            [one, other] => drop(links.insert([one, other])),
+            _ => panic!("{of:?} share {facet:?}"),
+        }
+    }
+    for (ridge, of) in infinite_of {
+        assert_eq!(of.len(), 2, "infinite cells {of:?} share {ridge:?}");
+        links.insert([of[0], of[1]]);
+    }
+    for [one, other] in links {
+        cells[one].2.push(other as u32);
+        cells[other].2.push(one as u32);
+    }
+    cells.iter_mut().for_each(|(_, _, neighbours)| neighbours.sort_unstable());
+    cells
+}
+
+/// The corners of the unit cube are one cell with eight facets, and one more point at the centre makes eight pyramids.
+#[test]
+fn diagrams_of_cubes_are_known() {
+    let cube: Vec<Point> = (0..16).map(|i| [3, 2, 1, 0].map(|axis| 2 * (i >> axis & 1))).collect();
+    let cells = diagram(&cube);
+    assert_eq!(cells.len(), 9);
+    assert_eq!(cells[0], (false, (0..16).collect(), (1..9).collect()));
+    assert!(cells[1..].iter().all(|(_, vertices, neighbours)| vertices.len() == 8 && neighbours.len() == 7));
+    let with_centre = diagram(&sorted([cube, vec![[1; 4]]].concat()));
+    let finite = with_centre.iter().filter(|cell| !cell.0);
+    assert_eq!((with_centre.len(), finite.map(|cell| cell.1.len()).collect()), (16, vec![9; 8]));
+    assert_eq!(dimension(&[[0; 4], [1; 4], [2; 4], [0, 0, 0, 5]]), 2);
+}
