@@ -14,6 +14,7 @@ pub mod convert;
 pub mod delaunay2;
 pub mod delaunay3;
 pub mod delaunay3_float;
+pub mod diagram4;
 pub mod error;
 pub mod finalize;
 pub mod limits;

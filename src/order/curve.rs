@@ -1,7 +1,10 @@
-//! Curves through the cells of a square or a cube.
+//! Curves through cells on two, three or four axes.
 
 use super::hilbert::hilbert_key;
 use crate::bits::{spread2, spread3};
+
+/// Boxes in a row of [`Curve::RowMajor`], as a power of two.
+const ROW_BITS: u32 = 3;
 
 /// A curve through all cells of a square or a cube. Those of a part of 2^k cells on each axis follow each other on all
 /// but the last.
@@ -14,7 +17,7 @@ pub enum Curve {
     Morton,
     /// By the rank of the interleaved bits as a Gray code: one bit changes from cell to cell (Faloutsos, 1988).
     Gray,
-    /// By the first axis, then the second, then the third.
+    /// By the first axis, then the second, then the third: rows of 8 boxes on each axis, and in each box again.
     RowMajor,
 }
 
@@ -24,7 +27,7 @@ impl Curve {
 
     /// Place on the curve of a cell among `2^bits` on each of `D` axes: a number of `D * bits` bits.
     ///
-    /// Domain: `D` 2 or 3; `bits` at most 16 or 10; numbers of cells below `2^bits`.
+    /// Domain: `D` 2, 3 or 4; `bits` at most 16, 10 or 8; numbers of cells below `2^bits`.
     #[inline(always)]
     #[must_use]
     pub fn key<const D: usize>(self, cell: [u32; D], bits: u32) -> u32 {
@@ -32,16 +35,33 @@ impl Curve {
             Curve::Hilbert => hilbert_key(cell, bits),
             Curve::Morton => interleaved(cell),
             Curve::Gray => gray_rank(interleaved(cell)),
-            Curve::RowMajor => cell.iter().fold(0, |place, number| place << bits | number),
+            Curve::RowMajor => row_major(cell, bits),
         }
     }
+}
+
+/// Row-major order in boxes within boxes, as in thesis 3.4: rows through all cells would be far longer than the space
+/// between points.
+#[inline(always)]
+fn row_major<const D: usize>(cell: [u32; D], bits: u32) -> u32 {
+    let (mut place, mut left) = (0, bits);
+    while left > 0 {
+        let step = left.min(ROW_BITS);
+        left -= step;
+        place = cell.iter().fold(place, |place, number| place << step | number >> left & ((1 << step) - 1));
+    }
+    place
 }
 
 /// The bits of all axes, that of the first above that of the second, and so on.
 #[inline(always)]
 fn interleaved<const D: usize>(cell: [u32; D]) -> u32 {
-    const { assert!(D == 2 || D == 3) };
-    let spread = |number| if D == 2 { spread2(number) } else { spread3(number) };
+    const { assert!(D == 2 || D == 3 || D == 4) };
+    let spread = |number| match D {
+        2 => spread2(number),
+        3 => spread3(number),
+        _ => spread2(spread2(number) as u32),
+    };
     cell.iter().fold(0, |bits, &number| bits << 1 | spread(number)) as u32
 }
 
@@ -70,6 +90,8 @@ mod tests {
     #[test]
     fn curves_are_what_their_names_say() {
         assert!(cells(Curve::RowMajor).is_sorted());
+        let in_boxes = [[1, 1, 14], [1, 2, 0], [2, 0, 0], [1, 1, 16]];
+        assert!(in_boxes.is_sorted_by_key(|&cell| Curve::RowMajor.key(cell, 5)));
         let morton = cells(Curve::Morton);
         assert_eq!(morton[..5], [[0, 0, 0], [0, 0, 1], [0, 1, 0], [0, 1, 1], [1, 0, 0]]);
         assert_eq!(morton[8 * 5], [2, 0, 2]);

@@ -1,4 +1,4 @@
-//! The Hilbert curve through a square or a cube of cells.
+//! The Hilbert curve through cells on two, three or four axes.
 //!
 //! Orientations of the curve, and how a cell passes one on to its parts, are those of Hamilton ("Compact Hilbert
 //! indices", 2006), for any number of axes; several bits per axis are looked up at once.
@@ -12,6 +12,9 @@ static PLANE: Table<8, 256> = Table::new(Step { axes: 2, bits: 4 });
 
 /// Two bits per axis.
 static SPACE: Table<32, 64> = Table::new(Step { axes: 3, bits: 2 });
+
+/// One bit per axis.
+static SPACE_TIME: Table<128, 16> = Table::new(Step { axes: 4, bits: 1 });
 
 impl<const ORIENTATIONS: usize, const CELLS: usize> Table<ORIENTATIONS, CELLS> {
     const fn new(step: Step) -> Self {
@@ -39,10 +42,10 @@ struct Step {
 }
 
 impl Step {
-    /// The step for cells of the plane or of space.
+    /// The step for cells on `D` axes.
     const fn of<const D: usize>() -> Step {
-        assert!(D == 2 || D == 3);
-        if D == 2 { Step { axes: 2, bits: 4 } } else { Step { axes: 3, bits: 2 } }
+        assert!(D == 2 || D == 3 || D == 4);
+        Step { axes: D as u32, bits: 1 << (4 - D) }
     }
 
     /// An orientation is by how many axes the curve is rotated, above a bit per axis for whether that is reversed.
@@ -61,7 +64,7 @@ impl Step {
             level -= 1;
             let turned = self.part(cell, level) ^ reversed;
             let gray = (turned >> rotation | turned << (n - rotation)) & all;
-            let part = gray ^ gray >> 1 ^ gray >> 2;
+            let part = gray ^ gray >> 1 ^ gray >> 2 ^ gray >> 3;
             place = place << n | part;
             // The corner of that part where the curve enters, and the axis along which it leaves.
             let (entry, exit) = match part {
@@ -92,7 +95,7 @@ const fn gray_code(number: u32) -> u32 {
 
 /// Place on the curve of a cell among `2^bits` on each of `D` axes.
 ///
-/// Domain: `D` 2 or 3; `bits` at most 16 or 10; numbers of cells below `2^bits`.
+/// Domain: `D` 2, 3 or 4; `bits` at most 16, 10 or 8; numbers of cells below `2^bits`.
 #[inline(always)]
 #[must_use]
 pub fn hilbert_key<const D: usize>(cell: [u32; D], bits: u32) -> u32 {
@@ -104,7 +107,11 @@ pub fn hilbert_key<const D: usize>(cell: [u32; D], bits: u32) -> u32 {
     for shift in (0..steps).rev().map(|number| number * step.bits) {
         let digit = |number: u32| (number >> shift & ((1 << step.bits) - 1)) as usize;
         let column = cell.iter().fold(0, |column, &number| column << step.bits | digit(number));
-        let entry = if D == 2 { PLANE.0[orientation & 7][column] } else { SPACE.0[orientation & 31][column] };
+        let entry = match D {
+            2 => PLANE.0[orientation & 7][column],
+            3 => SPACE.0[orientation & 31][column],
+            _ => SPACE_TIME.0[orientation & 127][column],
+        };
         place = place << (step.axes * step.bits) | u32::from(entry >> step.orientation_bits());
         orientation = usize::from(entry);
     }
@@ -134,6 +141,7 @@ mod tests {
     fn the_curve_steps_from_cell_to_neighbouring_cell_and_visits_all() {
         (0..=8).for_each(check_steps::<2>);
         (0..=6).for_each(check_steps::<3>);
+        (0..=4).for_each(check_steps::<4>);
     }
 
     #[test]

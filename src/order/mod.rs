@@ -23,7 +23,7 @@ use radix::{Keyed, RadixSort};
 /// Points of one cell are ordered along a finer curve if they are more than this, and lexicographically if not.
 const FEW: usize = 12;
 
-/// Points of the plane or of space sorted along a curve; reusable, so that its pages are touched once.
+/// Points on two, three or four axes sorted along a curve; reusable, so that its pages are touched once.
 ///
 /// Points of one cell of the curve are sorted along a curve of their own if they are many, which makes the order as
 /// good where points cluster as elsewhere. Equal points are neighbours in the order, that of least index first.
@@ -37,7 +37,7 @@ pub struct SpatialOrder {
 impl SpatialOrder {
     /// Indices of `points`, whose extent is `extent`, in their order along `curve`.
     ///
-    /// Domain: two or three axes, finite coordinates, at most 2^32 points. Cost: O(n), and O(m log m) at most for
+    /// Domain: two to four axes, finite coordinates, at most 2^32 points. Cost: O(n), and O(m log m) at most for
     /// every level of m points in one cell.
     pub fn sort<const D: usize>(
         &mut self,

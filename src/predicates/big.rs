@@ -16,7 +16,7 @@ fn decompose(value: f64) -> (i64, i32) {
 }
 
 /// The points times the least power of two that makes all coordinates integers of the same unit.
-fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
+pub(crate) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
     let parts = points.map(|point| point.map(decompose));
     let unit = parts.iter().flatten().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
     parts.map(|point| {

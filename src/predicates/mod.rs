@@ -6,7 +6,7 @@
 //! [`Arithmetic3`] and [`TotalPredicates3`] do the same.
 
 mod adaptive;
-mod big;
+pub(crate) mod big;
 pub mod circle;
 mod counts;
 mod extent;

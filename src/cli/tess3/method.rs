@@ -61,7 +61,7 @@ enum OrderFlag {
     Morton,
     /// Along the curve of Gray codes
     Gray,
-    /// Row by row
+    /// Row by row through 8 x 8 x 8 boxes, and through each box again
     RowMajor,
     /// At random
     Random,

@@ -1,0 +1,74 @@
+"""Points, tess3 and spinfo as functions."""
+
+import json
+import os
+import pathlib
+import random
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+BIN = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
+
+
+class Workplace:
+    """A temporary folder with the points and the mesh of one run at a time."""
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(self.temporary.name)
+        self.points, self.mesh = folder / "points.xyz", folder / "mesh.spm"
+        return self
+
+    def __exit__(self, *_):
+        self.temporary.cleanup()
+
+    def make(self, count, bits, seed):
+        """Random points with non-negative integer coordinates of `bits` bits."""
+        rng = random.Random(f"{count} {bits} {seed}")
+        end = 1 << bits
+        numbers = (f"{rng.randrange(end)} {rng.randrange(end)} {rng.randrange(end)}\n" for _ in range(count))
+        self.points.write_text("".join(numbers))
+
+    def triangulate(self, *flags):
+        """What tess3 says of the points under these flags; the mesh is at `mesh`."""
+        command = [BIN / "tess3", "--quiet", "--from=points", "--stats=json", *flags, "-o", self.mesh, self.points]
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"{' '.join(map(str, command))}: {done.stderr}")
+        return said(done.stderr)
+
+    def audit(self):
+        """What spinfo counts in the mesh; that there are faults is no failure."""
+        command = [BIN / "spinfo", "--audit=delaunay", "--count-violations", "--json", self.mesh]
+        done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+        if done.returncode not in (0, 4):
+            sys.exit(f"{' '.join(map(str, command))}: {done.stderr}")
+        return json.loads(done.stdout)["census"]
+
+    def tetrahedra(self):
+        """The points, as integers, and the quadruples of their numbers in the mesh."""
+        medit = self.mesh.with_suffix(".mesh")
+        subprocess.run([BIN / "spconvert", "--quiet", self.mesh, "-o", medit], check=True)
+        lines = iter(medit.read_text().splitlines())
+        section = {}
+        for line in lines:
+            if line in ("Vertices", "Tetrahedra"):
+                section[line] = [[int(word) for word in next(lines).split()[:-1]] for _ in range(int(next(lines)))]
+        return section["Vertices"], [[vertex - 1 for vertex in corners] for corners in section["Tetrahedra"]]
+
+
+def said(text):
+    """The line of JSON in `text`."""
+    return next(json.loads(line) for line in text.splitlines() if line.startswith("{"))
+
+
+def progress(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def write_tsv(path, head, rows):
+    lines = ["\t".join(map(str, row)) + "\n" for row in [head, *rows]]
+    path.write_text("".join(lines))
+    progress(f"written: {path}")

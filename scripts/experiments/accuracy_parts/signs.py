@@ -1,0 +1,68 @@
+"""Figure 3.5: in-sphere tests with round-off errors during the construction."""
+
+from programs import progress, write_tsv
+from svg import Axis, Curve, Panel, axis_of_counts, document
+
+ORDERS = {
+    "random": ["--order", "random", "--bit-levels", "off"],
+    "Hilbert": ["--order", "hilbert", "--bit-levels", "off"],
+    "Hilbert and bit levels": ["--order", "hilbert", "--bit-levels", "on"],
+}
+BITS = range(10, 24)
+SIZES, QUICK_SIZES = [1000, 3000, 10_000, 30_000, 100_000], [1000, 3000]
+QUICK_BITS = [10, 16, 20, 23]
+LEAST_PERCENT = 1e-4
+HEAD = ("order", "points", "bits", "run", "in_sphere_tests", "wrong_signs", "wrong_zeros", "rounded", "percent_rounded")
+
+
+def run(place, flags):
+    sizes, all_bits = (QUICK_SIZES, QUICK_BITS) if flags.quick else (SIZES, BITS)
+    rows = []
+    for count in sizes:
+        for bits in all_bits:
+            for number in range(1, flags.runs + 1):
+                place.make(count, bits, number)
+                rows += [row(place, order, count, bits, number) for order in ORDERS]
+            progress(f"signs: {count} points of {bits} bits")
+    write_tsv(flags.out / "figure-3.5.tsv", HEAD, rows)
+    (flags.out / "figure-3.5.svg").write_text(draw(rows))
+
+
+def row(place, order, count, bits, number):
+    told = place.triangulate("--arithmetic", "float", "--check-signs", *ORDERS[order])
+    figures = [told[key] for key in ("in_sphere_tests", "wrong_signs", "wrong_zeros", "rounded")]
+    tests, *_, rounded = figures
+    return order, count, bits, number, *figures, 100 * rounded / max(tests, 1)
+
+
+def draw(rows):
+    """A panel for each order; a curve for each number of bits, through the means, and a dot for each run."""
+    across = axis_of_counts({row[1] for row in rows}, "points")
+    up = Axis([(LEAST_PERCENT, "0"), *((10.0**power, f"{10.0**power:g}") for power in range(-3, 3))], is_log=True)
+    parts = []
+    for place, order in enumerate(ORDERS):
+        left = 56 + 350 * place
+        panel = Panel(left, left + 220, 64, 364, f"Rounded, %: {order}", across, up)
+        parts += panel.draw(curves([row for row in rows if row[0] == order]))
+    alt = "Percentage of in-sphere tests with round-off errors against the number of points, by coordinate bits, for three orders"
+    return document(1060, 420, alt, parts)
+
+
+def curves(rows):
+    all_bits = sorted({row[2] for row in rows})
+    for place, bits in enumerate(all_bits):
+        dots = [(row[1], row[-1]) for row in rows if row[2] == bits]
+        means = [(count, mean([y for x, y in dots if x == count])) for count in sorted({x for x, _ in dots})]
+        # Those without any error need no name.
+        name = f"{bits} bits" if any(y > 0 for _, y in dots) else ""
+        yield Curve(name, shade(place, len(all_bits)), means, dots=tuple(dots))
+
+
+def mean(values):
+    return sum(values) / len(values)
+
+
+def shade(place, count):
+    """From blue for few bits to red for many."""
+    share = place / max(count - 1, 1)
+    return "#" + "".join(f"{round(a + share * (b - a)):02x}" for a, b in ((0x35, 0xD0), (0x83, 0x54), (0xD6, 0x6A)))

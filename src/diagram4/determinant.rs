@@ -1,0 +1,107 @@
+//! Spheres and hyperplanes through points, in any arithmetic.
+
+use std::ops::{Add, Mul, Sub};
+
+/// Numbers of a ring: `f64`, wrapping integers, integers of any size.
+pub(super) trait Number:
+    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+}
+
+impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
+
+/// Squared length.
+#[inline(always)]
+pub(super) fn lift<T: Number>(v: &[T; 4]) -> T {
+    dot(v, v)
+}
+
+#[inline(always)]
+pub(super) fn dot<T: Number>(p: &[T; 4], q: &[T; 4]) -> T {
+    times(&p[0], &q[0]) + times(&p[1], &q[1]) + (times(&p[2], &q[2]) + times(&p[3], &q[3]))
+}
+
+#[inline(always)]
+fn times<T: Number>(a: &T, b: &T) -> T {
+    a.clone() * b.clone()
+}
+
+/// The 2x2 determinant of columns `i` and `j` of two rows.
+#[inline(always)]
+fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
+    times(&p[i], &q[j]) - times(&p[j], &q[i])
+}
+
+/// The sphere through the origin and four vectors: (n, m) such that n . x + m |x|^2 is zero on it.
+///
+/// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a point is
+/// the in-sphere determinant but for its sign: a polynomial of degree 6 in the coordinates (thesis 3.6.2).
+#[inline(always)]
+pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
+    let [a, b, c, d] = vectors.map(|v| {
+        let lift = lift(&v);
+        let [x, y, z, t] = v;
+        [x, y, z, t, lift]
+    });
+    // Of pairs of columns: xy, xz, xt, xl, yz, yt, yl, zt, zl, tl.
+    let pairs = |p: &[T; 5], q: &[T; 5]| {
+        let m = |i, j| minor(p, q, i, j);
+        [m(0, 1), m(0, 2), m(0, 3), m(0, 4), m(1, 2), m(1, 3), m(1, 4), m(2, 3), m(2, 4), m(3, 4)]
+    };
+    let (p, q) = (pairs(&a, &b), pairs(&c, &d));
+    // Laplace's expansion along two rows: columns (i j | k l) and so on, from the numbers of the pairs.
+    let determinant = |[ij, ik, il, jk, jl, kl]: [usize; 6]| {
+        (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij])) - (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))
+            + (times(&p[il], &q[jk]) + times(&p[jk], &q[il]))
+    };
+    let m = determinant([0, 1, 2, 4, 5, 7]);
+    // The lift takes the place of a coordinate; moved to the end, it changes the sign for y and t.
+    let x = determinant([4, 5, 6, 7, 8, 9]); // y z t l
+    let y = determinant([1, 2, 3, 7, 8, 9]); // x z t l
+    let z = determinant([0, 2, 3, 5, 6, 9]); // x y t l
+    let t = determinant([0, 1, 3, 4, 6, 8]); // x y z l
+    let zero = || m.clone() - m.clone();
+    ([x, zero() - y, z, zero() - t], m)
+}
+
+/// The vector n such that n . x is the determinant of three vectors and x.
+#[inline(always)]
+pub(super) fn normal<T: Number>([a, b, c]: [[T; 4]; 3]) -> [T; 4] {
+    let minors = |i: usize, j: usize, k: usize| {
+        times(&a[i], &minor(&b, &c, j, k)) - times(&a[j], &minor(&b, &c, i, k))
+            + times(&a[k], &minor(&b, &c, i, j))
+    };
+    let (x, z) = (minors(1, 2, 3), minors(0, 1, 3));
+    let zero = || x.clone() - x.clone();
+    [zero() - x.clone(), minors(0, 2, 3), zero() - z, minors(0, 1, 2)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn determinant<const N: usize>(m: [[i64; N]; N]) -> i64 {
+        fn minor(rows: &[Vec<i64>]) -> i64 {
+            let Some((first, rest)) = rows.split_first() else { return 1 };
+            let without = |column: usize| {
+                rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect::<Vec<_>>()
+            };
+            let sign = |column: usize| if column.is_multiple_of(2) { 1 } else { -1 };
+            (0..first.len()).map(|column| sign(column) * first[column] * minor(&without(column))).sum()
+        }
+        minor(&m.map(|row| row.to_vec()))
+    }
+
+    #[test]
+    fn expansions_are_determinants() {
+        let vectors = [[1, 2, -3, 4], [0, 5, 1, -2], [7, -1, 2, 3], [-4, 3, 6, 1]];
+        let x = [3, -5, 2, 8];
+        let (n, m) = sphere(vectors);
+        assert_eq!(m, determinant(vectors));
+        assert!(vectors.iter().all(|v| dot(&n, v) + m * lift(v) == 0), "the sphere is through its points");
+        let lifted = |v: [i64; 4]| [v[0], v[1], v[2], v[3], lift(&v)];
+        let [a, b, c, d] = vectors;
+        assert_eq!(dot(&n, &x) + m * lift(&x), determinant([a, b, c, d, x].map(lifted)));
+        assert_eq!(dot(&normal([a, b, c]), &x), determinant([a, b, c, x]));
+    }
+}

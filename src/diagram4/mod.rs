@@ -1,0 +1,85 @@
+//! Exact Delaunay diagrams in four dimensions (thesis 3.6 and 4).
+//!
+//! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of all points on
+//! it. Where many points are cospherical, as those of a grid, it is small and unique, where a triangulation is large and
+//! arbitrary. Cells beyond the hull have the faraway point as a vertex, and correspond to the facets of cells on the hull.
+//!
+//! `sites` makes points ready, `determinant` and `exact` are the geometry. `simplices` triangulates, `merge` makes cells
+//! of what is cospherical.
+
+mod determinant;
+mod exact;
+mod merge;
+mod simplices;
+mod sites;
+
+use crate::cells4::{Cells4, Point4};
+use crate::error::{Error, Result};
+use crate::limits::POINTS4_MAX;
+use sites::Sites;
+use std::time::{Duration, Instant};
+
+/// A Delaunay diagram.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Diagram {
+    /// The distinct points, in lexicographic order; each is a vertex.
+    pub points: Vec<Point4>,
+    /// Values of the points, if they have any.
+    pub values: Option<Vec<f64>>,
+    /// Points of the input that are equal to an earlier one.
+    pub merged: u64,
+    /// Finite cells by their vertices, then infinite ones by theirs.
+    pub cells: Cells4,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Stats {
+    /// Putting points in order.
+    pub order: Duration,
+    /// Inserting them.
+    pub insertion: Duration,
+    /// Making cells of simplices.
+    pub merge: Duration,
+    /// Simplices created, infinite ones included.
+    pub created: u64,
+    /// In-sphere tests in the search of cavities.
+    pub in_sphere_tests: u64,
+    /// Finite simplices of the triangulation that cells were made of.
+    pub simplices: u64,
+}
+
+/// The Delaunay diagram of points in any order, which depends on the set of points only.
+///
+/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs are exact for
+/// all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any size where rounded values do
+/// not tell.
+///
+/// Errors: a coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
+///
+/// Cost: proportional to the number of simplices of a triangulation of the cells, 88 bytes each.
+pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+    check(&points)?;
+    let mut stats = Stats::default();
+    let started = Instant::now();
+    let (points, values, merged) = sites::distinct(points, values);
+    let sites = Sites::new(points);
+    let sorting = started.elapsed();
+    let complex = simplices::triangulate(&sites, &mut stats)?;
+    stats.order += sorting;
+    let started = Instant::now();
+    let cells = merge::cells(complex, &mut stats);
+    stats.merge = started.elapsed();
+    Ok((Diagram { points: sites.points, values, merged, cells }, stats))
+}
+
+fn check(points: &[Point4]) -> Result<()> {
+    if points.len() as u64 > POINTS4_MAX {
+        return Err(Error::usage(format!("{} points, dd4 takes at most {POINTS4_MAX}", points.len())));
+    }
+    match points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
+        Some(bad) => Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
+            .at(format!("point {bad}"))),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,213 @@
+//! Simplices in flat arrays.
+
+use crate::cells4::Point4;
+use crate::diagram4::determinant::{dot, lift, normal, sphere};
+use crate::diagram4::exact::{Exactness, in_sphere, orientation};
+use crate::diagram4::sites::Sites;
+use std::cmp::Ordering;
+
+/// The faraway point (thesis 4.3), vertex of the infinite simplices, which lie beyond the hull.
+pub(in crate::diagram4) const INFINITE: u32 = u32::MAX;
+
+/// Facets, and vertices, of a simplex: facet i is opposite to vertex i.
+pub(in crate::diagram4) const FACETS: usize = 5;
+
+/// A facet of a simplex: the number of the simplex above three bits.
+pub(super) type Facet = u32;
+
+#[inline(always)]
+pub(in crate::diagram4) fn simplex_of(facet: Facet) -> usize {
+    (facet >> 3) as usize
+}
+
+#[inline(always)]
+pub(in crate::diagram4) fn facet_of(facet: Facet) -> usize {
+    (facet & 7) as usize
+}
+
+#[inline(always)]
+pub(super) fn facet(simplex: usize, side: usize) -> Facet {
+    (simplex as u32) << 3 | side as u32
+}
+
+/// Most simplices that facets can be numbered of.
+pub(super) const SIMPLICES_MAX: usize = 1 << 29;
+
+/// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of the hull.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::diagram4) struct Simplex {
+    pub(in crate::diagram4) vertices: [u32; FACETS],
+    /// Across each facet, which facet of which simplex it is.
+    pub(in crate::diagram4) beyond: [Facet; FACETS],
+}
+
+/// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside of a sphere, or beyond a hyperplane of the
+/// hull. m is positive for a sphere, 0 for a hyperplane, and [`DEAD`] for what is no simplex any more.
+pub(super) type Sphere = [f64; 6];
+
+const DEAD: f64 = -1.0;
+
+/// Rounding errors of values, if coordinates differ by at most 1.
+///
+/// The sum of magnitudes of all terms that a value expands to is at most 480, and of each at most 47 factors 1 + e,
+/// |e| <= 2^-53, deviate: 480 * 47 < 2^15. Of hyperplanes it is less.
+const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// The point as in-sphere tests want it.
+pub(super) type Lifted = [f64; 6];
+
+pub(in crate::diagram4) struct Complex<'a> {
+    pub(in crate::diagram4) sites: &'a Sites,
+    /// The number of the site of each vertex; vertices are numbered as they are inserted.
+    pub(in crate::diagram4) order: Vec<u32>,
+    pub(super) near: Vec<Point4>,
+    pub(in crate::diagram4) simplices: Vec<Simplex>,
+    pub(super) spheres: Vec<Sphere>,
+    /// Simplices that are dead.
+    pub(super) free: Vec<u32>,
+    /// Values of greater magnitude have the right sign.
+    rounding: f64,
+}
+
+impl<'a> Complex<'a> {
+    pub(super) fn new(sites: &'a Sites, order: Vec<u32>) -> Complex<'a> {
+        let near = order.iter().map(|&number| sites.near(number)).collect();
+        let rounding = if sites.exactness == Exactness::Double { 0.0 } else { ROUNDING };
+        Complex { sites, order, near, simplices: Vec::new(), spheres: Vec::new(), free: Vec::new(), rounding }
+    }
+
+    /// The point of a vertex, as given.
+    pub(super) fn point(&self, vertex: u32) -> Point4 {
+        self.sites.points[self.order[vertex as usize] as usize]
+    }
+
+    pub(super) fn lifted(&self, vertex: u32) -> Lifted {
+        let p = self.near[vertex as usize];
+        [p[0], p[1], p[2], p[3], lift(&p), 1.0]
+    }
+
+    #[inline(always)]
+    pub(in crate::diagram4) fn is_dead(&self, simplex: usize) -> bool {
+        self.spheres[simplex][4] < 0.0
+    }
+
+    #[inline(always)]
+    pub(super) fn kill(&mut self, simplex: usize) {
+        self.spheres[simplex][4] = DEAD;
+    }
+
+    /// Whether the simplex is one of the triangulation, and finite.
+    pub(in crate::diagram4) fn is_finite(&self, simplex: usize) -> bool {
+        self.spheres[simplex][4] > 0.0
+    }
+
+    /// Whether it is one of the triangulation, and infinite.
+    pub(in crate::diagram4) fn is_infinite(&self, simplex: usize) -> bool {
+        self.spheres[simplex][4] == 0.0
+    }
+
+    #[inline(always)]
+    pub(super) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
+        let s = &self.spheres[simplex];
+        (s[0] * p[0] + s[1] * p[1]) + (s[2] * p[2] + s[3] * p[3]) + (s[4] * p[4] + s[5] * p[5])
+    }
+
+    /// Whether vertex `q`, at `p`, is inside of the sphere of a simplex, or on it.
+    #[inline(always)]
+    pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
+        let value = self.value(simplex, p);
+        if value < -self.rounding {
+            true
+        } else if value > self.rounding {
+            false
+        } else {
+            // Exact values of small integers: on the sphere.
+            self.rounding == 0.0 && self.spheres[simplex][4] > 0.0 || self.decide(simplex, q, p)
+        }
+    }
+
+    /// Beyond a facet of the hull the sign of the hyperplane decides, on it the neighbour's sphere (thesis 4.4).
+    #[inline(never)]
+    fn decide(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
+        match self.sign(simplex, q) {
+            Ordering::Less => true,
+            Ordering::Greater => false,
+            Ordering::Equal => match self.neighbour_inside(simplex) {
+                Some(inside) => self.is_dead(inside) || self.is_in_conflict(inside, q, p),
+                None => true,
+            },
+        }
+    }
+
+    /// The finite simplex across the hull from an infinite one.
+    pub(in crate::diagram4) fn neighbour_inside(&self, simplex: usize) -> Option<usize> {
+        let Simplex { vertices, beyond } = &self.simplices[simplex];
+        let side = vertices.iter().position(|&vertex| vertex == INFINITE)?;
+        Some(simplex_of(beyond[side]))
+    }
+
+    /// The sign of the value of a vertex.
+    pub(in crate::diagram4) fn sign(&self, simplex: usize, q: u32) -> Ordering {
+        let value = self.value(simplex, &self.lifted(q));
+        if value.abs() > self.rounding || self.rounding == 0.0 {
+            return if value < 0.0 {
+                Ordering::Less
+            } else if value > 0.0 {
+                Ordering::Greater
+            } else {
+                Ordering::Equal
+            };
+        }
+        let vertices = self.simplices[simplex].vertices;
+        let point = self.point(q);
+        let exactness = self.sites.exactness;
+        match vertices.iter().position(|&vertex| vertex == INFINITE) {
+            None => in_sphere(exactness, vertices.map(|vertex| self.point(vertex)), point),
+            Some(side) => {
+                let facet = without(vertices, side).map(|vertex| self.point(vertex));
+                let sign = orientation(exactness, facet, point);
+                if side % 2 == 0 { sign.reverse() } else { sign }
+            }
+        }
+    }
+
+    /// Computes the sphere of a simplex, or the hyperplane of an infinite one.
+    #[inline(always)]
+    pub(super) fn sphere_of(&self, vertices: &[u32; FACETS]) -> Sphere {
+        match vertices.iter().position(|&vertex| vertex == INFINITE) {
+            None => self.finite_sphere(vertices),
+            Some(side) => self.hyperplane(vertices, side),
+        }
+    }
+
+    #[inline(always)]
+    fn finite_sphere(&self, vertices: &[u32; FACETS]) -> Sphere {
+        let [o, a, b, c, d] = vertices.map(|vertex| self.near[vertex as usize]);
+        let (n, m) = sphere([a, b, c, d].map(|p| minus(p, o)));
+        let s = m * lift(&o) - dot(&n, &o);
+        let shifted: Point4 = std::array::from_fn(|axis| n[axis] - 2.0 * m * o[axis]);
+        // Only a simplex that is almost flat is not seen to be positive in rounded arithmetic.
+        let m = m.max(f64::MIN_POSITIVE);
+        [shifted[0], shifted[1], shifted[2], shifted[3], m, s]
+    }
+
+    #[inline(never)]
+    fn hyperplane(&self, vertices: &[u32; FACETS], side: usize) -> Sphere {
+        let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
+        let n = normal([a, b, c].map(|p| minus(p, o)));
+        // Moved to the end, the faraway point passes 4 - side others; beyond the hull values are negative.
+        let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
+        [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
+    }
+}
+
+/// The vertices of a facet.
+#[inline(always)]
+pub(in crate::diagram4) fn without(vertices: [u32; FACETS], side: usize) -> [u32; 4] {
+    std::array::from_fn(|i| vertices[i + usize::from(i >= side)])
+}
+
+#[inline(always)]
+pub(super) fn minus(p: Point4, o: Point4) -> Point4 {
+    std::array::from_fn(|axis| p[axis] - o[axis])
+}
