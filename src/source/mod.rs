@@ -35,6 +35,7 @@ mod stream;
 pub mod structure;
 mod text;
 mod twin;
+mod twin4;
 mod twin_header;
 
 use std::num::NonZeroUsize;
