@@ -15,7 +15,8 @@ from decimal import Decimal
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats", "vectors")
 UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
-KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4}
+KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
+         "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7}
 INF, NAN = float("inf"), float("nan")
 
 
@@ -182,6 +183,37 @@ class Vector:
         self.lines += ["w %d %d" % (a + 1, b + 1) for a, b in walls]
         return self.block(b"WALL", [(struct.pack("<2I", *wall), "wall %d to %d" % wall) for wall in walls])
 
+    def points4(self, *points):
+        """Points of four coordinates and perhaps a value, as decimals in strings; "nan" is a value that is not known."""
+        payload = []
+        for point in points:
+            assert len(point) == self.axes, point
+            text = " ".join("nan" if c == "nan" else number(c) for c in point)
+            self.lines.append("v4 " + text)
+            payload.append((struct.pack("<%dd" % self.axes, *map(float, point)), "point " + text))
+        return self.block(b"PNT4", payload)
+
+    def cells4(self, *cells, split=()):
+        """Cells: whether they are infinite, vertices, neighbours; with blocks that end after the words `split`."""
+        words = []
+        for infinite, vertices, neighbours in cells:
+            self.lines += ["ci"[infinite] + "4 " + " ".join(str(v + 1) for v in vertices),
+                           " ".join(["n4"] + [str(n + 1) for n in neighbours])]
+            mark = 2**31 if infinite else 0
+            words += [(len(vertices) | mark, "infinite cell of vertices" if infinite else "finite cell of vertices"),
+                      (len(neighbours), "neighbours")]
+            words += [(v, "vertex %d" % v) for v in vertices] + [(n, "neighbour %d" % n) for n in neighbours]
+        ends = list(split) + [len(words)]
+        for start, end in zip([0] + ends, ends):
+            self.block(b"CEL4", [(struct.pack("<I", word), comment) for word, comment in words[start:end]])
+        return self
+
+    def simplices4(self, *simplices):
+        texts = [" ".join(map(str, simplex)) for simplex in simplices]
+        self.lines += ["s4 " + " ".join(str(v + 1) for v in simplex) for simplex in simplices]
+        return self.block(b"SIM4", [(struct.pack("<5I", *simplex), "simplex of vertices " + text)
+                                    for simplex, text in zip(simplices, texts)])
+
     def end(self, points=0, cells=0, vertices=0, simplices=0, merged=0, residual=0, walls=0, **damage):
         totals = dict(points=points, cells=cells, vertices=vertices, simplices=simplices, merged=merged,
                       residual=residual, walls=walls)
@@ -214,6 +246,13 @@ SQUARE = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (2, 2, 4)]
 # A corner of a cube, its three neighbours, and the corner opposite: two tetrahedra on one facet.
 CORNERS = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (4, 4, 4)]
 TETRAHEDRAL = dict(kind="tetrahedral mesh", dims=3, grid=HALF)
+# A simplex of four dimensions, its points sorted, and the five infinite cells around it.
+CORNERS4 = [("0",) * 4, ("0", "0", "0", "1"), ("0", "0", "1", "0"), ("0", "1", "0", "0"), ("1", "0", "0", "0")]
+CELLS4 = [(0, (0, 1, 2, 3, 4), (1, 2, 3, 4, 5))] + [
+    (1, tuple(v for v in range(5) if v != 4 - i), (0,) + tuple(1 + n for n in range(5) if n != i)) for i in range(5)]
+POINTS4 = dict(kind="points in 4 dimensions", dims=4)
+DIAGRAM4 = dict(kind="cells in 4 dimensions", dims=4)
+SIMPLICES4 = dict(kind="simplices in 4 dimensions", dims=4)
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
 
 
@@ -287,6 +326,29 @@ def passing():
         5, vertices=5, simplices=2)
     yield "tetrahedra-none", "Coplanar points: vertices and labels without tetrahedra", Vector(**TETRAHEDRAL).patch(
         0, CORNERS[:3], (), (), (0, 1, 2)).labels(3, 2, 1).end(5, vertices=3, merged=2)
+    yield "points4-empty", "No points in four dimensions", Vector(**POINTS4, points=0).end()
+    yield "points4", "Points in four dimensions, in any order, one twice; an empty block", Vector(
+        **POINTS4, points=4).points4(("1", "0", "-2.5", "1e22"), ("0", "-0.0", "5e-324", "0")).points4().points4(
+        ("0", "-0.0", "5e-324", "0"), ("-1e-7", "0", "0", "0.1")).end(4)
+    yield "points4-values", "Points in four dimensions with values, one of which is not known", Vector(
+        **POINTS4, elevation=1).points4(
+        ("0", "1", "2", "3", "280.15"), ("0", "1", "2", "3", "nan"), ("4", "5", "6", "7", "-0.0")).end(3)
+    yield "cells4-empty", "A diagram without points", Vector(**DIAGRAM4).end()
+    yield "cells4-simplex", "A simplex and the infinite cells around it", Vector(
+        **DIAGRAM4, points=5).points4(*CORNERS4).cells4(*CELLS4).end(5, vertices=5, simplices=6)
+    yield "cells4-split", "Cells that go on in later blocks, cut in counts and in lists, and values; a point was merged", Vector(
+        **DIAGRAM4, elevation=1).points4(*[p + ("1.5",) for p in CORNERS4[:2]]).points4(
+        *[p + ("nan",) for p in CORNERS4[2:]]).cells4(*CELLS4, split=(0, 1, 4, 10, 15, 15, 33)).end(
+        6, vertices=5, simplices=6, merged=1)
+    yield "cells4-none", "Points that span no cell, equal in all but the last coordinate", Vector(
+        **DIAGRAM4).points4(("0", "0", "0", "-1"), ("-0.0", "0", "0", "0")).end(2, vertices=2)
+    yield "cells4-no-neighbours", "A cell of six vertices that names no neighbour", Vector(**DIAGRAM4).points4(
+        *CORNERS4, ("1", "1", "1", "1")).cells4((0, range(6), ())).end(6, vertices=6, simplices=1)
+    yield "simplices4", "Two simplices on a common facet, points in any order", Vector(
+        **SIMPLICES4, points=7).points4(*CORNERS4[::-1]).points4(("1", "1", "1", "1")).simplices4(
+        (4, 0, 1, 2, 3)).simplices4().simplices4((5, 0, 2, 1, 3)).end(7, vertices=6, simplices=2, merged=1)
+    yield "simplices4-values", "Points with values, no simplices", Vector(**SIMPLICES4, elevation=1).points4(
+        ("1", "0", "0", "0", "7"), ("0", "0", "0", "0", "7")).end(2, vertices=2)
 
 
 def failing_headers():
@@ -341,6 +403,15 @@ def failing_headers():
         ("tetrahedra-region", "region goes with a partial mesh", dict(kind="tetrahedral mesh", dims=3, region=(0, 0, 1, 1))),
         ("tetrahedra-chunked", "can be chunked",
             dict(kind="tetrahedral mesh", dims=3, chunked=True, tree=(2, 0, 0, 0, 4))),
+        ("points4-in-3d", "expected 4", dict(kind="points in 4 dimensions", dims=3)),
+        ("cells4-in-2d", "expected 4", dict(kind="cells in 4 dimensions", dims=2, elevation=1)),
+        ("simplices4-in-3d", "expected 4", dict(kind="simplices in 4 dimensions", dims=3)),
+        ("points-in-4d", "a points in 4 dimensions", dict(dims=4)),
+        ("mesh-in-4d", "a tetrahedral mesh in 4 dimensions", dict(kind="tetrahedral mesh", dims=4)),
+        ("points4-i32", "expected f64", dict(**POINTS4, grid=HALF)),
+        ("cells4-box", "no bounding box", dict(**DIAGRAM4, bounds=(0, 0, 0, 1, 1, 1))),
+        ("simplices4-region", "no bounding box, tree or region", dict(**SIMPLICES4, region=(0, 0, 1, 1))),
+        ("cells4-chunked", "is not chunked", dict(**DIAGRAM4, chunked=True)),
     ]
     for name, words, fields in damage:
         raw = {field: value for field, value in fields.items() if isinstance(value, bytes)}
@@ -503,6 +574,94 @@ def failing_streams():
         four().labels(1, 2, 3, 4).end(5, vertices=4, simplices=1))
     yield "tetrahedra-no-end", "truncated", four().labels(1, 2, 3, 4)
     yield "end-walls", "END states", partial().residual((None, 0, 0, 0)).end(1, residual=1, walls=1)
+
+
+    yield from failing_streams4(raw)
+
+
+def failing_streams4(raw):
+    """Name, words of the error, and vector of streams of four dimensions; `raw` makes a payload of bytes."""
+    words = lambda *numbers: raw(struct.pack("<%dI" % len(numbers), *numbers))
+    points = lambda: Vector(**POINTS4)
+    corners = lambda: Vector(**DIAGRAM4).points4(*CORNERS4)
+    cells = lambda *cells: corners().cells4(*cells).end(5, vertices=5, simplices=len(cells))
+    cell = lambda vertices, neighbours=(): cells((0, vertices, neighbours))
+    simplices = lambda *all: Vector(**SIMPLICES4).points4(*CORNERS4).simplices4(*all).end(
+        5, vertices=5, simplices=len(all))
+    value = lambda bits: Vector(**POINTS4, elevation=1).block(
+        b"PNT4", raw(bytes(32) + struct.pack("<Q", bits), "a point and its value")).end(1)
+
+    yield "points4-length", "whole number of records of 32", points().block(b"PNT4", raw(bytes(40))).end(1)
+    yield "points4-nan", "not finite", points().points4(("0", "0", "0", "nan")).end(1)
+    yield "points4-infinite", "not finite", points().block(b"PNT4", raw(struct.pack("<4d", -INF, 0, 0, 0))).end(1)
+    yield "points4-values-length", "whole number of records of 40", Vector(**POINTS4, elevation=1).block(
+        b"PNT4", raw(bytes(32))).end(1)
+    yield "points4-value-infinite", "neither finite nor", value(0x7FF0000000000000)
+    yield "points4-value-other-nan", "neither finite nor", value(0xFFF8000000000000)
+    yield "points4-value-payload", "neither finite nor", value(0x7FF8000000000001)
+    yield "points4-nan-with-value", "not finite", Vector(**POINTS4, elevation=1).points4(
+        ("0", "nan", "0", "0", "1")).end(1)
+    yield "points-in-points4", "may stand here", points().block(b"PNTS", []).end()
+    yield "points4-in-points", "may stand here", Vector().block(b"PNT4", []).end()
+    yield "cells4-in-points4", "may stand here", points().block(b"CEL4", []).end()
+    yield "simplices4-in-cells4", "may stand here", corners().block(b"SIM4", []).end(5, vertices=5)
+    yield "cells4-in-simplices4", "may stand here", Vector(**SIMPLICES4).block(b"CEL4", []).end()
+    yield "labels-in-cells4", "may stand here", corners().labels().end(5, vertices=5)
+    yield "patch-in-cells4", "may stand here", Vector(**DIAGRAM4).block(b"PTCH", raw(bytes(24))).end()
+    yield "points4-after-cells4", "may stand here", corners().cells4(CELLS4[0]).block(b"PNT4", []).end(
+        5, vertices=5, simplices=1)
+    yield "points4-after-simplices4", "may stand here", Vector(**SIMPLICES4).simplices4().points4(*CORNERS4).end(
+        5, vertices=5)
+    yield "points4-no-end", "truncated", points().points4(("0",) * 4)
+    yield "end-points4", "END states", points().points4(("0",) * 4).end(2)
+    yield "end-points4-vertices", "END states", points().points4(("0",) * 4).end(1, vertices=1)
+    yield "end-points4-merged", "END states", points().points4(("0",) * 4).end(2, merged=1)
+    yield "end-points4-header", "another number of points", Vector(**DIAGRAM4, points=5).points4(*CORNERS4).end(
+        6, vertices=5, merged=1)
+
+    yield "cells4-points-equal", "does not follow", Vector(**DIAGRAM4).points4(
+        ("0", "0", "0", "0"), ("0", "-0.0", "0", "0")).end(2, vertices=2)
+    yield "cells4-points-not-sorted", "does not follow", Vector(**DIAGRAM4).points4(CORNERS4[1]).points4(
+        CORNERS4[0]).end(2, vertices=2)
+    yield "cells4-points-not-sorted-last", "does not follow", Vector(**DIAGRAM4).points4(
+        ("1", "2", "3", "4"), ("1", "2", "3", "3.5")).end(2, vertices=2)
+    yield "cells4-length", "whole number of records of 4", corners().block(b"CEL4", raw(bytes(26))).end(
+        5, vertices=5)
+    yield "cell4-of-four", "a finite cell of 4 vertices", cell((0, 1, 2, 3))
+    yield "cell4-infinite-of-three", "an infinite cell of 3 vertices", cells((1, (0, 1, 2), ()))
+    yield "cell4-of-none", "a finite cell of 0 vertices", corners().block(b"CEL4", words(0, 0)).end(
+        5, vertices=5, simplices=1)
+    yield "cell4-vertex", "not increasing numbers of 5 points", cell((0, 1, 2, 3, 5))
+    yield "cell4-vertex-without-points", "not increasing numbers of 0 points", Vector(**DIAGRAM4).cells4(
+        CELLS4[0]).end(simplices=1)
+    yield "cell4-vertices-not-sorted", "not increasing numbers", cell((0, 1, 3, 2, 4))
+    yield "cell4-repeats-vertex", "not increasing numbers", cell((0, 1, 2, 2, 3, 4))
+    yield "cell4-neighbours-not-sorted", "neighbours of a cell are not increasing", cells(
+        (0, range(5), (2, 1)), *CELLS4[1:])
+    yield "cell4-neighbour-twice", "neighbours of a cell are not increasing", cells(
+        (0, range(5), (1, 1)), *CELLS4[1:])
+    yield "cell4-neighbour", "neighbour 6 of 6 cells", cells((0, range(5), (1, 6)), *CELLS4[1:])
+    yield "cell4-huge", "the maximum is", corners().block(b"CEL4", words(2**31 - 1, 2)).end(5, vertices=5)
+    yield "cell4-neighbours-huge", "the maximum is", corners().block(b"CEL4", words(5, 2**32 - 1)).end(5, vertices=5)
+    yield "cell4-cut", "the last cell is cut off after 6 words", corners().block(
+        b"CEL4", words(5, 0, 0, 1, 2, 3)).end(5, vertices=5)
+    yield "cell4-cut-in-counts", "the last cell is cut off after 1 words", corners().cells4(*CELLS4).block(
+        b"CEL4", words(5)).end(5, vertices=5, simplices=6)
+    yield "cell4-cut-promises", "the last cell is cut off after 2 words", corners().block(
+        b"CEL4", words(2**31 - 3, 1)).end(5, vertices=5)
+    yield "end-cells4", "END states", corners().cells4(*CELLS4).end(5, vertices=5, simplices=5)
+    yield "end-cells4-tags", "END states", corners().cells4(*CELLS4).end(5, cells=6, vertices=5, simplices=6)
+    yield "end-cells4-points", "END states", corners().cells4(*CELLS4).end(6, vertices=5, simplices=6)
+    yield "end-cells4-vertices", "END states", corners().end(6, vertices=6)
+    yield "cells4-no-end", "truncated", corners().cells4(*CELLS4)
+
+    yield "simplices4-length", "whole number of records of 20", Vector(**SIMPLICES4).points4(*CORNERS4).block(
+        b"SIM4", raw(bytes(24))).end(5, vertices=5)
+    yield "simplex4-vertex", "simplex uses vertex 5 of 5", simplices((0, 1, 2, 3, 5))
+    yield "simplex4-repeats-vertex", "uses a vertex twice", simplices((0, 1, 2, 3, 4), (4, 1, 2, 3, 4))
+    yield "end-simplices4", "END states", Vector(**SIMPLICES4).points4(*CORNERS4).simplices4((4, 0, 1, 2, 3)).end(
+        5, vertices=5, simplices=2)
+    yield "simplices4-nan", "not finite", Vector(**SIMPLICES4).points4(("nan", "0", "0", "0")).end(1, vertices=1)
 
 
 def files():

@@ -17,6 +17,7 @@ import sys
 from decimal import Decimal
 
 UNKNOWN = 2**64 - 1
+NOT_KNOWN = bytes.fromhex("000000000000f87f")
 
 
 class Malformed(Exception):
@@ -61,6 +62,9 @@ KINDS = {
     2: ("triangle mesh", (2,), ((b"PTCH",),)),
     3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
     4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
+    5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
+    6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
+    7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
 }
 
 
@@ -75,15 +79,22 @@ class Header:
         require(reserved == 0 and elevation < 2 and flags < 16 and data[164:168] == bytes(4), "reserved bits are set")
         require(coordinate_type in (1, 2), "coordinate type %d" % coordinate_type)
         require(
-            self.dims in (2, 3) and not (self.dims == 3 and elevation),
+            self.dims in (2, 3, 4) and not (self.dims == 3 and elevation),
             "%d dimensions with elevation %d" % (self.dims, elevation),
         )
+        self.is_4d = dims_of_kind == (4,)
+        if self.is_4d:
+            require(self.dims == 4, "dims %d in a stream of kind %s, expected 4" % (self.dims, self.kind))
+            require(coordinate_type == 1, "integer coordinates in a stream of kind %s, expected f64" % self.kind)
+            require(
+                flags == 0, "a stream of kind %s has no bounding box, tree or region, and is not chunked" % self.kind
+            )
         require(self.dims in dims_of_kind, "a %s in %d dimensions" % (self.kind, self.dims))
         self.is_integer = coordinate_type == 2
         self.has_elevation = elevation == 1
         self.axes = self.dims + elevation
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
-        self.is_mesh = self.kind != "points"
+        self.is_mesh = self.kind not in ("points", "points in 4 dimensions")
         (self.points,) = struct.unpack_from("<Q", data, 24)
         self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
         if self.is_integer:
@@ -337,6 +348,7 @@ class Stream:
         self.where, self.offset = "header at byte 0", 0
         self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
         self.live = {}
+        self.last, self.words, self.neighbour = None, [], -1
         self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
@@ -383,6 +395,9 @@ class Stream:
             b"LABL": self.label,
             b"RPNT": self.residual,
             b"WALL": self.walls,
+            b"PNT4": self.points4,
+            b"CEL4": self.cells4,
+            b"SIM4": self.simplices4,
             b"END ": self.end,
         }
         require(tag in readers, "unknown block tag")
@@ -490,6 +505,67 @@ class Stream:
             self.total["walls"] += 1
             self.text.line("w %d %d" % (a + 1, b + 1))
 
+    def points4(self, payload):
+        size = self.header.record.size
+        require(len(payload) % size == 0, "%d bytes are not a whole number of records of %d" % (len(payload), size))
+        for at in range(0, len(payload), size):
+            record = self.header.record.unpack_from(payload, at)
+            point, value = record[:4], record[4:]
+            require(all(map(math.isfinite, point)), "coordinate is not finite")
+            if value:
+                stored = payload[at + 32 : at + 40]
+                require(
+                    math.isfinite(value[0]) or stored == NOT_KNOWN,
+                    "value %r is neither finite nor the NaN of what is not known" % stored.hex(),
+                )
+            if self.header.kind == "cells in 4 dimensions":
+                require(self.last is None or self.last < point, "point %r does not follow the one before it" % (point,))
+                self.last = point
+            self.total["vertices" if self.header.is_mesh else "points"] += 1
+            words = [decimal(x) for x in point] + ["nan" if math.isnan(x) else decimal(x) for x in value]
+            self.text.line("v4 " + " ".join(words))
+
+    def cells4(self, payload):
+        require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
+        self.words += struct.unpack("<%dI" % (len(payload) // 4), payload)
+        at = 0
+        while len(self.words) - at >= 2:
+            marked, neighbours = self.words[at : at + 2]
+            infinite, vertices = marked >> 31, marked & 0x7FFFFFFF
+            require(
+                2 + vertices + neighbours <= 2**31,
+                "cell of %d vertices and %d neighbours, the maximum is 2^31 words" % (vertices, neighbours),
+            )
+            middle, end = at + 2 + vertices, at + 2 + vertices + neighbours
+            if end > len(self.words):
+                break
+            self.cell4(infinite, self.words[at + 2 : middle], self.words[middle:end])
+            at = end
+        del self.words[:at]
+
+    def cell4(self, infinite, vertices, neighbours):
+        least, points = (4 if infinite else 5), self.total["vertices"]
+        sort = "an infinite" if infinite else "a finite"
+        require(len(vertices) >= least, "%s cell of %d vertices, expected at least %d" % (sort, len(vertices), least))
+        require(
+            is_increasing(vertices) and vertices[-1] < points,
+            "the vertices of a cell are not increasing numbers of %d points" % points,
+        )
+        require(is_increasing(neighbours), "the neighbours of a cell are not increasing")
+        self.neighbour = max([self.neighbour] + neighbours[-1:])
+        self.total["simplices"] += 1
+        self.text.numbers("i4" if infinite else "c4", vertices)
+        self.text.numbers("n4", neighbours)
+
+    def simplices4(self, payload):
+        require(len(payload) % 20 == 0, "%d bytes are not a whole number of records of 20" % len(payload))
+        points = self.total["vertices"]
+        for simplex in struct.iter_unpack("<5I", payload):
+            require(max(simplex) < points, "simplex uses vertex %d of %d" % (max(simplex), points))
+            require(len(set(simplex)) == 5, "simplex %r uses a vertex twice" % (simplex,))
+            self.total["simplices"] += 1
+            self.text.numbers("s4", simplex)
+
     def end(self, payload):
         require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))
         stated = dict(zip(self.total, struct.unpack("<7Q", payload)))
@@ -499,15 +575,18 @@ class Stream:
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
             retired = self.finalized + self.named
             require(
-                not self.live and retired == counted["vertices"],
+                self.header.is_4d or not self.live and retired == counted["vertices"],
                 "END: %d of %d vertices were finalized or handed to the residual" % (retired, counted["vertices"]),
             )
         require(
             self.labels in (0, counted["vertices"]),
             "END: %d labels of %d vertices, expected none, or one for each" % (self.labels, counted["vertices"]),
         )
+        require(not self.words, "END: the last cell is cut off after %d words" % len(self.words))
         require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
+        cells = counted["simplices"]
+        require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))
         if self.chunks:
             self.chunks.end()
         require(not self.source.read(1), "the input goes on after END")
@@ -584,6 +663,11 @@ class Text:
             letter = "c" if len(simplex) == 4 else "f"
             self.line(letter + "".join([" %d" % (vertex + 1) for vertex in simplex]))
         self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
+
+    def numbers(self, word, numbers):
+        """Numbers counted from 1, at most 4096 in a line."""
+        for at in range(0, max(len(numbers), 1), 4096):
+            self.line((word if at == 0 else "+4") + "".join([" %d" % (n + 1) for n in numbers[at : at + 4096]]))
 
     def residual(self, vertex, point):
         self.line("r %s %s" % ("-" if vertex is None else vertex + 1, self.world(point)))

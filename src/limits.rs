@@ -10,8 +10,14 @@ pub const CRS_LEN_MAX: usize = HEADER_BODY_MAX - (1 << 12);
 /// Longest payload of a stream block, in bytes.
 pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 
+/// Words of one cell of four dimensions: 8 GB, so that a block that completes it has fewer than 2^32.
+pub const CELL_WORDS_MAX: u64 = 1 << 31;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
+
+/// Most numbers in a line of a text twin of four dimensions: with ten digits each, they fit a line.
+pub const TEXT_NUMBERS_MAX: usize = 1 << 12;
 
 /// Longest line of a molecular structure, in bytes: mmCIF may hold a whole sequence in one.
 pub const STRUCTURE_LINE_MAX: usize = 1 << 24;

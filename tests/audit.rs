@@ -40,7 +40,7 @@ use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWrite
 fn audit(stream: &[u8], standard: Standard, given: Option<PointSet>) -> Result<Report, Verdict> {
     let mut reader = StreamReader::new(stream, "test").map_err(|e| Verdict::Malformed(e.to_string()))?;
     let header = reader.header().clone();
-    let mut audit = Audit::new(&header, standard, given);
+    let mut audit = Audit::new(&header, standard, given).unwrap();
     while let Some(event) = reader.next_event().map_err(|e| Verdict::Malformed(e.to_string()))? {
         if let Err(violation) = audit.event(&event) {
             let error = violation.to_error(&header);

@@ -1,5 +1,8 @@
 //! The reader believes nothing and the writer loses nothing.
 
+mod four;
+mod tools4;
+
 use spmesh::bounds::{Bounds, Point, Region};
 use spmesh::cells::{CellCode, CellTree};
 use spmesh::error::{ErrorKind, Result};
@@ -40,6 +43,9 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
             Event::Labels(labels) => writer.labels(labels)?,
             Event::ResidualPoints(points) => writer.residual_points(points)?,
             Event::Walls(walls) => writer.walls(walls)?,
+            Event::Points4(points) => writer.points4(&points.points, points.values.as_deref())?,
+            Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell))?,
+            Event::Simplices4(simplices) => writer.simplices4(simplices)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),
         }
     }
@@ -56,6 +62,14 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
             (Some(Event::Labels(before)), Event::Labels(labels)) => before.extend(labels),
             (Some(Event::ResidualPoints(before)), Event::ResidualPoints(points)) => before.extend(points),
             (Some(Event::Walls(before)), Event::Walls(walls)) => before.extend(walls),
+            (Some(Event::Points4(before)), Event::Points4(points)) => four::extend(before, points),
+            (Some(Event::Cells4(before)), Event::Cells4(cells)) => {
+                cells.iter().for_each(|cell| before.push(cell))
+            }
+            (Some(Event::Simplices4(before)), Event::Simplices4(simplices)) => before.extend(simplices),
+            (_, Event::Points4(points)) if points.points.is_empty() => {}
+            (_, Event::Cells4(cells)) if cells.is_empty() => {}
+            (_, Event::Simplices4(simplices)) if simplices.is_empty() => {}
             (_, Event::Points(points)) if points.is_empty() => {}
             (_, Event::Cells(cells)) if cells.is_empty() => {}
             (_, Event::Labels(labels)) if labels.is_empty() => {}
@@ -245,6 +259,11 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
         with_block(&tetrahedral, b"PTCH", counts([0, 0, (BLOCK_MAX as u32 - 24) / 16, 0])),
         with_block(&tetrahedral, b"LABL", vec![0; BLOCK_MAX]),
         with_block(&points, b"END ", vec![0; BLOCK_MAX]),
+        with_block(&four::empty(Kind::Points4), b"PNT4", vec![0; BLOCK_MAX]),
+        with_block(&four::empty(Kind::Simplices4), b"SIM4", vec![0; BLOCK_MAX]),
+        with_block(&four::empty(Kind::Cells4), b"CEL4", [0xff; 8].to_vec()),
+        with_block(&four::empty(Kind::Cells4), b"CEL4", 0x7fff_0000u64.to_le_bytes().to_vec()),
+        with_block(&four::empty(Kind::Cells4), b"CEL4", [0, 0, 0, 0, 0, 0, 0, 1].repeat(BLOCK_MAX / 8)),
     ];
     for at in [12, 204, frames(&points)[1].start + 8] {
         for value in [u32::MAX, 1 << 31, 1 << 20] {

@@ -41,6 +41,7 @@ mod partial;
 mod point_set;
 mod points;
 mod survey;
+mod survey4;
 mod tetrahedra;
 mod triangles;
 
@@ -48,6 +49,7 @@ pub(crate) use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use point_set::PointSet;
 pub use survey::{CellPoints, PatchSize, Survey};
+pub use survey4::Survey4;
 pub use tetrahedra::{Census, Faults, Figures};
 pub use triangles::Standard;
 
@@ -58,6 +60,7 @@ use points::{PointsAudit, points_checks};
 use tetrahedra::{TETRAHEDRA_CHECKS, TetrahedraAudit};
 
 use crate::bounds::Point;
+use crate::error::Error;
 use crate::stream::{Event, Header, Kind};
 
 /// Audit of one stream of any kind: give it every event, and ask for the report.
@@ -93,8 +96,10 @@ pub struct Report {
 
 impl Audit {
     /// An audit of a stream with this header. `given` are the points whose positions the mesh must have.
-    #[must_use]
-    pub fn new(header: &Header, standard: Standard, given: Option<PointSet>) -> Self {
+    ///
+    /// # Errors
+    /// Usage, if there is no audit of the kind.
+    pub fn new(header: &Header, standard: Standard, given: Option<PointSet>) -> Result<Self, Error> {
         let (state, mut checks) = match header.kind {
             Kind::Points => (State::Points(PointsAudit::new(header)), points_checks(header)),
             Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), MESH_CHECKS.to_vec()),
@@ -104,12 +109,16 @@ impl Audit {
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
             }
+            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => {
+                let kind = header.kind.name();
+                return Err(Error::usage(format!("--audit does not know streams of kind {kind} yet")));
+            }
         };
         let is_mesh = header.kind.vertices_per_simplex() > 0;
         checks.extend((is_mesh && standard == Standard::Canonical).then_some(Check::Canonical));
         checks.extend((is_mesh && given.is_some()).then_some(Check::Points));
         let ledger = Ledger::of(&checks);
-        Audit { state, given, ledger, violation: None, open_max: 0 }
+        Ok(Audit { state, given, ledger, violation: None, open_max: 0 })
     }
 
     /// Checks the next event.

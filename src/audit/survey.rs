@@ -1,5 +1,6 @@
 //! What a stream holds, in numbers.
 
+use super::survey4::Survey4;
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
 use crate::stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
@@ -19,6 +20,8 @@ pub struct Survey {
     cells: CellPoints,
     /// Points since the last tag.
     run: u64,
+    /// What is of four dimensions.
+    four: Survey4,
 }
 
 /// Size of a patch.
@@ -85,6 +88,7 @@ impl Survey {
                 self.totals.residual_points += points.len() as u64;
             }
             Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::Points4(_) | Event::Cells4(_) | Event::Simplices4(_) => self.four.event(event),
             Event::End(totals) => self.totals = *totals,
         }
         Ok(())
@@ -96,7 +100,13 @@ impl Survey {
         self.totals
     }
 
-    /// Bounding box of what was read, in stored coordinates.
+    /// What is of four dimensions.
+    #[must_use]
+    pub fn four(&self) -> &Survey4 {
+        &self.four
+    }
+
+    /// Bounding box of what was read, in stored coordinates, of two or three dimensions.
     #[must_use]
     pub fn found_bounds(&self) -> Option<Bounds> {
         self.found

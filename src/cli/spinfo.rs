@@ -137,7 +137,7 @@ impl Proof {
     fn of(flags: &Flags, header: &Header) -> Result<Self> {
         let Some(standard) = flags.audit.map(Standard::from) else { return Ok(Proof::None) };
         if !flags.count_violations {
-            let audit = Audit::new(header, standard, given_points(flags, header)?);
+            let audit = Audit::new(header, standard, given_points(flags, header)?)?;
             return Ok(Proof::Audit(Box::new(audit)));
         }
         if header.kind != Kind::TetrahedralMesh {

@@ -59,6 +59,7 @@ pub fn convert(
         done += match &event {
             Event::Points(points) => points.len() as u64,
             Event::Patch(patch) => patch.new.len() as u64,
+            Event::Points4(points) => points.points.len() as u64,
             _ => 0,
         };
         progress(done);

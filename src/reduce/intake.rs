@@ -80,7 +80,7 @@ impl<R: Read> Intake<R> {
                 }
                 Some(Event::Cells(cells)) => self.tags.extend(cells),
                 Some(Event::End(_)) | None => return Ok(Arrival::End(Box::new(self.ended()))),
-                Some(Event::Patch(_) | Event::Labels(_) | Event::ResidualPoints(_) | Event::Walls(_)) => {
+                Some(_) => {
                     unreachable!("the reader refuses these blocks in a stream of points")
                 }
             }

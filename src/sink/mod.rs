@@ -14,6 +14,7 @@ mod spm;
 mod spool;
 mod triangles;
 mod twin;
+mod twin4;
 mod vtu;
 mod world;
 

@@ -31,6 +31,9 @@ impl<W: Write> EventSink for SpmSink<W> {
             Event::Labels(labels) => writer.labels(labels),
             Event::ResidualPoints(points) => writer.residual_points(points),
             Event::Walls(walls) => writer.walls(walls),
+            Event::Points4(points) => writer.points4(&points.points, points.values.as_deref()),
+            Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell)),
+            Event::Simplices4(simplices) => writer.simplices4(simplices),
             Event::End(totals) => {
                 let writer = self.writer.take().expect("there is one end");
                 writer.end(totals.points, totals.merged).map(drop)

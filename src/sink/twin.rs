@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::world::{world_of, write_numbers};
-use super::{EventSink, write_error};
+use super::{EventSink, twin4, write_error};
 use crate::bounds::Point;
 use crate::error::Result;
 use crate::stream::{Coordinates, Crs, Event, Header, Kind, Patch, Totals};
@@ -77,6 +77,9 @@ impl<W: Write> EventSink for TwinSink<W> {
             Event::Walls(walls) => walls.iter().try_for_each(|&[a, b]| {
                 self.line(format_args!("w {} {}", u64::from(a) + 1, u64::from(b) + 1))
             }),
+            Event::Points4(points) => twin4::points(&mut self.output, points),
+            Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
+            Event::Simplices4(simplices) => twin4::simplices(&mut self.output, simplices),
             Event::End(totals) => self.end(totals),
         }
     }

@@ -139,9 +139,7 @@ impl Cells {
         match kind {
             Kind::Points => Cells { vertices: points, cells: points, corners: 1, code: 1 },
             Kind::TetrahedralMesh => Cells { vertices, cells: simplices, corners: 4, code: 10 },
-            Kind::TriangleMesh | Kind::PartialTriangleMesh => {
-                Cells { vertices, cells: simplices, corners: 3, code: 5 }
-            }
+            _ => Cells { vertices, cells: simplices, corners: 3, code: 5 },
         }
     }
 }

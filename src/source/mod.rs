@@ -37,6 +37,7 @@ mod stream;
 pub mod structure;
 mod text;
 mod twin;
+mod twin4;
 mod twin_header;
 
 use std::num::NonZeroUsize;

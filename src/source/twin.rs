@@ -8,6 +8,7 @@ use super::statements::{
     Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
 };
 use super::twin_header::TwinHeader;
+use super::twin4::{self, Group4, Statement4};
 use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
@@ -28,6 +29,7 @@ enum Statement {
     Label(u64),
     Residual(Option<u64>, Point),
     Wall([u64; 2]),
+    Four(Statement4),
     End(Totals),
 }
 
@@ -56,6 +58,7 @@ enum Group {
     Labels(Vec<u64>),
     Residual(Vec<(Option<u64>, Point)>),
     Walls(Vec<[u32; 2]>),
+    Four(Group4),
 }
 
 /// Reads a text twin. Memory: one line, and one block's worth of lines.
@@ -135,10 +138,11 @@ impl<R: Read> TwinSource<R> {
 
     /// Adds a statement to the group, which it starts if there is none.
     fn push(&mut self, statement: Statement) -> Result<()> {
-        let is_mesh = self.header.kind != Kind::Points;
+        let is_mesh = self.header.kind.vertices_per_simplex() > 0;
+        let is_points = self.header.kind == Kind::Points;
         let is_partial = self.header.kind == Kind::PartialTriangleMesh;
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
-        let Totals { residual_points, walls, .. } = *self.tally.totals();
+        let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
         match (&mut self.group, statement) {
             (Group::Points(points), Statement::Vertex(point)) => points.push(point),
             (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
@@ -150,16 +154,20 @@ impl<R: Read> TwinSource<R> {
             (Group::Labels(labels), Statement::Label(label)) => labels.push(label),
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
             (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
+            (Group::Four(group), Statement::Four(statement)) => group.push(statement)?,
             (Group::Empty, statement) => {
                 self.group = match statement {
-                    Statement::Vertex(_) if !is_mesh => Group::Points(Vec::new()),
-                    Statement::Cell(_) if !is_mesh => Group::Cells(Vec::new()),
+                    Statement::Vertex(_) if is_points => Group::Points(Vec::new()),
+                    Statement::Cell(_) if is_points => Group::Cells(Vec::new()),
                     Statement::Patch if is_mesh && residual_points == 0 => {
                         Group::Patch(PatchLines::default())
                     }
                     Statement::Label(_) if is_tetrahedral => Group::Labels(Vec::new()),
                     Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
+                    Statement::Four(ref first) if Group4::can_start(&self.header, first, simplices > 0) => {
+                        Group::Four(Group4::start(&self.header, first))
+                    }
                     _ => {
                         let kind = self.header.kind.name();
                         return Err(Error::malformed(format!("a {kind} cannot have this line here")));
@@ -197,6 +205,7 @@ impl<R: Read> TwinSource<R> {
                 Event::ResidualPoints(points)
             }
             Group::Walls(walls) => Event::Walls(walls),
+            Group::Four(group) => group.finish()?,
         };
         self.tally.count(&event)?;
         Ok(event)
@@ -257,6 +266,7 @@ impl Group {
             (Group::Labels(labels), Statement::Label(_)) => labels.len() < BATCH_MAX,
             (Group::Residual(points), Statement::Residual(..)) => points.len() < BATCH_MAX,
             (Group::Walls(walls), Statement::Wall(_)) => walls.len() < BATCH_MAX,
+            (Group::Four(group), Statement::Four(statement)) => group.takes(statement, BATCH_MAX),
             _ => false,
         }
     }
@@ -281,6 +291,7 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     let fields = &mut fields;
     let per_simplex = header.kind.vertices_per_simplex();
     let statement = match next_field(fields)? {
+        word if header.kind.is_4d() && word != b"#" => Statement::Four(twin4::parse(word, fields, header)?),
         b"v" => Statement::Vertex(parse_point(fields, header)?),
         b"f" if per_simplex == 3 => Statement::Simplex(parse_simplex(fields, 3)?),
         b"c" if per_simplex == 4 => Statement::Simplex(parse_simplex(fields, 4)?),
@@ -312,6 +323,7 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::TriangleMesh => "v, f, x or a comment",
         Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
         Kind::TetrahedralMesh => "v, c, x, label or a comment",
+        Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",
     }
 }
 

@@ -47,7 +47,7 @@ impl TwinHeader {
             b"coordinates" => self.is_i32 = expect_word(rest, &[("f64", false), ("i32", true)])?,
             b"scale" => self.scale = Some(only(parse_decimals(&mut values)?, values)?),
             b"offset" => self.offset = Some(only(parse_decimals(&mut values)?, values)?),
-            b"dims" => self.dims = Some(expect_word(rest, &[("2", 2), ("3", 3)])?),
+            b"dims" => self.dims = Some(expect_word(rest, &[("2", 2), ("3", 3), ("4", 4)])?),
             b"elevation" => self.has_elevation = Some(expect_word(rest, &YES_NO)?),
             b"bounds" => self.bounds = Some(only(parse_decimals(&mut values)?, values)?),
             b"points" => self.points = Some(only(parse_integer(next_field(&mut values)?)?, values)?),

@@ -14,16 +14,22 @@ pub(super) enum Tag {
     Labels,
     ResidualPoints,
     Walls,
+    Points4,
+    Cells4,
+    Simplices4,
     End,
 }
 
-const NAMES: [(Tag, [u8; 4]); 7] = [
+const NAMES: [(Tag, [u8; 4]); 10] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
     (Tag::Labels, *b"LABL"),
     (Tag::ResidualPoints, *b"RPNT"),
     (Tag::Walls, *b"WALL"),
+    (Tag::Points4, *b"PNT4"),
+    (Tag::Cells4, *b"CEL4"),
+    (Tag::Simplices4, *b"SIM4"),
     (Tag::End, *b"END "),
 ];
 

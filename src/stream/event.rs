@@ -1,7 +1,9 @@
 //! What a stream says, block by block.
 
+use super::points4::Points4;
 use crate::bounds::Point;
 use crate::cells::CellCode;
+use crate::cells4::Cells4;
 use crate::error::{Error, Result};
 
 /// One block of a stream, decoded and checked.
@@ -21,6 +23,12 @@ pub enum Event {
     /// Directed edges between residual points (counted over all their blocks): left of each lies a final
     /// simplex, right of it one that is not final.
     Walls(Vec<[u32; 2]>),
+    /// Points of four dimensions.
+    Points4(Points4),
+    /// The cells of four dimensions that a block completes.
+    Cells4(Cells4),
+    /// Simplices of four dimensions: numbers of points, five each.
+    Simplices4(Vec<[u32; 5]>),
     /// The end: nothing follows.
     End(Totals),
 }

@@ -106,9 +106,10 @@ pub struct Header {
     pub kind: Kind,
     /// Encoding of the coordinates.
     pub coordinates: Coordinates,
-    /// Dimensions of the geometry: 2 or 3.
+    /// Dimensions of the geometry: 2, 3 or 4.
     pub dims: u8,
-    /// Whether two-dimensional points carry an elevation. False in three dimensions, where z is geometry.
+    /// Whether two-dimensional points carry an elevation, or four-dimensional ones a value. False in three dimensions,
+    /// where z is geometry.
     pub has_elevation: bool,
     /// Box that holds all points of the stream, in stored coordinates; `None` if unknown or empty. Writers
     /// give the smallest one where they can.
@@ -146,7 +147,7 @@ impl Header {
         }
     }
 
-    /// Coordinates stored per point: the dimensions, and one more for an elevation.
+    /// Numbers stored per point: the dimensions, and one more for an elevation or a value.
     #[must_use]
     pub fn coordinates_per_point(&self) -> usize {
         usize::from(self.dims) + usize::from(self.has_elevation)
@@ -270,14 +271,10 @@ impl Header {
 
     /// The rules that hold between the fields, for writer and reader alike.
     pub(crate) fn check(&self) -> std::result::Result<(), String> {
-        if !matches!((self.dims, self.has_elevation), (2, _) | (3, false)) {
+        if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
         }
-        if self.kind.vertices_per_simplex() > 0
-            && usize::from(self.dims) + 1 != self.kind.vertices_per_simplex()
-        {
-            return Err(format!("a {} in {} dimensions", self.kind.name(), self.dims));
-        }
+        self.check_kind()?;
         if let Coordinates::I32 { scale, offset } = &self.coordinates
             && !scale.iter().zip(offset).all(|(&scale, &offset)| is_grid(scale, offset))
         {
@@ -311,6 +308,27 @@ impl Header {
         }
         if (self.kind == Kind::PartialTriangleMesh) != self.region.is_some() {
             return Err("a region goes with a partial mesh, and only with one".into());
+        }
+        Ok(())
+    }
+
+    /// That the geometry is one that the kind can have.
+    fn check_kind(&self) -> std::result::Result<(), String> {
+        let (kind, dims) = (self.kind.name(), self.dims);
+        if !self.kind.is_4d() {
+            let has_dims = self.kind.dims().contains(&dims);
+            return if has_dims { Ok(()) } else { Err(format!("a {kind} in {dims} dimensions")) };
+        }
+        if dims != 4 {
+            return Err(format!("dims {dims} in a stream of kind {kind}, expected 4"));
+        }
+        if self.coordinates != Coordinates::F64 {
+            return Err(format!("integer coordinates in a stream of kind {kind}, expected f64"));
+        }
+        if self.bounds.is_some() || self.tree.is_some() || self.region.is_some() || self.chunked {
+            return Err(format!(
+                "a stream of kind {kind} has no bounding box, tree or region, and is not chunked"
+            ));
         }
         Ok(())
     }

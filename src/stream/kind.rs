@@ -14,23 +14,31 @@ pub enum Kind {
     /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; a label for each vertex, or
     /// for none.
     TetrahedralMesh,
+    /// Points of four dimensions, each with a value or none with one.
+    Points4,
+    /// Points of four dimensions and the cells between them.
+    Cells4,
+    /// Points of four dimensions and the simplices between them.
+    Simplices4,
 }
 
 struct Row {
     kind: Kind,
     code: u16,
     name: &'static str,
+    dims: &'static [u8],
     vertices_per_simplex: usize,
     blocks: &'static [Tag],
     /// Whether all blocks of a tag come before those of the next one in `blocks`.
     is_ordered: bool,
 }
 
-const ROWS: [Row; 4] = [
+const ROWS: [Row; 7] = [
     Row {
         kind: Kind::Points,
         code: 1,
         name: "points",
+        dims: &[2, 3],
         vertices_per_simplex: 0,
         blocks: &[Tag::Points, Tag::Cells],
         is_ordered: false,
@@ -39,6 +47,7 @@ const ROWS: [Row; 4] = [
         kind: Kind::TriangleMesh,
         code: 2,
         name: "triangle mesh",
+        dims: &[2],
         vertices_per_simplex: 3,
         blocks: &[Tag::Patch],
         is_ordered: true,
@@ -47,6 +56,7 @@ const ROWS: [Row; 4] = [
         kind: Kind::PartialTriangleMesh,
         code: 3,
         name: "partial triangle mesh",
+        dims: &[2],
         vertices_per_simplex: 3,
         blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
         is_ordered: true,
@@ -55,9 +65,37 @@ const ROWS: [Row; 4] = [
         kind: Kind::TetrahedralMesh,
         code: 4,
         name: "tetrahedral mesh",
+        dims: &[3],
         vertices_per_simplex: 4,
         blocks: &[Tag::Patch, Tag::Labels],
         is_ordered: false,
+    },
+    Row {
+        kind: Kind::Points4,
+        code: 5,
+        name: "points in 4 dimensions",
+        dims: &[4],
+        vertices_per_simplex: 0,
+        blocks: &[Tag::Points4],
+        is_ordered: true,
+    },
+    Row {
+        kind: Kind::Cells4,
+        code: 6,
+        name: "cells in 4 dimensions",
+        dims: &[4],
+        vertices_per_simplex: 0,
+        blocks: &[Tag::Points4, Tag::Cells4],
+        is_ordered: true,
+    },
+    Row {
+        kind: Kind::Simplices4,
+        code: 7,
+        name: "simplices in 4 dimensions",
+        dims: &[4],
+        vertices_per_simplex: 0,
+        blocks: &[Tag::Points4, Tag::Simplices4],
+        is_ordered: true,
     },
 ];
 
@@ -90,7 +128,25 @@ impl Kind {
         self.row().name
     }
 
-    /// Vertices of a simplex; 0 where the kind holds no simplices.
+    /// Dimensions that the geometry may have.
+    #[must_use]
+    pub fn dims(self) -> &'static [u8] {
+        self.row().dims
+    }
+
+    /// Whether it is of four dimensions, with blocks of its own.
+    #[must_use]
+    pub fn is_4d(self) -> bool {
+        self.dims() == [4]
+    }
+
+    /// Whether its points are the vertices of something, so that END counts merged ones.
+    #[must_use]
+    pub fn has_vertices(self) -> bool {
+        !matches!(self, Kind::Points | Kind::Points4)
+    }
+
+    /// Vertices of a simplex of a patch; 0 where the kind holds no patches.
     #[must_use]
     pub fn vertices_per_simplex(self) -> usize {
         self.row().vertices_per_simplex

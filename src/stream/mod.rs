@@ -3,7 +3,9 @@
 //! `formats/spmesh.md` is the specification; this module is its reader and its writer. Tools meet only here.
 
 mod block;
+mod cell_words;
 mod chunks;
+mod diagram4;
 mod ending;
 mod event;
 mod finalized;
@@ -12,10 +14,13 @@ mod kind;
 mod live;
 mod patch_blocks;
 mod payload;
+mod points4;
 mod reader;
+mod rules4;
 mod tally;
 mod writer;
 
+pub use diagram4::Diagram4;
 pub use ending::ends_with_end;
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
@@ -24,6 +29,8 @@ pub use kind::Kind;
 pub use live::LiveVertices;
 pub(crate) use patch_blocks::{PatchBlocks, PointCode};
 pub(crate) use payload::{check_place, decode_points};
+pub use points4::Points4;
+pub(crate) use points4::check_value;
 pub use reader::StreamReader;
 pub(crate) use tally::Tally;
 pub use writer::StreamWriter;

@@ -160,7 +160,7 @@ pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {
     }
 }
 
-fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
+pub(super) fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
     if bytes.len().is_multiple_of(len) {
         Ok(bytes.chunks_exact(len))
     } else {

@@ -6,10 +6,12 @@ use std::io::Read;
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
+use super::cell_words::CellWords;
 use super::event::{Event, Totals};
 use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
 use super::payload;
+use super::points4::{self, Points4};
 use super::tally::Tally;
 use crate::bounds::{Bounds, Point};
 use crate::error::{Error, ErrorKind, Result};
@@ -18,7 +20,8 @@ use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
 /// Reads one stream.
 ///
 /// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
-/// Memory: one block, and its decoded event.
+/// Memory: one block, and its decoded event; of a cell of four dimensions that goes on in later blocks, what of it has
+/// arrived.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,
@@ -34,6 +37,7 @@ pub struct StreamReader<R: Read> {
     block_start: u64,
     last_tag: Option<Tag>,
     tally: Tally,
+    cell_words: CellWords,
     ended: bool,
 }
 
@@ -59,6 +63,7 @@ impl<R: Read> StreamReader<R> {
             block_start: 0,
             last_tag: None,
             tally,
+            cell_words: CellWords::default(),
             ended: false,
         })
     }
@@ -183,10 +188,14 @@ impl<R: Read> StreamReader<R> {
                 Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
             }
             Tag::Walls => Event::Walls(payload::walls(totals.residual_points, payload)?),
+            Tag::Points4 => Event::Points4(Points4::decode(header, payload)?),
+            Tag::Cells4 => Event::Cells4(self.cell_words.take(totals.vertices, payload)?),
+            Tag::Simplices4 => Event::Simplices4(points4::simplices(payload)?),
             Tag::End => Event::End(payload::totals(payload)?),
         };
         self.tally.count(&event)?;
         if let Event::End(stated) = &event {
+            self.cell_words.check_end()?;
             self.tally.check_end(&self.header, stated)?;
             self.expect_end_of_input()?;
             self.ended = true;

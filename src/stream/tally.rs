@@ -3,6 +3,7 @@
 use super::chunks::ChunkCheck;
 use super::event::{Event, Totals};
 use super::header::Header;
+use super::rules4::Rules4;
 use crate::bounds::Bounds;
 use crate::error::{Error, Result};
 
@@ -14,6 +15,8 @@ pub(crate) struct Tally {
     finalized: u64,
     named_residual_points: u64,
     per_simplex: usize,
+    has_vertices: bool,
+    rules4: Rules4,
     chunks: Option<ChunkCheck>,
 }
 
@@ -22,7 +25,16 @@ impl Tally {
         let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
         let per_simplex = header.kind.vertices_per_simplex();
         let totals = Totals::default();
-        Tally { totals, labels: 0, finalized: 0, named_residual_points: 0, per_simplex, chunks }
+        Tally {
+            totals,
+            labels: 0,
+            finalized: 0,
+            named_residual_points: 0,
+            per_simplex,
+            has_vertices: header.kind.has_vertices(),
+            rules4: Rules4::new(header.kind),
+            chunks,
+        }
     }
 
     /// What was counted. A mesh has no count of points before its end.
@@ -33,7 +45,8 @@ impl Tally {
     /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
     ///
     /// # Errors
-    /// If points of a chunked stream are not those of one cell, or labels are more than the vertices so far.
+    /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or what is of
+    /// four dimensions breaks a rule.
     pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -57,6 +70,9 @@ impl Tally {
                 self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
             }
             Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::Points4(points) => self.rules4.points(points, &mut self.totals)?,
+            Event::Cells4(cells) => self.rules4.cells(cells, &mut self.totals)?,
+            Event::Simplices4(simplices) => self.rules4.simplices(simplices, &mut self.totals)?,
             Event::End(_) => {}
         }
         Ok(())
@@ -85,7 +101,7 @@ impl Tally {
         Ok(())
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.8). A mesh
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.11). A mesh
     /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
     /// residual.
     ///
@@ -93,13 +109,13 @@ impl Tally {
     /// If they are not, if vertices are neither final nor in the residual, or if some have a label and others none.
     pub(crate) fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         let mut counted = self.totals;
-        if self.per_simplex > 0 {
+        if self.has_vertices {
             counted.merged = stated.merged;
             let waiting = counted.residual_points - self.named_residual_points;
             let points = counted.vertices.checked_add(waiting).and_then(|n| n.checked_add(stated.merged));
             counted.points = points.ok_or_else(|| Error::malformed("END: points are beyond counting"))?;
             let retired = self.finalized + self.named_residual_points;
-            if retired != counted.vertices {
+            if self.per_simplex > 0 && retired != counted.vertices {
                 return Err(Error::malformed(format!(
                     "END: {retired} of {} vertices were finalized or handed to the residual",
                     counted.vertices
@@ -118,6 +134,7 @@ impl Tally {
         if header.points.is_some_and(|points| points != stated.points) {
             return Err(Error::malformed("END: the header states another number of points"));
         }
+        self.rules4.check_end(&counted)?;
         self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
     }
 }

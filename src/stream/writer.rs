@@ -1,11 +1,14 @@
 //! Writes a stream block by block. Only [`StreamWriter::end`] makes it whole.
 
+mod four;
+
 use std::io::Write;
 
 use super::block::{Frame, Tag};
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
 use super::patch_blocks::PatchBlocks;
+use super::rules4::Rules4;
 use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
@@ -24,11 +27,13 @@ pub struct StreamWriter<W: Write> {
     header: Header,
     sequence: u32,
     last_tag: Option<Tag>,
-    /// Points that wait for their block to fill.
+    /// Points, or other records, that wait for their block to fill, and the tag of the block.
     points: Vec<u8>,
+    points_tag: Tag,
     payload: Vec<u8>,
     totals: Totals,
     labels: u64,
+    rules4: Rules4,
 }
 
 impl<W: Write> StreamWriter<W> {
@@ -38,15 +43,18 @@ impl<W: Write> StreamWriter<W> {
     /// If the header breaks a rule of the format, or writing fails.
     pub fn new(mut output: W, header: Header) -> Result<Self> {
         output.write_all(&header.encode()?).map_err(write_error)?;
+        let rules4 = Rules4::new(header.kind);
         Ok(StreamWriter {
             output,
             header,
             sequence: 0,
             last_tag: None,
             points: Vec::with_capacity(POINTS_PAYLOAD),
+            points_tag: Tag::Points,
             payload: Vec::new(),
             totals: Totals::default(),
             labels: 0,
+            rules4,
         })
     }
 
@@ -232,15 +240,16 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes END and flushes. For a mesh, `input_points` of the input were triangulated and `merged` of
+    /// Writes END and flushes. For what has vertices, `input_points` of the input were triangulated and `merged` of
     /// them coincide with another one; a points stream counts its own points and ignores both.
     ///
     /// # Errors
-    /// If writing or flushing fails.
+    /// If a cell of four dimensions names a neighbour that is none, or writing or flushing fails.
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
         assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;
-        if self.header.kind.vertices_per_simplex() > 0 {
+        self.rules4.check_end(&self.totals)?;
+        if self.header.kind.has_vertices() {
             self.totals.points = input_points;
             self.totals.merged = merged;
         }
@@ -259,7 +268,7 @@ impl<W: Write> StreamWriter<W> {
             return Ok(());
         }
         std::mem::swap(&mut self.points, &mut self.payload);
-        self.flush_block(Tag::Points)?;
+        self.flush_block(self.points_tag)?;
         self.points.clear();
         Ok(())
     }

@@ -270,7 +270,7 @@ fn bounds_must_hold_the_vertices() {
     for (height, holds) in [(1000.0, true), (1.0, false)] {
         let bounds = Bounds { min: [-1000.0, -1000.0, 0.0], max: [1000.0, height, 0.0] };
         let header = Header { bounds: Some(bounds), ..mesh_header() };
-        let mut audit = Audit::new(&header, CANONICAL, None);
+        let mut audit = Audit::new(&header, CANONICAL, None).unwrap();
         audit.event(&Event::Patch(patch.clone())).unwrap();
         let verdict = audit.event(&Event::End(end));
         assert_eq!(verdict.err().map(|violation| violation.check), (!holds).then_some(Check::Bounds));

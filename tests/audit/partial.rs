@@ -67,7 +67,7 @@ impl Partial {
 
     /// Gives the parts to the audit directly, past the reader, which refuses some faults itself.
     fn audit(&self) -> Result<Report, Verdict> {
-        let mut audit = Audit::new(&Partial::header(), Standard::Canonical, None);
+        let mut audit = Audit::new(&Partial::header(), Standard::Canonical, None).unwrap();
         let totals = Totals { points: self.input_points, merged: self.merged, ..Totals::default() };
         let events = [
             Event::Patch(self.patch.clone()),

@@ -23,7 +23,7 @@ fn audit_chunks(header: &Header, chunks: &[Chunk]) -> Result<Report, Verdict> {
 
 /// Gives the chunks to the audit directly, past the reader, which has a check of its own for some faults.
 fn audit_events(header: &Header, chunks: &[Chunk]) -> Result<(), Violation> {
-    let mut audit = Audit::new(header, Standard::Canonical, None);
+    let mut audit = Audit::new(header, Standard::Canonical, None).unwrap();
     for (points, cells) in chunks {
         audit.event(&Event::Points(points.to_vec()))?;
         for &cell in *cells {

@@ -78,7 +78,7 @@ fn labels_follow_their_vertices() {
     };
     let end = Event::End(Totals { points: 5, vertices: 5, simplices: 2, ..Totals::default() });
     let verdict = |events: &[Event]| {
-        let mut audit = Audit::new(&solid_header(), CANONICAL, None);
+        let mut audit = Audit::new(&solid_header(), CANONICAL, None).unwrap();
         events.iter().try_for_each(|event| audit.event(event)).map_err(|violation| violation.check)
     };
     let patch = Event::Patch(patch);
@@ -99,7 +99,7 @@ fn bounds_and_counts_must_hold() {
     {
         let bounds = Bounds { min: [-1000.0; 3], max: [1000.0, 1000.0, height] };
         let header = Header { bounds: Some(bounds), ..solid_header() };
-        let mut audit = Audit::new(&header, CANONICAL, None);
+        let mut audit = Audit::new(&header, CANONICAL, None).unwrap();
         audit.event(&Event::Patch(patch.clone())).unwrap();
         let end = Totals { points, vertices: 5, simplices: 2, ..Totals::default() };
         let verdict = audit.event(&Event::End(end));

@@ -87,6 +87,8 @@ impl Summary<'_> {
                     largest.imported
                 ),
             );
+        } else if self.header.kind.is_4d() {
+            self.figures4(line);
         } else {
             let cells = self.survey.cell_points();
             line("chunked", if self.header.chunked { "yes" } else { "no" }.into());
@@ -95,6 +97,38 @@ impl Summary<'_> {
             }
         }
         line("bytes", self.bytes.to_string());
+    }
+
+    /// Figures of what is of four dimensions.
+    fn figures4(&self, line: &mut impl FnMut(&str, String)) {
+        let four = self.survey.four();
+        if self.header.has_elevation {
+            line("values", format!("{} known", four.values_known));
+        }
+        if self.header.kind == Kind::Cells4 {
+            line("finite", format!("{} cells, {} of them simplices", four.finite, four.simplices));
+            line("infinite", format!("{} cells", four.infinite));
+            line(
+                "largest",
+                format!("{} vertices, {} neighbours of a cell", four.vertices_max, four.neighbours_max),
+            );
+        }
+    }
+
+    /// The figures of `figures4`; null for other kinds.
+    fn json4(&self) -> Value {
+        let four = self.survey.four();
+        if !self.header.kind.is_4d() {
+            return Value::Null;
+        }
+        json!({
+            "values_known": four.values_known,
+            "finite_cells": four.finite,
+            "infinite_cells": four.infinite,
+            "finite_simplices": four.simplices,
+            "cell_vertices_max": four.vertices_max,
+            "cell_neighbours_max": four.neighbours_max,
+        })
     }
 
     /// One object; counts of what was read so far if the audit failed.
@@ -137,6 +171,7 @@ impl Summary<'_> {
             "largest_patch": {
                 self.simplices(): largest.simplices, "new": largest.new, "imported": largest.imported,
             },
+            "four_dimensions": self.json4(),
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
             "audit": self.audit.as_ref().map(|report| self.audit_json(report)),
@@ -182,7 +217,11 @@ impl Summary<'_> {
 
     fn coordinates_text(&self) -> String {
         let header = self.header;
-        let elevation = if header.has_elevation { " with elevation" } else { "" };
+        let elevation = match (header.has_elevation, header.kind.is_4d()) {
+            (false, _) => "",
+            (true, false) => " with elevation",
+            (true, true) => " with a value",
+        };
         let encoding = match &header.coordinates {
             Coordinates::F64 => "f64".to_string(),
             Coordinates::I32 { scale, offset } => {
@@ -194,6 +233,9 @@ impl Summary<'_> {
 
     /// Box of the header, or of what was read where the header states none: min and max.
     fn world_bounds(&self) -> Option<[Vec<f64>; 2]> {
+        if let Some([min, max]) = self.survey.four().found_bounds {
+            return Some([min.to_vec(), max.to_vec()]);
+        }
         let bounds = self.header.bounds.or(self.survey.found_bounds())?;
         Some([self.world(bounds.min), self.world(bounds.max)])
     }
@@ -211,7 +253,12 @@ impl Summary<'_> {
 
     /// What the simplices of the stream are called.
     fn simplices(&self) -> &'static str {
-        if self.is_solid() { "tetrahedra" } else { "triangles" }
+        match self.header.kind {
+            Kind::TetrahedralMesh => "tetrahedra",
+            Kind::Cells4 => "cells4",
+            Kind::Simplices4 => "simplices",
+            _ => "triangles",
+        }
     }
 
     fn is_solid(&self) -> bool {

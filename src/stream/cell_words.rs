@@ -1,0 +1,62 @@
+//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a later one.
+
+use byteorder::{ByteOrder, LittleEndian as LE};
+
+use super::payload::whole_records;
+use super::rules4::check_cell;
+use crate::cells4::{Cell4, Cells4};
+use crate::error::{Error, Result};
+use crate::limits::CELL_WORDS_MAX;
+
+/// Marks an infinite cell in the word that counts its vertices.
+pub(super) const INFINITE: u32 = 1 << 31;
+
+/// The words of the cell that is not complete. Memory: what has arrived, whatever its counts promise.
+#[derive(Debug, Default)]
+pub(super) struct CellWords {
+    open: Vec<u32>,
+}
+
+impl CellWords {
+    /// The cells that a block completes; `points` came before.
+    pub(super) fn take(&mut self, points: u64, payload: &[u8]) -> Result<Cells4> {
+        self.open.extend(whole_records(payload, 4)?.map(LE::read_u32));
+        let (mut cells, mut rest) = (Cells4::default(), &self.open[..]);
+        while let Some((cell, after)) = split_cell(rest)? {
+            check_cell(cell, points)?;
+            cells.push(cell);
+            rest = after;
+        }
+        self.open.drain(..self.open.len() - rest.len());
+        Ok(cells)
+    }
+
+    /// That no cell is cut off.
+    pub(super) fn check_end(&self) -> Result<()> {
+        match self.open.len() {
+            0 => Ok(()),
+            words => Err(Error::malformed(format!("END: the last cell is cut off after {words} words"))),
+        }
+    }
+}
+
+/// The first cell of `words` and what is behind it; `None` if there is no whole one.
+fn split_cell(words: &[u32]) -> Result<Option<(Cell4<'_>, &[u32])>> {
+    let [marked, neighbours, rest @ ..] = words else { return Ok(None) };
+    let (vertices, neighbours) = (u64::from(marked & !INFINITE), u64::from(*neighbours));
+    check_words(vertices, neighbours)?;
+    let len = (vertices + neighbours) as usize;
+    let Some((lists, after)) = rest.split_at_checked(len) else { return Ok(None) };
+    let (vertices, neighbours) = lists.split_at(vertices as usize);
+    Ok(Some((Cell4 { is_infinite: marked & INFINITE != 0, vertices, neighbours }, after)))
+}
+
+/// That a cell has no more words than a reader may have to hold.
+fn check_words(vertices: u64, neighbours: u64) -> Result<()> {
+    if vertices + neighbours + 2 <= CELL_WORDS_MAX {
+        return Ok(());
+    }
+    Err(Error::malformed(format!(
+        "cell of {vertices} vertices and {neighbours} neighbours, the maximum is {CELL_WORDS_MAX} words"
+    )))
+}

@@ -1,0 +1,113 @@
+//! The rules of streams of four dimensions that span blocks, for readers of either form and for the writer.
+
+use super::event::Totals;
+use super::kind::Kind;
+use super::points4::Points4;
+use crate::cells4::{Cell4, Cells4, Point4};
+use crate::error::{Error, Result};
+
+/// What later blocks are compared with. Of a stream of another kind nothing is checked.
+#[derive(Debug)]
+pub(super) struct Rules4 {
+    kind: Kind,
+    /// The last point, where points are sorted.
+    last: Option<Point4>,
+    /// The greatest number of a neighbour.
+    neighbour_max: Option<u32>,
+}
+
+impl Rules4 {
+    pub(super) fn new(kind: Kind) -> Self {
+        Rules4 { kind, last: None, neighbour_max: None }
+    }
+
+    /// Counts points: they are finite, and between cells they are sorted.
+    pub(super) fn points(&mut self, points: &Points4, totals: &mut Totals) -> Result<()> {
+        for &point in &points.points {
+            self.point(point)?;
+        }
+        let count = if self.kind.has_vertices() { &mut totals.vertices } else { &mut totals.points };
+        *count += points.points.len() as u64;
+        Ok(())
+    }
+
+    /// The rules of the next point.
+    pub(super) fn point(&mut self, point: Point4) -> Result<()> {
+        if let Some(value) = point.iter().find(|value| !value.is_finite()) {
+            return Err(Error::malformed(format!("coordinate {value} is not finite")));
+        }
+        if self.kind == Kind::Cells4 {
+            // As coordinates are finite, all points compare; -0 is 0.
+            if self.last.is_some_and(|last| last.partial_cmp(&point) != Some(std::cmp::Ordering::Less)) {
+                return Err(Error::malformed(format!(
+                    "point {point:?} does not follow the one before it in the order of x, y, z, t"
+                )));
+            }
+            self.last = Some(point);
+        }
+        Ok(())
+    }
+
+    /// Counts cells.
+    pub(super) fn cells(&mut self, cells: &Cells4, totals: &mut Totals) -> Result<()> {
+        cells.iter().try_for_each(|cell| self.cell(cell, totals))
+    }
+
+    /// Counts a cell.
+    pub(super) fn cell(&mut self, cell: Cell4, totals: &mut Totals) -> Result<()> {
+        check_cell(cell, totals.vertices)?;
+        self.neighbour_max = self.neighbour_max.max(cell.neighbours.last().copied());
+        totals.simplices += 1;
+        Ok(())
+    }
+
+    /// Counts simplices: five different points each.
+    pub(super) fn simplices(&mut self, simplices: &[[u32; 5]], totals: &mut Totals) -> Result<()> {
+        for simplex in simplices {
+            if let Some(vertex) = simplex.iter().find(|&&vertex| u64::from(vertex) >= totals.vertices) {
+                return Err(Error::malformed(format!("simplex uses vertex {vertex} of {}", totals.vertices)));
+            }
+            if (1..5).any(|i| simplex[..i].contains(&simplex[i])) {
+                return Err(Error::malformed(format!("simplex {simplex:?} uses a vertex twice")));
+            }
+        }
+        totals.simplices += simplices.len() as u64;
+        Ok(())
+    }
+
+    /// That all neighbours are cells, of which there are as many as `totals` say.
+    pub(super) fn check_end(&self, totals: &Totals) -> Result<()> {
+        match self.neighbour_max {
+            Some(neighbour) if u64::from(neighbour) >= totals.simplices => Err(Error::malformed(format!(
+                "END: a cell has the neighbour {neighbour} of {} cells",
+                totals.simplices
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The rules of one cell; `points` came before.
+pub(super) fn check_cell(cell: Cell4, points: u64) -> Result<()> {
+    let Cell4 { is_infinite, vertices, neighbours } = cell;
+    let (sort, vertices_min) = if is_infinite { ("an infinite", 4) } else { ("a finite", 5) };
+    if vertices.len() < vertices_min {
+        return Err(Error::malformed(format!(
+            "{sort} cell of {} vertices, expected at least {vertices_min}",
+            vertices.len()
+        )));
+    }
+    if !is_increasing(vertices) || vertices.last().is_some_and(|&vertex| u64::from(vertex) >= points) {
+        return Err(Error::malformed(format!(
+            "the vertices of a cell are not increasing numbers of {points} points"
+        )));
+    }
+    if !is_increasing(neighbours) {
+        return Err(Error::malformed("the neighbours of a cell are not increasing"));
+    }
+    Ok(())
+}
+
+fn is_increasing(numbers: &[u32]) -> bool {
+    numbers.windows(2).all(|pair| pair[0] < pair[1])
+}
