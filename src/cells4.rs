@@ -36,7 +36,10 @@ impl Cells4 {
     /// No cells, with room for others.
     #[must_use]
     pub fn with_room_of(others: &Cells4) -> Cells4 {
-        Cells4 { words: Vec::with_capacity(others.words.len()), starts: Vec::with_capacity(others.starts.len()) }
+        Cells4 {
+            words: Vec::with_capacity(others.words.len()),
+            starts: Vec::with_capacity(others.starts.len()),
+        }
     }
 
     /// Number of cells.

@@ -3,10 +3,7 @@
 use std::ops::{Add, Mul, Sub};
 
 /// Numbers of a ring: `f64`, wrapping integers, integers of any size.
-pub(super) trait Number:
-    Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
-}
+pub(super) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
 
@@ -38,30 +35,49 @@ fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
 /// the in-sphere determinant but for its sign: a polynomial of degree 6 in the coordinates (thesis 3.6.2).
 #[inline(always)]
 pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
-    let [a, b, c, d] = vectors.map(|v| {
-        let lift = lift(&v);
-        let [x, y, z, t] = v;
-        [x, y, z, t, lift]
-    });
-    // Of pairs of columns: xy, xz, xt, xl, yz, yt, yl, zt, zl, tl.
-    let pairs = |p: &[T; 5], q: &[T; 5]| {
-        let m = |i, j| minor(p, q, i, j);
-        [m(0, 1), m(0, 2), m(0, 3), m(0, 4), m(1, 2), m(1, 3), m(1, 4), m(2, 3), m(2, 4), m(3, 4)]
-    };
+    let [a, b, c, d] = vectors;
+    let (a, b, c, d) = (lifted(a), lifted(b), lifted(c), lifted(d));
     let (p, q) = (pairs(&a, &b), pairs(&c, &d));
-    // Laplace's expansion along two rows: columns (i j | k l) and so on, from the numbers of the pairs.
-    let determinant = |[ij, ik, il, jk, jl, kl]: [usize; 6]| {
-        (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij])) - (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))
-            + (times(&p[il], &q[jk]) + times(&p[jk], &q[il]))
-    };
-    let m = determinant([0, 1, 2, 4, 5, 7]);
+    let m = expansion(&p, &q, [0, 1, 2, 4, 5, 7]);
     // The lift takes the place of a coordinate; moved to the end, it changes the sign for y and t.
-    let x = determinant([4, 5, 6, 7, 8, 9]); // y z t l
-    let y = determinant([1, 2, 3, 7, 8, 9]); // x z t l
-    let z = determinant([0, 2, 3, 5, 6, 9]); // x y t l
-    let t = determinant([0, 1, 3, 4, 6, 8]); // x y z l
-    let zero = || m.clone() - m.clone();
-    ([x, zero() - y, z, zero() - t], m)
+    let x = expansion(&p, &q, [4, 5, 6, 7, 8, 9]); // y z t l
+    let y = expansion(&q, &p, [1, 2, 3, 7, 8, 9]); // x z t l
+    let z = expansion(&p, &q, [0, 2, 3, 5, 6, 9]); // x y t l
+    let t = expansion(&q, &p, [0, 1, 3, 4, 6, 8]); // x y z l
+    let zero = m.clone() - m.clone();
+    ([x, zero.clone() - y, z, zero - t], m)
+}
+
+#[inline(always)]
+fn lifted<T: Number>(v: [T; 4]) -> [T; 5] {
+    let lift = lift(&v);
+    let [x, y, z, t] = v;
+    [x, y, z, t, lift]
+}
+
+/// The 2x2 determinants of two rows for pairs of columns: xy, xz, xt, xl, yz, yt, yl, zt, zl, tl.
+#[inline(always)]
+fn pairs<T: Number>(p: &[T; 5], q: &[T; 5]) -> [T; 10] {
+    [
+        minor(p, q, 0, 1),
+        minor(p, q, 0, 2),
+        minor(p, q, 0, 3),
+        minor(p, q, 0, 4),
+        minor(p, q, 1, 2),
+        minor(p, q, 1, 3),
+        minor(p, q, 1, 4),
+        minor(p, q, 2, 3),
+        minor(p, q, 2, 4),
+        minor(p, q, 3, 4),
+    ]
+}
+
+/// Laplace's expansion of a determinant of four rows along two of them, for columns i, j, k, l, whose pairs have the
+/// numbers ij, ik, il, jk, jl, kl. Exchanging the pairs of rows does not change it.
+#[inline(always)]
+fn expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usize; 6]) -> T {
+    (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij])) - (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))
+        + (times(&p[il], &q[jk]) + times(&p[jk], &q[il]))
 }
 
 /// The vector n such that n . x is the determinant of three vectors and x.

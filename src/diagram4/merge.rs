@@ -29,12 +29,14 @@ pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
 
 /// Joins finite simplices across facets between cospherical points.
 fn join_finite(complex: &Complex, sets: &mut Sets) {
-    for (number, simplex) in complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_finite(number)) {
+    for (number, simplex) in
+        complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_finite(number))
+    {
         for beyond in simplex.beyond {
             let other = simplex_of(beyond);
-            if other < number && complex.is_finite(other) {
+            if other < number {
                 let apex = complex.simplices[other].vertices[facet_of(beyond)];
-                if complex.sign(number, apex) == Ordering::Equal {
+                if apex != INFINITE && complex.sign(number, apex) == Ordering::Equal {
                     sets.join(number as u32, other as u32);
                 }
             }
@@ -45,7 +47,9 @@ fn join_finite(complex: &Complex, sets: &mut Sets) {
 /// Joins infinite simplices of one cell that are beyond the same hyperplane.
 fn join_infinite(complex: &Complex, sets: &mut Sets) {
     let inside = |number: usize| complex.neighbour_inside(number).map(|finite| finite as u32);
-    for (number, simplex) in complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_infinite(number)) {
+    for (number, simplex) in
+        complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_infinite(number))
+    {
         for beyond in simplex.beyond {
             let other = simplex_of(beyond);
             if other < number && complex.is_infinite(other) {
@@ -176,7 +180,8 @@ impl<'a> Gather<'a> {
         for &member in self.classes.members(class) {
             let simplex = &self.complex.simplices[member as usize];
             for side in 0..FACETS {
-                let (vertex, other) = (simplex.vertices[side], self.classes.of[simplex_of(simplex.beyond[side])]);
+                let (vertex, other) =
+                    (simplex.vertices[side], self.classes.of[simplex_of(simplex.beyond[side])]);
                 if vertex == INFINITE {
                     is_infinite = true;
                 } else if std::mem::replace(&mut self.seen_vertices[vertex as usize], mark) != mark {
@@ -194,19 +199,24 @@ impl<'a> Gather<'a> {
 
 /// Finite cells first, both kinds by their vertices; neighbours renumbered.
 fn canonical(unordered: &Cells4) -> Cells4 {
-    let mut order: Vec<u32> = (0..unordered.len() as u32).collect();
+    // The kind and the first vertices decide mostly: no cell has to be looked at for these.
     let key = |number: u32| {
         let cell = unordered.get(number as usize);
-        (cell.is_infinite, cell.vertices)
+        let first = u64::from(cell.vertices[0]) << 31 | u64::from(cell.vertices[1]) >> 1;
+        (u64::from(cell.is_infinite) << 63 | first, number)
     };
-    order.sort_unstable_by(|&a, &b| key(a).cmp(&key(b)));
+    let mut order: Vec<(u64, u32)> = (0..unordered.len() as u32).map(key).collect();
+    let vertices = |number: u32| unordered.get(number as usize).vertices;
+    order.sort_unstable_by(|&(key, a), &(other, b)| {
+        key.cmp(&other).then_with(|| vertices(a).cmp(vertices(b)))
+    });
     let mut places = vec![0; order.len()];
-    for (place, &number) in (0u32..).zip(&order) {
+    for (place, &(_, number)) in (0u32..).zip(&order) {
         places[number as usize] = place;
     }
     let mut cells = Cells4::with_room_of(unordered);
     let mut neighbours = Vec::new();
-    for &number in &order {
+    for &(_, number) in &order {
         let cell = unordered.get(number as usize);
         neighbours.clear();
         neighbours.extend(cell.neighbours.iter().map(|&other| places[other as usize]));

@@ -20,7 +20,8 @@ impl Sites {
     pub(super) fn new(points: Vec<Point4>) -> Sites {
         let extent = Extent::of(&points);
         let greatest = extent.max_difference();
-        let is_below = |limit| extent.integral && extent.greatest_magnitude() < 2f64.powi(52) && greatest <= limit;
+        let is_below =
+            |limit| extent.integral && extent.greatest_magnitude() < 2f64.powi(52) && greatest <= limit;
         let exactness = if is_below(DOUBLE_MAX) {
             Exactness::Double
         } else if is_below(INT128_MAX) {
@@ -54,7 +55,10 @@ fn unit_for(extent: &Extent<4>) -> f64 {
 
 /// Sorts points lexicographically and takes out those that are equal to another; says how many these are. The values of
 /// the points, if there are any, go along: of equal points that of the first counts.
-pub(super) fn distinct(points: Vec<Point4>, values: Option<Vec<f64>>) -> (Vec<Point4>, Option<Vec<f64>>, u64) {
+pub(super) fn distinct(
+    points: Vec<Point4>,
+    values: Option<Vec<f64>>,
+) -> (Vec<Point4>, Option<Vec<f64>>, u64) {
     // -0 is 0: the result must not depend on which of them is met first.
     let points: Vec<Point4> = points.into_iter().map(|point| point.map(|x| x + 0.0)).collect();
     let mut order: Vec<u32> = (0..points.len() as u32).collect();

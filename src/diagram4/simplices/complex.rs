@@ -1,5 +1,6 @@
 //! Simplices in flat arrays.
 
+use super::lanes::{LANES, Lanes};
 use crate::cells4::Point4;
 use crate::diagram4::determinant::{dot, lift, normal, sphere};
 use crate::diagram4::exact::{Exactness, in_sphere, orientation};
@@ -30,8 +31,8 @@ pub(super) fn facet(simplex: usize, side: usize) -> Facet {
     (simplex as u32) << 3 | side as u32
 }
 
-/// Most simplices that facets can be numbered of.
-pub(super) const SIMPLICES_MAX: usize = 1 << 29;
+/// Most simplices: facets are numbered in 31 bits.
+pub(super) const SIMPLICES_MAX: usize = 1 << 28;
 
 /// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of the hull.
 #[derive(Debug, Clone, Copy)]
@@ -112,7 +113,7 @@ impl<'a> Complex<'a> {
         (s[0] * p[0] + s[1] * p[1]) + (s[2] * p[2] + s[3] * p[3]) + (s[4] * p[4] + s[5] * p[5])
     }
 
-    /// Whether vertex `q`, at `p`, is inside of the sphere of a simplex, or on it.
+    /// Whether vertex `q`, at `p`, is inside of the sphere of a simplex.
     #[inline(always)]
     pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         let value = self.value(simplex, p);
@@ -122,7 +123,7 @@ impl<'a> Complex<'a> {
             false
         } else {
             // Exact values of small integers: on the sphere.
-            self.rounding == 0.0 && self.spheres[simplex][4] > 0.0 || self.decide(simplex, q, p)
+            !(self.rounding == 0.0 && self.spheres[simplex][4] > 0.0) && self.decide(simplex, q, p)
         }
     }
 
@@ -134,7 +135,7 @@ impl<'a> Complex<'a> {
             Ordering::Greater => false,
             Ordering::Equal => match self.neighbour_inside(simplex) {
                 Some(inside) => self.is_dead(inside) || self.is_in_conflict(inside, q, p),
-                None => true,
+                None => false,
             },
         }
     }
@@ -171,34 +172,57 @@ impl<'a> Complex<'a> {
         }
     }
 
-    /// Computes the sphere of a simplex, or the hyperplane of an infinite one.
+    /// The spheres of simplices, or hyperplanes of infinite ones.
     #[inline(always)]
-    pub(super) fn sphere_of(&self, vertices: &[u32; FACETS]) -> Sphere {
-        match vertices.iter().position(|&vertex| vertex == INFINITE) {
-            None => self.finite_sphere(vertices),
-            Some(side) => self.hyperplane(vertices, side),
+    pub(super) fn spheres_of(&self, simplices: [&[u32; FACETS]; LANES]) -> [Sphere; LANES] {
+        // Any place will do for the faraway point here.
+        let mut near = [[Lanes([0.0; LANES]); 4]; FACETS];
+        for (lane, vertices) in simplices.into_iter().enumerate() {
+            for (corner, &vertex) in near.iter_mut().zip(vertices) {
+                let point = self.near.get(vertex as usize).unwrap_or(&self.near[0]);
+                for (axis, &x) in corner.iter_mut().zip(point) {
+                    axis.0[lane] = x;
+                }
+            }
         }
-    }
-
-    #[inline(always)]
-    fn finite_sphere(&self, vertices: &[u32; FACETS]) -> Sphere {
-        let [o, a, b, c, d] = vertices.map(|vertex| self.near[vertex as usize]);
-        let (n, m) = sphere([a, b, c, d].map(|p| minus(p, o)));
-        let s = m * lift(&o) - dot(&n, &o);
-        let shifted: Point4 = std::array::from_fn(|axis| n[axis] - 2.0 * m * o[axis]);
-        // Only a simplex that is almost flat is not seen to be positive in rounded arithmetic.
-        let m = m.max(f64::MIN_POSITIVE);
-        [shifted[0], shifted[1], shifted[2], shifted[3], m, s]
+        let finite = finite_spheres(near);
+        let mut spheres = [[0.0; 6]; LANES];
+        for (lane, (sphere, vertices)) in spheres.iter_mut().zip(simplices).enumerate() {
+            if vertices.contains(&INFINITE) {
+                *sphere = self.hyperplane(vertices);
+                continue;
+            }
+            for (x, lanes) in sphere.iter_mut().zip(&finite) {
+                *x = lanes.0[lane];
+            }
+            // Only a simplex that is almost flat is not seen to be positive in rounded arithmetic.
+            sphere[4] = sphere[4].max(f64::MIN_POSITIVE);
+        }
+        spheres
     }
 
     #[inline(never)]
-    fn hyperplane(&self, vertices: &[u32; FACETS], side: usize) -> Sphere {
+    fn hyperplane(&self, vertices: &[u32; FACETS]) -> Sphere {
+        let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
         let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
         let n = normal([a, b, c].map(|p| minus(p, o)));
         // Moved to the end, the faraway point passes 4 - side others; beyond the hull values are negative.
         let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
         [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
     }
+}
+
+#[inline(always)]
+fn finite_spheres([o, a, b, c, d]: [[Lanes; 4]; FACETS]) -> [Lanes; 6] {
+    let (n, m) = sphere([difference(a, o), difference(b, o), difference(c, o), difference(d, o)]);
+    let s = m * lift(&o) - dot(&n, &o);
+    let twice = m + m;
+    [n[0] - twice * o[0], n[1] - twice * o[1], n[2] - twice * o[2], n[3] - twice * o[3], m, s]
+}
+
+#[inline(always)]
+fn difference(p: [Lanes; 4], o: [Lanes; 4]) -> [Lanes; 4] {
+    [p[0] - o[0], p[1] - o[1], p[2] - o[2], p[3] - o[3]]
 }
 
 /// The vertices of a facet.

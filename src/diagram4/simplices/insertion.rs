@@ -1,6 +1,7 @@
 //! Insertion of points: simplices in conflict give way to a star around the new point.
 
 use super::complex::{Complex, FACETS, INFINITE, SIMPLICES_MAX, Simplex, facet, facet_of, simplex_of};
+use super::lanes::LANES;
 use crate::diagram4::exact::orientation;
 use std::cmp::Ordering;
 
@@ -13,6 +14,9 @@ struct Border {
     /// The simplex that is made of the facet and the new point.
     new: u32,
 }
+
+/// Marks where a dead simplex leads to a new one; alone, what is beyond a facet of a new one before it is linked.
+const NEW: u32 = 1 << 31;
 
 pub(super) struct Insertion<'a> {
     pub(super) complex: Complex<'a>,
@@ -57,14 +61,30 @@ impl<'a> Insertion<'a> {
         }
         fix_sides(&mut all);
         for simplex in all {
-            let sphere = complex.sphere_of(&simplex.vertices);
+            let [sphere, ..] = complex.spheres_of([&simplex.vertices; LANES]);
             complex.simplices.push(simplex);
             complex.spheres.push(sphere);
         }
     }
 
-    /// Inserts all other points.
+    /// Inserts all other points, with the widest instructions there are.
     pub(super) fn run(&mut self) {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // Safety: the processor has AVX2.
+            return unsafe { self.run_avx2() };
+        }
+        self.run_portable();
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn run_avx2(&mut self) {
+        self.run_portable();
+    }
+
+    #[inline(always)]
+    fn run_portable(&mut self) {
         let mut start = 0;
         for q in 5..self.complex.order.len() as u32 {
             start = self.insert(q, start);
@@ -72,6 +92,7 @@ impl<'a> Insertion<'a> {
     }
 
     /// Inserts vertex `q`; says where to start for a point nearby.
+    #[inline(always)]
     fn insert(&mut self, q: u32, start: usize) -> usize {
         let p = self.complex.lifted(q);
         let found = self.complex.locate(q, &p, start);
@@ -85,6 +106,7 @@ impl<'a> Insertion<'a> {
     }
 
     /// Finds all simplices in conflict, and the facets around them.
+    #[inline(always)]
     fn find_cavity(&mut self, q: u32, found: usize) {
         let complex = &mut self.complex;
         let p = complex.lifted(q);
@@ -113,30 +135,42 @@ impl<'a> Insertion<'a> {
     }
 
     /// Makes a simplex of each facet of the border and the new point, in places that are free. The dead ones lead to them.
+    #[inline(always)]
     fn make_star(&mut self, q: u32) {
+        self.make_room();
+        let complex = &mut self.complex;
+        for borders in self.border.chunks(LANES) {
+            let mut star = [complex.simplices[borders[0].dead as usize]; LANES];
+            for (simplex, border) in star.iter_mut().zip(borders) {
+                *simplex = complex.simplices[border.dead as usize];
+                simplex.vertices[border.side as usize] = q;
+            }
+            let [a, b, c, d] = &star;
+            let spheres = complex.spheres_of([&a.vertices, &b.vertices, &c.vertices, &d.vertices]);
+            for ((border, simplex), sphere) in borders.iter().zip(star).zip(spheres) {
+                let (dead, side, new) = (border.dead as usize, border.side as usize, border.new as usize);
+                let outer = simplex.beyond[side];
+                let mut beyond = [NEW; FACETS];
+                beyond[side] = outer;
+                complex.simplices[new] = Simplex { beyond, ..simplex };
+                complex.spheres[new] = sphere;
+                complex.simplices[simplex_of(outer)].beyond[facet_of(outer)] = facet(new, side);
+                complex.simplices[dead].beyond[side] = NEW | facet(new, side);
+            }
+        }
+    }
+
+    /// Finds places for the new simplices.
+    #[inline(always)]
+    fn make_room(&mut self) {
         let complex = &mut self.complex;
         for border in &mut self.border {
-            let (dead, side) = (border.dead as usize, border.side as usize);
-            let mut simplex = complex.simplices[dead];
-            let outer = simplex.beyond[side];
-            simplex.vertices[side] = q;
-            let sphere = complex.sphere_of(&simplex.vertices);
-            let new = match complex.free.pop() {
-                Some(new) => {
-                    complex.simplices[new as usize] = simplex;
-                    complex.spheres[new as usize] = sphere;
-                    new as usize
-                }
-                None => {
-                    assert!(complex.simplices.len() < SIMPLICES_MAX, "too many simplices");
-                    complex.simplices.push(simplex);
-                    complex.spheres.push(sphere);
-                    complex.simplices.len() - 1
-                }
-            };
-            complex.simplices[simplex_of(outer)].beyond[facet_of(outer)] = facet(new, side);
-            complex.simplices[dead].beyond[side] = facet(new, side);
-            border.new = new as u32;
+            border.new = complex.free.pop().unwrap_or_else(|| {
+                assert!(complex.simplices.len() < SIMPLICES_MAX, "too many simplices");
+                complex.simplices.push(complex.simplices[0]);
+                complex.spheres.push(complex.spheres[0]);
+                complex.simplices.len() as u32 - 1
+            });
         }
     }
 
@@ -144,23 +178,29 @@ impl<'a> Insertion<'a> {
     ///
     /// Between two of them is a triangle of the border. Around it the dead simplices lead from one to the other: each has two
     /// facets at the triangle, opposite to its two other vertices.
+    #[inline(always)]
     fn link_star(&mut self) {
         let simplices = &mut self.complex.simplices;
         for &Border { dead, side, new } in &self.border {
             let from = side as usize;
-            let vertices = simplices[dead as usize].vertices;
-            let beyond = simplices[dead as usize].beyond;
+            let Simplex { vertices, beyond } = simplices[dead as usize];
             for to in (0..FACETS).filter(|&to| to != from) {
-                // Entered so far opposite to vertex `from`; the facet to leave by is opposite to vertex `to`.
+                if simplices[new as usize].beyond[to] != NEW {
+                    // Found from the other side.
+                    continue;
+                }
+                // Entered so far opposite to the vertex `pivot`, which is what the next one is left opposite to.
                 let (mut entered, mut pivot, mut way) = (from, vertices[from], beyond[to]);
-                while self.complex.spheres[simplex_of(way)][4] < 0.0 {
+                while way & NEW == 0 {
                     let next = &simplices[simplex_of(way)];
                     entered = facet_of(way);
-                    let left = next.vertices.iter().position(|&vertex| vertex == pivot).expect("a facet in common");
+                    let left = next.vertices.iter().position(|&vertex| vertex == pivot);
                     pivot = next.vertices[entered];
-                    way = next.beyond[left];
+                    way = next.beyond[left.expect("a facet in common")];
                 }
-                simplices[new as usize].beyond[to] = facet(simplex_of(way), entered);
+                let other = simplex_of(way ^ NEW);
+                simplices[new as usize].beyond[to] = facet(other, entered);
+                simplices[other].beyond[entered] = facet(new as usize, to);
             }
         }
     }

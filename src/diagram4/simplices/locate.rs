@@ -15,6 +15,7 @@ impl Complex<'_> {
     /// Where two spheres meet, the powers of a point with respect to them are equal on the hyperplane of the facet
     /// between, and less on the side of the own simplex: so the walk goes to the lesser power (thesis 3.6.4). Equal spheres
     /// say nothing, and the hyperplane has to be asked.
+    #[inline(always)]
     pub(super) fn locate(&self, q: u32, p: &Lifted, start: usize) -> usize {
         let mut at = self.neighbour_inside(start).unwrap_or(start);
         for _ in 0..STEPS_MAX {
@@ -31,6 +32,7 @@ impl Complex<'_> {
     }
 
     /// The next simplex of the walk; an infinite one is in conflict.
+    #[inline(always)]
     fn step(&self, at: usize, q: u32, p: &Lifted) -> Option<usize> {
         let (value, m) = (self.value(at, p), self.spheres[at][4]);
         let beyond = self.simplices[at].beyond;
@@ -53,6 +55,7 @@ impl Complex<'_> {
     }
 
     /// Whether a point is beyond a facet of a finite simplex, in rounded arithmetic.
+    #[inline(never)]
     fn is_beyond(&self, at: usize, side: usize, p: &Lifted) -> bool {
         let vertices = self.simplices[at].vertices;
         let near = |vertex: u32| self.near[vertex as usize];

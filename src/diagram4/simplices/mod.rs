@@ -1,5 +1,11 @@
-//! The 4D Delaunay triangulation that remains if each point, as it is inserted, is lowered a bit more than all before it
-//! (thesis 4.4): a point on a sphere counts as inside.
+//! The 4D Delaunay triangulation that remains if each point, as it is inserted, is raised infinitesimally, by far more than
+//! all before it: a point on a sphere counts as outside.
+//!
+//! The thesis (4.4) lowers points, so that a point on a sphere counts as inside. Then each point of a grid triangulates all
+//! cubes around it anew: 30 million simplices are created for the full 16^4 grid, and 10 million if points are raised.
+//! A point that is no vertex is inside of the sphere of the simplex that it lies in, or beyond the hull, so it always
+//! finds a place; and a facet in a hyperplane with the point is never between a simplex in conflict and one that is not,
+//! so no simplex is flat.
 //!
 //! Simplices and their spheres are in flat arrays. A point is inserted as Bowyer (1981) and Watson (1981) do it, along a
 //! Hilbert curve; an in-sphere test is the product of two vectors of six. `locate` is the walk to a simplex in conflict,
@@ -8,6 +14,7 @@
 mod complex;
 mod first;
 mod insertion;
+mod lanes;
 mod locate;
 
 pub(super) use complex::{Complex, FACETS, INFINITE, facet_of, simplex_of};
@@ -15,7 +22,7 @@ pub(super) use complex::{Complex, FACETS, INFINITE, facet_of, simplex_of};
 use super::Stats;
 use super::sites::Sites;
 use crate::error::Result;
-use crate::order::{Curve, SpatialOrder};
+use crate::order::{Curve, Rounds, SpatialOrder};
 use crate::predicates::Extent;
 use insertion::Insertion;
 use std::time::Instant;
@@ -27,9 +34,11 @@ use std::time::Instant;
 /// Cost: 88 bytes per simplex.
 pub(super) fn triangulate<'a>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a>> {
     let started = Instant::now();
-    let mut order: Vec<u32> = SpatialOrder::default()
-        .sort(&sites.points, &Extent::of(&sites.points), Curve::Hilbert)
-        .collect();
+    let curve: Vec<u32> =
+        SpatialOrder::default().sort(&sites.points, &Extent::of(&sites.points), Curve::Hilbert).collect();
+    // Of a full grid, one pass along the curve creates twice as many simplices as rounds do, and lexicographic order ten
+    // times as many.
+    let mut order: Vec<u32> = Rounds::new(curve.len()).map(|place| curve[place as usize]).collect();
     first::to_front(sites, &mut order)?;
     let mut insertion = Insertion::new(Complex::new(sites, order));
     stats.order = started.elapsed();
