@@ -18,6 +18,13 @@ pub(super) fn dot<T: Number>(p: &[T; 4], q: &[T; 4]) -> T {
     times(&p[0], &q[0]) + times(&p[1], &q[1]) + (times(&p[2], &q[2]) + times(&p[3], &q[3]))
 }
 
+/// p - o.
+#[inline(always)]
+pub(super) fn difference<T: Number>(p: [T; 4], o: &[T; 4]) -> [T; 4] {
+    let [x, y, z, t] = p;
+    [x - o[0].clone(), y - o[1].clone(), z - o[2].clone(), t - o[3].clone()]
+}
+
 #[inline(always)]
 fn times<T: Number>(a: &T, b: &T) -> T {
     a.clone() * b.clone()

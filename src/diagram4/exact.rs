@@ -1,6 +1,6 @@
 //! Exact signs, where rounded values do not tell.
 
-use super::determinant::{Number, dot, lift, normal, sphere};
+use super::determinant::{Number, difference, dot, lift, normal, sphere};
 use crate::cells4::Point4;
 use crate::predicates::big::integers;
 use num_bigint::BigInt;
@@ -58,11 +58,6 @@ pub(super) fn orientation(exactness: Exactness, [a, b, c, d]: [Point4; 4], point
         Exactness::Big => value(integers(points)).cmp(&BigInt::ZERO),
         _ => value(points.map(wrapping)).0.cmp(&0),
     }
-}
-
-fn difference<T: Number>(p: [T; 4], o: &[T; 4]) -> [T; 4] {
-    let mut o = o.iter().cloned();
-    p.map(|x| x - o.next().expect("as many axes"))
 }
 
 fn wrapping(p: Point4) -> [Wrapping<i128>; 4] {

@@ -198,7 +198,7 @@ impl<'a> Gather<'a> {
 }
 
 /// Finite cells first, both kinds by their vertices; neighbours renumbered.
-fn canonical(unordered: &Cells4) -> Cells4 {
+pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     // The kind and the first vertices decide mostly: no cell has to be looked at for these.
     let key = |number: u32| {
         let cell = unordered.get(number as usize);

@@ -5,9 +5,10 @@
 //! arbitrary. Cells beyond the hull have the faraway point as a vertex, and correspond to the facets of cells on the hull.
 //!
 //! `sites` makes points ready, `determinant` and `exact` are the geometry. `simplices` triangulates, `merge` makes cells
-//! of what is cospherical.
+//! of what is cospherical; `direct` is the way of the thesis, which does both at once.
 
 mod determinant;
+mod direct;
 mod exact;
 mod merge;
 mod simplices;
@@ -49,6 +50,16 @@ pub struct Stats {
     pub simplices: u64,
 }
 
+/// How cells are found. The result is the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Route {
+    /// Simplices in flat arrays, made into cells at the end.
+    #[default]
+    Simplices,
+    /// Cells as points come, in integers (thesis 3.6.4): slower, for comparison.
+    Direct,
+}
+
 /// The Delaunay diagram of points in any order, which depends on the set of points only.
 ///
 /// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs are exact for
@@ -59,17 +70,30 @@ pub struct Stats {
 ///
 /// Cost: proportional to the number of simplices of a triangulation of the cells, 88 bytes each.
 pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+    diagram_by(Route::default(), points, values)
+}
+
+/// [`diagram`] by a route of choice.
+///
+/// Errors: as `diagram`.
+pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();
     let started = Instant::now();
     let (points, values, merged) = sites::distinct(points, values);
     let sites = Sites::new(points);
     let sorting = started.elapsed();
-    let complex = simplices::triangulate(&sites, &mut stats)?;
+    let cells = match route {
+        Route::Simplices => {
+            let complex = simplices::triangulate(&sites, &mut stats)?;
+            let started = Instant::now();
+            let cells = merge::cells(complex, &mut stats);
+            stats.merge = started.elapsed();
+            cells
+        }
+        Route::Direct => direct::cells(&sites, &mut stats)?,
+    };
     stats.order += sorting;
-    let started = Instant::now();
-    let cells = merge::cells(complex, &mut stats);
-    stats.merge = started.elapsed();
     Ok((Diagram { points: sites.points, values, merged, cells }, stats))
 }
 

@@ -2,7 +2,9 @@
 
 use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX};
 use crate::cells4::Point4;
+use crate::predicates::big::integers_of;
 use crate::predicates::{Extent, lexicographic};
+use num_bigint::BigInt;
 
 /// Distinct points.
 #[derive(Debug)]
@@ -10,6 +12,8 @@ pub(super) struct Sites {
     /// In lexicographic order.
     pub(super) points: Vec<Point4>,
     pub(super) exactness: Exactness,
+    /// Greatest difference of coordinates.
+    pub(super) greatest: f64,
     /// What coordinates are multiplied by, a power of two, and from where they are measured then.
     unit: f64,
     centre: Point4,
@@ -35,7 +39,19 @@ impl Sites {
             Exactness::Double => middle(axis).floor(),
             _ => middle(axis),
         });
-        Sites { points, exactness, unit, centre }
+        Sites { points, exactness, greatest, unit, centre }
+    }
+
+    /// The points as integers about the centre of their box; they are integers of that width.
+    pub(super) fn integers(&self) -> Vec<[i128; 4]> {
+        let centre = self.centre.map(|x| (x / self.unit) as i128);
+        let from = |point: &Point4| std::array::from_fn(|axis| point[axis] as i128 - centre[axis]);
+        self.points.iter().map(from).collect()
+    }
+
+    /// The points as integers of one unit.
+    pub(super) fn big_integers(&self) -> Vec<[BigInt; 4]> {
+        integers_of(&self.points)
     }
 
     /// A point near the origin: exact small integers, or rounded numbers between -1 and 1 that differ by at most 1.

@@ -17,13 +17,26 @@ fn decompose(value: f64) -> (i64, i32) {
 
 /// The points times the least power of two that makes all coordinates integers of the same unit.
 pub(crate) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
-    let parts = points.map(|point| point.map(decompose));
-    let unit = parts.iter().flatten().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
-    parts.map(|point| {
-        point.map(|(significand, exponent)| match significand {
-            0 => BigInt::from(0),
-            _ => BigInt::from(significand) << (exponent - unit) as usize,
-        })
+    let unit = unit(&points);
+    points.map(|point| scaled(point, unit))
+}
+
+/// The same for any number of points.
+pub(crate) fn integers_of<const D: usize>(points: &[[f64; D]]) -> Vec<[BigInt; D]> {
+    let unit = unit(points);
+    points.iter().map(|&point| scaled(point, unit)).collect()
+}
+
+/// The least exponent.
+fn unit<const D: usize>(points: &[[f64; D]]) -> i32 {
+    let parts = points.iter().flatten().map(|&coordinate| decompose(coordinate));
+    parts.filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0)
+}
+
+fn scaled<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
+    point.map(decompose).map(|(significand, exponent)| match significand {
+        0 => BigInt::from(0),
+        _ => BigInt::from(significand) << (exponent - unit) as usize,
     })
 }
 

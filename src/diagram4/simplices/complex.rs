@@ -2,7 +2,7 @@
 
 use super::lanes::{LANES, Lanes};
 use crate::cells4::Point4;
-use crate::diagram4::determinant::{dot, lift, normal, sphere};
+use crate::diagram4::determinant::{difference, dot, lift, normal, sphere};
 use crate::diagram4::exact::{Exactness, in_sphere, orientation};
 use crate::diagram4::sites::Sites;
 use std::cmp::Ordering;
@@ -205,7 +205,7 @@ impl<'a> Complex<'a> {
     fn hyperplane(&self, vertices: &[u32; FACETS]) -> Sphere {
         let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
         let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
-        let n = normal([a, b, c].map(|p| minus(p, o)));
+        let n = normal([a, b, c].map(|p| difference(p, &o)));
         // Moved to the end, the faraway point passes 4 - side others; beyond the hull values are negative.
         let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
         [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
@@ -214,24 +214,14 @@ impl<'a> Complex<'a> {
 
 #[inline(always)]
 fn finite_spheres([o, a, b, c, d]: [[Lanes; 4]; FACETS]) -> [Lanes; 6] {
-    let (n, m) = sphere([difference(a, o), difference(b, o), difference(c, o), difference(d, o)]);
+    let (n, m) = sphere([difference(a, &o), difference(b, &o), difference(c, &o), difference(d, &o)]);
     let s = m * lift(&o) - dot(&n, &o);
     let twice = m + m;
     [n[0] - twice * o[0], n[1] - twice * o[1], n[2] - twice * o[2], n[3] - twice * o[3], m, s]
-}
-
-#[inline(always)]
-fn difference(p: [Lanes; 4], o: [Lanes; 4]) -> [Lanes; 4] {
-    [p[0] - o[0], p[1] - o[1], p[2] - o[2], p[3] - o[3]]
 }
 
 /// The vertices of a facet.
 #[inline(always)]
 pub(in crate::diagram4) fn without(vertices: [u32; FACETS], side: usize) -> [u32; 4] {
     std::array::from_fn(|i| vertices[i + usize::from(i >= side)])
-}
-
-#[inline(always)]
-pub(super) fn minus(p: Point4, o: Point4) -> Point4 {
-    std::array::from_fn(|axis| p[axis] - o[axis])
 }

@@ -3,6 +3,7 @@
 use super::complex::{Complex, FACETS, INFINITE, SIMPLICES_MAX, Simplex, facet, facet_of, simplex_of};
 use super::lanes::LANES;
 use crate::diagram4::exact::orientation;
+use crate::error::{Error, ErrorKind, Result};
 use std::cmp::Ordering;
 
 /// A facet between a simplex in conflict and one that stays.
@@ -68,41 +69,45 @@ impl<'a> Insertion<'a> {
     }
 
     /// Inserts all other points, with the widest instructions there are.
-    pub(super) fn run(&mut self) {
+    ///
+    /// Errors: too many simplices.
+    pub(super) fn run(&mut self) -> Result<()> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // Safety: the processor has AVX2.
             return unsafe { self.run_avx2() };
         }
-        self.run_portable();
+        self.run_portable()
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn run_avx2(&mut self) {
-        self.run_portable();
+    fn run_avx2(&mut self) -> Result<()> {
+        self.run_portable()
     }
 
     #[inline(always)]
-    fn run_portable(&mut self) {
+    fn run_portable(&mut self) -> Result<()> {
         let mut start = 0;
         for q in 5..self.complex.order.len() as u32 {
-            start = self.insert(q, start);
+            start = self.insert(q, start)?;
         }
+        Ok(())
     }
 
     /// Inserts vertex `q`; says where to start for a point nearby.
     #[inline(always)]
-    fn insert(&mut self, q: u32, start: usize) -> usize {
+    fn insert(&mut self, q: u32, start: usize) -> Result<usize> {
         let p = self.complex.lifted(q);
         let found = self.complex.locate(q, &p, start);
         self.find_cavity(q, found);
+        self.make_room()?;
         self.make_star(q);
         self.link_star();
         self.tests += (self.dead.len() + self.border.len()) as u64;
         self.created += self.border.len() as u64;
         self.complex.free.extend_from_slice(&self.dead);
-        self.border[0].new as usize
+        Ok(self.border[0].new as usize)
     }
 
     /// Finds all simplices in conflict, and the facets around them.
@@ -137,7 +142,6 @@ impl<'a> Insertion<'a> {
     /// Makes a simplex of each facet of the border and the new point, in places that are free. The dead ones lead to them.
     #[inline(always)]
     fn make_star(&mut self, q: u32) {
-        self.make_room();
         let complex = &mut self.complex;
         for borders in self.border.chunks(LANES) {
             let mut star = [complex.simplices[borders[0].dead as usize]; LANES];
@@ -162,16 +166,21 @@ impl<'a> Insertion<'a> {
 
     /// Finds places for the new simplices.
     #[inline(always)]
-    fn make_room(&mut self) {
+    fn make_room(&mut self) -> Result<()> {
         let complex = &mut self.complex;
+        if complex.simplices.len() + self.border.len() > SIMPLICES_MAX {
+            let message =
+                format!("more than {SIMPLICES_MAX} simplices, the most that a diagram can be made of");
+            return Err(Error::new(ErrorKind::Io, message));
+        }
         for border in &mut self.border {
             border.new = complex.free.pop().unwrap_or_else(|| {
-                assert!(complex.simplices.len() < SIMPLICES_MAX, "too many simplices");
                 complex.simplices.push(complex.simplices[0]);
                 complex.spheres.push(complex.spheres[0]);
                 complex.simplices.len() as u32 - 1
             });
         }
+        Ok(())
     }
 
     /// Links the new simplices with each other.

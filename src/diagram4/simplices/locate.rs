@@ -1,7 +1,7 @@
 //! The walk to a simplex in conflict with a point.
 
-use super::complex::{Complex, FACETS, INFINITE, Lifted, minus, simplex_of, without};
-use crate::diagram4::determinant::{dot, normal};
+use super::complex::{Complex, FACETS, INFINITE, Lifted, simplex_of, without};
+use crate::diagram4::determinant::{difference, dot, normal};
 
 /// Steps after which rounding is taken to have led the walk in a circle.
 const STEPS_MAX: usize = 100_000;
@@ -60,8 +60,9 @@ impl Complex<'_> {
         let vertices = self.simplices[at].vertices;
         let near = |vertex: u32| self.near[vertex as usize];
         let [o, a, b, c] = without(vertices, side).map(near);
-        let n = normal([a, b, c].map(|corner| minus(corner, o)));
-        let [own, new] = [near(vertices[side]), [p[0], p[1], p[2], p[3]]].map(|x| dot(&n, &minus(x, o)));
+        let n = normal([a, b, c].map(|corner| difference(corner, &o)));
+        let [own, new] =
+            [near(vertices[side]), [p[0], p[1], p[2], p[3]]].map(|x| dot(&n, &difference(x, &o)));
         (own > 0.0 && new < 0.0) || (own < 0.0 && new > 0.0)
     }
 

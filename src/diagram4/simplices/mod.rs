@@ -29,23 +29,31 @@ use std::time::Instant;
 
 /// Triangulates sites.
 ///
-/// Errors: all points are in a hyperplane.
+/// Errors: all points are in a hyperplane; too many simplices.
 ///
 /// Cost: 88 bytes per simplex.
 pub(super) fn triangulate<'a>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a>> {
     let started = Instant::now();
-    let curve: Vec<u32> =
-        SpatialOrder::default().sort(&sites.points, &Extent::of(&sites.points), Curve::Hilbert).collect();
-    // Of a full grid, one pass along the curve creates twice as many simplices as rounds do, and lexicographic order ten
-    // times as many.
-    let mut order: Vec<u32> = Rounds::new(curve.len()).map(|place| curve[place as usize]).collect();
-    first::to_front(sites, &mut order)?;
+    let order = insertions(sites)?;
     let mut insertion = Insertion::new(Complex::new(sites, order));
     stats.order = started.elapsed();
     let started = Instant::now();
-    insertion.run();
+    insertion.run()?;
     stats.insertion = started.elapsed();
     stats.created = insertion.created;
     stats.in_sphere_tests = insertion.tests;
     Ok(insertion.complex)
+}
+
+/// The sites in the order of their insertion, five that span space first.
+///
+/// Errors: there are none.
+pub(super) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
+    let extent = Extent::of(&sites.points);
+    let curve: Vec<u32> = SpatialOrder::default().sort(&sites.points, &extent, Curve::Hilbert).collect();
+    // Of a full grid, one pass along the curve creates twice as many simplices as rounds do, and lexicographic order ten
+    // times as many.
+    let mut order: Vec<u32> = Rounds::new(curve.len()).map(|place| curve[place as usize]).collect();
+    first::to_front(sites, &mut order)?;
+    Ok(order)
 }
