@@ -5,7 +5,7 @@ use super::simplices::{Complex, FACETS, INFINITE, facet_of, simplex_of};
 use crate::cells4::{Cell4, Cells4};
 use std::cmp::Ordering;
 
-/// What has no class.
+/// The class of simplices that have none yet.
 const NONE: u32 = u32::MAX;
 
 /// The cells of the diagram, in canonical order.
@@ -15,190 +15,107 @@ const NONE: u32 = u32::MAX;
 /// the sphere of the other. A facet of the diagram on the hull is the union of those facets of simplices of one cell
 /// that are in one hyperplane (thesis 4.3.6).
 pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
-    let mut sets = Sets::new(complex.simplices.len());
-    join_finite(&complex, &mut sets);
-    join_infinite(&complex, &mut sets);
-    let classes = Classes::of(&complex, sets);
-    let mut gather = Gather::new(&complex, &classes);
-    let unordered = gather.all();
-    stats.simplices = classes.simplices;
-    drop(classes);
+    let mut classes = Classes::new(&complex);
+    let all = 0..complex.simplices.len();
+    for seed in all.clone().filter(|&seed| complex.is_finite(seed)) {
+        if classes.of[seed] == NONE {
+            stats.simplices += classes.flood(seed, |_, _| true);
+        }
+    }
+    for seed in all.filter(|&seed| complex.is_infinite(seed)) {
+        if classes.of[seed] == NONE {
+            let inside = |of: &[u32], simplex| complex.neighbour_inside(simplex).map(|finite| of[finite]);
+            classes.flood(seed, |of, other| inside(of, seed) == inside(of, other));
+        }
+    }
+    let Classes { of, found, .. } = classes;
     drop(complex);
-    canonical(&unordered)
+    canonical(&found, &of)
 }
 
-/// Joins finite simplices across facets between cospherical points.
-fn join_finite(complex: &Complex, sets: &mut Sets) {
-    for (number, simplex) in
-        complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_finite(number))
-    {
-        for beyond in simplex.beyond {
-            let other = simplex_of(beyond);
-            if other < number {
-                let apex = complex.simplices[other].vertices[facet_of(beyond)];
-                if apex != INFINITE && complex.sign(number, apex) == Ordering::Equal {
-                    sets.join(number as u32, other as u32);
-                }
-            }
-        }
-    }
-}
-
-/// Joins infinite simplices of one cell that are beyond the same hyperplane.
-fn join_infinite(complex: &Complex, sets: &mut Sets) {
-    let inside = |number: usize| complex.neighbour_inside(number).map(|finite| finite as u32);
-    for (number, simplex) in
-        complex.simplices.iter().enumerate().filter(|&(number, _)| complex.is_infinite(number))
-    {
-        for beyond in simplex.beyond {
-            let other = simplex_of(beyond);
-            if other < number && complex.is_infinite(other) {
-                let apex = complex.simplices[other].vertices[facet_of(beyond)];
-                let of_one_cell = inside(number).map(|n| sets.find(n)) == inside(other).map(|n| sets.find(n));
-                if of_one_cell && complex.sign(number, apex) == Ordering::Equal {
-                    sets.join(number as u32, other as u32);
-                }
-            }
-        }
-    }
-}
-
-/// Disjoint sets of numbers (Tarjan, 1975), paths halved.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Sets {
-        Sets((0..count as u32).collect())
-    }
-
-    fn find(&mut self, mut number: u32) -> u32 {
-        let parents = &mut self.0;
-        while parents[number as usize] != number {
-            parents[number as usize] = parents[parents[number as usize] as usize];
-            number = parents[number as usize];
-        }
-        number
-    }
-
-    /// The root of the union is the least number.
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.find(a), self.find(b));
-        self.0[a.max(b) as usize] = a.min(b);
-    }
-}
-
-/// The simplices of each cell.
-struct Classes {
-    /// The class of each simplex; [`NONE`] for dead ones.
-    of: Vec<u32>,
-    /// Simplices by class.
-    members: Vec<u32>,
-    /// Where the members of each class begin, and where the last ones end.
-    starts: Vec<u32>,
-    /// Finite simplices.
-    simplices: u64,
-}
-
-impl Classes {
-    fn of(complex: &Complex, mut sets: Sets) -> Classes {
-        let count = complex.simplices.len();
-        let mut of = vec![NONE; count];
-        let mut starts = vec![0u32];
-        let mut simplices = 0;
-        for number in (0..count).filter(|&number| !complex.is_dead(number)) {
-            // Roots come first: they are the least of their set.
-            let root = sets.find(number as u32) as usize;
-            if root == number {
-                of[number] = starts.len() as u32 - 1;
-                starts.push(0);
-            }
-            of[number] = of[root];
-            starts[of[number] as usize + 1] += 1;
-            simplices += u64::from(complex.is_finite(number));
-        }
-        drop(sets);
-        for class in 1..starts.len() {
-            starts[class] += starts[class - 1];
-        }
-        let mut members = vec![0; *starts.last().unwrap_or(&0) as usize];
-        let mut next = starts.clone();
-        for (number, &class) in of.iter().enumerate().filter(|&(_, &class)| class != NONE) {
-            members[next[class as usize] as usize] = number as u32;
-            next[class as usize] += 1;
-        }
-        Classes { of, members, starts, simplices }
-    }
-
-    fn len(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    fn members(&self, class: usize) -> &[u32] {
-        &self.members[self.starts[class] as usize..self.starts[class + 1] as usize]
-    }
-}
-
-/// Makes cells of classes.
-struct Gather<'a> {
+/// The simplices of each cell, gathered from one to the next.
+struct Classes<'a> {
     complex: &'a Complex<'a>,
-    classes: &'a Classes,
-    /// The last class that each vertex, or class, was listed for.
-    seen_vertices: Vec<u32>,
-    seen_classes: Vec<u32>,
+    /// The class of each simplex.
+    of: Vec<u32>,
+    /// The last class that each vertex was listed for.
+    seen: Vec<u32>,
+    /// A cell for each class, with a simplex of each neighbour.
+    found: Cells4,
+    members: Vec<u32>,
     vertices: Vec<u32>,
-    neighbours: Vec<u32>,
+    beyond: Vec<u32>,
 }
 
-impl<'a> Gather<'a> {
-    fn new(complex: &'a Complex<'a>, classes: &'a Classes) -> Gather<'a> {
-        Gather {
+impl<'a> Classes<'a> {
+    fn new(complex: &'a Complex<'a>) -> Classes<'a> {
+        Classes {
             complex,
-            classes,
-            seen_vertices: vec![NONE; complex.order.len()],
-            seen_classes: vec![NONE; classes.len()],
+            of: vec![NONE; complex.simplices.len()],
+            seen: vec![NONE; complex.order.len()],
+            found: Cells4::default(),
+            members: Vec::new(),
             vertices: Vec::new(),
-            neighbours: Vec::new(),
+            beyond: Vec::new(),
         }
     }
 
-    fn all(&mut self) -> Cells4 {
-        let mut cells = Cells4::default();
-        for class in 0..self.classes.len() {
-            let is_infinite = self.gather(class);
-            cells.push(Cell4 { is_infinite, vertices: &self.vertices, neighbours: &self.neighbours });
-        }
-        cells
-    }
-
-    /// Lists the vertices of a class, by number of their site, and its neighbours; says whether it is infinite.
-    fn gather(&mut self, class: usize) -> bool {
-        let mark = class as u32;
+    /// Makes a class of all simplices around a seed whose vertices are on its sphere, or hyperplane, and which are
+    /// `allowed`; says how many they are.
+    fn flood(&mut self, seed: usize, allowed: impl Fn(&[u32], usize) -> bool) -> u64 {
+        let class = self.found.len() as u32;
+        let is_infinite = self.complex.is_infinite(seed);
+        self.members.clear();
         self.vertices.clear();
-        self.neighbours.clear();
-        self.seen_classes[class] = mark;
-        let mut is_infinite = false;
-        for &member in self.classes.members(class) {
-            let simplex = &self.complex.simplices[member as usize];
+        self.beyond.clear();
+        self.join(seed, class);
+        let mut next = 0;
+        while next < self.members.len() {
+            let simplex = self.complex.simplices[self.members[next] as usize];
+            next += 1;
             for side in 0..FACETS {
-                let (vertex, other) =
-                    (simplex.vertices[side], self.classes.of[simplex_of(simplex.beyond[side])]);
-                if vertex == INFINITE {
-                    is_infinite = true;
-                } else if std::mem::replace(&mut self.seen_vertices[vertex as usize], mark) != mark {
-                    self.vertices.push(self.complex.order[vertex as usize]);
+                self.list(simplex.vertices[side], class);
+                let beyond = simplex.beyond[side];
+                let other = simplex_of(beyond);
+                if self.of[other] == class {
+                    continue;
                 }
-                if std::mem::replace(&mut self.seen_classes[other as usize], mark) != mark {
-                    self.neighbours.push(other);
+                let apex = self.complex.simplices[other].vertices[facet_of(beyond)];
+                // Across the hull, one is finite and the other is not.
+                let is_across = apex == INFINITE || simplex.vertices[side] == INFINITE;
+                let is_in_one = !is_across
+                    && self.of[other] == NONE
+                    && self.complex.sign(seed, apex) == Ordering::Equal
+                    && allowed(&self.of, other);
+                if is_in_one {
+                    self.join(other, class);
+                } else {
+                    self.beyond.push(other as u32);
                 }
             }
         }
         self.vertices.sort_unstable();
-        is_infinite
+        self.found.push(Cell4 { is_infinite, vertices: &self.vertices, neighbours: &self.beyond });
+        self.members.len() as u64
+    }
+
+    fn join(&mut self, simplex: usize, class: u32) {
+        self.of[simplex] = class;
+        self.members.push(simplex as u32);
+    }
+
+    /// Lists a vertex of a class, by number of its site, once.
+    fn list(&mut self, vertex: u32, class: u32) {
+        if vertex != INFINITE && std::mem::replace(&mut self.seen[vertex as usize], class) != class {
+            self.vertices.push(self.complex.order[vertex as usize]);
+        }
     }
 }
 
-/// Finite cells first, both kinds by their vertices; neighbours renumbered.
-pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
+/// Finite cells first, both kinds by their vertices; neighbours renumbered, each once.
+///
+/// What stands for neighbours are numbers whose cells `of` has.
+pub(super) fn canonical(unordered: &Cells4, of: &[u32]) -> Cells4 {
     // The kind and the first vertices decide mostly: no cell has to be looked at for these.
     let key = |number: u32| {
         let cell = unordered.get(number as usize);
@@ -219,8 +136,9 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     for &(_, number) in &order {
         let cell = unordered.get(number as usize);
         neighbours.clear();
-        neighbours.extend(cell.neighbours.iter().map(|&other| places[other as usize]));
+        neighbours.extend(cell.neighbours.iter().map(|&other| places[of[other as usize] as usize]));
         neighbours.sort_unstable();
+        neighbours.dedup();
         cells.push(Cell4 { neighbours: &neighbours, ..cell });
     }
     cells

@@ -53,7 +53,9 @@ fn build<T: Integer>(points: Vec<[T; 4]>, order: &[u32], stats: &mut Stats) -> C
     for &q in &order[5..] {
         start = diagram.insert(q, start, stats);
     }
-    canonical(&diagram.all())
+    let cells = diagram.all();
+    let of: Vec<u32> = (0..cells.len() as u32).collect();
+    canonical(&cells, &of)
 }
 
 /// A cell; one without vertices is none.

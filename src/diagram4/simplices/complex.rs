@@ -61,7 +61,7 @@ pub(in crate::diagram4) struct Complex<'a> {
     pub(in crate::diagram4) sites: &'a Sites,
     /// The number of the site of each vertex; vertices are numbered as they are inserted.
     pub(in crate::diagram4) order: Vec<u32>,
-    pub(super) near: Vec<Point4>,
+    pub(in crate::diagram4) near: Vec<Point4>,
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(super) spheres: Vec<Sphere>,
     /// Simplices that are dead.
@@ -148,17 +148,22 @@ impl<'a> Complex<'a> {
     }
 
     /// The sign of the value of a vertex.
+    #[inline(always)]
     pub(in crate::diagram4) fn sign(&self, simplex: usize, q: u32) -> Ordering {
         let value = self.value(simplex, &self.lifted(q));
-        if value.abs() > self.rounding || self.rounding == 0.0 {
-            return if value < 0.0 {
-                Ordering::Less
-            } else if value > 0.0 {
-                Ordering::Greater
-            } else {
-                Ordering::Equal
-            };
+        if value > self.rounding {
+            Ordering::Greater
+        } else if value < -self.rounding {
+            Ordering::Less
+        } else if self.rounding == 0.0 {
+            Ordering::Equal
+        } else {
+            self.exact_sign(simplex, q)
         }
+    }
+
+    #[inline(never)]
+    fn exact_sign(&self, simplex: usize, q: u32) -> Ordering {
         let vertices = self.simplices[simplex].vertices;
         let point = self.point(q);
         let exactness = self.sites.exactness;
@@ -172,33 +177,48 @@ impl<'a> Complex<'a> {
         }
     }
 
-    /// The spheres of simplices, or hyperplanes of infinite ones.
+    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; which vertex it is of each,
+    /// `sides` say.
     #[inline(always)]
-    pub(super) fn spheres_of(&self, simplices: [&[u32; FACETS]; LANES]) -> [Sphere; LANES] {
-        // Any place will do for the faraway point here.
-        let mut near = [[Lanes([0.0; LANES]); 4]; FACETS];
-        for (lane, vertices) in simplices.into_iter().enumerate() {
-            for (corner, &vertex) in near.iter_mut().zip(vertices) {
-                let point = self.near.get(vertex as usize).unwrap_or(&self.near[0]);
-                for (axis, &x) in corner.iter_mut().zip(point) {
-                    axis.0[lane] = x;
-                }
-            }
-        }
-        let finite = finite_spheres(near);
+    pub(super) fn spheres_of(
+        &self,
+        o: &Point4,
+        simplices: [&[u32; FACETS]; LANES],
+        sides: [usize; LANES],
+    ) -> [Sphere; LANES] {
+        let facets = [
+            without(*simplices[0], sides[0]),
+            without(*simplices[1], sides[1]),
+            without(*simplices[2], sides[2]),
+            without(*simplices[3], sides[3]),
+        ];
+        let origin = o.map(|x| Lanes([x; LANES]));
+        let corners = [0, 1, 2, 3].map(|i| difference(self.corners(facets.map(|facet| facet[i])), &origin));
+        // Moved to the front, the common vertex passes as many others as its number.
+        let signs = Lanes(sides.map(|side| if side % 2 == 0 { 1.0 } else { -1.0 }));
+        let (n, m) = sphere(corners);
+        let s = m * lift(&origin) - dot(&n, &origin);
+        let twice = m + m;
+        let shifted = |axis: usize| signs * (n[axis] - twice * origin[axis]);
+        let columns = [shifted(0), shifted(1), shifted(2), shifted(3), signs * m, signs * s];
         let mut spheres = [[0.0; 6]; LANES];
         for (lane, (sphere, vertices)) in spheres.iter_mut().zip(simplices).enumerate() {
-            if vertices.contains(&INFINITE) {
-                *sphere = self.hyperplane(vertices);
-                continue;
-            }
-            for (x, lanes) in sphere.iter_mut().zip(&finite) {
-                *x = lanes.0[lane];
-            }
+            *sphere = columns.map(|column| column.0[lane]);
             // Only a simplex that is almost flat is not seen to be positive in rounded arithmetic.
             sphere[4] = sphere[4].max(f64::MIN_POSITIVE);
+            if facets[lane].contains(&INFINITE) {
+                *sphere = self.hyperplane(vertices);
+            }
         }
         spheres
+    }
+
+    /// The points of four vertices, axis by axis; anything for the faraway point.
+    #[inline(always)]
+    fn corners(&self, vertices: [u32; LANES]) -> [Lanes; 4] {
+        let last = self.near.len() - 1;
+        let [a, b, c, d] = vertices.map(|vertex| &self.near[last.min(vertex as usize)]);
+        [0, 1, 2, 3].map(|axis| Lanes([a[axis], b[axis], c[axis], d[axis]]))
     }
 
     #[inline(never)]
@@ -210,14 +230,6 @@ impl<'a> Complex<'a> {
         let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
         [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
     }
-}
-
-#[inline(always)]
-fn finite_spheres([o, a, b, c, d]: [[Lanes; 4]; FACETS]) -> [Lanes; 6] {
-    let (n, m) = sphere([difference(a, &o), difference(b, &o), difference(c, &o), difference(d, &o)]);
-    let s = m * lift(&o) - dot(&n, &o);
-    let twice = m + m;
-    [n[0] - twice * o[0], n[1] - twice * o[1], n[2] - twice * o[2], n[3] - twice * o[3], m, s]
 }
 
 /// The vertices of a facet.

@@ -62,7 +62,9 @@ impl<'a> Insertion<'a> {
         }
         fix_sides(&mut all);
         for simplex in all {
-            let [sphere, ..] = complex.spheres_of([&simplex.vertices; LANES]);
+            let common = simplex.vertices.iter().position(|&vertex| vertex != INFINITE).unwrap_or_default();
+            let o = complex.near[simplex.vertices[common] as usize];
+            let [sphere, ..] = complex.spheres_of(&o, [&simplex.vertices; LANES], [common; LANES]);
             complex.simplices.push(simplex);
             complex.spheres.push(sphere);
         }
@@ -143,14 +145,17 @@ impl<'a> Insertion<'a> {
     #[inline(always)]
     fn make_star(&mut self, q: u32) {
         let complex = &mut self.complex;
+        let o = complex.near[q as usize];
         for borders in self.border.chunks(LANES) {
             let mut star = [complex.simplices[borders[0].dead as usize]; LANES];
-            for (simplex, border) in star.iter_mut().zip(borders) {
+            let mut sides = [0; LANES];
+            for ((simplex, side), border) in star.iter_mut().zip(&mut sides).zip(borders) {
                 *simplex = complex.simplices[border.dead as usize];
-                simplex.vertices[border.side as usize] = q;
+                *side = border.side as usize;
+                simplex.vertices[*side] = q;
             }
             let [a, b, c, d] = &star;
-            let spheres = complex.spheres_of([&a.vertices, &b.vertices, &c.vertices, &d.vertices]);
+            let spheres = complex.spheres_of(&o, [&a.vertices, &b.vertices, &c.vertices, &d.vertices], sides);
             for ((border, simplex), sphere) in borders.iter().zip(star).zip(spheres) {
                 let (dead, side, new) = (border.dead as usize, border.side as usize, border.new as usize);
                 let outer = simplex.beyond[side];
@@ -203,9 +208,9 @@ impl<'a> Insertion<'a> {
                 while way & NEW == 0 {
                     let next = &simplices[simplex_of(way)];
                     entered = facet_of(way);
-                    let left = next.vertices.iter().position(|&vertex| vertex == pivot);
+                    let left = place_of(pivot, &next.vertices);
                     pivot = next.vertices[entered];
-                    way = next.beyond[left.expect("a facet in common")];
+                    way = next.beyond[left];
                 }
                 let other = simplex_of(way ^ NEW);
                 simplices[new as usize].beyond[to] = facet(other, entered);
@@ -213,6 +218,12 @@ impl<'a> Insertion<'a> {
             }
         }
     }
+}
+
+/// The place of a vertex that is one of these, without branches.
+#[inline(always)]
+fn place_of(vertex: u32, vertices: &[u32; FACETS]) -> usize {
+    (1..FACETS).map(|place| if vertices[place] == vertex { place } else { 0 }).sum()
 }
 
 /// Exchanges two vertices, with what is beyond the facets opposite to them.

@@ -1,0 +1,117 @@
+//! Tries the 4D engine on random degenerate sets: both routes must agree, in any order of the points, in integers and in
+//! fractions, and an exact audit that shares no code with them must pass.
+//!
+//! ```text
+//! cargo run --release --example fuzz4 -- --seconds 600 --seed 1
+//! ```
+//!
+//! Set `I` of a seed alone: `--set I`. A failure is a panic, which names the set.
+
+#[path = "../../tests/reference/sets.rs"]
+#[allow(dead_code, missing_docs)]
+mod sets;
+
+use clap::Parser;
+use sets::Random;
+use spmesh::audit::diagram::check;
+use spmesh::cells4::Point4;
+use spmesh::diagram4::{Diagram, Route, diagram_by};
+use std::time::{Duration, Instant};
+
+/// Fuzzes the 4D engine.
+#[derive(Debug, Parser)]
+struct Args {
+    /// Wall time, in seconds.
+    #[arg(long, default_value_t = 60)]
+    seconds: u64,
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Tries this set only.
+    #[arg(long)]
+    set: Option<u64>,
+}
+
+fn main() {
+    let args = Args::parse();
+    let (started, mut told) = (Instant::now(), 0);
+    let mut figures = [0u64; 3];
+    for number in args.set.unwrap_or(0).. {
+        let mut random = Random::new(args.seed.wrapping_mul(1_000_003).wrapping_add(number));
+        let points = points(&mut random);
+        let cells = std::panic::catch_unwind(|| try_set(&points, &mut Random::new(number)));
+        let Ok(cells) = cells else {
+            panic!("set {number} of seed {}: {} points {points:?}", args.seed, points.len())
+        };
+        figures = [figures[0] + 1, figures[1] + points.len() as u64, figures[2] + cells as u64];
+        let elapsed = started.elapsed();
+        let is_done = elapsed >= Duration::from_secs(args.seconds) || args.set.is_some();
+        if is_done || elapsed.as_secs() / 60 > told {
+            told = elapsed.as_secs() / 60;
+            let [sets, points, cells] = figures;
+            println!("{} s: {sets} sets, {points} points, {cells} cells proved", elapsed.as_secs());
+        }
+        if is_done {
+            return;
+        }
+    }
+}
+
+/// Checks all that must hold; says how many cells there are.
+fn try_set(points: &[Point4], random: &mut Random) -> usize {
+    let Some(diagram) = by(Route::Simplices, points) else {
+        assert!(by(Route::Direct, points).is_none());
+        return 0;
+    };
+    check(&diagram.points, &diagram.cells).expect("a proof");
+    assert_eq!(by(Route::Direct, points).as_ref(), Some(&diagram), "the direct route");
+    let mut shuffled = points.to_vec();
+    random.shuffle(&mut shuffled);
+    assert_eq!(by(Route::Simplices, &shuffled).as_ref(), Some(&diagram), "another order");
+    // Exact in f64, and cells do not change; the arithmetic does.
+    for factor in [0.125, 2f64.powi(-400), 2f64.powi(300), 65_536.0] {
+        let scaled: Vec<Point4> = points.iter().map(|p| p.map(|x| x * factor)).collect();
+        let scaled = by(Route::Simplices, &scaled).expect("as many dimensions");
+        assert_eq!(scaled.cells, diagram.cells, "times {factor:e}");
+    }
+    diagram.cells.len()
+}
+
+/// The diagram, unless all points are in a hyperplane.
+fn by(route: Route, points: &[Point4]) -> Option<Diagram> {
+    match diagram_by(route, points.to_vec(), None) {
+        Ok((diagram, _)) => Some(diagram),
+        Err(error) => {
+            assert!(error.to_string().contains("dimensions"), "{error}");
+            None
+        }
+    }
+}
+
+/// A set of a random kind: integers up to 2^20 apart.
+fn points(random: &mut Random) -> Vec<Point4> {
+    let most = if random.integer(0, 9) == 0 { 300 } else { 40 };
+    let count = random.integer(0, most);
+    let side = [2, 2, 3, 3, 4, 5, 8, 16, 100, 171, 700, 20_000, 1 << 20][random.integer(0, 12) as usize];
+    let shift = [0, 0, 1 << 10, -(1 << 30)][random.integer(0, 3) as usize];
+    let flat = random.integer(0, 7);
+    let shell = random.integer(0, 3) == 0 && side <= 16;
+    let mut points = Vec::new();
+    for _ in 0..count {
+        let mut point = [(); 4].map(|()| random.integer(0, side - 1));
+        if shell {
+            // Permutations and signs of one vector are on one sphere.
+            let mut vector = [1, side, 2 * side, 5];
+            random.shuffle(&mut vector);
+            point = vector.map(|x| if random.integer(0, 1) == 0 { x } else { -x });
+        }
+        match flat {
+            0 if random.integer(0, 4) > 0 => point[3] = 1,
+            1 if random.integer(0, 4) > 0 => point[2] = point[0] + point[1],
+            2 => (point[2], point[3]) = (point[0] * point[0] % 7, point[0] % 3),
+            3 if random.integer(0, 20) > 0 => (point[1], point[2], point[3]) = (0, point[0], 2 * point[0]),
+            _ => {}
+        }
+        points.push(point.map(|x| (x + shift) as f64));
+    }
+    points
+}
