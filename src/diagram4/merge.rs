@@ -22,6 +22,7 @@ pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
     let mut gather = Gather::new(&complex, &classes);
     let unordered = gather.all();
     stats.simplices = classes.simplices;
+    stats.infinite_simplices = classes.members.len() as u64 - classes.simplices;
     drop(classes);
     drop(complex);
     canonical(&unordered)

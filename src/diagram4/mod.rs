@@ -47,6 +47,8 @@ pub struct Stats {
     pub in_sphere_tests: u64,
     /// Finite simplices of the triangulation that cells were made of.
     pub simplices: u64,
+    /// Infinite ones.
+    pub infinite_simplices: u64,
 }
 
 /// The Delaunay diagram of points in any order, which depends on the set of points only.
