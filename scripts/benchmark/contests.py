@@ -19,7 +19,8 @@ FULL_SETS = ["uniform-1M", "grid-1000", "uniform-10M", "flight-10M", "grid-3163"
 QUICK_SETS = ["uniform-100k", "grid-300", "flight-100k", "pipe-100k"]
 FULL_SETS_3D = ["uniform3-1M", "protein3-1M", "surface3-1M", "tenbit3-100k", "grid3-100", "fcc3-63"]
 QUICK_SETS_3D = ["uniform3-20k", "protein3-20k", "surface3-20k", "tenbit3-20k", "grid3-25", "fcc3-16"]
-FULL_SETS_4D = [*(f"grid4-{percent}" for percent in (10, 20, 40, 80, 100)), "random4-10k", "random4-30k", "random4-100k"]
+GRID_PERCENTS = (10, 20, 40, 80, 100)
+FULL_SETS_4D = [*(f"grid4-{percent}" for percent in GRID_PERCENTS), "random4-10k", "random4-30k", "random4-100k"]
 QUICK_SETS_4D = ["grid4-2", "random4-1k"]
 SETS = {
     "2d": (FULL_SETS, QUICK_SETS),

@@ -1,5 +1,5 @@
-// What all peers in 4D share. A peer is run as PEER POINTS [FLAG]. POINTS has quadruples of little-endian f64. A line of
-// JSON on stdout says how many cells or simplices there are, and how long these alone took.
+// What all peers in 4D share. A peer is run as PEER POINTS [FLAG]. POINTS has quadruples of little-endian f64. A line
+// of JSON on stdout says how many cells or simplices there are, and how long these alone took.
 #pragma once
 
 #include "points.hpp"
