@@ -1,4 +1,4 @@
-"""The kinds of measurement: the kernels alone, in 2D and in 3D, and whole pipes from file to file."""
+"""The kinds of measurement: the kernels alone, in 2D, 3D and 4D, and whole pipes from file to file."""
 
 import statistics
 import sys
@@ -19,15 +19,25 @@ FULL_SETS = ["uniform-1M", "grid-1000", "uniform-10M", "flight-10M", "grid-3163"
 QUICK_SETS = ["uniform-100k", "grid-300", "flight-100k", "pipe-100k"]
 FULL_SETS_3D = ["uniform3-1M", "protein3-1M", "surface3-1M", "tenbit3-100k", "grid3-100", "fcc3-63"]
 QUICK_SETS_3D = ["uniform3-20k", "protein3-20k", "surface3-20k", "tenbit3-20k", "grid3-25", "fcc3-16"]
-SETS = {"2d": (FULL_SETS, QUICK_SETS), "3d": (FULL_SETS_3D, QUICK_SETS_3D)}
-POINT3_BYTES = 24
+GRID_PERCENTS = (10, 20, 40, 80, 100)
+FULL_SETS_4D = [*(f"grid4-{percent}" for percent in GRID_PERCENTS), "random4-10k", "random4-30k", "random4-100k"]
+QUICK_SETS_4D = ["grid4-2", "random4-1k"]
+SETS = {
+    "2d": (FULL_SETS, QUICK_SETS),
+    "3d": (FULL_SETS_3D, QUICK_SETS_3D),
+    "4d": (FULL_SETS_4D, QUICK_SETS_4D),
+}
+# Of a run; Qhull needs minutes for a grid in 4D.
+LIMIT_S, LIMIT4_S = 120.0, 300.0
+COORDINATE_BYTES = 8
 
 
 def dims_of(name):
     """Of the points of a set, by its name; 0 if it has no peers."""
     if name == SWEEP:
         return 0
-    return 3 if name == STRUCTURES or name.split("-")[0].endswith("3") else 2
+    kind = name.split("-")[0]
+    return 3 if name == STRUCTURES else int(kind[-1]) if kind[-1] in "34" else 2
 
 
 @dataclass
@@ -47,8 +57,8 @@ class Contest:
 
     @property
     def element(self):
-        """What a triangulation is made of."""
-        return "tetrahedra" if self.dims == 3 else "triangles"
+        """What a triangulation, or a diagram, is made of."""
+        return {3: "tetrahedra", 4: "cells"}.get(self.dims, "triangles")
 
     @property
     def seconds(self):
@@ -95,15 +105,19 @@ class Contests:
         kind, size = name.split("-")
         if dims_of(name) == 3:
             contest = self.kernel3(name, self.inputs.file(f"{name}.f64"))
+        elif dims_of(name) == 4:
+            contest = self.kernel4(name, self.inputs.file(f"{name}.f64"))
         else:
             contest = self.pipe(name, size) if kind == "pipe" else self.kernel(name, kind)
         # Who does not sort its points is slow on those without order only.
-        per_point = self.per_point[contest.dims, kind in ("pipe", "flight")]
-        self.excuse_slow(contest, per_point)
+        per_point = self.per_point[contest.dims, kind in ("pipe", "flight", "grid4")]
+        # The time of a point of a 4D grid depends on how much of the grid there is: less of it does not tell.
+        if kind != "grid4":
+            self.excuse_slow(contest, per_point)
         self.compete(contest)
         for contestant in contest.contestants:
             if contestant.failure.startswith("over"):
-                per_point[contestant.name] = self.flags.limit / contest.points
+                per_point[contestant.name] = self.limit(contest) / contest.points
             elif contestant.runs:
                 per_point[contestant.name] = contestant.wall / contest.points
         return contest
@@ -125,13 +139,17 @@ class Contests:
         command = [program("tess3"), "--quiet", "--out-dir", folder, *files, "--threads"]
         both = [Contestant(TESS3.format(n), [[*command, n]], folder, accepts=(0, 1)) for n in (1, 2)]
         contest = Contest(SWEEP, len(files), both, dims=0)
-        compete(both, self.flags.rounds, self.flags.limit, self.flags.lock)
+        compete(both, self.flags.rounds, self.limit(contest), self.flags.lock)
         return contest
+
+    def limit(self, contest):
+        """Seconds of a run at most."""
+        return self.flags.limit or (LIMIT4_S if contest.dims == 4 else LIMIT_S)
 
     def compete(self, contest):
         chosen = [c for c in contest.contestants if self.is_wanted(c.name)]
         contest.contestants = chosen
-        compete(chosen, self.flags.rounds, self.flags.limit, self.flags.lock)
+        compete(chosen, self.flags.rounds, self.limit(contest), self.flags.lock)
 
     def is_wanted(self, name):
         return not self.flags.only or name.split(",")[0].split()[0].lower() in self.flags.only
@@ -147,7 +165,12 @@ class Contests:
     def kernel3(self, name, points):
         contestants = [Contestant(OURS, [[program("examples/kernel3_time"), points]])]
         contestants += [Contestant(p.name, [[p.program, points, p.threads]]) for p in self.peers[3] if p.program]
-        return Contest(name, points.stat().st_size // POINT3_BYTES, contestants, self.absent(3), dims=3)
+        return Contest(name, points.stat().st_size // (3 * COORDINATE_BYTES), contestants, self.absent(3), dims=3)
+
+    def kernel4(self, name, points):
+        contestants = [Contestant(OURS, [[program("examples/diagram4_time"), points]])]
+        contestants += [Contestant(p.name, [[p.program, points, *p.flags]]) for p in self.peers[4] if p.program]
+        return Contest(name, points.stat().st_size // (4 * COORDINATE_BYTES), contestants, self.absent(4), dims=4)
 
     def pipe(self, name, size):
         las, laz = self.inputs.file(f"flight-{size}.las"), self.inputs.file(f"flight-{size}.laz")
@@ -179,6 +202,6 @@ class Contests:
         """Leaves out whoever would need too long, by what was measured on less."""
         for contestant in list(contest.contestants):
             expected = per_point.get(contestant.name, 0) * contest.points
-            if expected >= self.flags.limit:
+            if expected >= self.limit(contest):
                 contest.contestants.remove(contestant)
-                contest.absent[contestant.name] = f"not run: would take over {self.flags.limit:.0f} s"
+                contest.absent[contestant.name] = f"not run: would take over {self.limit(contest):.0f} s"

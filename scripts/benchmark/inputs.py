@@ -8,6 +8,8 @@ from machine import ROOT
 UNITS = {"k": 10**3, "M": 10**6}
 # Inputs above this are not kept, unless asked for.
 KEPT_POINTS_MAX = 10**7
+# What is needed for 4D, and for all the rest.
+EXAMPLES4 = ["diagram4_time"]
 EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar"]
 
 
@@ -18,7 +20,8 @@ def count_of(text):
 
 class Inputs:
     """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz, permuted-10M.las; in
-    3D uniform3-1M.f64 and others, see rust/src/bin/inputs3.rs."""
+    3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64, see inputs3.rs and inputs4.rs in rust/src/bin.
+    """
 
     def __init__(self, folder, helpers):
         self.folder = folder / "inputs"
@@ -37,7 +40,7 @@ class Inputs:
         elif kind == "permuted":
             self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
         else:
-            maker = "inputs3" if kind.endswith("3") else "inputs"
+            maker = f"inputs{kind[-1]}" if kind[-1] in "34" else "inputs"
             self.make(self.helpers / maker, kind, count_of(size), part)
         os.replace(part, path)
         return path
@@ -63,8 +66,10 @@ def program(name):
     return ROOT / target / "release" / name
 
 
-def build():
-    """Builds what is measured."""
-    examples = [word for name in EXAMPLES for word in ("--example", name)]
-    command = ["cargo", "build", "--release", "--locked", "--quiet", "--bins", *examples]
+def build(dims):
+    """Builds what is measured of sets of these dimensions."""
+    names = (EXAMPLES4 if 4 in dims else []) + (EXAMPLES if dims != {4} else [])
+    examples = [word for name in names for word in ("--example", name)]
+    bins = ["--bins"] if dims != {4} else []
+    command = ["cargo", "build", "--release", "--locked", "--quiet", *bins, *examples]
     subprocess.run(command, cwd=ROOT, check=True)

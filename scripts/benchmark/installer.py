@@ -33,6 +33,8 @@ class Peer:
     # The method of the installer that makes it, or the crate.
     recipe: str
     threads: int = 1
+    # What follows the points, in 4D.
+    flags: tuple = ()
     # Reads LAS alone, and says neither a time of its own nor a count.
     whole_only: bool = False
     version: str = ""

@@ -63,6 +63,13 @@ def kernel3_row(contest, c):
     return [c.name, number(seconds), span, *cells]
 
 
+def kernel4_row(contest, c):
+    """A row of 3D with two more counts: who triangulates has no cells, and who merges has no simplices."""
+    simplices, infinite = c.said("simplices"), c.said("infinite_cells")
+    counts = ["" if count is None else f"{count:,.0f}" for count in (infinite, simplices)]
+    return [*kernel3_row(contest, c), *counts]
+
+
 def pipe_row(contest, c):
     alone = c.said("seconds") if len(c.commands) == 1 else None
     cells = [number(c.wall), spread(c, lambda run: run.wall), number(c.median(lambda run: run.cpu)), number(alone)]
@@ -71,12 +78,14 @@ def pipe_row(contest, c):
 
 KERNEL_HEAD = ["program", "seconds", "range", "us/point", "times ours", "peak MB", "triangles"]
 KERNEL3_HEAD = [*KERNEL_HEAD[:5], "CGAL's times its", "peak MB", "bytes/point", "tetrahedra"]
+KERNEL4_HEAD = [*KERNEL3_HEAD[:-1], "cells", "infinite", "simplices"]
 PIPE_HEAD = ["program", "wall s", "range", "CPU s", "triangulation s", "times ours", "peak MB", "triangles"]
 
 
 def contest(contest):
     """A table of one contest, with who is absent, and what follows from it."""
-    head, make = (KERNEL3_HEAD, kernel3_row) if contest.dims == 3 else (KERNEL_HEAD, kernel_row)
+    kernels = {3: (KERNEL3_HEAD, kernel3_row), 4: (KERNEL4_HEAD, kernel4_row)}
+    head, make = kernels.get(contest.dims, (KERNEL_HEAD, kernel_row))
     if contest.is_pipe:
         head, make = PIPE_HEAD, pipe_row
     rows = []
@@ -100,9 +109,11 @@ def conclusions(contest):
         memory = 100 * sum(ours.peaks) / sum(best.peaks)
         yield f"{times:.2f} times as fast as {best.name}, the fastest peer, with {memory:.1f} % of its peak memory"
     cgal = contest.get(CGAL)
-    if contest.dims == 3 and ours and cgal:
+    if contest.dims >= 3 and ours and cgal:
         times, memory = contest.speed(ours, cgal), sum(ours.peaks) / contest.points
         yield f"{times:.2f} times as fast as CGAL, with {memory:.0f} bytes per point"
+    if contest.dims == 4 and ours:
+        yield from conclusions4(ours)
     laz, decoder = contest.get(FROM_LAZ), contest.get(DECODER)
     one, two = (contest.get(ALONE.format(threads)) for threads in (1, 2))
     if one and two:
@@ -113,6 +124,15 @@ def conclusions(contest):
             f"from LAZ, {laz.wall:.2f} s: the triangulation alone on two threads ({two.wall:.2f} s) "
             f"and {times:.2f} times the decoding ({decoder.wall:.2f} s)"
         )
+
+
+def conclusions4(ours):
+    """What the parts of our time are, and what peers leave out."""
+    order, insertion, merge = (ours.said(f"{part}_seconds") for part in ("order", "insertion", "merge"))
+    created, tests = ours.said("created"), ours.said("in_sphere_tests")
+    yield f"ours: order {order:.3f} s, insertion {insertion:.3f} s, merge {merge:.3f} s"
+    yield f"ours: {created:,.0f} simplices created, {tests:,.0f} in-sphere tests"
+    yield "CGAL, and Qhull with Qt, triangulate only: making cells, our merge, is no part of their time"
 
 
 def machine(facts):

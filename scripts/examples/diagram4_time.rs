@@ -1,25 +1,81 @@
-//! Times the 4D diagram of points from a file of f64 (x, y, z, t), and proves it on request.
+//! Times the 4D diagram, in one thread.
 //!
-//! ```text
-//! cargo run --release --example diagram4_time -- FILE [--audit] [--direct]
-//! ```
+//! `diagram4_time POINTS` is the engine as one of the programs that `scripts/bench` compares: the points are in memory,
+//! and given away. With `--audit` it proves the diagram, too; with `--direct` it takes the other route. POINTS has quadruples of little-endian f64.
 
-use std::time::Instant;
+#[path = "../benchmark/rust/src/lib.rs"]
+#[allow(dead_code, missing_docs)]
+mod files;
 
-fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let bytes = std::fs::read(&arguments[0]).expect("a file of points");
-    let numbers: Vec<f64> =
-        bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().expect("8 bytes"))).collect();
-    let points = numbers.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect();
-    let started = Instant::now();
-    let is_direct = arguments.iter().any(|word| word == "--direct");
-    let route = if is_direct { spmesh::diagram4::Route::Direct } else { spmesh::diagram4::Route::Simplices };
-    let (diagram, stats) = spmesh::diagram4::diagram_by(route, points, None).expect("a diagram");
-    let seconds = started.elapsed().as_secs_f64();
-    let finite = diagram.cells.iter().filter(|cell| !cell.is_infinite).count();
-    println!("{seconds:.3} s, {finite} cells, {} infinite, {stats:?}", diagram.cells.len() - finite);
-    if arguments.iter().any(|word| word == "--audit") {
+use std::error::Error;
+use std::fs::File;
+
+use files::{read_tuples, timed};
+use spmesh::cells4::Cells4;
+use spmesh::diagram4::{Diagram, Route, Stats, diagram_by};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [points, flags @ ..] = &words[..] else {
+        return Err("usage: diagram4_time POINTS [--audit] [--direct]".into());
+    };
+    let has = |flag: &str| flags.iter().any(|word| word == flag);
+    let route = if has("--direct") { Route::Direct } else { Route::Simplices };
+    let points = read_tuples(&mut File::open(points)?)?;
+    let (result, seconds) = timed(|| diagram_by(route, points, None));
+    let (diagram, stats) = result?;
+    report(&diagram, &stats, seconds);
+    if has("--audit") {
         println!("{:?}", spmesh::audit::diagram::check(&diagram.points, &diagram.cells));
+    }
+    Ok(())
+}
+
+/// A line of JSON.
+fn report(diagram: &Diagram, stats: &Stats, seconds: f64) {
+    let sizes = Sizes::of(&diagram.cells);
+    let times = [stats.order, stats.insertion, stats.merge].map(|time| time.as_secs_f64());
+    let figures = [
+        ("points", diagram.points.len() as u64),
+        ("cells", sizes.finite),
+        ("infinite_cells", sizes.infinite),
+        ("non_simplicial", sizes.non_simplicial),
+        ("vertex_references", sizes.vertices),
+        ("neighbour_references", sizes.neighbours),
+        ("simplices", stats.simplices),
+        ("infinite_simplices", stats.infinite_simplices),
+        ("created", stats.created),
+        ("in_sphere_tests", stats.in_sphere_tests),
+    ];
+    let figures: Vec<String> = figures.iter().map(|(key, count)| format!("\"{key}\": {count}")).collect();
+    let names = ["order_seconds", "insertion_seconds", "merge_seconds", "seconds"];
+    let times = names.iter().zip([times[0], times[1], times[2], seconds]);
+    let times: Vec<String> = times.map(|(key, time)| format!("\"{key}\": {time:.6}")).collect();
+    println!("{{{}, {}}}", figures.join(", "), times.join(", "));
+}
+
+/// What the cells amount to. The faraway point counts as a vertex of infinite cells.
+#[derive(Default)]
+struct Sizes {
+    finite: u64,
+    infinite: u64,
+    /// Cells with more than five vertices.
+    non_simplicial: u64,
+    vertices: u64,
+    neighbours: u64,
+}
+
+impl Sizes {
+    fn of(cells: &Cells4) -> Sizes {
+        let mut sizes = Sizes::default();
+        for cell in cells.iter() {
+            let vertices = cell.vertices.len() as u64 + u64::from(cell.is_infinite);
+            sizes.finite += u64::from(!cell.is_infinite);
+            sizes.infinite += u64::from(cell.is_infinite);
+            sizes.non_simplicial += u64::from(vertices > 5);
+            sizes.vertices += vertices;
+            sizes.neighbours += cell.neighbours.len() as u64;
+        }
+        sizes
     }
 }

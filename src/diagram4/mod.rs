@@ -48,6 +48,8 @@ pub struct Stats {
     pub in_sphere_tests: u64,
     /// Finite simplices of the triangulation that cells were made of.
     pub simplices: u64,
+    /// Infinite ones.
+    pub infinite_simplices: u64,
 }
 
 /// How cells are found. The result is the same.
