@@ -75,7 +75,11 @@ impl Flags {
         let points = self.source.read()?;
         let read = started.elapsed();
         drop(progress);
-        points.warnings.iter().for_each(|warning| self.notice(&format!("{}: {warning}", points.name)));
+        for warning in &points.warnings {
+            // Of a spool it is said already where it came from.
+            let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
+            self.notice(&format!("{}: {warning}", points.name));
+        }
         let progress = Progress::waiting(&self.common, "triangulating");
         let report = dd4::run(points, &options, output)?;
         drop(progress);
