@@ -98,21 +98,19 @@ fn text_twins_are_the_same_stream() {
     for input in [&stream, &text] {
         assert!(diagram(&["-"], input) == stream, "the points of a diagram have another diagram");
     }
-    let points: String = "#spmesh version 1\n#spmesh kind points in 4 dimensions\n#spmesh coordinates f64\n\
-                          #spmesh dims 4\n#spmesh elevation no\n"
-        .to_string()
-        + &String::from_utf8(text)
-            .unwrap()
-            .lines()
-            .filter(|line| line.starts_with("v4"))
-            .map(|line| format!("{line}\n"))
-            .collect::<String>();
-    let twin = points.clone() + "# end\n";
+    let header = "#spmesh version 1\n#spmesh kind points in 4 dimensions\n#spmesh coordinates f64\n#spmesh dims 4\n\
+                  #spmesh elevation no\n#spmesh chunked no\n#spmesh producer \"test\"\n";
+    let text = String::from_utf8(text).unwrap();
+    let points: Vec<&str> = text.lines().filter(|line| line.starts_with("v4")).collect();
+    assert_eq!(points.len(), 84);
+    let cut = format!("{header}{}\n", points.join("\n"));
+    let twin = cut.clone() + "# end points 84 cells 0 vertices 0 simplices 0 merged 0 residual 0 walls 0\n";
     let binary = run("spconvert", &["--to", "spm"], twin.as_bytes());
-    if binary.status.success() {
-        assert!(diagram(&["-"], &binary.stdout) == stream);
+    assert!(binary.status.success(), "{:?}", outcome(&binary));
+    for input in [twin.as_bytes(), &binary.stdout] {
+        assert!(diagram(&["-"], input) == stream, "points in a stream have another diagram");
     }
-    let (code, message) = outcome(&run("dd4", &["-"], points.as_bytes()));
+    let (code, message) = outcome(&run("dd4", &["-"], cut.as_bytes()));
     assert_eq!(code, Some(3), "{message}");
     assert!(message.contains("truncated"), "{message}");
 }
