@@ -11,6 +11,7 @@ pub mod cells;
 pub mod cells4;
 pub mod cli;
 pub mod convert;
+pub mod dd4;
 pub mod delaunay2;
 pub mod delaunay3;
 pub mod delaunay3_float;

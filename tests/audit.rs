@@ -5,7 +5,7 @@ mod census;
 #[path = "audit/command.rs"]
 mod command;
 #[path = "audit/diagram.rs"]
-mod diagram;
+pub mod diagram;
 #[path = "audit/diagram_damage.rs"]
 mod diagram_damage;
 #[path = "audit/exhaustive.rs"]

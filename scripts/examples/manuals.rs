@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
-use spmesh::cli::{spconvert, spdelaunay2d, spfinalize, spinfo};
+use spmesh::cli::{dd4, spconvert, spdelaunay2d, spfinalize, spinfo, tess3};
 
 fn main() -> std::io::Result<()> {
     let Some(folder) = std::env::args_os().nth(1) else {
@@ -27,10 +27,12 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 4] {
+fn tools() -> [Command; 6] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
+        tess3::Flags::command(),
+        dd4::Flags::command(),
         spinfo::Flags::command(),
         spconvert::Flags::command(),
     ]

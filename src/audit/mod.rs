@@ -63,7 +63,8 @@ use crate::bounds::Point;
 use crate::error::Error;
 use crate::stream::{Event, Header, Kind};
 
-/// Audit of one stream of any kind: give it every event, and ask for the report.
+/// Audit of one stream of two or three dimensions: give it every event, and ask for the report. Those of four dimensions
+/// have [`diagram::StreamAudit`].
 ///
 /// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
 pub struct Audit {
@@ -111,7 +112,9 @@ impl Audit {
             }
             Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => {
                 let kind = header.kind.name();
-                return Err(Error::usage(format!("--audit does not know streams of kind {kind} yet")));
+                let message =
+                    format!("streams of kind {kind} have an audit of their own, or nothing to prove");
+                return Err(Error::usage(message));
             }
         };
         let is_mesh = header.kind.vertices_per_simplex() > 0;

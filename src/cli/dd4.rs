@@ -1,5 +1,94 @@
 //! `dd4`: flags.
 
+mod report;
 mod source;
 
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Parser;
+
+use super::{Common, StatsFormat, notice, progress::Progress};
+use crate::dd4::{self, Options, Product, Quantum};
+use crate::error::Result;
+use crate::output::Output;
+
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
+
+const EXAMPLES: &str = "\
+Examples:
+  The diagram of lines of x y z t, and an exact proof that it is right:
+    dd4 points.txt -o points.spm
+    spinfo --audit points.spm
+";
+
+const NOTES: &str = "
+
+Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, one for
+each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated
+input, 5 not enough memory for the points, 141 output closed by its reader.";
+
+/// Exact Delaunay diagrams of points in four dimensions.
+///
+/// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their neighbours
+/// as a stream. The result is exact and unique: it depends on the set of points only.
+#[derive(Debug, Parser)]
+#[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    #[command(flatten)]
+    source: SourceFlags,
+
+    /// Where the diagram goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of the
+    /// coordinates, which f64 rounds, so that no grid would be cospherical
+    #[arg(long, value_name = "Q")]
+    quantum: Option<Quantum>,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`SourceFlags::read`] and [`dd4::run`].
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    Ok(flags.run()?)
+}
+
+impl Flags {
+    fn run(&self) -> Result<()> {
+        let started = Instant::now();
+        let options = Options { quantum: self.quantum, product: Product::Diagram };
+        // An output that cannot be is better known before the work.
+        let output = Output::create(&self.output, true)?;
+        let progress = Progress::waiting(&self.common, "reading");
+        let points = self.source.read()?;
+        let read = started.elapsed();
+        drop(progress);
+        for warning in &points.warnings {
+            // Of a spool it is said already where it came from.
+            let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
+            self.notice(&format!("{}: {warning}", points.name));
+        }
+        let progress = Progress::waiting(&self.common, "triangulating");
+        let report = dd4::run(points, &options, output)?;
+        drop(progress);
+        report::merged(&report).into_iter().for_each(|text| self.notice(&text));
+        report::print(self.stats, &report, read, started.elapsed());
+        Ok(())
+    }
+
+    fn notice(&self, message: &str) {
+        notice("dd4", &self.common, message);
+    }
+}

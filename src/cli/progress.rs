@@ -6,6 +6,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Common;
 
+/// How often a pass shows that it goes on.
+const TICK: Duration = Duration::from_millis(100);
+
 /// When progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum When {
@@ -54,6 +57,18 @@ impl Progress {
         bar.set_prefix(name.to_string());
         let json = (common.progress == When::Json).then(|| (name.to_string(), total, Instant::now()));
         Progress { bar, json, unit }
+    }
+
+    /// Shows that the pass `name` is going on, of which no more is known.
+    #[must_use]
+    pub fn waiting(common: &Common, name: &str) -> Self {
+        let progress = Self::counting("points", common, name, None);
+        if !progress.bar.is_hidden() {
+            let style = ProgressStyle::with_template("{prefix} {spinner} {elapsed}");
+            progress.bar.set_style(style.expect("the template is valid"));
+            progress.bar.enable_steady_tick(TICK);
+        }
+        progress
     }
 
     /// Says that `done` units are done.

@@ -1,6 +1,7 @@
 //! The tool `spinfo`.
 
 mod census;
+mod diagram;
 mod report;
 
 use std::io::{BufReader, Write};
@@ -10,7 +11,8 @@ use clap::{Parser, ValueEnum};
 
 use super::progress::Progress;
 use super::{Common, notice, open_input};
-use crate::audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey, Violation};
+use crate::audit::diagram::{self as diagram4, StreamAudit};
+use crate::audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey};
 use crate::error::{Error, ErrorKind, Result};
 use crate::output::Output;
 use crate::source::{Input, SourceOptions};
@@ -26,6 +28,7 @@ Examples:
                                           prove that the mesh is right
   spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
   spinfo --audit --points a.laz mesh.spm  and it has exactly these points
+  spinfo --audit diagram.spm              prove the cells that dd4 made; they are held in memory
   spinfo --audit --count-violations tetrahedra.spm
                                           how wrong is it, exactly and in plain floating point
   spinfo --json mesh.spm | jq .counts     for programs
@@ -101,21 +104,25 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
-        if let Err(violation) = proof.event(&event) {
-            failure = Some(reader.locate(violation.to_error(&header)));
+        if let Err(error) = proof.event(&event, &header) {
+            if error.kind() != ErrorKind::Audit {
+                return Err(error.of_input(reader.name()).into());
+            }
+            failure = Some(reader.locate(error));
             break;
         }
         survey.event(&event).map_err(|error| reader.locate(error))?;
         progress.set(survey.totals().points.max(survey.totals().vertices));
     }
     drop(progress);
-    let failure = failure.or_else(|| proof.verdict());
+    let failure = failure.or_else(|| Some(proof.verdict()?.of_input(reader.name())));
     let summary = Summary {
         name: reader.name(),
         header: &header,
         survey: &survey,
         audit: proof.report(),
         census: proof.figures(),
+        diagram: proof.diagram(),
         failure: failure.as_ref(),
         bytes: reader.bytes_read(),
     };
@@ -129,6 +136,8 @@ enum Proof {
     None,
     /// Whether all are kept.
     Audit(Box<Audit>),
+    /// Whether cells or simplices of four dimensions are what they claim to be.
+    Diagram(Box<StreamAudit>),
     /// How often they are not.
     Census(Box<Census>, Standard),
 }
@@ -136,6 +145,9 @@ enum Proof {
 impl Proof {
     fn of(flags: &Flags, header: &Header) -> Result<Self> {
         let Some(standard) = flags.audit.map(Standard::from) else { return Ok(Proof::None) };
+        if header.kind.is_4d() && !flags.count_violations && flags.points.is_empty() {
+            return Ok(Proof::Diagram(Box::new(StreamAudit::new(header.kind)?)));
+        }
         if !flags.count_violations {
             let audit = Audit::new(header, standard, given_points(flags, header)?)?;
             return Ok(Proof::Audit(Box::new(audit)));
@@ -148,17 +160,21 @@ impl Proof {
         Ok(Proof::Census(Box::default(), standard))
     }
 
-    fn event(&mut self, event: &Event) -> std::result::Result<(), Violation> {
+    fn event(&mut self, event: &Event, header: &Header) -> Result<()> {
         match self {
             Proof::None => Ok(()),
-            Proof::Audit(audit) => audit.event(event),
-            Proof::Census(census, _) => census.event(event),
+            Proof::Audit(audit) => audit.event(event).map_err(|violation| violation.to_error(header)),
+            Proof::Diagram(audit) => audit.event(event),
+            Proof::Census(census, _) => census.event(event).map_err(|violation| violation.to_error(header)),
         }
     }
 
-    /// What a census says at the end; an audit has spoken before.
-    fn verdict(&self) -> Option<Error> {
+    /// What is said when all was read; an audit of fewer than four dimensions has spoken before.
+    fn verdict(&mut self) -> Option<Error> {
         match self {
+            Proof::Diagram(audit) => {
+                audit.prove().err().map(|violation| Error::new(ErrorKind::Audit, violation.to_string()))
+            }
             Proof::Census(census, standard) if !census.figures().is_clean(*standard) => {
                 Some(Error::new(ErrorKind::Audit, "the mesh is wrong: the counts are in the report"))
             }
@@ -169,6 +185,13 @@ impl Proof {
     fn report(&self) -> Option<Report> {
         match self {
             Proof::Audit(audit) => Some(audit.report()),
+            _ => None,
+        }
+    }
+
+    fn diagram(&self) -> Option<&std::result::Result<diagram4::Proof, diagram4::Violation>> {
+        match self {
+            Proof::Diagram(audit) => audit.proof(),
             _ => None,
         }
     }

@@ -40,18 +40,18 @@ impl Diagram4 {
         let mut diagram = Diagram4 { values, ..Diagram4::default() };
         let mut words = 0;
         while let Some(event) = reader.next_event()? {
-            diagram.event(event, &mut words).map_err(|error| error.of_input(reader.name()))?;
+            diagram.event(&event, &mut words).map_err(|error| error.of_input(reader.name()))?;
         }
         Ok(diagram)
     }
 
     /// Takes what a block holds; `words` counts those of cells.
-    fn event(&mut self, event: Event, words: &mut u64) -> Result<()> {
+    pub(crate) fn event(&mut self, event: &Event, words: &mut u64) -> Result<()> {
         match event {
             Event::Points4(block) => {
-                self.points.extend(block.points);
-                if let (Some(all), Some(values)) = (&mut self.values, block.values) {
-                    all.extend(values);
+                self.points.extend_from_slice(&block.points);
+                if let (Some(all), Some(values)) = (&mut self.values, &block.values) {
+                    all.extend_from_slice(values);
                 }
             }
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| self.cell(cell, words))?,

@@ -64,7 +64,8 @@ fn tools_of_fewer_dimensions_refuse_them() {
             &["spdelaunay2d", "--merge", "-"],
             &["tess3", "-"],
             &["spconvert", "--to", "vtu", "-"],
-            &["spinfo", "--audit", "-"],
+            &["spinfo", "--audit", "--points", "-", "-"],
+            &["spinfo", "--audit", "--count-violations", "-"],
         ] {
             let (code, message) = outcome(&run(arguments[0], &arguments[1..], &empty(kind)));
             assert_eq!(code, Some(2), "{arguments:?}: {message}");

@@ -53,9 +53,11 @@ mod number;
 mod simplices;
 mod sites;
 mod space;
+mod stream;
 mod violation;
 
 pub use simplices::check_simplices;
+pub use stream::StreamAudit;
 pub use violation::{Claim, Violation};
 
 use crate::cells4::{Cells4, Point4};

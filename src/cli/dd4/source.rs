@@ -25,7 +25,7 @@ pub const EXAMPLES: &str = "\
 #[command(next_help_heading = "Points")]
 pub struct SourceFlags {
     /// Points or a volume, plain or compressed (.gz); - is stdin. Lines of x y z t, or of x y z t value; NRRD (.nrrd,
-    /// .nhdr) or NIfTI-1 (.nii) of three dimensions and time
+    /// .nhdr) or NIfTI-1 (.nii) of three dimensions and time; spmesh streams in four dimensions
     #[arg(value_name = "FILE", help_heading = None)]
     input: Option<PathBuf>,
 

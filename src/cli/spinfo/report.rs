@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::census;
+use super::{census, diagram};
+use crate::audit::diagram::{Proof, Violation};
 use crate::audit::{Figures, Report, Survey, shortest};
 use crate::bounds::Point;
 use crate::error::Error;
@@ -16,6 +17,7 @@ pub(super) struct Summary<'a> {
     pub(super) survey: &'a Survey,
     pub(super) audit: Option<Report>,
     pub(super) census: Option<&'a Figures>,
+    pub(super) diagram: Option<&'a Result<Proof, Violation>>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
 }
@@ -48,6 +50,9 @@ impl Summary<'_> {
         self.figures(&mut line);
         if let Some(report) = &self.audit {
             text += &self.audit_text(report);
+        }
+        if let Some(verdict) = self.diagram {
+            text += &diagram::text(verdict);
         }
         if let Some(figures) = self.census {
             text += &census::text(figures);
@@ -174,13 +179,17 @@ impl Summary<'_> {
             "four_dimensions": self.json4(),
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
-            "audit": self.audit.as_ref().map(|report| self.audit_json(report)),
+            "audit": self.audit_json(),
             "census": self.census.map(census::json),
         });
         format!("{object:#}\n")
     }
 
-    fn audit_json(&self, report: &Report) -> Value {
+    fn audit_json(&self) -> Value {
+        if let Some(verdict) = self.diagram {
+            return diagram::json(verdict, self.failure);
+        }
+        let Some(report) = &self.audit else { return Value::Null };
         let checks: Vec<Value> = report
             .lines
             .iter()

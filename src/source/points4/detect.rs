@@ -45,8 +45,8 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<Strin
     if nifti::is_header(&head) {
         return nifti::open(origin, &head, plain.is_compressed(), warnings).map(Supply::Volume);
     }
-    if stream::MAGICS.iter().any(|magic| head.starts_with(magic)) {
-        return stream::open(origin);
+    if stream::is_head(&head) {
+        return stream::open(origin, path, &head);
     }
     if let Some((_, what)) = MISTAKEN.iter().find(|(magic, _)| head.starts_with(magic)) {
         return Err(Error::malformed(format!("is {what}")));

@@ -1,5 +1,5 @@
-//! Points of four dimensions: lines of x y z t, grids, and volumes that change over time (NRRD, NIfTI, raw), whole or
-//! chosen by a condition and at random.
+//! Points of four dimensions: lines of x y z t, grids, and volumes that change over time (NRRD, NIfTI, raw), and streams,
+//! whole or chosen by a condition and at random.
 //!
 //! Coordinates are grid indices unless the world is asked for, so that they are integers and cells are cospherical
 //! exactly where the grid is. What is chosen depends on the input and the seed alone.

@@ -1,6 +1,7 @@
 //! Passes over all points of an input.
 
 use super::lattice::Lattice;
+use super::stream::Stream;
 use super::text::Text;
 use super::volume::Volume;
 use crate::cells4::Point4;
@@ -11,6 +12,7 @@ use crate::error::{Error, Result};
 pub(super) enum Supply {
     Grid(Lattice),
     Text(Text),
+    Stream(Stream),
     Volume(Volume),
 }
 
@@ -23,6 +25,7 @@ impl Supply {
         match self {
             Supply::Grid(lattice) => lattice.iter().try_for_each(|site| visit(site, None)),
             Supply::Text(text) => text.scan(visit),
+            Supply::Stream(stream) => stream.scan(visit),
             Supply::Volume(volume) => volume.scan(visit),
         }
     }
@@ -32,6 +35,7 @@ impl Supply {
         match self {
             Supply::Grid(_) => false,
             Supply::Text(text) => text.has_values(),
+            Supply::Stream(stream) => stream.has_values,
             Supply::Volume(_) => true,
         }
     }
@@ -39,13 +43,13 @@ impl Supply {
     /// Puts the sites of a volume where they are in the world.
     ///
     /// # Errors
-    /// Usage, if that is not known or not along the axes. The coordinates of a text are what they are.
+    /// Usage, if that is not known or not along the axes. The coordinates of texts and streams are what they are.
     pub(super) fn place_in_world(&mut self) -> Result<()> {
         match self {
             Supply::Grid(_) => {
                 Err(Error::usage("a grid without a file has no world units: leave --spacing away"))
             }
-            Supply::Text(_) => Ok(()),
+            Supply::Text(_) | Supply::Stream(_) => Ok(()),
             Supply::Volume(volume) => volume.place_in_world(),
         }
     }

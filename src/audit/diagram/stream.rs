@@ -1,0 +1,68 @@
+//! The audit of a stream of four dimensions: everything in it is held, and proved when it is complete.
+
+use super::{Proof, Violation, check, check_simplices};
+use crate::error::{Error, Result};
+use crate::stream::{Diagram4, Event, Kind};
+
+/// Audit of one stream of cells or simplices: give it every event, and ask for the proof.
+///
+/// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
+///
+/// Memory: what the stream holds, and what [`check`] or [`check_simplices`] needs.
+#[derive(Debug)]
+pub struct StreamAudit {
+    kind: Kind,
+    diagram: Diagram4,
+    /// Words of its cells.
+    words: u64,
+    simplices: Vec<[u32; 5]>,
+    proof: Option<std::result::Result<Proof, Violation>>,
+}
+
+impl StreamAudit {
+    /// An audit of a stream of this kind.
+    ///
+    /// # Errors
+    /// Usage, if a stream of the kind claims nothing that takes a proof.
+    pub fn new(kind: Kind) -> Result<Self> {
+        if !matches!(kind, Kind::Cells4 | Kind::Simplices4) {
+            let name = kind.name();
+            let message = format!("a stream of {name} claims nothing that takes a proof: leave --audit away");
+            return Err(Error::usage(message));
+        }
+        let (diagram, simplices) = (Diagram4::default(), Vec::new());
+        Ok(StreamAudit { kind, diagram, words: 0, simplices, proof: None })
+    }
+
+    /// Takes what the next event holds.
+    ///
+    /// # Errors
+    /// Usage, if cells have 2^32 words or more.
+    pub fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Simplices4(simplices) => self.simplices.extend_from_slice(simplices),
+            event => self.diagram.event(event, &mut self.words)?,
+        }
+        Ok(())
+    }
+
+    /// Proves what the stream claims; all events up to END have been given.
+    ///
+    /// # Errors
+    /// The first violation that was met.
+    pub fn prove(&mut self) -> std::result::Result<Proof, Violation> {
+        let Diagram4 { points, cells, .. } = &self.diagram;
+        let proof = match self.kind {
+            Kind::Simplices4 => check_simplices(points, &self.simplices),
+            _ => check(points, cells),
+        };
+        self.proof = Some(proof.clone());
+        proof
+    }
+
+    /// What [`StreamAudit::prove`] said.
+    #[must_use]
+    pub fn proof(&self) -> Option<&std::result::Result<Proof, Violation>> {
+        self.proof.as_ref()
+    }
+}

@@ -1,0 +1,83 @@
+//! What a run says when it is done.
+
+use std::time::Duration;
+
+use crate::cli::{StatsFormat, peak_memory, say};
+use crate::dd4::Report;
+
+/// What the user should know of points that coincide.
+pub(super) fn merged(report: &Report) -> Option<String> {
+    let Report { points, merged, .. } = report;
+    let verb = if *merged == 1 { "coincides" } else { "coincide" };
+    (*merged > 0).then(|| format!("{merged} of {points} points {verb} with an earlier one"))
+}
+
+/// Prints what `--stats` asks for; reading took `read`, everything `elapsed`.
+pub(super) fn print(format: Option<StatsFormat>, report: &Report, read: Duration, elapsed: Duration) {
+    match format {
+        Some(StatsFormat::Text) => say(&text(report, read, elapsed)),
+        Some(StatsFormat::Json) => say(&format!("{}\n", json(report, read, elapsed))),
+        None => {}
+    }
+}
+
+/// A label for people, a key for programs, the value.
+type Row<T> = (&'static str, &'static str, T);
+
+/// Times in seconds.
+fn times(report: &Report, read: Duration, elapsed: Duration) -> [Row<f64>; 7] {
+    let stats = &report.stats;
+    [
+        ("time (s)", "seconds", elapsed),
+        ("reading (s)", "seconds_read", read),
+        ("diagram (s)", "seconds_diagram", report.diagram_time),
+        ("  ordering (s)", "seconds_order", stats.order),
+        ("  insertion (s)", "seconds_insertion", stats.insertion),
+        ("  making cells (s)", "seconds_cells", stats.merge),
+        ("writing (s)", "seconds_write", report.write_time),
+    ]
+    .map(|(label, key, time)| (label, key, time.as_secs_f64()))
+}
+
+/// With the times and the share of cells, the columns of thesis table 3.4, and what figure 3.9 shows.
+fn counts(report: &Report) -> [Row<u64>; 16] {
+    let Report { points, merged, stats, figures, output_bytes, .. } = report;
+    [
+        ("points", "points", *points),
+        ("vertices", "vertices", points - merged),
+        ("cells", "cells", figures.finite),
+        ("  not simplices", "cells_not_simplices", figures.not_simplices),
+        ("  most vertices", "cell_vertices_max", figures.vertices_max),
+        ("infinite cells", "infinite_cells", figures.infinite),
+        ("facets", "facets", figures.facets),
+        ("vertex references", "vertex_references", figures.vertex_references),
+        ("cells, facets, references", "elements", figures.elements()),
+        ("simplices of the triangulation", "simplices", stats.simplices),
+        ("simplices created", "simplices_created", stats.created),
+        ("in-sphere tests", "in_sphere_tests", stats.in_sphere_tests),
+        ("points merged", "merged", *merged),
+        ("cells in the output (bytes)", "cell_bytes", figures.cell_bytes()),
+        ("output (bytes)", "output_bytes", *output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+    ]
+}
+
+fn text(report: &Report, read: Duration, elapsed: Duration) -> String {
+    let mut text = String::new();
+    for (label, _, seconds) in times(report, read, elapsed) {
+        text += &format!("{label:<30} {seconds:>15.3}\n");
+    }
+    for (label, _, count) in counts(report) {
+        text += &format!("{label:<30} {count:>15}\n");
+    }
+    text + &format!("{:<30} {:>15.3}\n", "share that are not simplices", report.figures.share_not_simplices())
+}
+
+fn json(report: &Report, read: Duration, elapsed: Duration) -> String {
+    let mut object = serde_json::Map::new();
+    let times = times(report, read, elapsed);
+    object.extend(times.into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
+    object.extend(counts(report).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
+    object.insert("share_not_simplices".into(), report.figures.share_not_simplices().into());
+    serde_json::Value::Object(object).to_string()
+}

@@ -1,0 +1,87 @@
+//! `dd4`: points of four dimensions in, their Delaunay diagram out.
+
+mod figures;
+mod quantum;
+mod write;
+
+pub use figures::Figures;
+pub use quantum::Quantum;
+
+use std::time::{Duration, Instant};
+
+use crate::diagram4::{Diagram, Stats, diagram};
+use crate::error::{Error, Result};
+use crate::output::Output;
+use crate::source::points4::Points4;
+
+/// What is made of points.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Options {
+    /// What coordinates are multiples of, if they are to be made whole numbers.
+    pub quantum: Option<Quantum>,
+    /// What is written.
+    pub product: Product,
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Product {
+    /// The diagram, as a stream of cells.
+    #[default]
+    Diagram,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Report {
+    /// Points that were wanted.
+    pub points: u64,
+    /// Those that are equal to an earlier one.
+    pub merged: u64,
+    /// What the engine did.
+    pub stats: Stats,
+    /// The size of the diagram.
+    pub figures: Figures,
+    /// Making the diagram.
+    pub diagram_time: Duration,
+    /// Writing.
+    pub write_time: Duration,
+    /// Bytes written.
+    pub output_bytes: u64,
+}
+
+/// Makes what is wanted of points, and writes it to `output`, which is complete only if this succeeds.
+///
+/// # Errors
+/// As [`diagram`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value is infinite; or if writing
+/// fails.
+pub fn run(points: Points4, options: &Options, output: Output) -> Result<Report> {
+    let name = points.name.clone();
+    let started = Instant::now();
+    let mut report = Report { points: points.points.len() as u64, ..Report::default() };
+    let (diagram, stats) = diagram_of(points, options).map_err(|e| e.of_input(name))?;
+    report.diagram_time = started.elapsed();
+    report.merged = diagram.merged;
+    report.stats = stats;
+    report.figures = Figures::of(&diagram.cells);
+    let started = Instant::now();
+    report.output_bytes = match options.product {
+        Product::Diagram => write::diagram(&diagram, output)?,
+    };
+    report.write_time = started.elapsed();
+    Ok(report)
+}
+
+fn diagram_of(points: Points4, options: &Options) -> Result<(Diagram, Stats)> {
+    let Points4 { mut points, values, .. } = points;
+    // Known before the work, rather than when it is to be written.
+    let infinite = values.iter().flatten().position(|value| value.is_infinite());
+    if let Some(number) = infinite {
+        let message = "the value is infinite, which no stream holds: leave such points out with --where";
+        return Err(Error::malformed(message).at(format!("point {:?}", points[number])));
+    }
+    if let Some(quantum) = options.quantum {
+        quantum.make_whole(&mut points)?;
+    }
+    diagram(points, values)
+}

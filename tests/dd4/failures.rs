@@ -1,0 +1,109 @@
+//! Wrong usage, points without a volume, damaged input, and outputs that cannot be written.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::process::Stdio;
+
+use super::diagram;
+use crate::programs::{outcome, run, start, tool};
+
+#[test]
+fn points_without_a_volume_say_their_dimension() {
+    let corners = ["1 1 1 1", "2 1 1 1", "1 2 1 1", "1 1 2 1", "1 1 1 2"];
+    for count in 0..5 {
+        let text = format!("x y z t\n{}\n", corners[..count].join("\n"));
+        let (code, message) = outcome(&run("dd4", &["-"], text.as_bytes()));
+        if count == 0 {
+            assert_eq!(code, Some(3), "{message}");
+            continue;
+        }
+        assert_eq!(code, Some(2), "{message}");
+        let expected = format!("{count} distinct points span only {} of 4 dimensions", count - 1);
+        assert!(message.contains(&expected), "{message}");
+    }
+    diagram(&["-"], corners.join("\n").as_bytes());
+    for (grid, dimensions) in [("5x5x5x1", 3), ("1x7x1x7", 2), ("1x1x1x1", 0)] {
+        let (code, message) = outcome(&run("dd4", &["--grid", grid], &[]));
+        assert_eq!(code, Some(2), "{message}");
+        assert!(message.contains(&format!("grid {grid}: ")), "{message}");
+        assert!(message.contains(&format!("only {dimensions} of 4 dimensions")), "{message}");
+    }
+}
+
+#[test]
+fn each_failure_has_its_exit_code() {
+    let points = run("spfinalize", &["-"], b"1 2 3\n4 5 7\n8 2 1\n3 3 9\n").stdout;
+    let whole = diagram(&["--grid", "2x2x2x3"], &[]);
+    let cases: [(&[&str], &[u8], i32, &str); 10] = [
+        (&[], b"", 2, "no input"),
+        (&["no/such/file"], b"", 1, "no/such/file"),
+        (&["-"], b"1 2 3 4\n1 2 nan 4\n", 3, "line 2"),
+        (&["-"], b"1 2 3 4\n1 2 3\n", 3, "line 2"),
+        (&["-"], b"1 2 3 4 5\n1 2 3 3 inf\n", 3, "[1.0, 2.0, 3.0, 3.0]: the value is infinite"),
+        (&["--quantum", "0", "-"], b"", 2, "not a number above 0"),
+        (&["--grid", "4x4x4x4", "-o", "/no/such/folder/x.spm"], b"", 1, "/no/such/folder"),
+        (&["-"], &points, 2, "kind points in 2 dimensions"),
+        (&["-"], &whole[..whole.len() - 1], 3, "truncated"),
+        (&["-"], &whole[..whole.len() / 2], 3, "stdin: block "),
+    ];
+    for (arguments, input, code, part) in cases {
+        let (found, message) = outcome(&run("dd4", arguments, input));
+        assert_eq!(found, Some(code), "{arguments:?}: {message}");
+        assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
+    }
+}
+
+#[test]
+fn a_failure_leaves_no_file_and_keeps_the_old_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let old = folder.path().join("old.spm");
+    fs::write(&old, "old").unwrap();
+    for name in ["old.spm", "new.spm"] {
+        let path = folder.path().join(name);
+        let output = run("dd4", &["-o", path.to_str().unwrap(), "-"], b"1 2 3 4\n1 2 3 5\n");
+        assert_eq!(outcome(&output).0, Some(2));
+    }
+    assert_eq!(fs::read_to_string(&old).unwrap(), "old");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_killed_producer_leaves_no_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = folder.path().join("result.spm");
+    let mut producer = start("dd4", &["--grid", "8x8x8x8"], Stdio::null());
+    let mut part = vec![0; 50_000];
+    producer.stdout.as_mut().unwrap().read_exact(&mut part).unwrap();
+    producer.kill().unwrap();
+    producer.wait().unwrap();
+    let mut consumer = tool("dd4");
+    consumer.args(["-o", result.to_str().unwrap(), "-"]).stdin(Stdio::piped());
+    let mut consumer = consumer.spawn().unwrap();
+    consumer.stdin.take().unwrap().write_all(&part).unwrap();
+    let (code, message) = outcome(&consumer.wait_with_output().unwrap());
+    assert_eq!(code, Some(3), "{message}");
+    assert!(message.contains("truncated"), "{message}");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    let (code, message) = outcome(&run("spinfo", &["--audit", "-"], &part));
+    assert_eq!(code, Some(3), "{message}");
+}
+
+#[test]
+fn a_closed_pipe_is_silent() {
+    let mut child = start("dd4", &["--grid", "12x12x12x8"], Stdio::null());
+    let mut head = [0; 100];
+    child.stdout.take().unwrap().read_exact(&mut head).unwrap();
+    let (code, message) = outcome(&child.wait_with_output().unwrap());
+    assert_eq!((code, &message[..]), (Some(141), ""));
+}
+
+#[test]
+fn a_full_disk_is_an_error_with_its_reason() {
+    if !std::path::Path::new("/dev/full").exists() {
+        eprintln!("SKIPPED: there is no /dev/full");
+        return;
+    }
+    let (code, message) = outcome(&run("dd4", &["--grid", "4x4x4x4", "-o", "/dev/full"], &[]));
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("No space left on device"), "{message}");
+}
