@@ -1,0 +1,115 @@
+//! Products as files.
+
+use std::io::Write;
+
+use super::isosurface::Surface;
+use super::slice::Slice;
+use super::subdivide::Subdivision;
+use crate::bounds::Point;
+use crate::cells4::Point4;
+use crate::convert::Format;
+use crate::diagram4::Diagram;
+use crate::error::{Error, Result};
+use crate::sink::{
+    EventSink, MeditSink, ObjSink, PlyEncoding, PlySink, VtuSink, surface_header, write_volume,
+};
+use crate::stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
+
+/// Writes a diagram as a stream of cells.
+///
+/// # Errors
+/// If a value is infinite, or writing fails.
+pub fn write_cells(diagram: &Diagram, output: impl Write) -> Result<()> {
+    let points = diagram.points.len() as u64;
+    let header = Header::new(Kind::Cells4, Coordinates::F64, 4, diagram.values.is_some());
+    let mut writer = StreamWriter::new(output, header)?;
+    writer.points4(&diagram.points, diagram.values.as_deref())?;
+    diagram.cells.iter().try_for_each(|cell| writer.cell4(cell))?;
+    writer.end(points + diagram.merged, diagram.merged).map(drop)
+}
+
+/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
+///
+/// # Errors
+/// If a value is infinite, or writing fails.
+pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> Result<()> {
+    let points = parts.points.len() as u64;
+    let header = Header::new(Kind::Simplices4, Coordinates::F64, 4, parts.values.is_some());
+    let mut writer = StreamWriter::new(output, header)?;
+    writer.points4(&parts.points, parts.values.as_deref())?;
+    writer.simplices4(&parts.simplices)?;
+    writer.end(points + merged, merged).map(drop)
+}
+
+/// Writes sites with their values as lines of x, y, z, t and value, separated by tabs, below a line of names. What is
+/// outside of the hull or not known is `nan`.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_values(sites: &[Point4], values: &[Option<f64>], output: &mut impl Write) -> Result<()> {
+    let mut write = || -> std::io::Result<()> {
+        output.write_all(b"x\ty\tz\tt\tvalue\n")?;
+        for ([x, y, z, t], value) in sites.iter().zip(values) {
+            write!(output, "{x}\t{y}\t{z}\t{t}\t")?;
+            match value.filter(|value| !value.is_nan()) {
+                Some(value) => writeln!(output, "{value}")?,
+                None => output.write_all(b"nan\n")?,
+            }
+        }
+        output.flush()
+    };
+    write().map_err(|e| Error::io("writing", e))
+}
+
+/// Writes a slice as VTU, with its values, or as Medit's text without them. Returns what the user should know.
+///
+/// # Errors
+/// Usage, if the format is another one; I/O.
+pub fn write_slice(slice: &Slice, format: Format, output: &mut impl Write) -> Result<Vec<String>> {
+    let Slice { points, values, tetrahedra, .. } = slice;
+    match format {
+        Format::Vtu => write_volume(output, points, values.as_deref(), tetrahedra)?,
+        Format::Medit => {
+            let header = Header::new(Kind::TetrahedralMesh, Coordinates::F64, 3, false);
+            let sink = MeditSink::new(output, &header, None)?;
+            feed(sink, points, tetrahedra.as_flattened(), tetrahedra.len())?;
+        }
+        other => return Err(refusal("a slice", other, "VTU (.vtu) or Medit (.mesh)")),
+    }
+    let has_lost = values.is_some() && format == Format::Medit;
+    Ok(has_lost
+        .then(|| "Medit's meshes hold no values: dropped; VTU (.vtu) has them".into())
+        .into_iter()
+        .collect())
+}
+
+/// Writes a surface as PLY, OBJ, VTU or Medit's text.
+///
+/// # Errors
+/// Usage, if the format is another one; I/O.
+pub fn write_surface(surface: &Surface, format: Format, output: &mut impl Write) -> Result<()> {
+    let header = surface_header(&Header::new(Kind::TetrahedralMesh, Coordinates::F64, 3, false));
+    let Surface { points, triangles } = surface;
+    let (corners, count) = (triangles.as_flattened(), triangles.len());
+    match format {
+        Format::Ply => {
+            feed(PlySink::new(output, &header, PlyEncoding::Binary, None)?, points, corners, count)
+        }
+        Format::Obj => feed(ObjSink::new(output, &header)?, points, corners, count),
+        Format::Vtu => feed(VtuSink::new(output, &header, None)?, points, corners, count),
+        Format::Medit => feed(MeditSink::new(output, &header, None)?, points, corners, count),
+        other => Err(refusal("an isosurface", other, "PLY (.ply), OBJ (.obj), VTU (.vtu) or Medit (.mesh)")),
+    }
+}
+
+fn refusal(what: &str, format: Format, choices: &str) -> Error {
+    Error::usage(format!("{what} cannot be written as {}: the output must be {choices}", format.name()))
+}
+
+/// Hands a mesh to a sink as one patch.
+fn feed(mut sink: impl EventSink, points: &[Point], corners: &[u32], count: usize) -> Result<()> {
+    let patch = Patch { new: points.to_vec(), simplices: corners.to_vec(), ..Patch::default() };
+    sink.event(&Event::Patch(patch))?;
+    let totals = Totals { vertices: points.len() as u64, simplices: count as u64, ..Totals::default() };
+    sink.event(&Event::End(totals))
+}
