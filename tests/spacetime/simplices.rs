@@ -53,7 +53,7 @@ fn barycentric_simplices_of_full_cubes_fit_together() {
     // Barycentres are multiples of a half.
     let sum: i128 = parts.simplices.iter().map(|simplex| volume(&parts.points, simplex, 2.0)).sum();
     assert_eq!((sum, parts.flat), (24 * 4 * 16, 0));
-    // Twelve facets of cubes per pair of sides ..., each with 24 tetrahedra: 2 * (2 + 2 + 4 + 4) facets.
+    // On the border are 2 * (2 + 2 + 4 + 4) facets of cubes, each of 24 tetrahedra.
     assert_eq!(border(&parts.simplices), 24 * 24);
 }
 
@@ -62,8 +62,7 @@ fn barycentric_simplices_of_scattered_points_fit_together() {
     let mut random = Random::new(13);
     for side in [3, 4, 6] {
         let (diagram, _) = diagram(scattered(&mut random, 60, side), None).unwrap();
-        let parts = parts(&diagram, Rule::Barycentric);
-        let pulled = super::simplices::parts(&diagram, Rule::Pulled);
+        let [pulled, parts] = [Rule::Pulled, Rule::Barycentric].map(|rule| parts(&diagram, rule));
         // Coordinates are rounded only where a face has 5, 6, 7, ... vertices: compare with the sum in f64.
         let sum: f64 = parts.simplices.iter().map(|s| float_volume(&parts, s)).sum();
         let whole: i128 = pulled.simplices.iter().map(|s| volume(&pulled.points, s, 1.0)).sum();
@@ -75,10 +74,10 @@ fn barycentric_simplices_of_scattered_points_fit_together() {
 }
 
 fn float_volume(parts: &Subdivision, simplex: &[u32; 5]) -> f64 {
-    // Units of 2^-20, in which determinants are integers of 128 bits.
+    // Units of 2^-26, in which determinants are integers of 128 bits.
     let rounded: Vec<[f64; 4]> =
-        simplex.iter().map(|&v| parts.points[v as usize].map(|x| (x * 1_048_576.0).round())).collect();
-    volume(&rounded, &[0, 1, 2, 3, 4], 1.0) as f64 / 2f64.powi(80)
+        simplex.iter().map(|&v| parts.points[v as usize].map(|x| (x * 67_108_864.0).round())).collect();
+    volume(&rounded, &[0, 1, 2, 3, 4], 1.0) as f64 / 2f64.powi(104)
 }
 
 #[test]
