@@ -21,6 +21,8 @@ impl Add for Magnitude {
 impl Sub for Magnitude {
     type Output = Self;
 
+    // Magnitudes add up, whatever the sign.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     fn sub(self, other: Self) -> Self {
         Magnitude(self.0 + other.0)
     }
