@@ -38,7 +38,7 @@ pub fn determinant(rows: &[Vec<i128>]) -> i128 {
     let without = |column: usize| -> Vec<Vec<i128>> {
         rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
     };
-    let sign = |column: usize| if column % 2 == 0 { 1 } else { -1 };
+    let sign = |column: usize| if column.is_multiple_of(2) { 1 } else { -1 };
     (0..first.len()).map(|column| sign(column) * first[column] * determinant(&without(column))).sum()
 }
 
