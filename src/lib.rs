@@ -26,6 +26,7 @@ mod random;
 pub mod reduce;
 pub mod sink;
 pub mod source;
+pub mod spacetime;
 pub mod stream;
 pub mod system;
 pub mod tess3;

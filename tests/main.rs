@@ -22,6 +22,7 @@ mod programs;
 mod reduction;
 mod reference;
 mod sources;
+mod spacetime;
 mod stream;
 mod system;
 mod tess3;

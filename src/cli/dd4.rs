@@ -1,18 +1,20 @@
 //! `dd4`: flags.
 
+mod product;
 mod report;
 mod source;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, progress::Progress};
-use crate::dd4::{self, Options, Product, Quantum};
-use crate::error::Result;
-use crate::output::Output;
+use crate::dd4::{self, Options, Quantum};
+use crate::diagram4::Route;
+use crate::error::{Error, Result};
 
+pub use product::{EXAMPLES as PRODUCT_EXAMPLES, Product, ProductFlags, Written, write};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
 
 const EXAMPLES: &str = "\
@@ -35,7 +37,7 @@ input, 5 not enough memory for the points, 141 output closed by its reader.";
 /// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their neighbours
 /// as a stream. The result is exact and unique: it depends on the set of points only.
 #[derive(Debug, Parser)]
-#[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}{NOTES}"))]
+#[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}\n{PRODUCT_EXAMPLES}{NOTES}"))]
 pub struct Flags {
     #[command(flatten)]
     source: SourceFlags,
@@ -49,6 +51,14 @@ pub struct Flags {
     #[arg(long, value_name = "Q")]
     quantum: Option<Quantum>,
 
+    #[command(flatten)]
+    product: ProductFlags,
+
+    /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008) did, which is
+    /// slower. The result is the same
+    #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
+    route: RouteFlag,
+
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -57,10 +67,28 @@ pub struct Flags {
     common: Common,
 }
 
+/// What `--route` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum RouteFlag {
+    /// Simplices, then cells
+    Simplices,
+    /// Cells
+    Direct,
+}
+
+impl From<RouteFlag> for Route {
+    fn from(flag: RouteFlag) -> Self {
+        match flag {
+            RouteFlag::Simplices => Route::Simplices,
+            RouteFlag::Direct => Route::Direct,
+        }
+    }
+}
+
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`SourceFlags::read`] and [`dd4::run`].
+/// As [`SourceFlags::read`], [`dd4::make`] and [`write`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
@@ -68,9 +96,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
-        let options = Options { quantum: self.quantum, product: Product::Diagram };
+        let options = Options { quantum: self.quantum, route: self.route.into() };
+        let product = self.product.product()?;
         // An output that cannot be is better known before the work.
-        let output = Output::create(&self.output, true)?;
+        let output = product.create(&self.output)?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();
@@ -80,9 +109,17 @@ impl Flags {
             let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
             self.notice(&format!("{}: {warning}", points.name));
         }
+        if product.needs_values() && points.values.is_none() {
+            let message = "the points have no values to interpolate: give x y z t value";
+            return Err(Error::usage(message).of_input(points.name));
+        }
         let progress = Progress::waiting(&self.common, "triangulating");
-        let report = dd4::run(points, &options, output)?;
+        let (diagram, mut report) = dd4::make(points, &options)?;
+        let begun = Instant::now();
+        let written = write(&product, &diagram, &self.output, output)?;
+        (report.output_bytes, report.write_time) = (written.bytes, begun.elapsed());
         drop(progress);
+        written.notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));
         report::print(self.stats, &report, read, started.elapsed());
         Ok(())

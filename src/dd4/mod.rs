@@ -1,34 +1,28 @@
 //! `dd4`: points of four dimensions in, their Delaunay diagram out.
 
 mod figures;
+mod files;
 mod quantum;
 mod write;
 
 pub use figures::Figures;
+pub use files::{Form, write_simplices, write_slice, write_surface, write_values};
 pub use quantum::Quantum;
+pub use write::write_diagram;
 
 use std::time::{Duration, Instant};
 
-use crate::diagram4::{Diagram, Stats, diagram};
+use crate::diagram4::{Diagram, Route, Stats, diagram_by};
 use crate::error::{Error, Result};
-use crate::output::Output;
 use crate::source::points4::Points4;
 
 /// What is made of points.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Options {
     /// What coordinates are multiples of, if they are to be made whole numbers.
     pub quantum: Option<Quantum>,
-    /// What is written.
-    pub product: Product,
-}
-
-/// What is written.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Product {
-    /// The diagram, as a stream of cells.
-    #[default]
-    Diagram,
+    /// How the diagram is found.
+    pub route: Route,
 }
 
 /// What a run did.
@@ -50,12 +44,11 @@ pub struct Report {
     pub output_bytes: u64,
 }
 
-/// Makes what is wanted of points, and writes it to `output`, which is complete only if this succeeds.
+/// Makes the diagram of points.
 ///
 /// # Errors
-/// As [`diagram`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value is infinite; or if writing
-/// fails.
-pub fn run(points: Points4, options: &Options, output: Output) -> Result<Report> {
+/// As [`diagram_by`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value is infinite.
+pub fn make(points: Points4, options: &Options) -> Result<(Diagram, Report)> {
     let name = points.name.clone();
     let started = Instant::now();
     let mut report = Report { points: points.points.len() as u64, ..Report::default() };
@@ -64,12 +57,7 @@ pub fn run(points: Points4, options: &Options, output: Output) -> Result<Report>
     report.merged = diagram.merged;
     report.stats = stats;
     report.figures = Figures::of(&diagram.cells);
-    let started = Instant::now();
-    report.output_bytes = match options.product {
-        Product::Diagram => write::diagram(&diagram, output)?,
-    };
-    report.write_time = started.elapsed();
-    Ok(report)
+    Ok((diagram, report))
 }
 
 fn diagram_of(points: Points4, options: &Options) -> Result<(Diagram, Stats)> {
@@ -83,5 +71,5 @@ fn diagram_of(points: Points4, options: &Options) -> Result<(Diagram, Stats)> {
     if let Some(quantum) = options.quantum {
         quantum.make_whole(&mut points)?;
     }
-    diagram(points, values)
+    diagram_by(options.route, points, values)
 }

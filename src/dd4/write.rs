@@ -9,7 +9,7 @@ use crate::stream::{Coordinates, Header, Kind, StreamWriter};
 ///
 /// # Errors
 /// If writing fails.
-pub(super) fn diagram(diagram: &Diagram, output: Output) -> Result<u64> {
+pub fn write_diagram(diagram: &Diagram, output: Output) -> Result<u64> {
     let Diagram { points, values, merged, cells } = diagram;
     let count = points.len() as u64 + merged;
     let mut header = Header::new(Kind::Cells4, Coordinates::F64, 4, values.is_some());

@@ -25,7 +25,8 @@ pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
     for seed in all.filter(|&seed| complex.is_infinite(seed)) {
         if classes.of[seed] == NONE {
             let inside = |of: &[u32], simplex| complex.neighbour_inside(simplex).map(|finite| of[finite]);
-            stats.infinite_simplices += classes.flood(seed, |of, other| inside(of, seed) == inside(of, other));
+            stats.infinite_simplices +=
+                classes.flood(seed, |of, other| inside(of, seed) == inside(of, other));
         }
     }
     let Classes { of, found, .. } = classes;

@@ -4,19 +4,21 @@
 //! it. Where many points are cospherical, as those of a grid, it is small and unique, where a triangulation is large and
 //! arbitrary. Cells beyond the hull have the faraway point as a vertex, and correspond to the facets of cells on the hull.
 //!
-//! `sites` makes points ready, `determinant` and `exact` are the geometry. `simplices` triangulates, `merge` makes cells
-//! of what is cospherical; `direct` is the way of the thesis, which does both at once.
+//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates, `merge` makes
+//! cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
 
 mod determinant;
 mod direct;
 mod exact;
 mod merge;
+mod side;
 mod simplices;
 mod sites;
 
 use crate::cells4::{Cells4, Point4};
 use crate::error::{Error, Result};
 use crate::limits::POINTS4_MAX;
+pub use side::orient4d;
 use sites::Sites;
 use std::time::{Duration, Instant};
 

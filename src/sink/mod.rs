@@ -15,6 +15,7 @@ mod spool;
 mod triangles;
 mod twin;
 mod twin4;
+mod volume;
 mod vtu;
 mod world;
 
@@ -28,6 +29,7 @@ pub use spa::SpaSink;
 pub use spb::SpbSink;
 pub use spm::SpmSink;
 pub use twin::TwinSink;
+pub use volume::write_volume;
 pub use vtu::VtuSink;
 
 use crate::error::{Error, Result};

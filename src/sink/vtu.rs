@@ -17,6 +17,8 @@ const START: &str = "\
 <UnstructuredGrid>
 ";
 
+pub(super) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
 /// Writes points or a mesh as VTU: the vertices with their labels as the point data `label`, the simplices as cells,
 /// points as cells of one vertex. World coordinates as doubles; finalization is not written.
 ///
@@ -28,8 +30,9 @@ pub struct VtuSink<W> {
 
 /// What an array holds.
 #[derive(Clone, Copy)]
-enum Content {
-    Labels,
+pub(super) enum Content {
+    /// What each vertex has: labels or values.
+    Data,
     Vertices,
     Connectivity,
     Offsets,
@@ -37,25 +40,37 @@ enum Content {
 }
 
 /// One array of the appended data.
-struct Array {
-    content: Content,
+pub(super) struct Array {
+    pub(super) content: Content,
     /// Its element, and the one around it.
     attributes: &'static str,
     open: &'static str,
     close: &'static str,
     /// Length of the values in bytes.
-    len: u64,
+    pub(super) len: u64,
 }
 
 /// Numbers and sort of the cells.
-struct Cells {
-    vertices: u64,
-    cells: u64,
+pub(super) struct Cells {
+    pub(super) vertices: u64,
+    pub(super) cells: u64,
     /// Vertices of a cell.
-    corners: u64,
+    pub(super) corners: u64,
     /// Number that VTK has for the sort of cell.
-    code: u8,
+    pub(super) code: u8,
 }
+
+/// What each vertex has, 8 bytes of it: the element around its array, and the array's own attributes.
+pub(super) struct Data {
+    pub(super) open: &'static str,
+    pub(super) attributes: &'static str,
+}
+
+const LABELS: Data =
+    Data { open: "<PointData Scalars=\"label\">\n", attributes: "type=\"UInt64\" Name=\"label\"" };
+
+pub(super) const VALUES: Data =
+    Data { open: "<PointData Scalars=\"value\">\n", attributes: "type=\"Float64\" Name=\"value\"" };
 
 impl<W: Write> VtuSink<W> {
     /// Opens the temporary files, in `temp_dir` or the system's folder for them.
@@ -69,29 +84,19 @@ impl<W: Write> VtuSink<W> {
 
     fn end(&mut self, totals: &Totals) -> Result<()> {
         let cells = Cells::of(self.mesh.header().kind, totals);
-        let arrays = arrays(&cells, self.mesh.label_count);
-        self.put(START.as_bytes())?;
-        let Cells { vertices, cells: count, .. } = cells;
-        let mut text = format!("<Piece NumberOfPoints=\"{vertices}\" NumberOfCells=\"{count}\">\n");
-        let mut offset = 0;
-        for Array { attributes, open, close, len, .. } in &arrays {
-            text +=
-                &format!("{open}<DataArray {attributes} format=\"appended\" offset=\"{offset}\"/>\n{close}");
-            offset += 8 + len;
-        }
-        text += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-        self.put(text.as_bytes())?;
+        let arrays = arrays(&cells, (self.mesh.label_count > 0).then_some(LABELS));
+        self.put(head(&cells, &arrays).as_bytes())?;
         for array in &arrays {
             self.put(&array.len.to_le_bytes())?;
             self.values(array.content, &cells)?;
         }
-        self.put(b"\n</AppendedData>\n</VTKFile>\n")?;
+        self.put(END)?;
         self.output.flush().map_err(write_error)
     }
 
     fn values(&mut self, content: Content, cells: &Cells) -> Result<()> {
         match content {
-            Content::Labels => self.mesh.labels.copy_to(&mut self.output),
+            Content::Data => self.mesh.labels.copy_to(&mut self.output),
             Content::Vertices => self.mesh.vertices.copy_to(&mut self.output),
             // The points of a points stream are in no simplex.
             Content::Connectivity if cells.corners == 1 => {
@@ -110,19 +115,29 @@ impl<W: Write> VtuSink<W> {
     }
 }
 
+/// All that stands before the appended data.
+pub(super) fn head(cells: &Cells, arrays: &[Array]) -> String {
+    let Cells { vertices, cells: count, .. } = cells;
+    let mut text = format!("{START}<Piece NumberOfPoints=\"{vertices}\" NumberOfCells=\"{count}\">\n");
+    let mut offset = 0;
+    for Array { attributes, open, close, len, .. } in arrays {
+        text += &format!("{open}<DataArray {attributes} format=\"appended\" offset=\"{offset}\"/>\n{close}");
+        offset += 8 + len;
+    }
+    text + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+}
+
 /// The arrays in the order of the appended data.
-fn arrays(cells: &Cells, labels: u64) -> Vec<Array> {
+pub(super) fn arrays(cells: &Cells, data: Option<Data>) -> Vec<Array> {
     let array = |content, attributes, open, close, len| Array { content, attributes, open, close, len };
-    let label = "type=\"UInt64\" Name=\"label\"";
     let point = "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"";
     let corner = "type=\"Int64\" Name=\"connectivity\"";
     let offset = "type=\"Int64\" Name=\"offsets\"";
     let code = "type=\"UInt8\" Name=\"types\"";
     let &Cells { vertices, cells, corners, .. } = cells;
     let mut arrays = Vec::new();
-    if labels > 0 {
-        let (open, close) = ("<PointData Scalars=\"label\">\n", "</PointData>\n");
-        arrays.push(array(Content::Labels, label, open, close, 8 * labels));
+    if let Some(Data { open, attributes }) = data {
+        arrays.push(array(Content::Data, attributes, open, "</PointData>\n", 8 * vertices));
     }
     arrays.extend([
         array(Content::Vertices, point, "<Points>\n", "</Points>\n", 24 * vertices),
