@@ -44,8 +44,9 @@ input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ and LAS, plain or compressed (.gz),
-/// and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of points only.
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF and LAS, plain or compressed
+/// (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of
+/// points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -131,6 +132,8 @@ enum FormatFlag {
     Ply,
     /// Vertices of an OBJ file
     Obj,
+    /// Vertices of an OFF file
+    Off,
 }
 
 impl From<FormatFlag> for Format {
@@ -142,6 +145,7 @@ impl From<FormatFlag> for Format {
             FormatFlag::Points => Format::Points,
             FormatFlag::Ply => Format::Ply,
             FormatFlag::Obj => Format::Obj,
+            FormatFlag::Off => Format::Off,
         }
     }
 }

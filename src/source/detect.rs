@@ -30,8 +30,15 @@ const PLY: &str = "a PLY file: convert it first with spconvert";
 const PCD: &str = "a PCD file: convert it first, for example with pdal translate";
 const OBJ: &str = "an OBJ file: give its vertices as lines of x y z, for example with sed -n 's/^v //p'";
 
+const VTK: &str = "a VTK file: convert it first, for example with meshio convert IN.vtk OUT.ply";
+const MEDIT: &str = "a Medit mesh: convert it first, for example with meshio convert IN.mesh OUT.ply";
+const INR: &str = "an INRIMAGE: it holds voxels and no points; list those that are wanted as lines of x y z";
+
+const PDB: &str = "a PDB file, which tess3 reads: give points as lines of x y z";
+const MMCIF: &str = "an mmCIF file, which tess3 reads: give points as lines of x y z";
+
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 12] = [
+const MISTAKEN: [(&[u8], &str); 20] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
@@ -44,6 +51,14 @@ const MISTAKEN: [(&[u8], &str); 12] = [
     (b"VERSION .7", PCD),
     (b"VERSION 0.7", PCD),
     (b"# OBJ", OBJ),
+    (b"# vtk DataFile", VTK),
+    (b"<VTKFile", VTK),
+    (b"MeshVersionFormatted", MEDIT),
+    (b"#INRIMAGE", INR),
+    (b"HEADER  ", PDB),
+    (b"ATOM  ", PDB),
+    (b"HETATM", PDB),
+    (b"data_", MMCIF),
 ];
 
 /// What `file` is.

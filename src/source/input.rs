@@ -185,7 +185,10 @@ impl Source {
             }
         }
         if options.dims == 3 && self.stated.has_z == Some(false) {
-            return Err(Error::usage("points have no third coordinate, three dimensions need it"));
+            return Err(Error::usage(
+                "points have no third coordinate, three dimensions need it: for a triangulation in the plane use \
+                 spfinalize | spdelaunay2d",
+            ));
         }
         Ok(())
     }

@@ -90,7 +90,8 @@ fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> 
     if let Some(axes) = named_axes(&names.fields) {
         return Ok(Columns { delimiter: names.delimiter, axes, names_line, only_two: false });
     }
-    if names.fields.len() != fields.len() {
+    let has_number = fields.iter().any(|field| number(field).is_some());
+    if names.fields.len() != fields.len() || !has_number {
         return Err(no_text_of_points(names.line));
     }
     if fields.len() > 3 {
@@ -101,7 +102,9 @@ fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> 
 }
 
 fn no_text_of_points(line: u64) -> Error {
-    Error::malformed("expected a point, or the names of the columns").at(format!("line {line}"))
+    let reason = "expected a point, or the names of the columns: a point is a line of numbers separated by \
+                  blanks, commas or semicolons";
+    Error::malformed(reason).at(format!("line {line}"))
 }
 
 /// The columns that are called x, y and z, or by other usual names, if x and y are there.

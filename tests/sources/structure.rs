@@ -213,6 +213,30 @@ fn points_are_read_as_elsewhere() {
     }
 }
 
+/// A column of numbers before the coordinates is taken for x, which nobody wants and only a warning can tell.
+#[test]
+fn points_that_are_numbered_are_warned_of() {
+    let order = [3, 1, 8, 2, 6, 7, 5, 4];
+    let lines = |first: u32| -> String {
+        order.iter().map(|n| format!("{} {} {n}.5 0.25\n", n - 1 + first, n * n % 7)).collect()
+    };
+    for (text, last) in [(lines(1), "up to 8 once"), (lines(0), "up to 7 once")] {
+        let warnings = read(&text).unwrap().warnings;
+        assert!(warnings.len() == 1 && warnings[0].contains(last), "{warnings:?}");
+        let twice = text.replace("\n4 ", "\n5 ");
+        assert_ne!(twice, text);
+        for text in [lines(2), twice, text.replacen(' ', ".5 ", 1)] {
+            assert!(read(&text).unwrap().warnings.is_empty(), "{text}");
+        }
+    }
+}
+
+#[test]
+fn meshes_need_not_say_when_vertices_are_final() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert!(read(text).unwrap().warnings.is_empty());
+}
+
 #[test]
 fn streams_of_points_are_read_in_their_coordinates() {
     let coordinates = Coordinates::I32 { scale: [0.01; 3], offset: [5.0, 0.0, 0.0] };
@@ -230,7 +254,7 @@ fn streams_of_points_are_read_in_their_coordinates() {
 
 #[test]
 fn what_is_not_read_is_named() {
-    let cases: [(&[u8], &[&str]); 11] = [
+    let cases: [(&[u8], &[&str]); 15] = [
         (b"", &["empty"]),
         (b"\n\n", &["empty"]),
         (b"\x28\xb5\x2f\xfd....", &["zstd", "zstdcat"]),
@@ -242,6 +266,10 @@ fn what_is_not_read_is_named() {
         (b"OFF\n0 0 0\n", &["no point"]),
         (b"# nothing\n", &["no point"]),
         (b"ATOM\0\0\0", &["zero byte"]),
+        (b"# vtk DataFile Version 4.2\nvtk output\nBINARY\n\0", &["VTK", "convert it first"]),
+        (b"# vtk DataFile Version 4.1\nvtk output\nASCII\n", &["VTK", "convert it first"]),
+        (b"MeshVersionFormatted 1\nDimension 3\nVertices\n1\n0 0 0 0\n", &["Medit", "convert it first"]),
+        (b"#INRIMAGE-4#{\nXDIM=2\n##}\n\0", &["INRIMAGE", "x y z"]),
     ];
     for (content, parts) in cases {
         assert_fails(read(content), ErrorKind::Malformed, &[&["input: "], parts].concat());
@@ -257,6 +285,9 @@ fn the_format_can_be_given() {
     assert_eq!(points(&as_points), [[1.0, 2.0, 3.0]]);
     let as_pdb = read_structure_from(Cursor::new(b"1 2 3\n"), "input", Some(Format::Pdb));
     assert_fails(as_pdb, ErrorKind::Malformed, &["no atom"]);
+    let as_off = |text: &'static str| read_structure_from(Cursor::new(text), "input", Some(Format::Off));
+    assert_eq!(points(&as_off("OFF 1 0 0\n1 2 3\n").unwrap()), [[1.0, 2.0, 3.0]]);
+    assert_fails(as_off("1 2 3\n"), ErrorKind::Malformed, &["line 1", "OFF"]);
     let as_cif = read_structure_from(Cursor::new(b"1 2 3\n"), "input", Some(Format::Mmcif));
     assert_fails(as_cif, ErrorKind::Malformed, &["line 1, column 1", "\"1\""]);
 }

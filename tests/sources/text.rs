@@ -60,13 +60,15 @@ fn numbers_are_read_exactly() {
 
 #[test]
 fn bad_lines_are_named_and_shown() {
-    let cases: [(&str, &[&str]); 12] = [
+    let cases: [(&str, &[&str]); 14] = [
         ("1 2 3\n1 2\n", &["line 2", "2 columns", "at least 3"]),
         ("1 2 3\n\n# \n1 2 three\n", &["line 4", "\"three\"", "column 3"]),
         ("1,5;2,5;3\n", &["line 1", "\"1,5\""]),
         ("1\n", &["line 1", "1 column ", "at least 2"]),
         ("names\nmore names\n1 2\n", &["line 1", "names of the columns"]),
-        ("a name\nmore names\n1 2\n", &["line 2", "\"more\""]),
+        ("a name\nmore names\n1 2\n", &["line 1", "names of the columns"]),
+        ("x y\nmore names\n1 2\n", &["line 2", "\"more\""]),
+        ("at[0] = (1,2,3);\nat[1] = (4,5,6);\n", &["line 1", "expected a point", "separated"]),
         ("LAS", &["line 1", "expected a point"]),
         ("OFF\n3 1 0\n0 0 0\n", &["line 1", "expected a point"]),
         ("id,e,n,up\n7,1,2,3\n", &["line 1", "call them x, y and z"]),

@@ -55,6 +55,9 @@ fn damaged_input_is_named_and_leaves_nothing() {
             assert!(!fs::exists(&output).unwrap());
         }
     }
+    let (code, message) = outcome(&run("tess3", &["--from", "off", "-"], b"1 2 3\n"));
+    assert_eq!(code, Some(3));
+    assert!(message.contains("OFF") && message.contains("line 1"), "{message}");
     let (code, message) = outcome(&run("tess3", &["no/such/file.pdb"], &[]));
     assert_eq!(code, Some(1));
     assert!(message.contains("no/such/file.pdb"), "{message}");

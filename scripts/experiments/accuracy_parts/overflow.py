@@ -15,7 +15,8 @@ FACETS = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))
 def count_not_delaunay(points, tetrahedra):
     """Tetrahedra with a vertex of a neighbour inside of their sphere or on it, as overflowing integers see it.
 
-    `points` are triples of integers, `tetrahedra` positive quadruples of their numbers.
+    `points` are triples of integers, `tetrahedra` positive quadruples of their numbers. One value tells for both sides
+    of a facet: it is the same determinant, of the same five points.
     """
     beyond = defaultdict(list)
     for number, tetrahedron in enumerate(tetrahedra):
@@ -24,11 +25,10 @@ def count_not_delaunay(points, tetrahedra):
     faulty = set()
     for sides in beyond.values():
         if len(sides) == 2:
-            (left, left_apex), (right, right_apex) = sides
-            for number, apex in ((left, right_apex), (right, left_apex)):
-                corners = [points[vertex] for vertex in tetrahedra[number]]
-                if reduced(in_sphere(corners, points[apex])) >= 0:
-                    faulty.add(number)
+            (left, _), (right, apex) = sides
+            corners = [points[vertex] for vertex in tetrahedra[left]]
+            if reduced(in_sphere(corners, points[apex])) >= 0:
+                faulty.update((left, right))
     return len(faulty)
 
 
@@ -48,4 +48,4 @@ def in_sphere(corners, point):
     cda, dab = cz * da + dz * ac + az * cd, dz * ab + az * bd + bz * da
     lifted = (x * x + y * y + z * z for x, y, z in ((ax, ay, az), (bx, by, bz), (cx, cy, cz), (dx, dy, dz)))
     a, b, c, d = lifted
-    return (d * abc - c * dab) + (b * cda - a * bcd)
+    return (a * bcd - b * cda) + (c * dab - d * abc)

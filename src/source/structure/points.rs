@@ -61,7 +61,33 @@ fn read_input(input: &Input) -> Result<Structure> {
         }
         points.extend_from_slice(&batch);
     }
-    structure(points, input.description().coordinates, &input.name(), input.notices().to_vec())
+    let coordinates = input.description().coordinates;
+    let mut warnings = input.notices().to_vec();
+    if coordinates == Coordinates::F64
+        && let Some(last) = numbered(&points)
+    {
+        let name = input.name();
+        warnings.push(format!(
+            "{name}: x is every whole number up to {last} once: if these are numbers of points, cut them off first"
+        ));
+    }
+    structure(points, coordinates, &input.name(), warnings)
+}
+
+/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as those of
+/// points are that stand in a column of their own before the coordinates.
+fn numbered(points: &[Point]) -> Option<usize> {
+    const FEWEST: usize = 8;
+    let first = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);
+    if points.len() < FEWEST || (first != 0.0 && first != 1.0) {
+        return None;
+    }
+    let mut has = vec![false; points.len()];
+    let is_next = |point: &Point| {
+        let place = point[0] - first;
+        place.fract() == 0.0 && has.get_mut(place as usize).is_some_and(|has| !std::mem::replace(has, true))
+    };
+    points.iter().all(is_next).then(|| first as usize + points.len() - 1)
 }
 
 /// Reads the points, or the vertices, of an input that is read as events.
@@ -78,7 +104,8 @@ pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Resul
             _ => {}
         }
     }
-    structure(all, coordinates, name, source.notices())
+    // What they notice is about when vertices are final, which does not matter here.
+    structure(all, coordinates, name, Vec::new())
 }
 
 /// A structure of points without names; `name` is what messages call it.
