@@ -1,5 +1,7 @@
 //! Cells of four dimensions in flat arrays: what the engines of 4D diagrams make, and what their streams carry.
 
+use crate::prefetch::prefetch;
+
 /// A point of space and time: x, y, z, t.
 pub type Point4 = [f64; 4];
 
@@ -78,6 +80,12 @@ impl Cells4 {
         let (list, rest) = rest.split_at((vertices & !INFINITE) as usize);
         let is_infinite = vertices & INFINITE != 0;
         Cell4 { is_infinite, vertices: list, neighbours: &rest[..*neighbours as usize] }
+    }
+
+    /// Has a cell brought into the cache.
+    #[inline(always)]
+    pub(crate) fn fetch(&self, number: usize) {
+        prefetch(&self.words, self.starts[number] as usize);
     }
 
     /// All cells, by number.

@@ -22,6 +22,7 @@ pub mod limits;
 pub mod order;
 pub mod output;
 pub mod predicates;
+mod prefetch;
 mod random;
 pub mod reduce;
 pub mod sink;

@@ -2,6 +2,7 @@
 
 use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use crate::predicates::Point3;
+use crate::prefetch::prefetch;
 use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
 
 /// First of the words that say what is across.
@@ -131,14 +132,9 @@ impl Complex {
     /// Has the neighbours of the tetrahedron of a facet brought into the cache.
     #[inline(always)]
     pub(super) fn fetch_neighbours(&self, facet: Facet) {
-        #[cfg(target_arch = "x86_64")]
         for other in self.tetrahedra[facet as usize / WORDS].across {
-            use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-            // Safety: any address may be prefetched.
-            unsafe { _mm_prefetch::<_MM_HINT_T0>(self.words().as_ptr().wrapping_add(other as usize).cast()) };
+            prefetch(self.words(), other as usize);
         }
-        #[cfg(not(target_arch = "x86_64"))]
-        let _ = facet;
     }
 
     /// The facet of the other tetrahedron.

@@ -3,7 +3,11 @@
 use super::Stats;
 use super::simplices::{Complex, FACETS, INFINITE, facet_of, simplex_of};
 use crate::cells4::{Cell4, Cells4};
+use crate::prefetch::prefetch;
 use std::cmp::Ordering;
+
+/// How far ahead memory is fetched.
+const AHEAD: usize = 8;
 
 /// The class of simplices that have none yet.
 const NONE: u32 = u32::MAX;
@@ -18,6 +22,7 @@ pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
     let mut classes = Classes::new(&complex);
     let all = 0..complex.simplices.len();
     for seed in all.clone().filter(|&seed| complex.is_finite(seed)) {
+        classes.fetch_around(seed + AHEAD);
         if classes.of[seed] == NONE {
             stats.simplices += classes.flood(seed, |_, _| true);
         }
@@ -74,6 +79,9 @@ impl<'a> Classes<'a> {
         while next < self.members.len() {
             let simplex = self.complex.simplices[self.members[next] as usize];
             next += 1;
+            if let Some(&later) = self.members.get(next + 1) {
+                self.fetch_around(later as usize);
+            }
             for side in 0..FACETS {
                 self.list(simplex.vertices[side], class);
                 let beyond = simplex.beyond[side];
@@ -98,6 +106,16 @@ impl<'a> Classes<'a> {
         self.vertices.sort_unstable();
         self.found.push(Cell4 { is_infinite, vertices: &self.vertices, neighbours: &self.beyond });
         self.members.len() as u64
+    }
+
+    /// Has what is wanted of the neighbours of a simplex brought into the cache.
+    #[inline(always)]
+    fn fetch_around(&self, simplex: usize) {
+        let Some(simplex) = self.complex.simplices.get(simplex) else { return };
+        for beyond in simplex.beyond {
+            prefetch(&self.complex.simplices, simplex_of(beyond));
+            prefetch(&self.of, simplex_of(beyond));
+        }
     }
 
     fn join(&mut self, simplex: usize, class: u32) {
@@ -134,7 +152,10 @@ pub(super) fn canonical(unordered: &Cells4, of: &[u32]) -> Cells4 {
     }
     let mut cells = Cells4::with_room_of(unordered);
     let mut neighbours = Vec::new();
-    for &(_, number) in &order {
+    for (place, &(_, number)) in order.iter().enumerate() {
+        if let Some(&(_, later)) = order.get(place + AHEAD) {
+            unordered.fetch(later as usize);
+        }
         let cell = unordered.get(number as usize);
         neighbours.clear();
         neighbours.extend(cell.neighbours.iter().map(|&other| places[of[other as usize] as usize]));

@@ -5,6 +5,7 @@ use crate::cells4::Point4;
 use crate::diagram4::determinant::{difference, dot, lift, normal, sphere};
 use crate::diagram4::exact::{Exactness, in_sphere, orientation};
 use crate::diagram4::sites::Sites;
+use crate::prefetch::prefetch;
 use std::cmp::Ordering;
 
 /// The faraway point (thesis 4.3), vertex of the infinite simplices, which lie beyond the hull.
@@ -90,6 +91,14 @@ impl<'a> Complex<'a> {
     #[inline(always)]
     pub(in crate::diagram4) fn is_dead(&self, simplex: usize) -> bool {
         self.spheres[simplex][4] < 0.0
+    }
+
+    /// Has the spheres of the neighbours of a simplex brought into the cache.
+    #[inline(always)]
+    pub(super) fn fetch_neighbours(&self, simplex: usize) {
+        for beyond in self.simplices[simplex].beyond {
+            prefetch(&self.spheres, simplex_of(beyond));
+        }
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@ use super::complex::{Complex, FACETS, INFINITE, SIMPLICES_MAX, Simplex, facet, f
 use super::lanes::LANES;
 use crate::diagram4::exact::orientation;
 use crate::error::{Error, ErrorKind, Result};
+use crate::prefetch::prefetch;
 use std::cmp::Ordering;
 
 /// A facet between a simplex in conflict and one that stays.
@@ -125,6 +126,9 @@ impl<'a> Insertion<'a> {
         while next < self.dead.len() {
             let at = self.dead[next];
             next += 1;
+            if let Some(&later) = self.dead.get(next + 1) {
+                complex.fetch_neighbours(later as usize);
+            }
             let beyond = complex.simplices[at as usize].beyond;
             for (side, beyond) in beyond.into_iter().enumerate() {
                 let other = simplex_of(beyond);
@@ -133,6 +137,7 @@ impl<'a> Insertion<'a> {
                 }
                 if complex.is_in_conflict(other, q, &p) {
                     complex.kill(other);
+                    prefetch(&complex.simplices, other);
                     self.dead.push(other as u32);
                 } else {
                     self.border.push(Border { dead: at, side: side as u32, new: 0 });
