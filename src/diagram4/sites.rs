@@ -66,7 +66,11 @@ fn unit_for(extent: &Extent<4>) -> f64 {
     // The halves of the box do not overflow; a box of subnormal size is enlarged as much as a power of two can.
     let half = (0..4).map(|axis| extent.upper[axis] * 0.5 - extent.lower[axis] * 0.5).fold(0.0, f64::max);
     let exponent = (half.to_bits() >> 52) as i32 - 1023;
-    2f64.powi((-exponent - 2).clamp(-1022, 1023))
+    match (-exponent - 2).min(1023) {
+        normal @ -1022.. => 2f64.powi(normal),
+        // Of an extent near the greatest numbers: a subnormal number.
+        subnormal => f64::from_bits(1 << (subnormal + 1074)),
+    }
 }
 
 /// Sorts points lexicographically and takes out those that are equal to another; says how many these are. The values of
@@ -94,7 +98,7 @@ mod tests {
     #[test]
     fn points_come_near_the_origin() {
         let far = |x: f64| Sites::new(vec![[x, 0.0, 0.0, 0.0], [x * 1.5, x * 0.25, 0.0, 0.0]]);
-        for x in [1e-310, 1e-300, 1e-20, 0.3, 5e6, 1e100, 1e308] {
+        for x in [1e-310, 1e-300, 1e-20, 0.3, 5e6, 1e100, 1e307, 1e308, 1.19e308] {
             let sites = far(x);
             assert_eq!(sites.exactness, if x == 5e6 { Exactness::Big } else { sites.exactness });
             let near = [sites.near(0), sites.near(1)];
