@@ -102,7 +102,8 @@ class Panel:
                 fill = "none" if curve.is_dashed else curve.colour
                 ring = f'fill="{fill}" stroke="{curve.colour}" stroke-width="1.5"'
                 yield f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" {ring}/>'
-            ends.append((places[-1][1], curve.name, curve.colour))
+            if curve.name:
+                ends.append((places[-1][1], curve.name, curve.colour))
         for y, name, colour in spread(ends, self.bottom):
             yield text(self.right + 12, y + 4.5, name, fill=colour)
 
@@ -113,13 +114,16 @@ def document(width, height, alt, parts):
 
 
 def spread(ends, bottom, room=17):
-    """Moves labels down until none covers the one above, and all up by what is too much."""
-    placed, lowest = [], -math.inf
+    """Moves labels down until none covers the one above, and those at the bottom up again, onto the diagram."""
+    lowest, downwards = -math.inf, []
     for y, name, colour in sorted(ends):
         lowest = max(y, lowest + room)
-        placed.append((lowest, name, colour))
-    excess = max(0, lowest - bottom + 6)
-    return [(y - excess, name, colour) for y, name, colour in placed]
+        downwards.append((lowest, name, colour))
+    limit, upwards = bottom - 6, []
+    for y, name, colour in reversed(downwards):
+        upwards.append((min(y, limit), name, colour))
+        limit = upwards[-1][0] - room
+    return upwards[::-1]
 
 
 def nice_step(value):

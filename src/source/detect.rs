@@ -38,7 +38,7 @@ const PDB: &str = "a PDB file, which tess3 reads: give points as lines of x y z"
 const MMCIF: &str = "an mmCIF file, which tess3 reads: give points as lines of x y z";
 
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 20] = [
+const MISTAKEN: [(&[u8], &str); 22] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
@@ -56,6 +56,8 @@ const MISTAKEN: [(&[u8], &str); 20] = [
     (b"MeshVersionFormatted", MEDIT),
     (b"#INRIMAGE", INR),
     (b"HEADER  ", PDB),
+    (b"REMARK  ", PDB),
+    (b"CRYST1 ", PDB),
     (b"ATOM  ", PDB),
     (b"HETATM", PDB),
     (b"data_", MMCIF),

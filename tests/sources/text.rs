@@ -60,7 +60,7 @@ fn numbers_are_read_exactly() {
 
 #[test]
 fn bad_lines_are_named_and_shown() {
-    let cases: [(&str, &[&str]); 14] = [
+    let cases: [(&str, &[&str]); 16] = [
         ("1 2 3\n1 2\n", &["line 2", "2 columns", "at least 3"]),
         ("1 2 3\n\n# \n1 2 three\n", &["line 4", "\"three\"", "column 3"]),
         ("1,5;2,5;3\n", &["line 1", "\"1,5\""]),
@@ -71,6 +71,8 @@ fn bad_lines_are_named_and_shown() {
         ("at[0] = (1,2,3);\nat[1] = (4,5,6);\n", &["line 1", "expected a point", "separated"]),
         ("LAS", &["line 1", "expected a point"]),
         ("OFF\n3 1 0\n0 0 0\n", &["line 1", "expected a point"]),
+        ("REMARK   3\n", &["PDB", "tess3"]),
+        ("data_1ABC\n#\n", &["mmCIF", "tess3"]),
         ("id,e,n,up\n7,1,2,3\n", &["line 1", "call them x, y and z"]),
         ("1 2\n1 2 3\n", &["line 2", "3 columns", "two in the first"]),
         ("1 2 3\r4 5 6\r", &["line 1", "carriage return"]),

@@ -66,9 +66,8 @@ fn read_input(input: &Input) -> Result<Structure> {
     if coordinates == Coordinates::F64
         && let Some(last) = numbered(&points)
     {
-        let name = input.name();
         warnings.push(format!(
-            "{name}: x is every whole number up to {last} once: if these are numbers of points, cut them off first"
+            "x is every whole number up to {last} once: if these are numbers of points, cut them off first"
         ));
     }
     structure(points, coordinates, &input.name(), warnings)
