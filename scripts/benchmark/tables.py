@@ -1,6 +1,6 @@
 """Figures as markdown."""
 
-from contests import ALONE, DECODER, FROM_LAZ, OURS, TESS3
+from contests import ALONE, DECODER, FROM_LAZ, IN_PARTS, OURS, TESS3
 from measure import floor_bytes
 from peers3 import CGAL, PEERS as PEERS3
 
@@ -112,6 +112,9 @@ def conclusions(contest):
     if contest.dims >= 3 and ours and cgal:
         times, memory = contest.speed(ours, cgal), sum(ours.peaks) / contest.points
         yield f"{times:.2f} times as fast as CGAL, with {memory:.0f} bytes per point"
+    parts = contest.get(IN_PARTS)
+    if parts:
+        yield from conclusions3(parts)
     if contest.dims == 4 and ours:
         yield from conclusions4(ours)
     laz, decoder = contest.get(FROM_LAZ), contest.get(DECODER)
@@ -124,6 +127,15 @@ def conclusions(contest):
             f"from LAZ, {laz.wall:.2f} s: the triangulation alone on two threads ({two.wall:.2f} s) "
             f"and {times:.2f} times the decoding ({decoder.wall:.2f} s)"
         )
+
+
+def conclusions3(ours):
+    """The columns of thesis table 3.3, for ours."""
+    words = ("order", "locate", "predicates", "update")
+    times = [f"{word} {ours.said(f'{word}_seconds'):.3f} s" for word in words]
+    yield f"ours, table 3.3: {', '.join(times)}, of {ours.said('seconds'):.3f} s with the clock"
+    created, tests, size = (ours.said(key) for key in ("created", "in_sphere_tests", "bytes_per_point"))
+    yield f"ours, table 3.3: {created:,.0f} tetrahedra created, {tests:,.0f} in-sphere tests, {size:.0f} bytes per point held"
 
 
 def conclusions4(ours):

@@ -1,7 +1,7 @@
 //! Times the 3D kernel, in one thread.
 //!
 //! `kernel3_time POINTS` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers, once. With
-//! a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the same buffers. POINTS has triples
+//! `--parts` it measures the parts of insertions, too, which takes time itself: the columns of thesis table 3.3. With a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the same buffers. POINTS has triples
 //! of little-endian f64; files that `scripts/bench` made are in its folder.
 
 #[path = "../benchmark/rust/src/lib.rs"]
@@ -13,25 +13,36 @@ use std::error::Error;
 use std::fs::File;
 
 use files::{read_tuples, timed};
-use spmesh::delaunay3::{Kernel, Tetrahedralization};
+use spmesh::delaunay3::{Kernel, Stats, Tetrahedralization};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     match &words[..] {
-        [points] => compare(read_tuples(&mut File::open(points)?)?),
+        [points] => compare(read_tuples(&mut File::open(points)?)?, false),
+        [points, flag] if flag == "--parts" => compare(read_tuples(&mut File::open(points)?)?, true),
         [points, rounds] => tune(&read_tuples(&mut File::open(points)?)?, rounds.parse()?),
         _ => Err("usage: kernel3_time POINTS [ROUNDS]".into()),
     }
 }
 
 /// One round, fresh. The kernel is given the points: they are in memory once.
-fn compare(points: Vec<[f64; 3]>) -> Result<(), Box<dyn Error>> {
+fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> {
     let count = points.len();
     let mut mesh = Tetrahedralization::default();
-    let (result, seconds) = timed(|| Kernel::new().triangulate(Cow::Owned(points), &mut mesh));
+    let mut kernel = Kernel::new();
+    kernel.is_timed = is_timed;
+    let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
     result?;
     let tetrahedra = mesh.tetrahedra().len();
-    println!("{{\"points\": {count}, \"tetrahedra\": {tetrahedra}, \"seconds\": {seconds:.6}}}");
+    let Stats { created, insphere_tests, order, locate, cavity, update, bytes, .. } = mesh.stats;
+    let mut facts = format!("\"points\": {count}, \"tetrahedra\": {tetrahedra}, \"seconds\": {seconds:.6}");
+    facts += &format!(", \"created\": {created}, \"in_sphere_tests\": {insphere_tests}");
+    facts += &format!(", \"bytes_per_point\": {:.1}", bytes as f64 / count.max(1) as f64);
+    let parts = [("order", order), ("locate", locate), ("predicates", cavity), ("update", update)];
+    for (name, part) in parts {
+        facts += &format!(", \"{name}_seconds\": {:.6}", part.as_secs_f64());
+    }
+    println!("{{{facts}}}");
     Ok(())
 }
 

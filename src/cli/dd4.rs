@@ -88,7 +88,7 @@ impl From<RouteFlag> for Route {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`SourceFlags::read`], [`dd4::make`] and [`write`].
+/// As [`SourceFlags::read`], [`dd4::make`] and [`write()`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
