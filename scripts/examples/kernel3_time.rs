@@ -34,10 +34,9 @@ fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> 
     let (result, seconds) = timed(|| kernel.triangulate(Cow::Owned(points), &mut mesh));
     result?;
     let tetrahedra = mesh.tetrahedra().len();
-    let Stats { created, insphere_tests, order, locate, cavity, update, bytes, .. } = mesh.stats;
+    let Stats { created, insphere_tests, order, locate, cavity, update, .. } = mesh.stats;
     let mut facts = format!("\"points\": {count}, \"tetrahedra\": {tetrahedra}, \"seconds\": {seconds:.6}");
     facts += &format!(", \"created\": {created}, \"in_sphere_tests\": {insphere_tests}");
-    facts += &format!(", \"bytes_per_point\": {:.1}", bytes as f64 / count.max(1) as f64);
     let parts = [("order", order), ("locate", locate), ("predicates", cavity), ("update", update)];
     for (name, part) in parts {
         facts += &format!(", \"{name}_seconds\": {:.6}", part.as_secs_f64());
