@@ -35,13 +35,10 @@ pub struct Cell4<'a> {
 }
 
 impl Cells4 {
-    /// No cells, with room for others.
+    /// No cells, with room for so many, and so many vertices and neighbours in all.
     #[must_use]
-    pub fn with_room_of(others: &Cells4) -> Cells4 {
-        Cells4 {
-            words: Vec::with_capacity(others.words.len()),
-            starts: Vec::with_capacity(others.starts.len()),
-        }
+    pub fn with_room(cells: usize, numbers: usize) -> Cells4 {
+        Cells4 { words: Vec::with_capacity(2 * cells + numbers), starts: Vec::with_capacity(cells) }
     }
 
     /// Number of cells.
@@ -80,6 +77,11 @@ impl Cells4 {
         let (list, rest) = rest.split_at((vertices & !INFINITE) as usize);
         let is_infinite = vertices & INFINITE != 0;
         Cell4 { is_infinite, vertices: list, neighbours: &rest[..*neighbours as usize] }
+    }
+
+    /// Number of vertices and neighbours of all cells.
+    pub(crate) fn numbers(&self) -> usize {
+        self.words.len() - 2 * self.len()
     }
 
     /// Has a cell brought into the cache.

@@ -10,6 +10,8 @@ use std::num::Wrapping;
 /// How the sign of a value is found that is near zero.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Exactness {
+    /// The value is exact as it is, and coefficients of spheres have 32 bits: coordinates are very small integers.
+    Small,
     /// The value is exact as it is: coordinates are small integers.
     Double,
     /// In integers of 128 bits.
@@ -17,6 +19,14 @@ pub(super) enum Exactness {
     /// In integers of any size.
     Big,
 }
+
+/// Greatest difference of integer coordinates with which coefficients of spheres have 32 bits.
+///
+/// With differences up to E, coordinates are at most H = E/2, rounded up, about the centre of the box, and their lifts 4 H^2.
+/// A coefficient of a coordinate is a sum of five lifts, each times a determinant of four points in a box of 3 dimensions,
+/// at most 2 E^3; the constant one of five lifts, each times a determinant of four vectors of length at most 2 H, at most
+/// 16 H^4: 320 H^6, which is 1.6e9 here. The determinant of a simplex is at most 3 E^4.
+pub(super) const SMALL_MAX: f64 = 26.0;
 
 /// Greatest difference of integer coordinates with which in-sphere values are exact in `f64`, in whatever order they are
 /// added up.

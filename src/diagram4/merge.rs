@@ -1,10 +1,12 @@
 //! From simplices to cells: cospherical neighbours are one.
 
 use super::Stats;
-use super::simplices::{Complex, FACETS, INFINITE, facet_of, simplex_of};
+use super::canonical::canonical;
+use super::simplices::{Coefficient, Complex, FACETS, INFINITE, Simplex, facet_of, simplex_of};
 use crate::cells4::{Cell4, Cells4};
 use crate::prefetch::prefetch;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 /// How far ahead memory is fetched.
 const AHEAD: usize = 8;
@@ -18,102 +20,98 @@ const NONE: u32 = u32::MAX;
 /// cell is a union of its simplices, and two simplices at a facet are in one cell exactly if the vertex of one is on
 /// the sphere of the other. A facet of the diagram on the hull is the union of those facets of simplices of one cell
 /// that are in one hyperplane (thesis 4.3.6).
-pub(super) fn cells(complex: Complex, stats: &mut Stats) -> Cells4 {
-    let mut classes = Classes::new(&complex);
+pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> Cells4 {
+    let classes = classes(&complex);
+    let members = |classes: &[u32]| (classes[classes.len() - 1] - classes[0]).into();
+    stats.simplices = members(&classes.starts[..=classes.finite]);
+    stats.infinite_simplices = members(&classes.starts[classes.finite..]);
+    // The spheres, a third of the memory or more, are not needed any more.
+    let Complex { simplices, order, spheres, .. } = complex;
+    drop(spheres);
+    let cells = gathered(&simplices, &order, &classes);
+    drop((simplices, order, classes));
+    canonical(&cells)
+}
+
+/// Which simplices make which cell.
+struct Classes {
+    /// The class of each simplex.
+    of: Vec<u32>,
+    /// The simplices of each class, one class after the other, finite ones first.
+    members: Vec<u32>,
+    /// Where each class begins among the members, and where the last ends.
+    starts: Vec<u32>,
+    /// Number of classes of finite simplices.
+    finite: usize,
+}
+
+fn classes<C: Coefficient>(complex: &Complex<C>) -> Classes {
+    let (of, members) = (vec![NONE; complex.simplices.len()], Vec::with_capacity(complex.simplices.len()));
+    let mut classes = Classes { of, members, starts: vec![0], finite: 0 };
     let all = 0..complex.simplices.len();
     for seed in all.clone().filter(|&seed| complex.is_finite(seed)) {
-        classes.fetch_around(seed + AHEAD);
+        classes.fetch_around(complex, seed + AHEAD);
         if classes.of[seed] == NONE {
-            stats.simplices += classes.flood(seed, |_, _| true);
+            classes.flood(complex, seed, |_, _| true);
         }
     }
+    classes.finite = classes.len();
     for seed in all.filter(|&seed| complex.is_infinite(seed)) {
         if classes.of[seed] == NONE {
             let inside = |of: &[u32], simplex| complex.neighbour_inside(simplex).map(|finite| of[finite]);
-            stats.infinite_simplices +=
-                classes.flood(seed, |of, other| inside(of, seed) == inside(of, other));
+            classes.flood(complex, seed, |of, other| inside(of, seed) == inside(of, other));
         }
     }
-    let Classes { of, found, .. } = classes;
-    drop(complex);
-    canonical(&found, &of)
+    classes
 }
 
-/// The simplices of each cell, gathered from one to the next.
-struct Classes<'a> {
-    complex: &'a Complex<'a>,
-    /// The class of each simplex.
-    of: Vec<u32>,
-    /// The last class that each vertex was listed for.
-    seen: Vec<u32>,
-    /// A cell for each class, with a simplex of each neighbour.
-    found: Cells4,
-    members: Vec<u32>,
-    vertices: Vec<u32>,
-    beyond: Vec<u32>,
-}
-
-impl<'a> Classes<'a> {
-    fn new(complex: &'a Complex<'a>) -> Classes<'a> {
-        Classes {
-            complex,
-            of: vec![NONE; complex.simplices.len()],
-            seen: vec![NONE; complex.order.len()],
-            found: Cells4::default(),
-            members: Vec::new(),
-            vertices: Vec::new(),
-            beyond: Vec::new(),
-        }
+impl Classes {
+    /// Number of classes.
+    fn len(&self) -> usize {
+        self.starts.len() - 1
     }
 
     /// Makes a class of all simplices around a seed whose vertices are on its sphere, or hyperplane, and which are
-    /// `allowed`; says how many they are.
-    fn flood(&mut self, seed: usize, allowed: impl Fn(&[u32], usize) -> bool) -> u64 {
-        let class = self.found.len() as u32;
-        let is_infinite = self.complex.is_infinite(seed);
-        self.members.clear();
-        self.vertices.clear();
-        self.beyond.clear();
+    /// `allowed`.
+    #[inline(always)]
+    fn flood<C: Coefficient>(
+        &mut self,
+        complex: &Complex<C>,
+        seed: usize,
+        allowed: impl Fn(&[u32], usize) -> bool,
+    ) {
+        let class = self.len() as u32;
+        let mut next = self.members.len();
         self.join(seed, class);
-        let mut next = 0;
         while next < self.members.len() {
-            let simplex = self.complex.simplices[self.members[next] as usize];
+            let simplex = complex.simplices[self.members[next] as usize];
             next += 1;
             if let Some(&later) = self.members.get(next + 1) {
-                self.fetch_around(later as usize);
+                self.fetch_around(complex, later as usize);
             }
             for side in 0..FACETS {
-                self.list(simplex.vertices[side], class);
                 let beyond = simplex.beyond[side];
                 let other = simplex_of(beyond);
-                if self.of[other] == class {
+                if self.of[other] != NONE {
                     continue;
                 }
-                let apex = self.complex.simplices[other].vertices[facet_of(beyond)];
+                let apex = complex.simplices[other].vertices[facet_of(beyond)];
                 // Across the hull, one is finite and the other is not.
                 let is_across = apex == INFINITE || simplex.vertices[side] == INFINITE;
-                let is_in_one = !is_across
-                    && self.of[other] == NONE
-                    && self.complex.sign(seed, apex) == Ordering::Equal
-                    && allowed(&self.of, other);
-                if is_in_one {
+                if !is_across && complex.sign(seed, apex) == Ordering::Equal && allowed(&self.of, other) {
                     self.join(other, class);
-                } else {
-                    self.beyond.push(other as u32);
                 }
             }
         }
-        self.vertices.sort_unstable();
-        self.found.push(Cell4 { is_infinite, vertices: &self.vertices, neighbours: &self.beyond });
-        self.members.len() as u64
+        self.starts.push(self.members.len() as u32);
     }
 
     /// Has what is wanted of the neighbours of a simplex brought into the cache.
     #[inline(always)]
-    fn fetch_around(&self, simplex: usize) {
-        let Some(simplex) = self.complex.simplices.get(simplex) else { return };
+    fn fetch_around<C: Coefficient>(&self, complex: &Complex<C>, simplex: usize) {
+        let Some(simplex) = complex.simplices.get(simplex) else { return };
         for beyond in simplex.beyond {
-            prefetch(&self.complex.simplices, simplex_of(beyond));
+            prefetch(&complex.simplices, simplex_of(beyond));
             prefetch(&self.of, simplex_of(beyond));
         }
     }
@@ -123,45 +121,65 @@ impl<'a> Classes<'a> {
         self.members.push(simplex as u32);
     }
 
-    /// Lists a vertex of a class, by number of its site, once.
-    fn list(&mut self, vertex: u32, class: u32) {
-        if vertex != INFINITE && std::mem::replace(&mut self.seen[vertex as usize], class) != class {
-            self.vertices.push(self.complex.order[vertex as usize]);
-        }
+    /// Where the simplices of a class are among the members.
+    fn places(&self, class: usize) -> Range<usize> {
+        self.starts[class] as usize..self.starts[class + 1] as usize
     }
 }
 
-/// Finite cells first, both kinds by their vertices; neighbours renumbered, each once.
-///
-/// What stands for neighbours are numbers whose cells `of` has.
-pub(super) fn canonical(unordered: &Cells4, of: &[u32]) -> Cells4 {
-    // The kind and the first vertices decide mostly: no cell has to be looked at for these.
-    let key = |number: u32| {
-        let cell = unordered.get(number as usize);
-        let first = u64::from(cell.vertices[0]) << 31 | u64::from(cell.vertices[1]) >> 1;
-        (u64::from(cell.is_infinite) << 63 | first, number)
-    };
-    let mut order: Vec<(u64, u32)> = (0..unordered.len() as u32).map(key).collect();
-    let vertices = |number: u32| unordered.get(number as usize).vertices;
-    order.sort_unstable_by(|&(key, a), &(other, b)| {
-        key.cmp(&other).then_with(|| vertices(a).cmp(vertices(b)))
-    });
-    let mut places = vec![0; order.len()];
-    for (place, &(_, number)) in (0u32..).zip(&order) {
-        places[number as usize] = place;
-    }
-    let mut cells = Cells4::with_room_of(unordered);
-    let mut neighbours = Vec::new();
-    for (place, &(_, number)) in order.iter().enumerate() {
-        if let Some(&(_, later)) = order.get(place + AHEAD) {
-            unordered.fetch(later as usize);
-        }
-        let cell = unordered.get(number as usize);
+/// A cell for each class, neighbours in any order; `order` has the number of the site of each vertex.
+fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
+    let (mut vertices, mut neighbours) = (Vec::new(), Vec::new());
+    let mut listed = Marks::new(order.len());
+    let mut met = Marks::new(classes.len());
+    let mut cells = Cells4::with_room(classes.len(), 2 * FACETS * classes.members.len());
+    for class in 0..classes.len() {
+        vertices.clear();
         neighbours.clear();
-        neighbours.extend(cell.neighbours.iter().map(|&other| places[of[other as usize] as usize]));
-        neighbours.sort_unstable();
-        neighbours.dedup();
-        cells.push(Cell4 { neighbours: &neighbours, ..cell });
+        listed.clear();
+        met.clear();
+        met.mark(class as u32);
+        for place in classes.places(class) {
+            if let Some(&later) = classes.members.get(place + AHEAD) {
+                prefetch(simplices, later as usize);
+            }
+            let simplex = &simplices[classes.members[place] as usize];
+            let finite = simplex.vertices.into_iter().filter(|&vertex| vertex != INFINITE);
+            let new = finite.filter(|&vertex| listed.mark(vertex));
+            vertices.extend(new.map(|vertex| order[vertex as usize]));
+            let around = simplex.beyond.into_iter().map(|beyond| classes.of[simplex_of(beyond)]);
+            neighbours.extend(around.filter(|&other| met.mark(other)));
+        }
+        vertices.sort_unstable();
+        let is_infinite = class >= classes.finite;
+        cells.push(Cell4 { is_infinite, vertices: &vertices, neighbours: &neighbours });
     }
     cells
+}
+
+/// Marks of numbers that are all taken away at once.
+struct Marks {
+    round: u32,
+    rounds: Vec<u32>,
+}
+
+impl Marks {
+    fn new(numbers: usize) -> Marks {
+        Marks { round: 0, rounds: vec![0; numbers] }
+    }
+
+    #[inline(always)]
+    fn clear(&mut self) {
+        self.round = self.round.wrapping_add(1);
+        if self.round == 0 {
+            self.rounds.fill(0);
+            self.round = 1;
+        }
+    }
+
+    /// Whether the number had no mark before.
+    #[inline(always)]
+    fn mark(&mut self, number: u32) -> bool {
+        std::mem::replace(&mut self.rounds[number as usize], self.round) != self.round
+    }
 }

@@ -1,6 +1,6 @@
 //! Points made ready: distinct, in order, and small numbers about the centre of their box.
 
-use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX};
+use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX, SMALL_MAX};
 use crate::cells4::Point4;
 use crate::predicates::big::integers_of;
 use crate::predicates::{Extent, lexicographic};
@@ -26,19 +26,19 @@ impl Sites {
         let greatest = extent.max_difference();
         let is_below =
             |limit| extent.integral && extent.greatest_magnitude() < 2f64.powi(52) && greatest <= limit;
-        let exactness = if is_below(DOUBLE_MAX) {
+        let exactness = if is_below(SMALL_MAX) {
+            Exactness::Small
+        } else if is_below(DOUBLE_MAX) {
             Exactness::Double
         } else if is_below(INT128_MAX) {
             Exactness::Int128
         } else {
             Exactness::Big
         };
-        let unit = if exactness == Exactness::Double { 1.0 } else { unit_for(&extent) };
+        let is_small = matches!(exactness, Exactness::Small | Exactness::Double);
+        let unit = if is_small { 1.0 } else { unit_for(&extent) };
         let middle = |axis: usize| extent.lower[axis] * unit * 0.5 + extent.upper[axis] * unit * 0.5;
-        let centre = std::array::from_fn(|axis| match exactness {
-            Exactness::Double => middle(axis).floor(),
-            _ => middle(axis),
-        });
+        let centre = std::array::from_fn(|axis| if is_small { middle(axis).floor() } else { middle(axis) });
         Sites { points, exactness, greatest, unit, centre }
     }
 
@@ -106,7 +106,9 @@ mod tests {
             assert!((0.5..=1.0).contains(&difference) || x < 1e-305, "{x}: {near:?}");
         }
         let small = Sites::new(vec![[7.0, 1000.0, 0.0, 0.0], [9.0, 1003.0, 0.0, 0.0]]);
-        assert_eq!((small.exactness, small.near(1)), (Exactness::Double, [1.0, 2.0, 0.0, 0.0]));
+        assert_eq!((small.exactness, small.near(1)), (Exactness::Small, [1.0, 2.0, 0.0, 0.0]));
+        let less_small = Sites::new(vec![[7.0, 1000.0, 0.0, 0.0], [9.0, 1027.0, 0.0, 0.0]]);
+        assert_eq!((less_small.exactness, less_small.near(1)), (Exactness::Double, [1.0, 14.0, 0.0, 0.0]));
         let wide = Sites::new(vec![[0.0; 4], [1_048_575.0, 0.0, 0.0, 0.0]]);
         assert_eq!(wide.exactness, Exactness::Int128);
     }

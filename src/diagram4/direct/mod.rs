@@ -12,8 +12,8 @@ mod horizon;
 mod tuple;
 
 use super::Stats;
+use super::canonical::canonical;
 use super::exact::Exactness;
-use super::merge::canonical;
 use super::simplices::{INFINITE, insertions};
 use super::sites::Sites;
 use crate::cells4::{Cell4, Cells4};
@@ -53,9 +53,7 @@ fn build<T: Integer>(points: Vec<[T; 4]>, order: &[u32], stats: &mut Stats) -> C
     for &q in &order[5..] {
         start = diagram.insert(q, start, stats);
     }
-    let cells = diagram.all();
-    let of: Vec<u32> = (0..cells.len() as u32).collect();
-    canonical(&cells, &of)
+    canonical(&diagram.all())
 }
 
 /// A cell; one without vertices is none.

@@ -1,5 +1,6 @@
 //! Simplices in flat arrays.
 
+use super::coefficient::Coefficient;
 use super::lanes::{LANES, Lanes};
 use crate::cells4::Point4;
 use crate::diagram4::determinant::{difference, dot, lift, normal, sphere};
@@ -32,11 +33,15 @@ pub(super) fn facet(simplex: usize, side: usize) -> Facet {
     (simplex as u32) << 3 | side as u32
 }
 
+/// Where a facet leads that has no neighbour yet: to simplex 0, which is none.
+pub(super) const NOBODY: Facet = 0;
+
 /// Most simplices: facets are numbered in 31 bits.
 pub(super) const SIMPLICES_MAX: usize = 1 << 28;
 
 /// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of the hull.
-#[derive(Debug, Clone, Copy)]
+///
+#[derive(Debug, Clone, Copy, Default)]
 pub(in crate::diagram4) struct Simplex {
     pub(in crate::diagram4) vertices: [u32; FACETS],
     /// Across each facet, which facet of which simplex it is.
@@ -44,10 +49,8 @@ pub(in crate::diagram4) struct Simplex {
 }
 
 /// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside of a sphere, or beyond a hyperplane of the
-/// hull. m is positive for a sphere, 0 for a hyperplane, and [`DEAD`] for what is no simplex any more.
-pub(super) type Sphere = [f64; 6];
-
-const DEAD: f64 = -1.0;
+/// hull. m is positive for a sphere, 0 for a hyperplane, and negative for what is no simplex any more.
+pub(in crate::diagram4) type Sphere<C> = [C; 6];
 
 /// Rounding errors of values, if coordinates differ by at most 1.
 ///
@@ -58,24 +61,29 @@ const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
 /// The point as in-sphere tests want it.
 pub(super) type Lifted = [f64; 6];
 
-pub(in crate::diagram4) struct Complex<'a> {
+pub(in crate::diagram4) struct Complex<'a, C> {
     pub(in crate::diagram4) sites: &'a Sites,
     /// The number of the site of each vertex; vertices are numbered as they are inserted.
     pub(in crate::diagram4) order: Vec<u32>,
     pub(in crate::diagram4) near: Vec<Point4>,
+    /// The first is none: see [`NOBODY`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
-    pub(super) spheres: Vec<Sphere>,
+    pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
     /// Simplices that are dead.
     pub(super) free: Vec<u32>,
     /// Values of greater magnitude have the right sign.
     rounding: f64,
 }
 
-impl<'a> Complex<'a> {
-    pub(super) fn new(sites: &'a Sites, order: Vec<u32>) -> Complex<'a> {
+impl<'a, C: Coefficient> Complex<'a, C> {
+    pub(super) fn new(sites: &'a Sites, order: Vec<u32>) -> Complex<'a, C> {
         let near = order.iter().map(|&number| sites.near(number)).collect();
-        let rounding = if sites.exactness == Exactness::Double { 0.0 } else { ROUNDING };
-        Complex { sites, order, near, simplices: Vec::new(), spheres: Vec::new(), free: Vec::new(), rounding }
+        let rounding = match sites.exactness {
+            Exactness::Small | Exactness::Double => 0.0,
+            Exactness::Int128 | Exactness::Big => ROUNDING,
+        };
+        let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
+        Complex { sites, order, near, simplices, spheres, free: Vec::new(), rounding }
     }
 
     /// The point of a vertex, as given.
@@ -90,55 +98,58 @@ impl<'a> Complex<'a> {
 
     #[inline(always)]
     pub(in crate::diagram4) fn is_dead(&self, simplex: usize) -> bool {
-        self.spheres[simplex][4] < 0.0
+        self.determinant(simplex) < C::default()
     }
 
-    /// Has the spheres of the neighbours of a simplex brought into the cache.
+    /// m of the sphere of a simplex.
+    #[inline(always)]
+    pub(super) fn determinant(&self, simplex: usize) -> C {
+        self.spheres[simplex][4]
+    }
+
+    /// Has the neighbours of a simplex brought into the cache.
     #[inline(always)]
     pub(super) fn fetch_neighbours(&self, simplex: usize) {
         for beyond in self.simplices[simplex].beyond {
             prefetch(&self.spheres, simplex_of(beyond));
+            prefetch(&self.simplices, simplex_of(beyond));
         }
-    }
-
-    #[inline(always)]
-    pub(super) fn kill(&mut self, simplex: usize) {
-        self.spheres[simplex][4] = DEAD;
     }
 
     /// Whether the simplex is one of the triangulation, and finite.
     pub(in crate::diagram4) fn is_finite(&self, simplex: usize) -> bool {
-        self.spheres[simplex][4] > 0.0
+        self.determinant(simplex) > C::default()
     }
 
     /// Whether it is one of the triangulation, and infinite.
     pub(in crate::diagram4) fn is_infinite(&self, simplex: usize) -> bool {
-        self.spheres[simplex][4] == 0.0
+        self.determinant(simplex) == C::default()
     }
 
     #[inline(always)]
     pub(super) fn value(&self, simplex: usize, p: &Lifted) -> f64 {
-        let s = &self.spheres[simplex];
-        (s[0] * p[0] + s[1] * p[1]) + (s[2] * p[2] + s[3] * p[3]) + (s[4] * p[4] + s[5] * p[5])
+        let s = self.spheres[simplex].map(C::value);
+        let even = s[0] * p[0] + s[2] * p[2] + s[4] * p[4];
+        let odd = s[1] * p[1] + s[3] * p[3] + s[5] * p[5];
+        even + odd
     }
 
     /// Whether vertex `q`, at `p`, is inside of the sphere of a simplex.
     #[inline(always)]
     pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         let value = self.value(simplex, p);
-        if value < -self.rounding {
-            true
-        } else if value > self.rounding {
-            false
-        } else {
-            // Exact values of small integers: on the sphere.
-            !(self.rounding == 0.0 && self.spheres[simplex][4] > 0.0) && self.decide(simplex, q, p)
-        }
+        if self.is_clear(value, simplex) { value < 0.0 } else { self.decide(simplex, q, p) }
+    }
+
+    /// Whether the sign of a value decides, as it is. Exact values of small integers: zero is on the sphere.
+    #[inline(always)]
+    pub(super) fn is_clear(&self, value: f64, simplex: usize) -> bool {
+        value.abs() > self.rounding || (self.rounding == 0.0 && !self.is_infinite(simplex))
     }
 
     /// Beyond a facet of the hull the sign of the hyperplane decides, on it the neighbour's sphere (thesis 4.4).
     #[inline(never)]
-    fn decide(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
+    pub(super) fn decide(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         match self.sign(simplex, q) {
             Ordering::Less => true,
             Ordering::Greater => false,
@@ -151,7 +162,7 @@ impl<'a> Complex<'a> {
 
     /// The finite simplex across the hull from an infinite one.
     pub(in crate::diagram4) fn neighbour_inside(&self, simplex: usize) -> Option<usize> {
-        let Simplex { vertices, beyond } = &self.simplices[simplex];
+        let Simplex { vertices, beyond, .. } = &self.simplices[simplex];
         let side = vertices.iter().position(|&vertex| vertex == INFINITE)?;
         Some(simplex_of(beyond[side]))
     }
@@ -194,7 +205,7 @@ impl<'a> Complex<'a> {
         o: &Point4,
         simplices: [&[u32; FACETS]; LANES],
         sides: [usize; LANES],
-    ) -> [Sphere; LANES] {
+    ) -> [Sphere<C>; LANES] {
         let facets = [
             without(*simplices[0], sides[0]),
             without(*simplices[1], sides[1]),
@@ -210,16 +221,13 @@ impl<'a> Complex<'a> {
         let twice = m + m;
         let shifted = |axis: usize| signs * (n[axis] - twice * origin[axis]);
         let columns = [shifted(0), shifted(1), shifted(2), shifted(3), signs * m, signs * s];
-        let mut spheres = [[0.0; 6]; LANES];
-        for (lane, (sphere, vertices)) in spheres.iter_mut().zip(simplices).enumerate() {
-            *sphere = columns.map(|column| column.0[lane]);
-            // Only a simplex that is almost flat is not seen to be positive in rounded arithmetic.
-            sphere[4] = sphere[4].max(f64::MIN_POSITIVE);
+        std::array::from_fn(|lane| {
             if facets[lane].contains(&INFINITE) {
-                *sphere = self.hyperplane(vertices);
+                return self.hyperplane(simplices[lane]).map(C::of);
             }
-        }
-        spheres
+            let [a, b, c, d, m, s] = columns.map(|column| column.0[lane]);
+            [C::of(a), C::of(b), C::of(c), C::of(d), C::determinant(m), C::of(s)]
+        })
     }
 
     /// The points of four vertices, axis by axis; anything for the faraway point.
@@ -231,7 +239,7 @@ impl<'a> Complex<'a> {
     }
 
     #[inline(never)]
-    fn hyperplane(&self, vertices: &[u32; FACETS]) -> Sphere {
+    fn hyperplane(&self, vertices: &[u32; FACETS]) -> [f64; 6] {
         let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
         let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
         let n = normal([a, b, c].map(|p| difference(p, &o)));

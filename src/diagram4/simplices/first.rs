@@ -27,8 +27,11 @@ pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
     }
     if basis.len() < 4 {
         return Err(Error::usage(format!(
-            "the {} distinct points span only {} of 4 dimensions: their Delaunay diagram has no cells",
-            order.len(),
+            "{} only {} of 4 dimensions: there are no cells",
+            match order.len() {
+                1 => "1 distinct point spans".to_owned(),
+                distinct => format!("the {distinct} distinct points span"),
+            },
             basis.len()
         )));
     }

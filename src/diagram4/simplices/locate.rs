@@ -1,5 +1,6 @@
 //! The walk to a simplex in conflict with a point.
 
+use super::coefficient::Coefficient;
 use super::complex::{Complex, FACETS, INFINITE, Lifted, simplex_of, without};
 use crate::diagram4::determinant::{difference, dot, normal};
 
@@ -9,7 +10,7 @@ const STEPS_MAX: usize = 100_000;
 /// Powers of a point that differ by less, relatively, are taken to be equal.
 const TIE: f64 = 1e-9;
 
-impl Complex<'_> {
+impl<C: Coefficient> Complex<'_, C> {
     /// A simplex in conflict with vertex `q` at `p`.
     ///
     /// Where two spheres meet, the powers of a point with respect to them are equal on the hyperplane of the facet
@@ -34,12 +35,12 @@ impl Complex<'_> {
     /// The next simplex of the walk; an infinite one is in conflict.
     #[inline(always)]
     fn step(&self, at: usize, q: u32, p: &Lifted) -> Option<usize> {
-        let (value, m) = (self.value(at, p), self.spheres[at][4]);
+        let (value, m) = (self.value(at, p), self.determinant(at).value());
         let beyond = self.simplices[at].beyond;
         let turn = q as usize % FACETS;
         (turn..turn + FACETS).map(|i| i % FACETS).find_map(|side| {
             let next = simplex_of(beyond[side]);
-            let next_m = self.spheres[next][4];
+            let next_m = self.determinant(next).value();
             let is_nearer = if next_m == 0.0 {
                 self.is_in_conflict(next, q, p)
             } else {

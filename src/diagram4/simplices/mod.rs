@@ -9,15 +9,23 @@
 //!
 //! Simplices and their spheres are in flat arrays. A point is inserted as Bowyer (1981) and Watson (1981) do it, along a
 //! Hilbert curve; an in-sphere test is the product of two vectors of six. `locate` is the walk to a simplex in conflict,
-//! `insertion` finds the others and puts the star of the point in their place.
+//! `cavity` finds the others, `insertion` puts the star of the point in their place, and `links` makes its simplices
+//! neighbours.
+//!
+//! What a processor cannot predict is not asked: which simplex of a cavity is met first, which of two neighbours. Both
+//! answers are written down, and one is kept. Of the full 16^4 grid that saves a third of the time.
 
+mod cavity;
+mod coefficient;
 mod complex;
 mod first;
 mod insertion;
 mod lanes;
+mod links;
 mod locate;
 
-pub(super) use complex::{Complex, FACETS, INFINITE, facet_of, simplex_of};
+pub(super) use coefficient::Coefficient;
+pub(super) use complex::{Complex, FACETS, INFINITE, Simplex, facet_of, simplex_of};
 
 use super::Stats;
 use super::sites::Sites;
@@ -31,8 +39,8 @@ use std::time::Instant;
 ///
 /// Errors: all points are in a hyperplane; too many simplices.
 ///
-/// Cost: 88 bytes per simplex.
-pub(super) fn triangulate<'a>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a>> {
+/// Cost: 40 bytes per simplex, and six coefficients.
+pub(super) fn triangulate<'a, C: Coefficient>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a, C>> {
     let started = Instant::now();
     let order = insertions(sites)?;
     let mut insertion = Insertion::new(Complex::new(sites, order));
