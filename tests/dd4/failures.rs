@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::process::Stdio;
 
 use super::diagram;
-use crate::programs::{outcome, run, start, tool};
+use crate::programs::{assert_silent_without_reader, outcome, run, start, tool};
 
 #[test]
 fn points_without_a_volume_say_their_dimension() {
@@ -90,11 +90,7 @@ fn a_killed_producer_leaves_no_result() {
 
 #[test]
 fn a_closed_pipe_is_silent() {
-    let mut child = start("dd4", &["--grid", "12x12x12x8"], Stdio::null());
-    let mut head = [0; 100];
-    child.stdout.take().unwrap().read_exact(&mut head).unwrap();
-    let (code, message) = outcome(&child.wait_with_output().unwrap());
-    assert_eq!((code, &message[..]), (Some(141), ""));
+    assert_silent_without_reader("dd4", &["--grid", "12x12x12x8"]);
 }
 
 #[test]
