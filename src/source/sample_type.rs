@@ -1,9 +1,9 @@
-//! Types of the values of volumes.
+//! Types of numbers in binary files.
 
+use super::byte_order::ByteOrder;
 use crate::error::{Error, Result};
-use crate::source::byte_order::ByteOrder;
 
-/// How a value is stored.
+/// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SampleType {
     I8,
@@ -18,20 +18,19 @@ pub(super) enum SampleType {
     F64,
 }
 
-/// The next numbers of `bytes`.
-macro_rules! decode {
-    ($type:ty, $bytes:expr, $order:expr, $values:expr) => {{
-        let numbers =
-            $bytes.chunks_exact(size_of::<$type>()).map(|bytes| bytes.try_into().expect("its length"));
+/// The number in `bytes`.
+macro_rules! number {
+    ($type:ty, $bytes:expr, $order:expr) => {{
+        let bytes = $bytes.try_into().expect("its length");
         match $order {
-            ByteOrder::Little => $values.extend(numbers.map(|bytes| <$type>::from_le_bytes(bytes) as f64)),
-            ByteOrder::Big => $values.extend(numbers.map(|bytes| <$type>::from_be_bytes(bytes) as f64)),
+            ByteOrder::Little => <$type>::from_le_bytes(bytes) as f64,
+            ByteOrder::Big => <$type>::from_be_bytes(bytes) as f64,
         }
     }};
 }
 
 impl SampleType {
-    /// Bytes of a value.
+    /// Bytes of a number.
     pub(super) fn len(self) -> usize {
         match self {
             SampleType::I8 | SampleType::U8 => 1,
@@ -41,20 +40,26 @@ impl SampleType {
         }
     }
 
-    /// Appends the values that `bytes` holds. Integers beyond 2^53 are rounded.
-    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, values: &mut Vec<f64>) {
+    /// The number in `bytes`, which are as many as it has. Integers beyond 2^53 are rounded.
+    #[inline]
+    pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
         match self {
-            SampleType::I8 => decode!(i8, bytes, order, values),
-            SampleType::U8 => decode!(u8, bytes, order, values),
-            SampleType::I16 => decode!(i16, bytes, order, values),
-            SampleType::U16 => decode!(u16, bytes, order, values),
-            SampleType::I32 => decode!(i32, bytes, order, values),
-            SampleType::U32 => decode!(u32, bytes, order, values),
-            SampleType::I64 => decode!(i64, bytes, order, values),
-            SampleType::U64 => decode!(u64, bytes, order, values),
-            SampleType::F32 => decode!(f32, bytes, order, values),
-            SampleType::F64 => decode!(f64, bytes, order, values),
+            SampleType::I8 => number!(i8, bytes, order),
+            SampleType::U8 => number!(u8, bytes, order),
+            SampleType::I16 => number!(i16, bytes, order),
+            SampleType::U16 => number!(u16, bytes, order),
+            SampleType::I32 => number!(i32, bytes, order),
+            SampleType::U32 => number!(u32, bytes, order),
+            SampleType::I64 => number!(i64, bytes, order),
+            SampleType::U64 => number!(u64, bytes, order),
+            SampleType::F32 => number!(f32, bytes, order),
+            SampleType::F64 => number!(f64, bytes, order),
         }
+    }
+
+    /// Appends the numbers in `bytes`.
+    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, numbers: &mut Vec<f64>) {
+        numbers.extend(bytes.chunks_exact(self.len()).map(|bytes| self.number(bytes, order)));
     }
 
     /// The value that is written as `text`.
