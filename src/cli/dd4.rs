@@ -12,9 +12,10 @@ use clap::{Parser, ValueEnum};
 use super::{Common, StatsFormat, notice, progress::Progress};
 use crate::dd4::{self, Options, Quantum};
 use crate::diagram4::Route;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::output::Output;
 
-pub use product::{EXAMPLES as PRODUCT_EXAMPLES, Product, ProductFlags, Written, write};
+pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
 
 const EXAMPLES: &str = "\
@@ -24,12 +25,13 @@ Examples:
     spinfo --audit points.spm
 ";
 
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
 
-Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, one for
-each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
+Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, \
+one for each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated \
 input, 5 not enough memory for the points, 141 output closed by its reader.";
 
 /// Exact Delaunay diagrams of points in four dimensions.
@@ -39,9 +41,6 @@ input, 5 not enough memory for the points, 141 output closed by its reader.";
 #[derive(Debug, Parser)]
 #[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}\n{PRODUCT_EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    #[command(flatten)]
-    source: SourceFlags,
-
     /// Where the diagram goes; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
@@ -50,9 +49,6 @@ pub struct Flags {
     /// coordinates, which f64 rounds, so that no grid would be cospherical
     #[arg(long, value_name = "Q")]
     quantum: Option<Quantum>,
-
-    #[command(flatten)]
-    product: ProductFlags,
 
     /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008) did, which is
     /// slower. The result is the same
@@ -65,6 +61,13 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    // Last, as their headings would hold for flags that come after them.
+    #[command(flatten)]
+    source: SourceFlags,
+
+    #[command(flatten)]
+    product: ProductFlags,
 }
 
 /// What `--route` can say.
@@ -88,7 +91,7 @@ impl From<RouteFlag> for Route {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`SourceFlags::read`], [`dd4::make`] and [`write()`].
+/// As [`SourceFlags::read`], [`dd4::make`] and [`dd4::Product::write`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
@@ -97,9 +100,9 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         let options = Options { quantum: self.quantum, route: self.route.into() };
-        let product = self.product.product()?;
+        let product = self.product.product(&self.output)?;
         // An output that cannot be is better known before the work.
-        let output = product.create(&self.output)?;
+        let mut output = Output::create(&self.output, product.is_binary())?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();
@@ -109,17 +112,16 @@ impl Flags {
             let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
             self.notice(&format!("{}: {warning}", points.name));
         }
-        if product.needs_values() && points.values.is_none() {
-            let message = "the points have no values to interpolate: give x y z t value";
-            return Err(Error::usage(message).of_input(points.name));
-        }
+        product.check(&points)?;
         let progress = Progress::waiting(&self.common, "triangulating");
         let (diagram, mut report) = dd4::make(points, &options)?;
         let begun = Instant::now();
-        let written = write(&product, &diagram, &self.output, output)?;
-        (report.output_bytes, report.write_time) = (written.bytes, begun.elapsed());
+        let notices = product.write(&diagram, &mut output)?;
+        report.output_bytes = output.bytes_written();
+        output.commit()?;
+        report.write_time = begun.elapsed();
         drop(progress);
-        written.notices.iter().for_each(|text| self.notice(text));
+        notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));
         report::print(self.stats, &report, read, started.elapsed());
         Ok(())

@@ -2,13 +2,15 @@
 
 mod figures;
 mod files;
+mod product;
 mod quantum;
 mod write;
 
 pub use figures::Figures;
-pub use files::{Form, write_simplices, write_slice, write_surface, write_values};
+pub use files::{Form, write_slice, write_surface, write_values};
+pub use product::Product;
 pub use quantum::Quantum;
-pub use write::write_diagram;
+pub use write::{write_diagram, write_simplices};
 
 use std::time::{Duration, Instant};
 

@@ -18,3 +18,6 @@ pub use isosurface::{Surface, isosurface};
 pub use locate::Locator;
 pub use slice::{Slice, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};
+
+/// What is said where values are needed and the points have none.
+pub(crate) const NO_VALUES: &str = "the points have no values to interpolate: give x y z t value";
