@@ -48,7 +48,8 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation
+    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. Delaunay diagrams in four
+    /// dimensions have no ties to resolve: for them both standards are the same
     #[arg(
         long,
         value_enum,

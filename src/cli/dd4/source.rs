@@ -12,8 +12,8 @@ use crate::source::points4::{
 };
 
 /// Examples for the end of the help.
-pub const EXAMPLES: &str = "\
-  Two fifths of the points of a grid of 16 sites along each axis, always the same ones:
+pub const EXAMPLES: &str =
+    "  Two fifths of the points of a grid of 16 sites along each axis, always the same ones:
     dd4 --grid 16x16x16x16 --sample 0.4 --seed 7 -o grid.spm
   Where a series of volumes is brighter than 0.3, in its second half:
     dd4 heart.nrrd --where 'value > 0.3 and t >= 10' -o heart.spm
