@@ -12,8 +12,9 @@ use clap::{Parser, ValueEnum};
 use super::{Common, StatsFormat, notice, progress::Progress};
 use crate::dd4::{self, Options, Quantum};
 use crate::diagram4::Route;
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::output::Output;
+use crate::system;
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
@@ -34,6 +35,9 @@ one for each facet of a cell on the hull. Without --quantum, coordinates are tak
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated \
 input, 5 not enough memory for the points, 141 output closed by its reader.";
 
+/// What is said after the number of bytes that could not be had.
+const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";
+
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
 /// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their neighbours
@@ -47,7 +51,7 @@ pub struct Flags {
 
     /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of the
     /// coordinates, which f64 rounds, so that no grid would be cospherical
-    #[arg(long, value_name = "Q")]
+    #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 
     /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008) did, which is
@@ -99,7 +103,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
+        system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let options = Options { quantum: self.quantum, route: self.route.into() };
+        if self.source.is_stdin() && self.product.reads_stdin() {
+            return Err(Error::usage("points and sites cannot both come from stdin"));
+        }
         let product = self.product.product(&self.output)?;
         // An output that cannot be is better known before the work.
         let mut output = Output::create(&self.output, product.is_binary())?;
@@ -112,9 +120,8 @@ impl Flags {
             let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
             self.notice(&format!("{}: {warning}", points.name));
         }
-        product.check(&points)?;
         let progress = Progress::waiting(&self.common, "triangulating");
-        let (diagram, mut report) = dd4::make(points, &options)?;
+        let (diagram, mut report) = dd4::make(points, &product, &options)?;
         let begun = Instant::now();
         let notices = product.write(&diagram, &mut output)?;
         report.output_bytes = output.bytes_written();

@@ -6,8 +6,7 @@ use super::{Form, write_diagram, write_simplices, write_slice, write_surface, wr
 use crate::cells4::Point4;
 use crate::diagram4::Diagram;
 use crate::error::{Error, Result};
-use crate::source::points4::Points4;
-use crate::spacetime::{Interpolator, NO_VALUES, Rule, Slice, isosurface, slice, subdivide};
+use crate::spacetime::{Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide};
 
 /// What is made of a diagram.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,16 +36,20 @@ pub enum Product {
 }
 
 impl Product {
-    /// Whether it is made of these points: known before the work, rather than after it.
+    /// Whether it can be made of these points: known before the work, rather than after it.
     ///
     /// # Errors
-    /// Usage, if values are needed and the points have none.
-    pub fn check(&self, points: &Points4) -> Result<()> {
-        let needs_values = matches!(self, Product::Values(_) | Product::Isosurface { .. });
-        if needs_values && points.values.is_none() {
-            return Err(Error::usage(NO_VALUES).of_input(&points.name));
+    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all points.
+    pub fn check(&self, points: &[Point4], has_values: bool) -> Result<()> {
+        if matches!(self, Product::Values(_) | Product::Isosurface { .. }) && !has_values {
+            return Err(Error::usage(NO_VALUES));
         }
-        Ok(())
+        match self {
+            Product::Slice { time, .. } | Product::Isosurface { time, .. } if !points.is_empty() => {
+                first_time(points, *time).map(drop)
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Whether what is written is binary.

@@ -16,6 +16,7 @@ pub use faces::Faces;
 pub use interpolate::Interpolator;
 pub use isosurface::{Surface, isosurface};
 pub use locate::Locator;
+pub(crate) use slice::first_time;
 pub use slice::{Slice, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};
 

@@ -61,6 +61,11 @@ enum TriangulateFlag {
 }
 
 impl ProductFlags {
+    /// Whether sites come from stdin.
+    pub(super) fn reads_stdin(&self) -> bool {
+        self.at_file.as_ref().is_some_and(|path| path.as_os_str() == "-")
+    }
+
     /// What is asked for, to be written to a path. Reads the sites of `--at-file`, so that a mistake there is found
     /// before the work.
     ///
@@ -71,6 +76,9 @@ impl ProductFlags {
             let mut sites = self.at.clone();
             sites.extend(self.at_file.as_deref().map(read_sites).transpose()?.unwrap_or_default());
             return Ok(Product::Values(sites));
+        }
+        if self.slice.is_none() {
+            check_stream(output)?;
         }
         Ok(match (self.triangulate, self.slice, self.isosurface) {
             (Some(TriangulateFlag::Canonical), ..) => Product::Simplices(Rule::Pulled),
@@ -95,6 +103,18 @@ impl fmt::Display for ProductFlags {
         flags.extend(self.slice.map(|time| format!("--slice {time}")));
         flags.extend(self.isosurface.map(|level| format!("--isosurface {level}")));
         f.write_str(&flags.join(" "))
+    }
+}
+
+/// Refuses names of formats that hold no cells of four dimensions, as if it were them that one would get.
+fn check_stream(path: &Path) -> Result<()> {
+    match Format::from_path(path) {
+        None | Some(Format::Spm) => Ok(()),
+        Some(other) => Err(Error::usage(format!(
+            "{}: what is in four dimensions is written as a stream (.spm), not as {}: for a mesh at a time use --slice",
+            path.display(),
+            other.name()
+        ))),
     }
 }
 
@@ -215,6 +235,10 @@ mod tests {
         for (arguments, part) in cases {
             let error = flags(arguments).unwrap_err().to_string();
             assert!(error.contains(part), "{arguments:?}: {error}");
+        }
+        for name in ["a.vtu", "a.PLY", "a.txt"] {
+            let message = flags(&[]).unwrap().product(Path::new(name)).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("--slice"), "{message}");
         }
         assert!(flags(&["--at-file", "/nonexistent/sites"]).unwrap().product(Path::new("-")).is_err());
     }
