@@ -48,8 +48,8 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. Delaunay diagrams in four
-    /// dimensions have no ties to resolve: for them both standards are the same
+    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. In four dimensions
+    /// both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it may be any
     #[arg(
         long,
         value_enum,
