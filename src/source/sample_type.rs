@@ -18,15 +18,25 @@ pub(super) enum SampleType {
     F64,
 }
 
-/// The number in `bytes`.
-macro_rules! number {
-    ($type:ty, $bytes:expr, $order:expr) => {{
-        let bytes = $bytes.try_into().expect("its length");
+/// The numbers in `bytes`: a loop for each type and order, so that none asks for them again and again.
+macro_rules! decode {
+    ($type:ty, $bytes:expr, $order:expr, $numbers:expr) => {{
+        let numbers =
+            $bytes.chunks_exact(size_of::<$type>()).map(|bytes| bytes.try_into().expect("its length"));
         match $order {
-            ByteOrder::Little => <$type>::from_le_bytes(bytes) as f64,
-            ByteOrder::Big => <$type>::from_be_bytes(bytes) as f64,
+            ByteOrder::Little => $numbers.extend(numbers.map(|bytes| <$type>::from_le_bytes(bytes) as f64)),
+            ByteOrder::Big => $numbers.extend(numbers.map(|bytes| <$type>::from_be_bytes(bytes) as f64)),
         }
     }};
+}
+
+/// Takes the last number.
+struct Last(f64);
+
+impl Extend<f64> for Last {
+    fn extend<I: IntoIterator<Item = f64>>(&mut self, numbers: I) {
+        numbers.into_iter().for_each(|number| self.0 = number);
+    }
 }
 
 impl SampleType {
@@ -40,26 +50,27 @@ impl SampleType {
         }
     }
 
-    /// The number in `bytes`, which are as many as it has. Integers beyond 2^53 are rounded.
-    #[inline]
-    pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
+    /// Appends the numbers in `bytes`. Integers beyond 2^53 are rounded.
+    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, numbers: &mut impl Extend<f64>) {
         match self {
-            SampleType::I8 => number!(i8, bytes, order),
-            SampleType::U8 => number!(u8, bytes, order),
-            SampleType::I16 => number!(i16, bytes, order),
-            SampleType::U16 => number!(u16, bytes, order),
-            SampleType::I32 => number!(i32, bytes, order),
-            SampleType::U32 => number!(u32, bytes, order),
-            SampleType::I64 => number!(i64, bytes, order),
-            SampleType::U64 => number!(u64, bytes, order),
-            SampleType::F32 => number!(f32, bytes, order),
-            SampleType::F64 => number!(f64, bytes, order),
+            SampleType::I8 => decode!(i8, bytes, order, numbers),
+            SampleType::U8 => decode!(u8, bytes, order, numbers),
+            SampleType::I16 => decode!(i16, bytes, order, numbers),
+            SampleType::U16 => decode!(u16, bytes, order, numbers),
+            SampleType::I32 => decode!(i32, bytes, order, numbers),
+            SampleType::U32 => decode!(u32, bytes, order, numbers),
+            SampleType::I64 => decode!(i64, bytes, order, numbers),
+            SampleType::U64 => decode!(u64, bytes, order, numbers),
+            SampleType::F32 => decode!(f32, bytes, order, numbers),
+            SampleType::F64 => decode!(f64, bytes, order, numbers),
         }
     }
 
-    /// Appends the numbers in `bytes`.
-    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, numbers: &mut Vec<f64>) {
-        numbers.extend(bytes.chunks_exact(self.len()).map(|bytes| self.number(bytes, order)));
+    /// The number in `bytes`, which are as many as it has.
+    pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
+        let mut last = Last(0.0);
+        self.decode(bytes, order, &mut last);
+        last.0
     }
 
     /// The value that is written as `text`.
