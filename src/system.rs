@@ -5,6 +5,7 @@ use std::ffi::CString;
 use std::os::fd::{AsFd, AsRawFd};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Bytes that a pipe holds where the system allows it; by default it is 64 KiB, and both ends wait for each other
 /// all the time.
@@ -27,6 +28,28 @@ pub fn widen_pipe(file: &impl AsFd) {
 /// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
 #[cfg(not(target_os = "linux"))]
 pub fn widen_pipe(_file: &impl AsFd) {}
+
+/// What is said, and the exit code, where the process would abort.
+static AT_ABORT: OnceLock<(&str, u8)> = OnceLock::new();
+
+/// From now on, says `message` on stderr and exits with `code` where the process would abort, which Rust does when it
+/// cannot have the memory that it needs. The first call counts.
+pub(crate) fn exit_at_abort(message: &'static str, code: u8) {
+    let handler: extern "C" fn(libc::c_int) = exit_with_message;
+    if AT_ABORT.set((message, code)).is_ok() {
+        // SAFETY: the handler only makes calls that are allowed in one, and does not return.
+        unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
+    }
+}
+
+extern "C" fn exit_with_message(_signal: libc::c_int) {
+    let (message, code) = AT_ABORT.get().copied().unwrap_or(("", 1));
+    // SAFETY: the message is as long as it says, and nothing of this process runs after the second call.
+    unsafe {
+        libc::write(libc::STDERR_FILENO, message.as_ptr().cast(), message.len());
+        libc::_exit(code.into());
+    }
+}
 
 /// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for it.
 #[cfg(target_os = "linux")]

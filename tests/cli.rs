@@ -23,6 +23,22 @@ fn every_tool_has_help_with_examples_and_a_version() {
 }
 
 #[test]
+fn examples_are_indented_and_paragraphs_are_wrapped_once() {
+    for name in TOOLS {
+        let text = String::from_utf8(run(name, &["--help"], &[]).stdout).unwrap();
+        let (_, end) = text.split_once("Examples:\n").unwrap();
+        let (examples, notes) = end.split_once("\n\n").unwrap();
+        assert!(examples.lines().all(|line| line.starts_with("  ")), "{name}: {examples}");
+        // Where the text breaks a line and the wrapping another one, a few words are left alone between.
+        for paragraph in notes.trim().split("\n\n") {
+            let lines: Vec<&str> = paragraph.lines().collect();
+            let short = lines[..lines.len() - 1].iter().find(|line| line.len() < 60);
+            assert_eq!(short, None, "{name}: {paragraph}");
+        }
+    }
+}
+
+#[test]
 fn readme_manifest_and_bin_name_the_same_tools() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut programs: Vec<String> = fs::read_dir(root.join("bin"))

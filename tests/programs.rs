@@ -1,7 +1,8 @@
 //! Running the tools as a user does.
 
-use std::io::Write;
-use std::path::PathBuf;
+use std::fs;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
 /// A command for a tool of this crate.
@@ -42,6 +43,15 @@ pub fn outcome(output: &Output) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// Asserts that a tool whose reader goes away after 100 bytes ends with 141, and silently.
+pub fn assert_silent_without_reader(name: &str, arguments: &[&str]) {
+    let mut child = start(name, arguments, Stdio::null());
+    let mut head = [0; 100];
+    child.stdout.take().expect("stdout is piped").read_exact(&mut head).expect("there is more");
+    let (code, message) = outcome(&child.wait_with_output().expect("the tool ends"));
+    assert_eq!((code, &message[..]), (Some(141), ""), "{name} {arguments:?}");
+}
+
 /// A small file that comes with the tests.
 pub fn sample(name: &str) -> String {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", name].iter().collect();
@@ -52,4 +62,56 @@ pub fn sample(name: &str) -> String {
 pub fn cloud(count: u64) -> String {
     let point = |i: u64| (i * 7919 % 100_003, i * 104_729 % 99_991, i % 97);
     (0..count).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()
+}
+
+/// Files that last as long as a test.
+pub struct Folder(tempfile::TempDir);
+
+impl Folder {
+    pub fn new() -> Self {
+        Folder(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    pub fn root(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn path(&self, name: &str) -> String {
+        self.root().join(name).to_str().expect("the path is UTF-8").to_string()
+    }
+
+    /// Writes a file, in folders that are made for it.
+    pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.root().join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a temporary folder");
+        fs::write(&path, content).expect("a temporary file");
+        path
+    }
+
+    /// As [`Folder::file`], with the path as an argument of a tool.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
+        self.file(name, content);
+        self.path(name)
+    }
+
+    /// Names of all files below a folder, sorted.
+    pub fn names(&self, folder: &str) -> Vec<String> {
+        let root = self.root().join(folder);
+        let mut names = Vec::new();
+        collect(&root, &root, &mut names);
+        names.sort_unstable();
+        names
+    }
+}
+
+fn collect(root: &Path, folder: &Path, names: &mut Vec<String>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            collect(root, &path, names);
+        } else {
+            let name = path.strip_prefix(root).expect("it is below");
+            names.push(name.to_str().expect("the path is UTF-8").to_string());
+        }
+    }
 }

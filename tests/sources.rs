@@ -18,6 +18,8 @@ use spmesh::bounds::Point;
 use spmesh::error::{ErrorKind, Result};
 use spmesh::source::{Input, SourceOptions};
 
+use crate::programs::Folder;
+
 /// Options for two dimensions and nothing else.
 fn flat() -> SourceOptions {
     SourceOptions { dims: 2, ..SourceOptions::default() }
@@ -26,21 +28,6 @@ fn flat() -> SourceOptions {
 /// A bundled sample.
 fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
-}
-
-/// Files that last as long as a test.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Folder(tempfile::tempdir().expect("a temporary folder"))
-    }
-
-    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, content).expect("a temporary file");
-        path
-    }
 }
 
 /// All points of one pass.

@@ -5,54 +5,46 @@
 //! cargo run --release --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
-//! Set `I` of a seed alone: `--set I`. A failure is a panic, which names the set.
+//! Set `I` of a seed alone: `--set I`. A set that fails is made as small as possible and written to a file.
 
 #[path = "../../tests/reference/sets.rs"]
 #[allow(dead_code, missing_docs)]
 mod sets;
 
+mod fuzzing;
+
 use clap::Parser;
+use fuzzing::{Fuzzing, Trial};
 use sets::Random;
 use spmesh::audit::diagram::check;
 use spmesh::cells4::Point4;
 use spmesh::diagram4::{Diagram, Route, diagram_by};
-use std::time::{Duration, Instant};
 
 /// Fuzzes the 4D engine.
 #[derive(Debug, Parser)]
 struct Args {
-    /// Wall time, in seconds.
-    #[arg(long, default_value_t = 60)]
-    seconds: u64,
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Tries this set only.
-    #[arg(long)]
-    set: Option<u64>,
+    #[command(flatten)]
+    fuzzing: Fuzzing,
 }
 
 fn main() {
-    let args = Args::parse();
-    let (started, mut told) = (Instant::now(), 0);
-    let mut figures = [0u64; 3];
-    for number in args.set.unwrap_or(0).. {
-        let mut random = Random::new(args.seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let points = points(&mut random);
-        let cells = std::panic::catch_unwind(|| try_set(&points, &mut Random::new(number)));
-        let Ok(cells) = cells else {
-            panic!("set {number} of seed {}: {} points {points:?}", args.seed, points.len())
-        };
-        figures = [figures[0] + 1, figures[1] + points.len() as u64, figures[2] + cells as u64];
-        let elapsed = started.elapsed();
-        let is_done = elapsed >= Duration::from_secs(args.seconds) || args.set.is_some();
-        if is_done || elapsed.as_secs() / 60 > told {
-            told = elapsed.as_secs() / 60;
-            let [sets, points, cells] = figures;
-            println!("{} s: {sets} sets, {points} points, {cells} cells proved", elapsed.as_secs());
-        }
-        if is_done {
-            return;
-        }
+    Args::parse().fuzzing.run::<4, Diagrams>();
+}
+
+#[derive(Default)]
+struct Diagrams;
+
+impl Trial<4> for Diagrams {
+    const CELLS: &str = "cells";
+
+    fn points(seed: u64, set: u64) -> Vec<Point4> {
+        points(&mut Random::new(seed.wrapping_mul(1_000_003).wrapping_add(set)))
+    }
+
+    fn attempt(&mut self, set: u64, points: &[Point4], done: impl FnOnce()) -> Result<u64, String> {
+        let cells = try_set(points, &mut Random::new(set));
+        done();
+        Ok(cells as u64)
     }
 }
 

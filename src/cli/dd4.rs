@@ -12,9 +12,11 @@ use clap::{Parser, ValueEnum};
 use super::{Common, StatsFormat, notice, progress::Progress};
 use crate::dd4::{self, Options, Quantum};
 use crate::diagram4::Route;
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
+use crate::output::Output;
+use crate::system;
 
-pub use product::{EXAMPLES as PRODUCT_EXAMPLES, Product, ProductFlags, Written, write};
+pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
 
 const EXAMPLES: &str = "\
@@ -24,13 +26,17 @@ Examples:
     spinfo --audit points.spm
 ";
 
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
 
-Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, one for
-each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
+Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, \
+one for each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated \
 input, 5 not enough memory for the points, 141 output closed by its reader.";
+
+/// What is said after the number of bytes that could not be had.
+const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";
 
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
@@ -39,20 +45,14 @@ input, 5 not enough memory for the points, 141 output closed by its reader.";
 #[derive(Debug, Parser)]
 #[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}\n{PRODUCT_EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    #[command(flatten)]
-    source: SourceFlags,
-
     /// Where the diagram goes; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
     /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of the
     /// coordinates, which f64 rounds, so that no grid would be cospherical
-    #[arg(long, value_name = "Q")]
+    #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
-
-    #[command(flatten)]
-    product: ProductFlags,
 
     /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008) did, which is
     /// slower. The result is the same
@@ -65,6 +65,13 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    // Last, as their headings would hold for flags that come after them.
+    #[command(flatten)]
+    source: SourceFlags,
+
+    #[command(flatten)]
+    product: ProductFlags,
 }
 
 /// What `--route` can say.
@@ -88,7 +95,7 @@ impl From<RouteFlag> for Route {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`SourceFlags::read`], [`dd4::make`] and [`write()`].
+/// As [`SourceFlags::read`], [`dd4::make`] and [`dd4::Product::write`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
@@ -96,10 +103,14 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
+        system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let options = Options { quantum: self.quantum, route: self.route.into() };
-        let product = self.product.product()?;
+        if self.source.is_stdin() && self.product.reads_stdin() {
+            return Err(Error::usage("points and sites cannot both come from stdin"));
+        }
+        let product = self.product.product(&self.output)?;
         // An output that cannot be is better known before the work.
-        let output = product.create(&self.output)?;
+        let mut output = Output::create(&self.output, product.is_binary())?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();
@@ -109,17 +120,15 @@ impl Flags {
             let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
             self.notice(&format!("{}: {warning}", points.name));
         }
-        if product.needs_values() && points.values.is_none() {
-            let message = "the points have no values to interpolate: give x y z t value";
-            return Err(Error::usage(message).of_input(points.name));
-        }
         let progress = Progress::waiting(&self.common, "triangulating");
-        let (diagram, mut report) = dd4::make(points, &options)?;
+        let (diagram, mut report) = dd4::make(points, &product, &options)?;
         let begun = Instant::now();
-        let written = write(&product, &diagram, &self.output, output)?;
-        (report.output_bytes, report.write_time) = (written.bytes, begun.elapsed());
+        let notices = product.write(&diagram, &mut output)?;
+        report.output_bytes = output.bytes_written();
+        output.commit()?;
+        report.write_time = begun.elapsed();
         drop(progress);
-        written.notices.iter().for_each(|text| self.notice(text));
+        notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));
         report::print(self.stats, &report, read, started.elapsed());
         Ok(())

@@ -48,7 +48,8 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation
+    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. In four dimensions
+    /// both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it may be any
     #[arg(
         long,
         value_enum,

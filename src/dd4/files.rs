@@ -1,4 +1,4 @@
-//! Products as files.
+//! Products that are no streams.
 
 use std::io::Write;
 
@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 use crate::sink::{
     EventSink, MeditSink, ObjSink, PlyEncoding, PlySink, VtuSink, surface_header, write_volume,
 };
-use crate::spacetime::{Slice, Subdivision, Surface};
-use crate::stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
+use crate::spacetime::{Slice, Surface};
+use crate::stream::{Coordinates, Event, Header, Kind, Patch, Totals};
 
 /// The form of meshes in space that are no streams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,19 +22,6 @@ pub enum Form {
     Ply,
     /// OBJ: surfaces.
     Obj,
-}
-
-/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
-///
-/// # Errors
-/// If a value is infinite, or writing fails.
-pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> Result<()> {
-    let points = parts.points.len() as u64;
-    let header = Header::new(Kind::Simplices4, Coordinates::F64, 4, parts.values.is_some());
-    let mut writer = StreamWriter::new(output, header)?;
-    writer.points4(&parts.points, parts.values.as_deref())?;
-    writer.simplices4(&parts.simplices)?;
-    writer.end(points + merged, merged).map(drop)
 }
 
 /// Writes sites with their values as lines of x, y, z, t and value, separated by tabs, below a line of names. What is

@@ -2,13 +2,15 @@
 
 mod figures;
 mod files;
+mod product;
 mod quantum;
 mod write;
 
 pub use figures::Figures;
-pub use files::{Form, write_simplices, write_slice, write_surface, write_values};
+pub use files::{Form, write_slice, write_surface, write_values};
+pub use product::Product;
 pub use quantum::Quantum;
-pub use write::write_diagram;
+pub use write::{write_diagram, write_simplices};
 
 use std::time::{Duration, Instant};
 
@@ -44,15 +46,16 @@ pub struct Report {
     pub output_bytes: u64,
 }
 
-/// Makes the diagram of points.
+/// Makes the diagram of points, of which a product is wanted.
 ///
 /// # Errors
-/// As [`diagram_by`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value is infinite.
-pub fn make(points: Points4, options: &Options) -> Result<(Diagram, Report)> {
+/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value
+/// is infinite.
+pub fn make(points: Points4, product: &Product, options: &Options) -> Result<(Diagram, Report)> {
     let name = points.name.clone();
     let started = Instant::now();
     let mut report = Report { points: points.points.len() as u64, ..Report::default() };
-    let (diagram, stats) = diagram_of(points, options).map_err(|e| e.of_input(name))?;
+    let (diagram, stats) = diagram_of(points, product, options).map_err(|e| e.of_input(name))?;
     report.diagram_time = started.elapsed();
     report.merged = diagram.merged;
     report.stats = stats;
@@ -60,7 +63,7 @@ pub fn make(points: Points4, options: &Options) -> Result<(Diagram, Report)> {
     Ok((diagram, report))
 }
 
-fn diagram_of(points: Points4, options: &Options) -> Result<(Diagram, Stats)> {
+fn diagram_of(points: Points4, product: &Product, options: &Options) -> Result<(Diagram, Stats)> {
     let Points4 { mut points, values, .. } = points;
     // Known before the work, rather than when it is to be written.
     let infinite = values.iter().flatten().position(|value| value.is_infinite());
@@ -71,5 +74,6 @@ fn diagram_of(points: Points4, options: &Options) -> Result<(Diagram, Stats)> {
     if let Some(quantum) = options.quantum {
         quantum.make_whole(&mut points)?;
     }
+    product.check(&points, values.is_some())?;
     diagram_by(options.route, points, values)
 }

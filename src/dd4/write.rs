@@ -1,25 +1,43 @@
 //! Diagrams to streams.
 
+use std::io::Write;
+
 use crate::diagram4::Diagram;
 use crate::error::Result;
-use crate::output::Output;
+use crate::spacetime::Subdivision;
 use crate::stream::{Coordinates, Header, Kind, StreamWriter};
 
-/// Writes the diagram as a stream of cells; says how many bytes that are.
+/// Writes the diagram as a stream of cells.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_diagram(diagram: &Diagram, output: Output) -> Result<u64> {
+pub fn write_diagram(diagram: &Diagram, output: impl Write) -> Result<()> {
     let Diagram { points, values, merged, cells } = diagram;
     let count = points.len() as u64 + merged;
-    let mut header = Header::new(Kind::Cells4, Coordinates::F64, 4, values.is_some());
-    header.points = Some(count);
-    header.producer = concat!("dd4 ", env!("CARGO_PKG_VERSION")).to_string();
-    let mut writer = StreamWriter::new(output, header)?;
+    let mut writer = StreamWriter::new(output, header(Kind::Cells4, values.is_some(), count))?;
     writer.points4(points, values.as_deref())?;
     cells.iter().try_for_each(|cell| writer.cell4(cell))?;
-    let output = writer.end(count, *merged)?;
-    let bytes = output.bytes_written();
-    output.commit()?;
-    Ok(bytes)
+    writer.end(count, *merged).map(drop)
+}
+
+/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
+///
+/// # Errors
+/// If a value is infinite, or writing fails.
+pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> Result<()> {
+    let Subdivision { points, values, simplices, .. } = parts;
+    let count = points.len() as u64 + merged;
+    let mut writer = StreamWriter::new(output, header(Kind::Simplices4, values.is_some(), count))?;
+    writer.points4(points, values.as_deref())?;
+    writer.simplices4(simplices)?;
+    writer.end(count, merged).map(drop)
+}
+
+/// The header of a stream that `dd4` makes of `count` points.
+fn header(kind: Kind, has_values: bool, count: u64) -> Header {
+    Header {
+        points: Some(count),
+        producer: concat!("dd4 ", env!("CARGO_PKG_VERSION")).to_string(),
+        ..Header::new(kind, Coordinates::F64, 4, has_values)
+    }
 }

@@ -25,6 +25,7 @@ mod ply_header;
 pub mod points4;
 mod polygon;
 mod records;
+mod sample_type;
 mod sma;
 mod smb;
 mod smb_header;

@@ -7,8 +7,9 @@ use super::byte_order::ByteOrder;
 use super::events::EventSource;
 use super::mesh_events::{Element, Elements, MeshEvents};
 use super::patches::Order;
-use super::ply_header::{Encoding, PlyHeader, Property, Role, Scalar, Sort};
+use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
+use super::sample_type::SampleType;
 use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
 use crate::bounds::Point;
 use crate::error::{Error, Result};
@@ -216,7 +217,7 @@ impl RowValues {
     fn property(
         &mut self,
         property: &Property,
-        mut next: impl FnMut(Role, Scalar) -> Result<f64>,
+        mut next: impl FnMut(Role, SampleType) -> Result<f64>,
     ) -> Result<()> {
         let &Property { role, length, scalar } = property;
         let Some(length) = length else { return self.add(role, next(role, scalar)?) };
@@ -252,35 +253,15 @@ fn read_binary_row(
     for property in properties {
         values.property(property, |_, scalar| {
             let mut bytes = [0; 8];
-            let bytes = &mut bytes[..scalar.width()];
+            let bytes = &mut bytes[..scalar.len()];
             input.read_exact(bytes).map_err(|e| match e.kind() {
                 std::io::ErrorKind::UnexpectedEof => truncated(),
                 _ => Error::io("reading", e),
             })?;
-            if order == ByteOrder::Big {
-                bytes.reverse();
-            }
-            Ok(number(scalar, bytes))
+            Ok(scalar.number(bytes, order))
         })?;
     }
     Ok((values.point, values.corners))
-}
-
-/// The number of a type in its little-endian bytes, as many as its width.
-fn number(scalar: Scalar, bytes: &[u8]) -> f64 {
-    let mut wide = [0; 8];
-    wide[..bytes.len()].copy_from_slice(bytes);
-    let bits = u64::from_le_bytes(wide);
-    match scalar {
-        Scalar::I8 => f64::from(bits as i8),
-        Scalar::U8 => f64::from(bits as u8),
-        Scalar::I16 => f64::from(bits as i16),
-        Scalar::U16 => f64::from(bits as u16),
-        Scalar::I32 => f64::from(bits as i32),
-        Scalar::U32 => f64::from(bits as u32),
-        Scalar::F32 => f64::from(f32::from_bits(bits as u32)),
-        Scalar::F64 => f64::from_bits(bits),
-    }
 }
 
 fn truncated() -> Error {

@@ -3,6 +3,7 @@
 use std::io::Read;
 
 use super::byte_order::ByteOrder;
+use super::sample_type::SampleType;
 use super::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
 use crate::error::{Error, Result};
 
@@ -14,45 +15,6 @@ const ITEMS_MAX: usize = 1000;
 pub(super) enum Encoding {
     Ascii,
     Binary(ByteOrder),
-}
-
-/// Type of a number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-}
-
-impl Scalar {
-    /// Bytes of a number.
-    pub(super) fn width(self) -> usize {
-        match self {
-            Scalar::I8 | Scalar::U8 => 1,
-            Scalar::I16 | Scalar::U16 => 2,
-            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
-            Scalar::F64 => 8,
-        }
-    }
-
-    fn from_name(name: &[u8]) -> Result<Scalar> {
-        Ok(match name {
-            b"char" | b"int8" => Scalar::I8,
-            b"uchar" | b"uint8" => Scalar::U8,
-            b"short" | b"int16" => Scalar::I16,
-            b"ushort" | b"uint16" => Scalar::U16,
-            b"int" | b"int32" => Scalar::I32,
-            b"uint" | b"uint32" => Scalar::U32,
-            b"float" | b"float32" => Scalar::F32,
-            b"double" | b"float64" => Scalar::F64,
-            other => return Err(unexpected(other, "a type of PLY")),
-        })
-    }
 }
 
 /// What a property of an element means here.
@@ -73,8 +35,8 @@ pub(super) enum Role {
 pub(super) struct Property {
     pub(super) role: Role,
     /// For a list, the type of its length.
-    pub(super) length: Option<Scalar>,
-    pub(super) scalar: Scalar,
+    pub(super) length: Option<SampleType>,
+    pub(super) scalar: SampleType,
 }
 
 /// What the rows of an element are.
@@ -174,6 +136,20 @@ impl PlyHeader {
     }
 }
 
+fn parse_type(name: &[u8]) -> Result<SampleType> {
+    match name {
+        b"char" | b"int8" => Ok(SampleType::I8),
+        b"uchar" | b"uint8" => Ok(SampleType::U8),
+        b"short" | b"int16" => Ok(SampleType::I16),
+        b"ushort" | b"uint16" => Ok(SampleType::U16),
+        b"int" | b"int32" => Ok(SampleType::I32),
+        b"uint" | b"uint32" => Ok(SampleType::U32),
+        b"float" | b"float32" => Ok(SampleType::F32),
+        b"double" | b"float64" => Ok(SampleType::F64),
+        other => Err(unexpected(other, "a type of PLY")),
+    }
+}
+
 fn parse_encoding(name: &[u8]) -> Result<Encoding> {
     match name {
         b"ascii" => Ok(Encoding::Ascii),
@@ -198,8 +174,8 @@ fn parse_element<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Elem
 fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -> Result<Property> {
     let first = next_field(fields)?;
     let is_list = first == b"list";
-    let length = is_list.then(|| Scalar::from_name(next_field(fields)?)).transpose()?;
-    let scalar = Scalar::from_name(if is_list { next_field(fields)? } else { first })?;
+    let length = is_list.then(|| parse_type(next_field(fields)?)).transpose()?;
+    let scalar = parse_type(if is_list { next_field(fields)? } else { first })?;
     let name = next_field(fields)?;
     expect_no_field(fields)?;
     let role = match (sort, is_list, name) {

@@ -1,5 +1,6 @@
 //! Values between points: linear on the simplices of the barycentric subdivision, continuous everywhere.
 
+use super::NO_VALUES;
 use super::locate::Locator;
 use super::subdivide::{Subdivision, subdivide_one};
 use crate::cells4::Point4;
@@ -26,7 +27,7 @@ impl<'a> Interpolator<'a> {
     /// Usage, if the points have no values.
     pub fn new(diagram: &'a Diagram) -> Result<Self> {
         let Some(values) = diagram.values.as_deref() else {
-            return Err(Error::usage("the points have no values to interpolate: give x y z t value"));
+            return Err(Error::usage(NO_VALUES));
         };
         Ok(Interpolator { diagram, values, locator: Locator::new(diagram), last: None })
     }

@@ -1,5 +1,6 @@
 //! Surfaces of equal value in a slice (marching tetrahedra).
 
+use super::NO_VALUES;
 use super::prism::{Cuts, between};
 use super::slice::Slice;
 use crate::bounds::Point;
@@ -29,7 +30,7 @@ pub struct Surface {
 /// Cost: some 50 nanoseconds per tetrahedron.
 pub fn isosurface(slice: &Slice, level: f64) -> Result<Surface> {
     let Some(values) = slice.values.as_deref() else {
-        return Err(Error::usage("the points have no values for an isosurface: give x y z t value"));
+        return Err(Error::usage(NO_VALUES));
     };
     if !level.is_finite() {
         return Err(Error::usage(format!("no isosurface at {level}: a finite value is needed")));

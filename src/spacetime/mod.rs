@@ -16,5 +16,9 @@ pub use faces::Faces;
 pub use interpolate::Interpolator;
 pub use isosurface::{Surface, isosurface};
 pub use locate::Locator;
+pub(crate) use slice::first_time;
 pub use slice::{Slice, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};
+
+/// What is said where values are needed and the points have none.
+pub(crate) const NO_VALUES: &str = "the points have no values to interpolate: give x y z t value";

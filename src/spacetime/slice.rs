@@ -35,11 +35,7 @@ pub struct Slice {
 ///
 /// Cost: as [`subdivide`] for the cells that the time passes, and half a microsecond per tetrahedron.
 pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
-    let times = diagram.points.iter().map(|point| point[3]);
-    let (first, last) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
-    if !(first..=last).contains(&time) {
-        return Err(Error::usage(format!("no slice at time {time}: the points are from {first} to {last}")));
-    }
+    let first = first_time(&diagram.points, time)?;
     let is_above = |point: &Point4| if time == first { point[3] > time } else { point[3] >= time };
     let (points, values) = (&diagram.points, diagram.values.as_deref());
     let is_cut = |vertices: &[u32]| {
@@ -59,6 +55,19 @@ pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
         staircases(&below, &above, &mut |edges| cutter.tetrahedron(edges))?;
     }
     Ok(cutter.slice)
+}
+
+/// The first time of points that `time` is not before, nor after the last.
+///
+/// # Errors
+/// Usage, if it is.
+pub(crate) fn first_time(points: &[Point4], time: f64) -> Result<f64> {
+    let times = points.iter().map(|point| point[3]);
+    let (first, last) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
+    if !(first..=last).contains(&time) {
+        return Err(Error::usage(format!("no slice at time {time}: the points are from {first} to {last}")));
+    }
+    Ok(first)
 }
 
 struct Cutter<'a> {

@@ -2,10 +2,10 @@
 
 use std::fs;
 use std::io::{Read, Write};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 
 use super::diagram;
-use crate::programs::{outcome, run, start, tool};
+use crate::programs::{assert_silent_without_reader, outcome, run, start, tool};
 
 #[test]
 fn points_without_a_volume_say_their_dimension() {
@@ -90,11 +90,7 @@ fn a_killed_producer_leaves_no_result() {
 
 #[test]
 fn a_closed_pipe_is_silent() {
-    let mut child = start("dd4", &["--grid", "12x12x12x8"], Stdio::null());
-    let mut head = [0; 100];
-    child.stdout.take().unwrap().read_exact(&mut head).unwrap();
-    let (code, message) = outcome(&child.wait_with_output().unwrap());
-    assert_eq!((code, &message[..]), (Some(141), ""));
+    assert_silent_without_reader("dd4", &["--grid", "12x12x12x8"]);
 }
 
 #[test]
@@ -106,4 +102,20 @@ fn a_full_disk_is_an_error_with_its_reason() {
     let (code, message) = outcome(&run("dd4", &["--grid", "4x4x4x4", "-o", "/dev/full"], &[]));
     assert_eq!(code, Some(1), "{message}");
     assert!(message.contains("No space left on device"), "{message}");
+}
+
+#[test]
+fn too_little_memory_has_its_exit_code() {
+    let dd4 = env!("CARGO_BIN_EXE_dd4");
+    // In units of 1024 bytes of addresses, not all of which are ever used.
+    let limited = format!("ulimit -v 150000 || exit 99; exec '{dd4}' --grid 30x30x30x30 -o /dev/null");
+    let mut shell = Command::new("sh");
+    let output = shell.args(["-c", &limited]).env("RUST_BACKTRACE", "0").output().unwrap();
+    let (code, message) = outcome(&output);
+    if code == Some(99) {
+        eprintln!("SKIPPED: memory cannot be limited here");
+        return;
+    }
+    assert_eq!(code, Some(5), "{message}");
+    assert!(message.contains("dd4: not enough memory: take fewer points"), "{message}");
 }

@@ -9,11 +9,13 @@ mod selections;
 mod text;
 
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use spmesh::cells4::Point4;
 use spmesh::error::{ErrorKind, Result};
 use spmesh::source::points4::{From4, Points4, Request, Selection, Spacing, read_points4};
+
+use crate::programs::Folder;
 
 /// A request for all points.
 fn all(from: From4) -> Request {
@@ -29,21 +31,6 @@ fn with_condition(from: From4, condition: &str) -> Request {
 /// All points of a file of the tests.
 fn sample(name: &str) -> From4 {
     From4::File(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name))
-}
-
-/// Files that last as long as a test.
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn new() -> Self {
-        Folder(tempfile::tempdir().expect("a temporary folder"))
-    }
-
-    fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
-        let path = self.0.path().join(name);
-        std::fs::write(&path, content).expect("a temporary file");
-        path
-    }
 }
 
 /// All points of a file with this content.

@@ -3,7 +3,8 @@
 use spmesh::error::{ErrorKind, Result};
 use spmesh::source::points4::{From4, Points4, Request, Spacing, read_points4};
 
-use super::{Folder, all, assert_fails, gzip, read, sample, value_at, with_condition};
+use super::{all, assert_fails, gzip, read, sample, value_at, with_condition};
+use crate::programs::Folder;
 
 /// A header of NIfTI-1 with numbers in one byte order.
 struct Header {

@@ -3,7 +3,8 @@
 use spmesh::error::Result;
 use spmesh::source::points4::{From4, Points4, Request, Spacing, read_points4};
 
-use super::{Folder, all, gzip, read, sample, value_at, with_condition};
+use super::{all, gzip, read, sample, value_at, with_condition};
+use crate::programs::Folder;
 
 /// A volume of 2 x 2 x 1 x 2 bytes from 1 to 8, with more fields.
 fn small(fields: &str) -> Vec<u8> {

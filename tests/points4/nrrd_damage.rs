@@ -3,7 +3,8 @@
 use spmesh::error::ErrorKind;
 use spmesh::source::points4::{From4, read_points4};
 
-use super::{Folder, all, assert_fails, gzip, read};
+use super::{all, assert_fails, gzip, read};
+use crate::programs::Folder;
 
 const GOOD: &str = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\n\n12345678";
 

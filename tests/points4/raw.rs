@@ -3,7 +3,8 @@
 use spmesh::error::{ErrorKind, Result};
 use spmesh::source::points4::{From4, Points4, RawLayout, parse_sizes, read_points4};
 
-use super::{Folder, all, assert_fails, gzip};
+use super::{all, assert_fails, gzip};
+use crate::programs::Folder;
 
 fn read(name: &str, content: &[u8], layout: &str) -> Result<Points4> {
     let folder = Folder::new();

@@ -2,7 +2,8 @@
 
 use spmesh::source::points4::{From4, Share, read_points4};
 
-use super::{Folder, all, with_condition};
+use super::{all, with_condition};
+use crate::programs::Folder;
 
 /// A raw volume of 8 x 8 x 8 x 4 values that grow with their number; every tenth is missing.
 fn volume(folder: &Folder) -> From4 {

@@ -3,7 +3,8 @@
 use spmesh::error::ErrorKind;
 use spmesh::source::points4::{From4, read_points4};
 
-use super::{Folder, all, assert_fails, gzip, read, with_condition};
+use super::{all, assert_fails, gzip, read, with_condition};
+use crate::programs::Folder;
 
 #[test]
 fn lines_may_be_separated_as_usual() {

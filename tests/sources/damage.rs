@@ -1,7 +1,8 @@
 //! Damaged files: whatever byte is wrong, reading ends with points or an error, within bounded memory.
 
-use super::{Folder, flat, sample};
+use super::{flat, sample};
 use crate::allocation::largest_during;
+use crate::programs::Folder;
 use spmesh::error::ErrorKind;
 use spmesh::source::Input;
 

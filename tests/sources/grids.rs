@@ -8,8 +8,8 @@ use spmesh::source::{Input, SourceOptions};
 use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
 
 use super::las_file::LasFile;
-use super::{Folder, assert_fails, flat, pass, points, sample};
-use crate::programs::run;
+use super::{assert_fails, flat, pass, points, sample};
+use crate::programs::{Folder, run};
 
 /// Opens files with these scales and offsets and the same positions.
 fn open(

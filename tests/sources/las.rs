@@ -10,7 +10,8 @@ use spmesh::source::{Input, SourceOptions, crs_name};
 use spmesh::stream::{Coordinates, Crs};
 
 use super::las_file::{LasFile, Record, geo_keys};
-use super::{Folder, assert_fails, flat, pass, points, points_of, sample};
+use super::{assert_fails, flat, pass, points, points_of, sample};
+use crate::programs::Folder;
 
 #[test]
 fn samples_have_the_points_and_the_box_that_their_headers_state() {
@@ -222,7 +223,7 @@ fn points_that_the_header_does_not_state_are_told_of() {
 #[test]
 fn pipes_are_spooled_and_the_notice_says_so() {
     let folder = Folder::new();
-    let path = folder.0.path().join("pipe.laz");
+    let path = folder.root().join("pipe.laz");
     let name = CString::new(path.as_os_str().as_bytes()).unwrap();
     // SAFETY: `name` is a string that ends with a zero and lives through the call.
     assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0);
@@ -231,13 +232,13 @@ fn pipes_are_spooled_and_the_notice_says_so() {
         let path = path.clone();
         move || std::fs::write(path, content).unwrap()
     });
-    let options = SourceOptions { temp_dir: Some(folder.0.path().to_path_buf()), ..flat() };
+    let options = SourceOptions { temp_dir: Some(folder.root().to_path_buf()), ..flat() };
     let input = Input::open(&[path], &options).unwrap();
     writer.join().unwrap();
     assert_eq!(pass(&input).unwrap(), points(&[sample("point10.laz")], &flat()).unwrap());
     assert_eq!(pass(&input).unwrap().len(), 1065);
     assert!(input.notices()[0].contains("spooled"), "{:?}", input.notices());
-    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 1, "the spool has no name");
+    assert_eq!(std::fs::read_dir(folder.root()).unwrap().count(), 1, "the spool has no name");
 }
 
 #[test]
@@ -266,7 +267,7 @@ fn wrong_kinds_of_files_get_advice() {
     assert_eq!(points_of(b"v 1 2 3\nv 4 5 6\n").unwrap().len(), 2);
     assert_fails(points_of(b"abc\0"), ErrorKind::Malformed, &["zero byte at byte 3"]);
     let folder = Folder::new();
-    assert_fails(Input::open(&[folder.0.path().to_path_buf()], &flat()), ErrorKind::Usage, &["folder"]);
+    assert_fails(Input::open(&[folder.root().to_path_buf()], &flat()), ErrorKind::Usage, &["folder"]);
     assert_fails(Input::open(&["no/such.laz".into()], &flat()), ErrorKind::Io, &["no/such.laz"]);
     assert_fails(Input::open(&["-".into(), "-".into()], &flat()), ErrorKind::Usage, &["more than once"]);
 }

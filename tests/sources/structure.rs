@@ -9,7 +9,8 @@ use spmesh::source::structure::{
 };
 use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
 
-use super::{Folder, assert_fails, sample};
+use super::{assert_fails, sample};
+use crate::programs::Folder;
 
 /// The structure with this content, which messages call "input".
 pub fn read(content: impl AsRef<[u8]>) -> Result<Structure> {

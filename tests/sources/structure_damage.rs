@@ -1,8 +1,9 @@
 //! Damaged structures: whatever byte is wrong, reading ends with atoms or an error, within bounded memory.
 
+use super::sample;
 use super::structure::{atoms, gzip, read};
-use super::{Folder, sample};
 use crate::allocation::largest_during;
+use crate::programs::Folder;
 use spmesh::error::ErrorKind;
 use spmesh::source::structure::read_structure;
 

@@ -3,7 +3,8 @@
 use spmesh::error::ErrorKind;
 use spmesh::source::{Input, SourceOptions};
 
-use super::{Folder, assert_fails, flat, pass, points_of};
+use super::{assert_fails, flat, pass, points_of};
+use crate::programs::Folder;
 
 #[test]
 fn every_separator_comment_and_line_end_is_understood() {

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use spmesh::cells4::Point4;
-use spmesh::cli::dd4::{Product, write};
-use spmesh::error::ErrorKind;
+use spmesh::dd4::{Form, Product};
+use spmesh::error::{Error, ErrorKind};
 use spmesh::spacetime::{Slice, Surface, isosurface, slice};
 
 use super::{sampled, scattered, volume, with_values};
@@ -160,36 +160,30 @@ fn first_last_and_other_times() {
 }
 
 #[test]
-fn products_are_files() {
-    let folder = tempfile::tempdir().unwrap();
+fn products_are_written() {
     let diagram = with_values(sampled(&mut Random::new(36), [3, 3, 3, 3], 0.7), |p| p[0]);
-    let product = |product: Product, name: &str| {
-        let path = folder.path().join(name);
-        let written = product.create(&path).and_then(|output| write(&product, &diagram, &path, output));
-        written.map(|written| (std::fs::read(path).unwrap(), written.notices))
+    let product = |product: Product| {
+        let mut bytes = Vec::new();
+        let notices = product.write(&diagram, &mut bytes)?;
+        Ok((String::from_utf8_lossy(&bytes).into_owned(), notices))
     };
-    let text = |product_: Product, name: &str| {
-        let (bytes, notices) = product(product_, name).unwrap();
-        (String::from_utf8_lossy(&bytes).into_owned(), notices)
-    };
-    let level = Product::Isosurface { time: 0.5, level: 0.7 };
-    let (values, notices) =
-        text(Product::Values(vec![[1.0, 0.0, 2.0, 0.5], [9.0, 0.0, 0.0, 0.0]]), "values.tsv");
+    let text = |product_: Product| product(product_).unwrap_or_else(|e: Error| panic!("{e}"));
+    let slice = |form| Product::Slice { time: 0.5, form };
+    let surface = |form| Product::Isosurface { time: 0.5, level: 0.7, form };
+    let (values, notices) = text(Product::Values(vec![[1.0, 0.0, 2.0, 0.5], [9.0, 0.0, 0.0, 0.0]]));
     assert_eq!(values, "x\ty\tz\tt\tvalue\n1\t0\t2\t0.5\t1\n9\t0\t0\t0\tnan\n");
     assert_eq!(notices, ["1 of 2 sites is outside of the convex hull of the points: nan"]);
-    assert!(text(Product::Slice(0.5), "slice.vtu").0.contains("Name=\"value\""));
-    let (medit, notices) = text(Product::Slice(0.5), "slice.mesh");
+    assert!(text(slice(Form::Vtu)).0.contains("Name=\"value\""));
+    let (medit, notices) = text(slice(Form::Medit));
     assert!(medit.contains("Tetrahedra") && notices[0].contains("values"));
-    assert!(text(level.clone(), "surface").0.starts_with("ply\n"));
-    assert!(text(level.clone(), "surface.obj").0.contains("\nf "));
-    assert!(text(level.clone(), "surface.vtu").0.contains("</VTKFile>"));
-    let (_, notices) = text(Product::Isosurface { time: 0.5, level: 9.0 }, "none.ply");
+    assert!(text(surface(Form::Ply)).0.starts_with("ply\n"));
+    assert!(text(surface(Form::Obj)).0.contains("\nf "));
+    assert!(text(surface(Form::Vtu)).0.contains("</VTKFile>"));
+    assert!(text(surface(Form::Medit)).0.contains("\nTriangles\n"));
+    let (_, notices) = text(Product::Isosurface { time: 0.5, level: 9.0, form: Form::Ply });
     assert_eq!(notices, ["the surface is empty: values in the slice go from 0 to 2, not across 9"]);
-    for (product_, name) in
-        [(level, "surface.las.txt"), (Product::Slice(0.5), "slice.ply"), (Product::Slice(7.0), "late.vtu")]
-    {
-        assert_eq!(product(product_, name).unwrap_err().kind(), ErrorKind::Usage, "{name}");
-        assert!(!folder.path().join(name).exists());
+    for wrong in [slice(Form::Ply), slice(Form::Obj), Product::Slice { time: 7.0, form: Form::Vtu }] {
+        assert_eq!(product(wrong.clone()).unwrap_err().kind(), ErrorKind::Usage, "{wrong:?}");
     }
 }
 
@@ -198,7 +192,7 @@ fn the_appended_data_of_a_slice_are_as_long_as_they_say() {
     let diagram = with_values(sampled(&mut Random::new(37), [2, 2, 2, 2], 1.0), |p| p[0]);
     let slice = slice(&diagram, 0.5).unwrap();
     let mut bytes = Vec::new();
-    spmesh::dd4::write_slice(&slice, spmesh::dd4::Form::Vtu, &mut bytes).unwrap();
+    spmesh::dd4::write_slice(&slice, Form::Vtu, &mut bytes).unwrap();
     let mark = b"encoding=\"raw\">\n_";
     let start = bytes.windows(mark.len()).position(|window| window == mark).unwrap() + mark.len();
     let (points, cells) = (slice.points.len(), slice.tetrahedra.len());

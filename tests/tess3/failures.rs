@@ -1,11 +1,9 @@
 //! Wrong usage, damaged input, and outputs that cannot be written.
 
 use std::fs;
-use std::io::Read;
-use std::process::Stdio;
 
-use super::molecules::{Folder, cloud, pdb};
-use crate::programs::{cloud as scattered, outcome, run, start};
+use super::molecules::{cloud, pdb};
+use crate::programs::{Folder, assert_silent_without_reader, cloud as scattered, outcome, run};
 
 #[test]
 fn wrong_usage_says_what_would_be_right() {
@@ -68,11 +66,7 @@ fn a_closed_pipe_is_silent() {
     let folder = Folder::new();
     let file = folder.write("a.xyz", scattered(60_000));
     for product in ["--table", "--contacts", "--alpha=100"] {
-        let mut child = start("tess3", &["-q", product, &file], Stdio::null());
-        let mut head = [0; 100];
-        child.stdout.take().unwrap().read_exact(&mut head).unwrap();
-        let (code, message) = outcome(&child.wait_with_output().unwrap());
-        assert_eq!((code, &message[..]), (Some(141), ""), "{product}");
+        assert_silent_without_reader("tess3", &["-q", product, &file]);
     }
 }
 
@@ -84,11 +78,7 @@ fn a_summary_that_nobody_reads_ends_the_sweep_silently() {
     let out = folder.path("out");
     let mut arguments = vec!["--out-dir", &out[..], "--summary", "-", "--threads", "2"];
     arguments.extend(files.iter().map(String::as_str));
-    let mut child = start("tess3", &arguments, Stdio::null());
-    let mut head = [0; 100];
-    child.stdout.take().unwrap().read_exact(&mut head).unwrap();
-    let (code, message) = outcome(&child.wait_with_output().unwrap());
-    assert_eq!((code, &message[..]), (Some(141), ""));
+    assert_silent_without_reader("tess3", &arguments);
 }
 
 #[test]

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use spmesh::stream::{Coordinates, Event, Kind, StreamReader};
 
-use super::molecules::{Folder, Record, cloud, models, numbers, pdb};
-use crate::programs::{outcome, run};
+use super::molecules::{Record, cloud, models, numbers, pdb};
+use crate::programs::{Folder, outcome, run};
 
 /// A mesh as it was read.
 pub struct Mesh {

@@ -1,8 +1,6 @@
 //! Structures to be triangulated, as files.
 
 use std::fmt::Write;
-use std::fs;
-use std::path::{Path, PathBuf};
 
 /// An atom of a PDB file.
 #[derive(Clone)]
@@ -79,47 +77,6 @@ pub fn cloud(count: u32, side_in_steps: u64, seed: u64) -> Vec<Record> {
     let mut number = numbers(seed, side_in_steps);
     let mut coordinate = || number() as f64 / 1000.0;
     (1..=count).map(|i| Record::carbon(10 * i, [coordinate(), coordinate(), coordinate()])).collect()
-}
-
-/// A folder for one test, and paths in it.
-pub struct Folder(tempfile::TempDir);
-
-impl Folder {
-    pub fn new() -> Folder {
-        Folder(tempfile::tempdir().unwrap())
-    }
-
-    pub fn path(&self, name: &str) -> String {
-        self.0.path().join(name).to_str().unwrap().to_string()
-    }
-
-    /// Writes a file, in folders that are made for it.
-    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
-        let path: PathBuf = self.0.path().join(name);
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(&path, content).unwrap();
-        path.to_str().unwrap().to_string()
-    }
-
-    /// Names of all files below a folder, sorted.
-    pub fn names(&self, folder: &str) -> Vec<String> {
-        let root = self.0.path().join(folder);
-        let mut names = Vec::new();
-        collect(&root, &root, &mut names);
-        names.sort_unstable();
-        names
-    }
-}
-
-fn collect(root: &Path, folder: &Path, names: &mut Vec<String>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            collect(root, &path, names);
-        } else {
-            names.push(path.strip_prefix(root).unwrap().to_str().unwrap().to_string());
-        }
-    }
 }
 
 /// The rows of a table by the names of their columns.

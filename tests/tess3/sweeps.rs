@@ -4,8 +4,8 @@ use std::fs;
 use std::time::{Duration, SystemTime};
 
 use super::meshes::Mesh;
-use super::molecules::{Folder, Rows, cloud, models, pdb};
-use crate::programs::{outcome, run};
+use super::molecules::{Rows, cloud, models, pdb};
+use crate::programs::{Folder, outcome, run};
 
 fn summary(folder: &Folder) -> Rows {
     Rows::new(&fs::read_to_string(folder.path("out/summary.tsv")).unwrap())

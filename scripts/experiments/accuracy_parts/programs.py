@@ -59,6 +59,17 @@ class Workplace:
         return section["Vertices"], [[vertex - 1 for vertex in corners] for corners in section["Tetrahedra"]]
 
 
+def measured(place, flags, name, sets, ways, row):
+    """A row for each way to triangulate each run of each set, of so many points and bits."""
+    rows = []
+    for count, bits in sets:
+        for number in range(1, flags.runs + 1):
+            place.make(count, bits, number)
+            rows += [row(place, way, count, bits, number) for way in ways]
+        progress(f"{name}: {count} points of {bits} bits")
+    return rows
+
+
 def said(text):
     """The line of JSON in `text`."""
     return next(json.loads(line) for line in text.splitlines() if line.startswith("{"))

@@ -1,6 +1,8 @@
 """Figure 3.5: in-sphere tests with round-off errors during the construction."""
 
-from programs import progress, write_tsv
+from itertools import product
+
+from programs import measured, write_tsv
 from svg import Axis, Curve, Panel, axis_of_counts, document
 
 ORDERS = {
@@ -18,13 +20,7 @@ HEAD = ("order", "points", "bits", "run", "in_sphere_tests", "wrong_signs", "wro
 
 def run(place, flags):
     sizes, all_bits = (QUICK_SIZES, QUICK_BITS) if flags.quick else (SIZES, BITS)
-    rows = []
-    for count in sizes:
-        for bits in all_bits:
-            for number in range(1, flags.runs + 1):
-                place.make(count, bits, number)
-                rows += [row(place, order, count, bits, number) for order in ORDERS]
-            progress(f"signs: {count} points of {bits} bits")
+    rows = measured(place, flags, "signs", product(sizes, all_bits), ORDERS, row)
     write_tsv(flags.out / "figure-3.5.tsv", HEAD, rows)
     (flags.out / "figure-3.5.svg").write_text(draw(rows))
 

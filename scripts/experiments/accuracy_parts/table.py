@@ -1,7 +1,7 @@
 """Table 3.1: wrong tetrahedra by the number of bits."""
 
 import overflow
-from programs import progress, write_tsv
+from programs import measured, write_tsv
 
 # Those up to 16 are one column of the table in the thesis.
 BITS = [10, 12, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23]
@@ -25,18 +25,14 @@ OVERFLOWING = ("64 bits", "Delaunay", (len(HEAD) - 1,))
 
 def run(place, flags):
     count = 10_000 if flags.quick else 100_000
-    rows = []
-    for bits in QUICK_BITS if flags.quick else BITS:
-        for number in range(1, flags.runs + 1):
-            place.make(count, bits, number)
-            rows += [row(place, arithmetic, bits, number, count) for arithmetic in ARITHMETICS]
-        progress(f"table: {bits} bits")
+    all_bits = QUICK_BITS if flags.quick else BITS
+    rows = measured(place, flags, "table", [(count, bits) for bits in all_bits], ARITHMETICS, row)
     write_tsv(flags.out / "table-3.1.tsv", HEAD, rows)
     (flags.out / "table-3.1.md").write_text(markdown(rows))
     print(markdown(rows))
 
 
-def row(place, arithmetic, bits, number, count):
+def row(place, arithmetic, count, bits, number):
     told = place.triangulate("--arithmetic", arithmetic)
     counted = place.audit()
     faults = [counted[audit][fault] for audit in AUDITS for fault in FAULTS]

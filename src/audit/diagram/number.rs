@@ -13,43 +13,32 @@ pub(super) trait Number: Clone {
     fn sign(&self) -> Option<Ordering>;
 }
 
-/// Exact as long as nothing overflows, which is for the question to know.
-impl Number for i128 {
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
+/// Integers say the order to zero of everything.
+macro_rules! exact {
+    ($type:ty, $zero:expr) => {
+        impl Number for $type {
+            fn plus(&self, other: &Self) -> Self {
+                self + other
+            }
 
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
+            fn minus(&self, other: &Self) -> Self {
+                self - other
+            }
 
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
+            fn times(&self, other: &Self) -> Self {
+                self * other
+            }
 
-    fn sign(&self) -> Option<Ordering> {
-        Some(self.cmp(&0))
-    }
+            fn sign(&self) -> Option<Ordering> {
+                Some(self.cmp(&$zero))
+            }
+        }
+    };
 }
 
-/// Exact.
-impl Number for BigInt {
-    fn plus(&self, other: &Self) -> Self {
-        self + other
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        self - other
-    }
-
-    fn times(&self, other: &Self) -> Self {
-        self * other
-    }
-
-    fn sign(&self) -> Option<Ordering> {
-        Some(self.cmp(&BigInt::ZERO))
-    }
-}
+// As long as nothing overflows, which is for the question to know.
+exact!(i128, 0);
+exact!(BigInt, BigInt::ZERO);
 
 /// A number that is known but for an error: the true value differs from `value` by at most `error`.
 ///

@@ -7,16 +7,13 @@ use clap::{Args, ValueEnum};
 
 use crate::cells4::Point4;
 use crate::convert::Format;
-use crate::dd4::{Form, write_diagram, write_simplices, write_slice, write_surface, write_values};
-use crate::diagram4::Diagram;
+use crate::dd4::{Form, Product};
 use crate::error::{Error, Result};
-use crate::output::Output;
 use crate::source::points4::{From4, Request, Selection, Spacing, read_points4};
-use crate::spacetime::{Interpolator, Rule, Slice, isosurface, slice, subdivide};
+use crate::spacetime::Rule;
 
 /// Examples for the end of the help.
-pub const EXAMPLES: &str = "\
-  Simplices, for programs that take nothing else:
+pub const EXAMPLES: &str = "  Simplices, for programs that take nothing else:
     dd4 heart.spm --triangulate canonical -o simplices.spm
   Values between the points, at two sites and at those of a file:
     dd4 heart.txt --at 12.5,30,8,3.25 --at 12.5,30,8,3.5
@@ -30,7 +27,8 @@ pub const EXAMPLES: &str = "\
 #[command(next_help_heading = "Products")]
 pub struct ProductFlags {
     /// Write simplices instead of cells: each cell as cones from its lexicographically greatest vertices (canonical), or
-    /// as cones from the barycentres of all faces that are no simplices (barycentric), where values are means
+    /// as cones from the barycentres of all faces that are no simplices (barycentric), where values are means; these are
+    /// not Delaunay
     #[arg(long, value_enum, value_name = "canonical|barycentric", hide_possible_values = true, conflicts_with_all = ["at", "at_file", "slice"])]
     triangulate: Option<TriangulateFlag>,
 
@@ -62,45 +60,31 @@ enum TriangulateFlag {
     Barycentric,
 }
 
-/// What is made of a diagram.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Product {
-    /// Its cells.
-    Cells,
-    /// Simplices.
-    Simplices(Rule),
-    /// Values at sites.
-    Values(Vec<Point4>),
-    /// Tetrahedra at a time.
-    Slice(f64),
-    /// A surface of equal value at a time.
-    Isosurface {
-        /// The time.
-        time: f64,
-        /// The value.
-        level: f64,
-    },
-}
-
 impl ProductFlags {
-    /// What is asked for. Reads the sites of `--at-file`, so that a mistake there is found before the work.
+    /// Whether sites come from stdin.
+    pub(super) fn reads_stdin(&self) -> bool {
+        self.at_file.as_ref().is_some_and(|path| path.as_os_str() == "-")
+    }
+
+    /// What is asked for, to be written to a path. Reads the sites of `--at-file`, so that a mistake there is found
+    /// before the work.
     ///
     /// # Errors
-    /// If that file cannot be read.
-    pub fn product(&self) -> Result<Product> {
-        let rule = self.triangulate.map(|flag| match flag {
-            TriangulateFlag::Canonical => Rule::Pulled,
-            TriangulateFlag::Barycentric => Rule::Barycentric,
-        });
+    /// If that file cannot be read; usage, if the path asks for a format that does not hold what is asked for.
+    pub fn product(&self, output: &Path) -> Result<Product> {
         if !self.at.is_empty() || self.at_file.is_some() {
             let mut sites = self.at.clone();
             sites.extend(self.at_file.as_deref().map(read_sites).transpose()?.unwrap_or_default());
             return Ok(Product::Values(sites));
         }
-        Ok(match (rule, self.slice, self.isosurface) {
-            (Some(rule), ..) => Product::Simplices(rule),
-            (None, Some(time), Some(level)) => Product::Isosurface { time, level },
-            (None, Some(time), None) => Product::Slice(time),
+        if self.slice.is_none() {
+            check_stream(output)?;
+        }
+        Ok(match (self.triangulate, self.slice, self.isosurface) {
+            (Some(TriangulateFlag::Canonical), ..) => Product::Simplices(Rule::Pulled),
+            (Some(TriangulateFlag::Barycentric), ..) => Product::Simplices(Rule::Barycentric),
+            (None, Some(time), Some(level)) => Product::Isosurface { time, level, form: form(output, true)? },
+            (None, Some(time), None) => Product::Slice { time, form: form(output, false)? },
             (None, None, _) => Product::Cells,
         })
     }
@@ -122,135 +106,35 @@ impl fmt::Display for ProductFlags {
     }
 }
 
-impl Product {
-    /// Whether it needs values of the points.
-    #[must_use]
-    pub fn needs_values(&self) -> bool {
-        matches!(self, Product::Values(_) | Product::Isosurface { .. })
-    }
-
-    /// The form of a mesh in space of this name.
-    fn form(&self, path: &Path) -> Result<Form> {
-        let usual = if matches!(self, Product::Slice(_)) { Form::Vtu } else { Form::Ply };
-        match Format::from_path(path) {
-            None => Ok(usual),
-            Some(Format::Vtu) => Ok(Form::Vtu),
-            Some(Format::Medit) => Ok(Form::Medit),
-            Some(Format::Ply) => Ok(Form::Ply),
-            Some(Format::Obj) => Ok(Form::Obj),
-            Some(other) => Err(Error::usage(format!(
-                "{}: meshes in space cannot be written as {}: the output must be .vtu, .mesh, or for surfaces .ply or .obj",
-                path.display(),
-                other.name()
-            ))),
-        }
-    }
-
-    /// Whether what goes to a path is binary.
-    fn is_binary(&self, path: &Path) -> Result<bool> {
-        Ok(match self {
-            Product::Cells | Product::Simplices(_) => true,
-            Product::Values(_) => false,
-            Product::Slice(_) | Product::Isosurface { .. } => {
-                matches!(self.form(path)?, Form::Vtu | Form::Ply)
-            }
-        })
-    }
-
-    /// The output at a path, refused early where it cannot be.
-    ///
-    /// # Errors
-    /// Usage, if the name asks for another format, or what is binary would go to a terminal; I/O.
-    pub fn create(&self, path: &Path) -> Result<Output> {
-        Output::create(path, self.is_binary(path)?)
+/// Refuses names of formats that hold no cells of four dimensions, as if it were them that one would get.
+fn check_stream(path: &Path) -> Result<()> {
+    match Format::from_path(path) {
+        None | Some(Format::Spm) => Ok(()),
+        Some(other) => Err(Error::usage(format!(
+            "{}: what is in four dimensions is written as a stream (.spm), not as {}: for a mesh at a time use --slice",
+            path.display(),
+            other.name()
+        ))),
     }
 }
 
-/// What a product came to.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Written {
-    /// Bytes.
-    pub bytes: u64,
-    /// What the user should know.
-    pub notices: Vec<String>,
-}
-
-/// Makes a product of a diagram and writes it to an output that [`Product::create`] made for `path`.
+/// The form of a mesh in space at a path: that of its name, or what is usual.
 ///
 /// # Errors
-/// Usage, if values are needed and the points have none, the slice is at a time before or after all points, or the name
-/// of the output asks for a format that does not hold the product; I/O. Then there is no output.
-pub fn write(product: &Product, diagram: &Diagram, path: &Path, mut output: Output) -> Result<Written> {
-    let notices = match product {
-        Product::Cells => {
-            return write_diagram(diagram, output).map(|bytes| Written { bytes, notices: Vec::new() });
-        }
-        Product::Simplices(rule) => {
-            let (points, values) = (&diagram.points, diagram.values.as_deref());
-            let parts = subdivide(points, values, &diagram.cells, *rule, |_| true)?;
-            write_simplices(&parts, diagram.merged, &mut output)?;
-            flat_notice(parts.flat).into_iter().collect()
-        }
-        Product::Values(sites) => {
-            let values = interpolate(diagram, sites)?;
-            write_values(sites, &values, &mut output)?;
-            outside_notice(&values).into_iter().collect()
-        }
-        Product::Slice(time) => {
-            let slice = slice(diagram, *time)?;
-            let mut notices = slice_notices(&slice);
-            notices.extend(write_slice(&slice, product.form(path)?, &mut output)?);
-            notices
-        }
-        Product::Isosurface { time, level } => {
-            let slice = slice(diagram, *time)?;
-            let surface = isosurface(&slice, *level)?;
-            let mut notices = slice_notices(&slice);
-            if surface.triangles.is_empty() && !slice.tetrahedra.is_empty() {
-                notices.push(empty_notice(&slice, *level));
-            }
-            write_surface(&surface, product.form(path)?, &mut output)?;
-            notices
-        }
-    };
-    let bytes = output.bytes_written();
-    output.commit()?;
-    Ok(Written { bytes, notices })
-}
-
-fn interpolate(diagram: &Diagram, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
-    let mut interpolator = Interpolator::new(diagram)?;
-    sites.iter().map(|&site| interpolator.value(site)).collect()
-}
-
-fn flat_notice(flat: u64) -> Option<String> {
-    (flat > 0).then(|| format!("{flat} simplices are flat, because barycentres are rounded: left out"))
-}
-
-fn outside_notice(values: &[Option<f64>]) -> Option<String> {
-    let outside = values.iter().filter(|value| value.is_none()).count();
-    let verb = if outside == 1 { "is" } else { "are" };
-    let message = "outside of the convex hull of the points: nan";
-    (outside > 0).then(|| format!("{outside} of {} sites {verb} {message}", values.len()))
-}
-
-fn slice_notices(slice: &Slice) -> Vec<String> {
-    let is_empty = slice.tetrahedra.is_empty();
-    let empty =
-        is_empty.then(|| format!("the slice is empty: the points span no volume at time {}", slice.time));
-    empty.into_iter().chain(flat_notice(slice.flat)).collect()
-}
-
-fn empty_notice(slice: &Slice, level: f64) -> String {
-    let values = slice.values.iter().flatten().filter(|value| !value.is_nan());
-    let range = values.fold(None, |range: Option<(f64, f64)>, &value| {
-        Some(range.map_or((value, value), |(least, most)| (least.min(value), most.max(value))))
-    });
-    match range {
-        Some((least, most)) => {
-            format!("the surface is empty: values in the slice go from {least} to {most}, not across {level}")
-        }
-        None => "the surface is empty: no values in the slice are known".into(),
+/// Usage, if the name asks for one that does not hold such a mesh.
+fn form(path: &Path, is_surface: bool) -> Result<Form> {
+    match Format::from_path(path) {
+        None => Ok(if is_surface { Form::Ply } else { Form::Vtu }),
+        Some(Format::Vtu) => Ok(Form::Vtu),
+        Some(Format::Medit) => Ok(Form::Medit),
+        Some(Format::Ply) if is_surface => Ok(Form::Ply),
+        Some(Format::Obj) if is_surface => Ok(Form::Obj),
+        Some(other) => Err(Error::usage(format!(
+            "{}: {} cannot be written as {}: the output must be .vtu, .mesh, or for surfaces .ply or .obj",
+            path.display(),
+            if is_surface { "a surface" } else { "a slice" },
+            other.name()
+        ))),
     }
 }
 
@@ -296,13 +180,45 @@ mod tests {
             ("--triangulate canonical", Product::Simplices(Rule::Pulled)),
             ("--triangulate barycentric", Product::Simplices(Rule::Barycentric)),
             ("--at -1,2.5,0,1 --at 0,0,0,0", Product::Values(vec![[-1.0, 2.5, 0.0, 1.0], [0.0; 4]])),
-            ("--slice -0.5", Product::Slice(-0.5)),
-            ("--slice 3 --isosurface -2", Product::Isosurface { time: 3.0, level: -2.0 }),
+            ("--slice -0.5", Product::Slice { time: -0.5, form: Form::Vtu }),
+            ("--slice 3 --isosurface -2", Product::Isosurface { time: 3.0, level: -2.0, form: Form::Ply }),
         ];
         for (text, product) in cases {
             let flags = flags(&text.split_whitespace().collect::<Vec<_>>()).unwrap();
-            assert_eq!((flags.to_string(), flags.product().unwrap()), (text.to_string(), product));
+            assert_eq!(
+                (flags.to_string(), flags.product(Path::new("-")).unwrap()),
+                (text.to_string(), product)
+            );
         }
+    }
+
+    #[test]
+    fn names_choose_forms() {
+        let form = |text: &str, name: &str| -> Result<Form> {
+            let flags = flags(&text.split_whitespace().collect::<Vec<_>>()).unwrap();
+            match flags.product(Path::new(name))? {
+                Product::Slice { form, .. } | Product::Isosurface { form, .. } => Ok(form),
+                other => panic!("{other:?}"),
+            }
+        };
+        let (slice, surface) = ("--slice 1", "--slice 1 --isosurface 2");
+        for (name, of_slice, of_surface) in [
+            ("-", Some(Form::Vtu), Some(Form::Ply)),
+            ("a", Some(Form::Vtu), Some(Form::Ply)),
+            ("a.vtu", Some(Form::Vtu), Some(Form::Vtu)),
+            ("a.mesh", Some(Form::Medit), Some(Form::Medit)),
+            ("a.ply", None, Some(Form::Ply)),
+            ("a.obj", None, Some(Form::Obj)),
+            ("a.spm", None, None),
+        ] {
+            assert_eq!(form(slice, name).ok(), of_slice, "{name}");
+            assert_eq!(form(surface, name).ok(), of_surface, "{name}");
+        }
+        let message = form(slice, "a.ply").unwrap_err().to_string();
+        assert!(
+            message.contains("a.ply: a slice cannot be written as") && message.contains(".vtu"),
+            "{message}"
+        );
     }
 
     #[test]
@@ -320,6 +236,10 @@ mod tests {
             let error = flags(arguments).unwrap_err().to_string();
             assert!(error.contains(part), "{arguments:?}: {error}");
         }
-        assert!(flags(&["--at-file", "/nonexistent/sites"]).unwrap().product().is_err());
+        for name in ["a.vtu", "a.PLY", "a.txt"] {
+            let message = flags(&[]).unwrap().product(Path::new(name)).unwrap_err().to_string();
+            assert!(message.contains(name) && message.contains("--slice"), "{message}");
+        }
+        assert!(flags(&["--at-file", "/nonexistent/sites"]).unwrap().product(Path::new("-")).is_err());
     }
 }

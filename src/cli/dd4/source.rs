@@ -12,8 +12,8 @@ use crate::source::points4::{
 };
 
 /// Examples for the end of the help.
-pub const EXAMPLES: &str = "\
-  Two fifths of the points of a grid of 16 sites along each axis, always the same ones:
+pub const EXAMPLES: &str =
+    "  Two fifths of the points of a grid of 16 sites along each axis, always the same ones:
     dd4 --grid 16x16x16x16 --sample 0.4 --seed 7 -o grid.spm
   Where a series of volumes is brighter than 0.3, in its second half:
     dd4 heart.nrrd --where 'value > 0.3 and t >= 10' -o heart.spm
@@ -53,7 +53,7 @@ pub struct SourceFlags {
     keep_nan: bool,
 
     /// Only this part of the points, between 0 and 1, chosen at random; the number is rounded
-    #[arg(long, value_name = "SHARE", conflicts_with = "count", value_parser = parse_share)]
+    #[arg(long, value_name = "SHARE", conflicts_with = "count", allow_negative_numbers = true, value_parser = parse_share)]
     sample: Option<f64>,
 
     /// Only so many of the points, chosen at random
@@ -81,6 +81,11 @@ impl SourceFlags {
     /// As [`read_points4`]; usage, if nothing is asked for, or stdin is a terminal.
     pub fn read(&self) -> Result<Points4> {
         read_points4(&self.request()?)
+    }
+
+    /// Whether points come from stdin.
+    pub(super) fn is_stdin(&self) -> bool {
+        self.input.as_ref().is_some_and(|path| path.as_os_str() == "-")
     }
 
     fn request(&self) -> Result<Request> {

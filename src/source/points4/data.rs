@@ -2,13 +2,13 @@
 
 use std::io::{self, BufRead, BufReader, Read};
 
-use super::sample_type::SampleType;
 use crate::error::{Error, Result};
 use crate::limits::VOLUME_NUMBER_MAX;
 use crate::source::byte_order::ByteOrder;
 use crate::source::gzip::Gunzip;
 use crate::source::lines::quote;
 use crate::source::origin::Origin;
+use crate::source::sample_type::SampleType;
 
 /// Values decoded at once.
 const BATCH_VALUES: u64 = 1 << 13;

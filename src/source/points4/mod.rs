@@ -12,7 +12,6 @@ mod nifti;
 mod nrrd;
 mod raw;
 mod sample;
-mod sample_type;
 mod scan;
 mod select;
 mod stream;

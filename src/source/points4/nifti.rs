@@ -4,11 +4,11 @@
 
 use super::data::{Data, Encoding, Part, Skip};
 use super::lattice::{Frame, Lattice};
-use super::sample_type::SampleType;
 use super::volume::Volume;
 use crate::error::{Error, Result};
 use crate::source::byte_order::ByteOrder;
 use crate::source::origin::Origin;
+use crate::source::sample_type::SampleType;
 
 /// Length of the header, which its first four bytes state.
 const HEADER_LEN: u32 = 348;

@@ -6,11 +6,11 @@ use std::str::FromStr;
 
 use super::data::{Data, Encoding, Part, Skip};
 use super::lattice::Lattice;
-use super::sample_type::SampleType;
 use super::volume::Volume;
 use crate::error::Result;
 use crate::source::byte_order::ByteOrder;
 use crate::source::origin::Origin;
+use crate::source::sample_type::SampleType;
 
 /// Sizes and type of a raw volume, as in `64x64x64x20:f32le`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

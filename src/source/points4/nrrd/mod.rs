@@ -12,11 +12,11 @@ use std::path::Path;
 
 use self::fields::Fields;
 use super::data::{Data, Encoding, Skip};
-use super::sample_type::SampleType;
 use super::volume::Volume;
 use crate::error::{Error, Result};
 use crate::source::byte_order::ByteOrder;
 use crate::source::origin::Origin;
+use crate::source::sample_type::SampleType;
 
 /// Reads the header of a volume; `path` is where it is, if it has a name.
 ///

@@ -1,9 +1,9 @@
-//! Types of the values of volumes.
+//! Types of numbers in binary files.
 
+use super::byte_order::ByteOrder;
 use crate::error::{Error, Result};
-use crate::source::byte_order::ByteOrder;
 
-/// How a value is stored.
+/// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SampleType {
     I8,
@@ -18,20 +18,29 @@ pub(super) enum SampleType {
     F64,
 }
 
-/// The next numbers of `bytes`.
+/// The numbers in `bytes`: a loop for each type and order, so that none asks for them again and again.
 macro_rules! decode {
-    ($type:ty, $bytes:expr, $order:expr, $values:expr) => {{
+    ($type:ty, $bytes:expr, $order:expr, $numbers:expr) => {{
         let numbers =
             $bytes.chunks_exact(size_of::<$type>()).map(|bytes| bytes.try_into().expect("its length"));
         match $order {
-            ByteOrder::Little => $values.extend(numbers.map(|bytes| <$type>::from_le_bytes(bytes) as f64)),
-            ByteOrder::Big => $values.extend(numbers.map(|bytes| <$type>::from_be_bytes(bytes) as f64)),
+            ByteOrder::Little => $numbers.extend(numbers.map(|bytes| <$type>::from_le_bytes(bytes) as f64)),
+            ByteOrder::Big => $numbers.extend(numbers.map(|bytes| <$type>::from_be_bytes(bytes) as f64)),
         }
     }};
 }
 
+/// Takes the last number.
+struct Last(f64);
+
+impl Extend<f64> for Last {
+    fn extend<I: IntoIterator<Item = f64>>(&mut self, numbers: I) {
+        numbers.into_iter().for_each(|number| self.0 = number);
+    }
+}
+
 impl SampleType {
-    /// Bytes of a value.
+    /// Bytes of a number.
     pub(super) fn len(self) -> usize {
         match self {
             SampleType::I8 | SampleType::U8 => 1,
@@ -41,20 +50,27 @@ impl SampleType {
         }
     }
 
-    /// Appends the values that `bytes` holds. Integers beyond 2^53 are rounded.
-    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, values: &mut Vec<f64>) {
+    /// Appends the numbers in `bytes`. Integers beyond 2^53 are rounded.
+    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, numbers: &mut impl Extend<f64>) {
         match self {
-            SampleType::I8 => decode!(i8, bytes, order, values),
-            SampleType::U8 => decode!(u8, bytes, order, values),
-            SampleType::I16 => decode!(i16, bytes, order, values),
-            SampleType::U16 => decode!(u16, bytes, order, values),
-            SampleType::I32 => decode!(i32, bytes, order, values),
-            SampleType::U32 => decode!(u32, bytes, order, values),
-            SampleType::I64 => decode!(i64, bytes, order, values),
-            SampleType::U64 => decode!(u64, bytes, order, values),
-            SampleType::F32 => decode!(f32, bytes, order, values),
-            SampleType::F64 => decode!(f64, bytes, order, values),
+            SampleType::I8 => decode!(i8, bytes, order, numbers),
+            SampleType::U8 => decode!(u8, bytes, order, numbers),
+            SampleType::I16 => decode!(i16, bytes, order, numbers),
+            SampleType::U16 => decode!(u16, bytes, order, numbers),
+            SampleType::I32 => decode!(i32, bytes, order, numbers),
+            SampleType::U32 => decode!(u32, bytes, order, numbers),
+            SampleType::I64 => decode!(i64, bytes, order, numbers),
+            SampleType::U64 => decode!(u64, bytes, order, numbers),
+            SampleType::F32 => decode!(f32, bytes, order, numbers),
+            SampleType::F64 => decode!(f64, bytes, order, numbers),
         }
+    }
+
+    /// The number in `bytes`, which are as many as it has.
+    pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
+        let mut last = Last(0.0);
+        self.decode(bytes, order, &mut last);
+        last.0
     }
 
     /// The value that is written as `text`.
