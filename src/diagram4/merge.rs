@@ -2,7 +2,7 @@
 
 use super::Stats;
 use super::canonical::canonical;
-use super::simplices::{Coefficient, Complex, FACETS, INFINITE, Simplex, facet_of, simplex_of};
+use super::simplices::{Coefficient, Complex, FACETS, Facet, INFINITE, Simplex, facet, facet_of, simplex_of};
 use crate::cells4::{Cell4, Cells4};
 use crate::prefetch::prefetch;
 use std::cmp::Ordering;
@@ -37,8 +37,9 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> C
 struct Classes {
     /// The class of each simplex.
     of: Vec<u32>,
-    /// The simplices of each class, one class after the other, finite ones first.
-    members: Vec<u32>,
+    /// The simplices of each class, one class after the other, finite ones first: each as the facet that it was met at,
+    /// whose opposite vertex may be new to the class; the first as the facet opposite to a vertex that is finite.
+    members: Vec<Facet>,
     /// Where each class begins among the members, and where the last ends.
     starts: Vec<u32>,
     /// Number of classes of finite simplices.
@@ -82,13 +83,11 @@ impl Classes {
     ) {
         let class = self.len() as u32;
         let mut next = self.members.len();
-        self.join(seed, class);
+        let finite = usize::from(complex.simplices[seed].vertices[0] == INFINITE);
+        self.join(complex, facet(seed, finite), class);
         while next < self.members.len() {
-            let simplex = complex.simplices[self.members[next] as usize];
+            let simplex = complex.simplices[simplex_of(self.members[next])];
             next += 1;
-            if let Some(&later) = self.members.get(next + 1) {
-                self.fetch_around(complex, later as usize);
-            }
             for side in 0..FACETS {
                 let beyond = simplex.beyond[side];
                 let other = simplex_of(beyond);
@@ -99,7 +98,7 @@ impl Classes {
                 // Across the hull, one is finite and the other is not.
                 let is_across = apex == INFINITE || simplex.vertices[side] == INFINITE;
                 if !is_across && complex.sign(seed, apex) == Ordering::Equal && allowed(&self.of, other) {
-                    self.join(other, class);
+                    self.join(complex, beyond, class);
                 }
             }
         }
@@ -116,9 +115,11 @@ impl Classes {
         }
     }
 
-    fn join(&mut self, simplex: usize, class: u32) {
-        self.of[simplex] = class;
-        self.members.push(simplex as u32);
+    #[inline(always)]
+    fn join<C: Coefficient>(&mut self, complex: &Complex<C>, met: Facet, class: u32) {
+        self.of[simplex_of(met)] = class;
+        self.members.push(met);
+        self.fetch_around(complex, simplex_of(met));
     }
 
     /// Where the simplices of a class are among the members.
@@ -139,17 +140,23 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
         listed.clear();
         met.clear();
         met.mark(class as u32);
-        for place in classes.places(class) {
+        let places = classes.places(class);
+        let first = simplices[simplex_of(classes.members[places.start])].vertices;
+        vertices.extend(first.into_iter().filter(|&vertex| vertex != INFINITE && listed.mark(vertex)));
+        for place in places {
             if let Some(&later) = classes.members.get(place + AHEAD) {
-                prefetch(simplices, later as usize);
+                prefetch(simplices, simplex_of(later));
             }
-            let simplex = &simplices[classes.members[place] as usize];
-            let finite = simplex.vertices.into_iter().filter(|&vertex| vertex != INFINITE);
-            let new = finite.filter(|&vertex| listed.mark(vertex));
-            vertices.extend(new.map(|vertex| order[vertex as usize]));
+            let facet = classes.members[place];
+            let simplex = &simplices[simplex_of(facet)];
+            let opposite = simplex.vertices[facet_of(facet)];
+            if listed.mark(opposite) {
+                vertices.push(opposite);
+            }
             let around = simplex.beyond.into_iter().map(|beyond| classes.of[simplex_of(beyond)]);
             neighbours.extend(around.filter(|&other| met.mark(other)));
         }
+        vertices.iter_mut().for_each(|vertex| *vertex = order[*vertex as usize]);
         vertices.sort_unstable();
         let is_infinite = class >= classes.finite;
         cells.push(Cell4 { is_infinite, vertices: &vertices, neighbours: &neighbours });

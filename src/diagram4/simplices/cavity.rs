@@ -3,6 +3,9 @@
 use super::coefficient::Coefficient;
 use super::complex::{Complex, FACETS, Facet, facet, simplex_of};
 
+/// How far ahead memory is fetched.
+const AHEAD: usize = 3;
+
 /// Simplices in conflict with a point, and the border around them.
 ///
 /// Which of its neighbours a simplex in conflict is the first to meet, and which are in conflict, no processor predicts:
@@ -40,8 +43,8 @@ impl Cavity {
             self.make_room();
             let at = self.dead[next] as usize;
             next += 1;
-            if next + 1 < self.dead_count {
-                complex.fetch_neighbours(self.dead[next + 1] as usize);
+            if next + AHEAD < self.dead_count {
+                complex.fetch_neighbours(self.dead[next + AHEAD] as usize);
             }
             let beyond = complex.simplices[at].beyond;
             for (side, beyond) in beyond.into_iter().enumerate() {

@@ -16,7 +16,7 @@ pub(in crate::diagram4) const INFINITE: u32 = u32::MAX;
 pub(in crate::diagram4) const FACETS: usize = 5;
 
 /// A facet of a simplex: the number of the simplex above three bits.
-pub(super) type Facet = u32;
+pub(in crate::diagram4) type Facet = u32;
 
 #[inline(always)]
 pub(in crate::diagram4) fn simplex_of(facet: Facet) -> usize {
@@ -29,7 +29,7 @@ pub(in crate::diagram4) fn facet_of(facet: Facet) -> usize {
 }
 
 #[inline(always)]
-pub(super) fn facet(simplex: usize, side: usize) -> Facet {
+pub(in crate::diagram4) fn facet(simplex: usize, side: usize) -> Facet {
     (simplex as u32) << 3 | side as u32
 }
 

@@ -25,7 +25,7 @@ mod links;
 mod locate;
 
 pub(super) use coefficient::Coefficient;
-pub(super) use complex::{Complex, FACETS, INFINITE, Simplex, facet_of, simplex_of};
+pub(super) use complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, facet_of, simplex_of};
 
 use super::Stats;
 use super::sites::Sites;
