@@ -10,6 +10,8 @@
 //! the way from configurations to links, `polygon`, `rule` and `apex` that from links to configurations.
 
 mod apex;
+mod border;
+mod centroids;
 mod configurations;
 mod copies;
 mod gathering;
@@ -22,13 +24,16 @@ mod simple;
 mod start_check;
 mod surface;
 mod symbolic;
+mod union_map;
 
+pub use centroids::{CentroidMesh, centroid};
 pub use configurations::{Configurations, Group, Link, Links};
 pub use gathering::links;
 pub use knots::{FARAWAY, Knots};
 pub use lift::Lift;
 pub use rule::Rule;
 pub use surface::{Start, delaunay};
+pub use union_map::{UnionSource, inverse_union_map, union_map};
 
 use crate::error::{Error, Result};
 use crate::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};

@@ -35,6 +35,13 @@ fn delaunay_triangles(knots: &Knots) -> Result<Vec<[u32; 3]>> {
     Ok(triangles)
 }
 
+/// The border of the convex hull, counterclockwise, with all knots on it; of those at one place the first.
+pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
+    let mut mesh = Triangulation::default();
+    Kernel::new().triangulate(knots.points(), &mut mesh)?;
+    if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh.hull) }
+}
+
 /// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if no knots are at
 /// one place.
 ///

@@ -1,0 +1,4 @@
+mod config;
+#[allow(dead_code)]
+mod reference;
+fn main() {}
