@@ -7,9 +7,9 @@
 #[allow(dead_code, missing_docs)]
 mod files;
 
-use std::fs::File;
+use std::path::PathBuf;
 
-use files::{read_tuples, timed};
+use files::{Paths, timed};
 use spmesh::config::{self, Knots, Rule};
 use spmesh::delaunay2::{Kernel, Triangulation};
 
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 /// Knots of a file, or uniform in the unit square, by a sequence of SplitMix64 with the seed 1.
 fn read(source: &str) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
     let Some(count) = source.strip_prefix("uniform:") else {
-        return Ok(read_tuples(&mut File::open(source)?)?);
+        return Ok(Paths { points: source.into(), triangles: PathBuf::new() }.read_points()?);
     };
     let mut state = 1u64;
     let mut unit = || {

@@ -63,7 +63,9 @@ impl<P: Predicates2> Triangulator<'_, P> {
         for k in i + 1..j {
             let c = self.polygon[k];
             let is_better = match best {
-                Some(best) => self.plane.is_left(a, b, c) && self.plane.is_inside([a, b, self.polygon[best]], c),
+                Some(best) => {
+                    self.plane.is_left(a, b, c) && self.plane.is_inside([a, b, self.polygon[best]], c)
+                }
                 None => self.plane.is_left(a, b, c),
             };
             if is_better && fits(self, k) {

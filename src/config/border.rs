@@ -32,7 +32,8 @@ impl Knots {
     }
 
     /// The listed knots pulled apart (thesis 8.3, figure 8.7): each place has two knots. The links of either are then
-    /// triangulated from the other, whatever the rule is.
+    /// triangulated from the other, whatever the rule is; Delaunay configurations do so by themselves, unless knots of the
+    /// link are on one circle with the place: [`super::Start::generalised`] makes it sure.
     ///
     /// Errors: an unknown knot; more knots than can be handled.
     pub fn pull_apart(&self, knots: &[u32]) -> Result<Knots> {

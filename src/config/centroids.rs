@@ -29,7 +29,12 @@ impl CentroidMesh {
     pub fn of(knots: &Knots, lower: Option<&Configurations>, upper: &Configurations) -> Result<CentroidMesh> {
         let expected = upper.degree().checked_sub(1);
         if lower.map(Configurations::degree) != expected {
-            let what = format!("centroids of order {} need degrees {:?} and {}", upper.degree() + 1, expected, upper.degree());
+            let what = format!(
+                "centroids of order {} need degrees {:?} and {}",
+                upper.degree() + 1,
+                expected,
+                upper.degree()
+            );
             return Err(Error::usage(what));
         }
         let lower_len = lower.map_or(0, Configurations::len);

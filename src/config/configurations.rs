@@ -18,7 +18,8 @@ pub(super) enum Standing {
 /// Grouped by I. Interior sets are sorted, and so are groups, lexicographically; within a group come the configurations of
 /// three knots, the least first, in lexicographic order, then the *infinite* ones `[p, q, FARAWAY]`: lines with I to the left
 /// of the direction from p to q and all else, but p and q, to the right. (A knot on the line counts as left if it is between
-/// p and q, and as right otherwise.) These make all links closed; splines are defined by the others alone.
+/// p and q, and as right otherwise.) These make all links closed; splines are defined by the others alone. The one group of
+/// degree 0 is in the order of the triangulation.
 ///
 /// Shape: 12 bytes per configuration, 4 (k + 1) per group.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -51,12 +52,41 @@ impl Configurations {
         Configurations { degree, standing, interiors: Vec::new(), offsets, boundaries: Vec::new(), finite: 0 }
     }
 
-    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order.
-    pub(super) fn of_triangles(standing: Standing, triangles: Vec<[u32; 3]>) -> Configurations {
-        let mut configurations = Configurations::empty(0, standing);
-        configurations.boundaries = triangles;
-        configurations.close_group(&[]);
-        configurations
+    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. What is near in it should be near
+    /// in the plane: so it is not sorted.
+    pub(super) fn of_triangles(standing: Standing, mut triangles: Vec<[u32; 3]>) -> Configurations {
+        triangles.iter_mut().for_each(|triangle| *triangle = normalised(*triangle));
+        triangles.sort_by_key(|triangle| triangle[2] == FARAWAY);
+        let finite = triangles.partition_point(|triangle| triangle[2] != FARAWAY);
+        let offsets = vec![0, triangles.len() as u32];
+        Configurations { degree: 0, standing, interiors: Vec::new(), offsets, boundaries: triangles, finite }
+    }
+
+    /// Puts groups in order that came by the knots of `order`, their least. Domain: a degree above 0.
+    pub(super) fn sort_groups(&mut self, order: &[u32]) {
+        let mut firsts = vec![(0, 0); order.len()];
+        let leasts = self.interiors.chunks_exact(self.degree).map(|interior| interior[0]);
+        for (group, least) in (0u32..).zip(leasts) {
+            let (first, count) = &mut firsts[least as usize];
+            if *count == 0 {
+                *first = group;
+            }
+            *count += 1;
+        }
+        let mut sorted = Configurations::empty(self.degree, self.standing);
+        sorted.interiors.reserve_exact(self.interiors.len());
+        sorted.offsets.reserve_exact(self.offsets.len());
+        sorted.boundaries.reserve_exact(self.boundaries.len());
+        for (first, count) in firsts {
+            let (first, end) = (first as usize, first as usize + count);
+            let start = self.offsets[first];
+            let moved = sorted.boundaries.len() as u32;
+            sorted.boundaries.extend_from_slice(&self.boundaries[start as usize..self.offsets[end] as usize]);
+            sorted.interiors.extend_from_slice(&self.interiors[first * self.degree..end * self.degree]);
+            sorted.offsets.extend(self.offsets[first + 1..=end].iter().map(|offset| offset - start + moved));
+        }
+        sorted.finite = self.finite;
+        *self = sorted;
     }
 
     /// Makes the boundaries after the last group the group of `interior`, which is greater than those before; nothing if
@@ -120,7 +150,8 @@ impl Configurations {
 
     /// All configurations (B, I) but the infinite ones.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; 3], &[u32])> {
-        self.groups().flat_map(|group| group.triangles.iter().map(move |&boundary| (boundary, group.interior)))
+        self.groups()
+            .flat_map(|group| group.triangles.iter().map(move |&boundary| (boundary, group.interior)))
     }
 
     /// Bytes held.

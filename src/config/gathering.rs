@@ -30,21 +30,24 @@ struct Bucket {
     polygon: Vec<u32>,
 }
 
-/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices, in the order of sets.
+/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets by their least
+/// knots, which come as `order` has them, and then in lexicographic order. `order` has all knots.
 ///
 /// Errors: those of `visit`; edges that do not make one closed polygon. Cost: O(c k log c) for c configurations; 16 bytes per
 /// configuration.
 pub(super) fn for_each_link(
     knots: &Knots,
     configurations: &Configurations,
+    order: &[u32],
     mut visit: impl FnMut(&[u32], &[u32]) -> Result<()>,
 ) -> Result<()> {
-    let corners = Corners::of(knots.len(), configurations)?;
+    debug_assert_eq!(order.len(), knots.len());
+    let corners = Corners::of(order, configurations)?;
     let mut bucket = Bucket::default();
-    for knot in 0..knots.len() {
-        let range = corners.starts[knot] as usize..corners.starts[knot + 1] as usize;
+    for (place, &least) in order.iter().enumerate() {
+        let range = corners.starts[place] as usize..corners.starts[place + 1] as usize;
         bucket.fill(configurations, &corners, &corners.records[range]);
-        bucket.visit_links(configurations.degree, knot as u32, &mut visit)?;
+        bucket.visit_links(configurations.degree, least, &mut visit)?;
     }
     Ok(())
 }
@@ -55,7 +58,8 @@ pub(super) fn for_each_link(
 pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     let size = configurations.degree + 1;
     let mut links = Links { size, sets: Vec::new(), offsets: vec![0], vertices: Vec::new() };
-    for_each_link(knots, configurations, |set, polygon| {
+    let order: Vec<u32> = (0..knots.len() as u32).collect();
+    for_each_link(knots, configurations, &order, |set, polygon| {
         links.sets.extend_from_slice(set);
         links.vertices.extend_from_slice(polygon);
         links.offsets.push(links.vertices.len() as u32);
@@ -64,21 +68,23 @@ pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     Ok(links)
 }
 
-/// Corners of configurations by the least knot of their set.
+/// Corners of configurations by the least knot of their set, or rather the place of that in the order of visits: then they
+/// are read one after the other.
 struct Corners {
     /// Thrice the number of the configuration, and the place of the corner.
     records: Vec<u32>,
-    /// For each knot its first record.
+    /// For each place its first record.
     starts: Vec<u32>,
     /// Group of each configuration; empty for degree 0.
     groups: Vec<u32>,
 }
 
 impl Corners {
-    fn of(knots: usize, configurations: &Configurations) -> Result<Corners> {
+    fn of(order: &[u32], configurations: &Configurations) -> Result<Corners> {
         let boundaries = &configurations.boundaries;
         if boundaries.len() > (u32::MAX / 3) as usize {
-            let message = format!("{} configurations in one piece are too many: use fewer knots", boundaries.len());
+            let message =
+                format!("{} configurations in one piece are too many: use fewer knots", boundaries.len());
             return Err(Error::new(ErrorKind::Memory, message));
         }
         let mut groups = Vec::new();
@@ -88,9 +94,13 @@ impl Corners {
                 groups.resize(configurations.offsets[group + 1] as usize, group as u32);
             }
         }
-        let mut corners = Corners { records: Vec::new(), starts: vec![0; knots + 1], groups };
-        let mut starts = std::mem::take(&mut corners.starts);
-        corners.for_each(configurations, |least, _| starts[least as usize] += 1);
+        let mut places = vec![0; order.len()];
+        for (place, &knot) in (0u32..).zip(order) {
+            places[knot as usize] = place;
+        }
+        let corners = Corners { records: Vec::new(), starts: Vec::new(), groups };
+        let mut starts = vec![0; order.len() + 1];
+        corners.for_each(configurations, |least, _| starts[places[least as usize] as usize] += 1);
         let mut sum = 0;
         for start in &mut starts {
             sum += *start;
@@ -98,8 +108,9 @@ impl Corners {
         }
         let mut records = vec![0; sum as usize];
         corners.for_each(configurations, |least, record| {
-            starts[least as usize] -= 1;
-            records[starts[least as usize] as usize] = record;
+            let start = &mut starts[places[least as usize] as usize];
+            *start -= 1;
+            records[*start as usize] = record;
         });
         Ok(Corners { records, starts, ..corners })
     }
@@ -120,7 +131,9 @@ impl Corners {
     /// The interior set of a configuration.
     fn interior<'a>(&self, configurations: &'a Configurations, number: u32) -> &'a [u32] {
         let degree = configurations.degree;
-        self.groups.get(number as usize).map_or(&[], |&group| &configurations.interiors[group as usize * degree..][..degree])
+        self.groups
+            .get(number as usize)
+            .map_or(&[], |&group| &configurations.interiors[group as usize * degree..][..degree])
     }
 }
 
@@ -209,7 +222,8 @@ fn chain(edges: &mut [Edge], polygon: &mut Vec<u32>) -> bool {
 #[cold]
 fn not_closed(set: &[u32], edges: &[Edge]) -> Error {
     let edges: Vec<[u32; 2]> = edges.iter().map(|&edge| ends(edge)).collect();
-    Error::new(ErrorKind::Audit, format!("its link is no closed polygon; it has the edges {edges:?}")).at(position(set))
+    Error::new(ErrorKind::Audit, format!("its link is no closed polygon; it has the edges {edges:?}"))
+        .at(position(set))
 }
 
 /// Where in the input a link is: for error messages.

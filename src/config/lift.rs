@@ -37,7 +37,9 @@ impl Lift {
             return Err(Error::malformed("value to lift is not finite").at(format!("knot {bad}")));
         }
         if knots.has_copies() {
-            return Err(Error::usage("a lift does not tell knots at one place apart: use the rule `delaunay`"));
+            return Err(Error::usage(
+                "a lift does not tell knots at one place apart: use the rule `delaunay`",
+            ));
         }
         Ok(())
     }

@@ -36,6 +36,7 @@ pub use surface::{Start, delaunay};
 pub use union_map::{UnionSource, inverse_union_map, union_map};
 
 use crate::error::{Error, Result};
+use crate::order::{Curve, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};
 use configurations::Standing;
 use polygon::Triangulator;
@@ -51,7 +52,11 @@ use polygon::Triangulator;
 ///
 /// Cost: O(c k log c) for c configurations, and what the rule costs: O(m²) per link of m vertices for circles and ears, O(m³)
 /// for others; links have about 6 vertices.
-pub fn link_triangulate(knots: &Knots, configurations: &Configurations, rule: &Rule) -> Result<Configurations> {
+pub fn link_triangulate(
+    knots: &Knots,
+    configurations: &Configurations,
+    rule: &Rule,
+) -> Result<Configurations> {
     rule.check(knots)?;
     let step = Step { knots, configurations, rule };
     Arithmetic::of(&Extent::of(knots.points())).run(step, &mut PredicateCounts::default())
@@ -60,7 +65,12 @@ pub fn link_triangulate(knots: &Knots, configurations: &Configurations, rule: &R
 /// All degrees from 0 to `degree`, in order.
 ///
 /// Errors: a degree that the number of knots does not allow, and those of [`link_triangulate`].
-pub fn generate(knots: &Knots, start: Configurations, rule: &Rule, degree: usize) -> Result<Vec<Configurations>> {
+pub fn generate(
+    knots: &Knots,
+    start: Configurations,
+    rule: &Rule,
+    degree: usize,
+) -> Result<Vec<Configurations>> {
     check_degree(knots, degree)?;
     let mut all = vec![start];
     for _ in 0..degree {
@@ -75,7 +85,9 @@ pub fn generate(knots: &Knots, start: Configurations, rule: &Rule, degree: usize
 pub fn check_degree(knots: &Knots, degree: usize) -> Result<()> {
     if knots.len() < degree.saturating_add(3) {
         let (found, needed) = (knots.len(), degree.saturating_add(3));
-        return Err(Error::usage(format!("degree {degree} needs at least {needed} knots, there are {found}")));
+        return Err(Error::usage(format!(
+            "degree {degree} needs at least {needed} knots, there are {found}"
+        )));
     }
     Ok(())
 }
@@ -99,12 +111,18 @@ impl WithPredicates2 for Step<'_> {
         };
         let mut next = Configurations::empty(configurations.degree + 1, standing);
         let mut triangulator = Triangulator::new(knots, rule, standing, predicates);
-        gathering::for_each_link(knots, configurations, |set, link| {
+        // Along a curve, so that what is near in the plane is near in time: ids may be in any order.
+        let mut curve = SpatialOrder::default();
+        let order: Vec<u32> =
+            curve.sort(knots.points(), &Extent::of(knots.points()), Curve::Hilbert).collect();
+        drop(curve);
+        gathering::for_each_link(knots, configurations, &order, |set, link| {
             triangulator.triangulate(set, link)?;
             next.boundaries.extend_from_slice(&triangulator.out);
             next.close_group(set);
             Ok(())
         })?;
+        next.sort_groups(&order);
         Ok(next)
     }
 }

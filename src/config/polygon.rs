@@ -165,17 +165,18 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     }
 
     /// Triangulates the link of one of two knots at one place with diagonals from the other (thesis, figure 8.7), whatever
-    /// the rule is; whether that could be done.
+    /// the rule is; whether that could be done. Delaunay configurations are such by themselves, but for ties.
     fn fan_from_copy(&mut self) -> bool {
         let &[v] = &self.set[..] else { return false };
-        if !self.plane.knots.has_copies() {
+        if self.is_regular || !self.plane.knots.has_copies() {
             return false;
         }
         let at = self.plane.knots.at(v);
         let mut copies = (0..self.polygon.len()).filter(|&i| self.plane.knots.at(self.polygon[i]) == at);
         let (Some(copy), None) = (copies.next(), copies.next()) else { return false };
         let count = self.polygon.len();
-        let triangles = (1..count - 1).map(|i| [copy, copy + i, copy + i + 1].map(|place| self.polygon[place % count]));
+        let triangles =
+            (1..count - 1).map(|i| [copy, copy + i, copy + i + 1].map(|place| self.polygon[place % count]));
         let triangles: Vec<[u32; 3]> = triangles.collect();
         if !triangles.iter().all(|&[a, b, c]| self.plane.is_left(a, b, c)) {
             return false;
@@ -202,7 +203,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     /// Whether the direction from place `i` to place `j` is inside the polygon near `i`.
     fn is_in_cone(&mut self, i: usize, j: usize) -> bool {
         let count = self.polygon.len();
-        let [at, to, before, after] = [i, j, (i + count - 1) % count, (i + 1) % count].map(|p| self.polygon[p]);
+        let [at, to, before, after] =
+            [i, j, (i + count - 1) % count, (i + 1) % count].map(|p| self.polygon[p]);
         if self.plane.orient(before, at, after) == Sign::Positive {
             return self.plane.is_left(at, to, before) && self.plane.is_left(to, at, after);
         }

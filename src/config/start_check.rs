@@ -41,7 +41,8 @@ pub(super) fn border(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]>> {
     if let Some(pair) = all.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(bad_edge(pair[0], "two triangles are to the left of it"));
     }
-    let mut open: Vec<[u32; 2]> = all.iter().copied().filter(|&[a, b]| all.binary_search(&[b, a]).is_err()).collect();
+    let mut open: Vec<[u32; 2]> =
+        all.iter().copied().filter(|&[a, b]| all.binary_search(&[b, a]).is_err()).collect();
     open.sort_unstable();
     let Some(&first) = open.first() else { return Err(Knots::collinear()) };
     let mut cycle = vec![first];

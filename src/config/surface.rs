@@ -83,7 +83,8 @@ impl Start {
             }
             let reflex = [(a, plane.is_left(v, a, w)), (b, plane.is_left(w, b, v))];
             if let Some((hidden, _)) = reflex.into_iter().find(|(_, is_convex)| !is_convex) {
-                let message = "the lift is not convex there: the knot would be no vertex; lower it or raise its weight";
+                let message =
+                    "the lift is not convex there: the knot would be no vertex; lower it or raise its weight";
                 return Err(Error::usage(message).at(format!("knot {hidden}")));
             }
             start.flip(corner);
@@ -106,6 +107,14 @@ impl Start {
         all.extend_from_slice(triangles);
         all.extend(border.iter().map(|&[a, b]| [b, a, FARAWAY]));
         Ok(Start { across: join(&all)?, triangles: all, standing: Standing::Any })
+    }
+
+    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for constrained Delaunay
+    /// triangulations of links, and links of knots that are pulled apart are triangulated as in figure 8.7 of the thesis.
+    #[must_use]
+    pub fn generalised(mut self) -> Start {
+        self.standing = Standing::Any;
+        self
     }
 
     /// The configurations of degree 0.
@@ -165,7 +174,8 @@ impl Start {
     }
 
     fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
-        self.quadrilateral(corner).is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
+        self.quadrilateral(corner)
+            .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
     /// Replaces the edge opposite to a corner by the other diagonal.
@@ -180,7 +190,9 @@ impl Start {
         let (t, u) = (t as u32, u as u32);
         self.triangles[t as usize] = [v, a, w];
         self.triangles[u as usize] = [w, b, v];
-        for (here, there) in [(3 * t, aw), (3 * t + 1, 3 * u + 1), (3 * t + 2, va), (3 * u, bv), (3 * u + 2, wb)] {
+        for (here, there) in
+            [(3 * t, aw), (3 * t + 1, 3 * u + 1), (3 * t + 2, va), (3 * u, bv), (3 * u + 2, wb)]
+        {
             self.set_across(here, there);
         }
         self.standing = Standing::Any;
@@ -224,5 +236,6 @@ fn join(triangles: &[[u32; 3]]) -> Result<Vec<[Corner; 3]>> {
 }
 
 fn unmatched((a, b, _): (u32, u32, Corner)) -> Error {
-    Error::malformed("the edge does not have a triangle on each side").at(format!("edge of knots {a} and {b}"))
+    Error::malformed("the edge does not have a triangle on each side")
+        .at(format!("edge of knots {a} and {b}"))
 }

@@ -45,7 +45,8 @@ pub struct UnionSource {
 #[must_use]
 pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let first = sets.first()?;
-    let interior: Vec<u32> = first.iter().copied().filter(|v| sets.iter().all(|set| set.contains(v))).collect();
+    let interior: Vec<u32> =
+        first.iter().copied().filter(|v| sets.iter().all(|set| set.contains(v))).collect();
     let mut boundary: Vec<u32> = sets.iter().flatten().copied().filter(|v| !interior.contains(v)).collect();
     boundary.sort_unstable();
     boundary.dedup();
@@ -56,7 +57,8 @@ pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     given.sort_unstable();
     // More sets than were given would be made only if they are not an image; there is no need to make them all.
     let expected = binomial(source.boundary.len(), source.count)?;
-    let is_image = expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;
+    let is_image =
+        expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;
     is_image.then_some(source)
 }
 
@@ -70,7 +72,9 @@ mod tests {
 
     #[test]
     fn the_inverse_undoes_the_map() {
-        for (boundary, interior) in [(vec![4, 7], vec![2]), (vec![1, 5, 9], vec![3, 8]), (vec![1, 2, 3, 4], vec![])] {
+        for (boundary, interior) in
+            [(vec![4, 7], vec![2]), (vec![1, 5, 9], vec![3, 8]), (vec![1, 2, 3, 4], vec![])]
+        {
             for count in 1..boundary.len() {
                 let sets = union_map(&boundary, &interior, count);
                 let source = inverse_union_map(&sets);

@@ -13,9 +13,9 @@ fn assert_definition(points: &[[f64; 2]], degree: usize) {
     for (k, configurations) in all.iter().enumerate() {
         assert_eq!(configurations.degree(), k);
         assert_eq!(listed(configurations), expected[k], "degree {k}; let points = vec!{points:?};");
-        let infinite = configurations.groups().flat_map(|group| {
-            group.infinite.iter().map(move |&[p, q, _]| ([p, q], group.interior.to_vec()))
-        });
+        let infinite = configurations
+            .groups()
+            .flat_map(|group| group.infinite.iter().map(move |&[p, q, _]| ([p, q], group.interior.to_vec())));
         let mut infinite: Vec<_> = infinite.collect();
         infinite.sort();
         assert_eq!(infinite, lines(points, k), "lines, degree {k}; let points = vec!{points:?};");
@@ -49,7 +49,8 @@ fn two_hundred_random_sets_agree() {
 #[test]
 fn grids_with_ties_agree() {
     for [width, height] in [[3, 3], [4, 3], [4, 4], [5, 4]] {
-        let points: Vec<[f64; 2]> = (0..width * height).map(|i| [(i % width) as f64, (i / width) as f64]).collect();
+        let points: Vec<[f64; 2]> =
+            (0..width * height).map(|i| [(i % width) as f64, (i / width) as f64]).collect();
         assert_definition(&points, 4);
     }
 }
@@ -71,9 +72,8 @@ fn repeated_knots_agree() {
     for seed in 0..12 {
         let mut random = Random::new(seed);
         let side = random.integer(1, 3);
-        let points: Vec<[f64; 2]> = (0..14)
-            .map(|_| [random.integer(0, side) as f64, random.integer(0, side) as f64])
-            .collect();
+        let points: Vec<[f64; 2]> =
+            (0..14).map(|_| [random.integer(0, side) as f64, random.integer(0, side) as f64]).collect();
         if config::delaunay(&knots(&points)).is_ok() {
             assert_definition(&points, 3);
         }

@@ -1,6 +1,9 @@
 //! Delaunay configurations against their definition and their theory.
 
+mod borders;
+mod centroids;
 mod definition;
+mod lifted;
 mod rules;
 
 use spmesh::config::{self, Configurations, Knots, Rule};
@@ -24,5 +27,9 @@ fn delaunay(points: &[[f64; 2]], degree: usize) -> Vec<Configurations> {
 /// Configurations as a plain list, in the order of the reference.
 fn listed(configurations: &Configurations) -> Vec<Configuration> {
     let all = configurations.iter().map(|(boundary, interior)| (normalised(boundary), interior.to_vec()));
-    all.collect()
+    let mut all: Vec<Configuration> = all.collect();
+    if configurations.degree() == 0 {
+        all.sort_unstable();
+    }
+    all
 }

@@ -23,8 +23,16 @@ impl Grid {
         let side = ((points.len() as f64 / 2.0).sqrt() as usize).clamp(1, 1 << 12);
         let cell = bounds.map(|(low, high)| ((high - low) / side as f64).max(f64::MIN_POSITIVE));
         let lower = [bounds[0].0, bounds[1].0];
-        let mut grid = Grid { lower, cell, columns: side, rows: side, starts: vec![0; side * side + 1], ids: vec![0; points.len()] };
-        let cells: Vec<usize> = points.iter().map(|&p| grid.place(p[1], 1) * side + grid.place(p[0], 0)).collect();
+        let mut grid = Grid {
+            lower,
+            cell,
+            columns: side,
+            rows: side,
+            starts: vec![0; side * side + 1],
+            ids: vec![0; points.len()],
+        };
+        let cells: Vec<usize> =
+            points.iter().map(|&p| grid.place(p[1], 1) * side + grid.place(p[0], 0)).collect();
         cells.iter().for_each(|&cell| grid.starts[cell] += 1);
         let mut sum = 0;
         for start in &mut grid.starts {

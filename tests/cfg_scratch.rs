@@ -1,4 +1,0 @@
-mod config;
-#[allow(dead_code)]
-mod reference;
-fn main() {}
