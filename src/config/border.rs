@@ -1,8 +1,9 @@
 //! Borders of finite sets of knots, and sharp places: knots that are repeated (thesis 8.3).
 //!
-//! Splines of degree k sum to one where every closed half-plane through a point has at least k + 1 knots. So knots are
-//! repeated on the border: as often as that takes at its corners ([`Knots::clamped`]), or once everywhere, which for degree 2
-//! makes a basis that interpolates there ([`Knots::pulled_apart`]). Copies come after all knots, which keep their ids, and
+//! Splines of the configurations of degree k sum to one where every closed half-plane through a point has at least k + 1
+//! knots. So knots are repeated on the border: as often as that takes at its corners ([`Knots::clamped`]), or once everywhere
+//! ([`Knots::pulled_apart`]), which is right for degree 1, and so for the quadratic splines of its links: they sum to one on
+//! the whole hull, and interpolate at its knots. Copies come after all knots, which keep their ids, and
 //! are at the same places: the symbolic perturbation of `knots` tells them apart as far as combinatorics go, and nothing has
 //! to be snapped back.
 

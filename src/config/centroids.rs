@@ -74,13 +74,11 @@ impl CentroidMesh {
         let mut order: Vec<u32> = (0..(corners.len() / self.order) as u32).collect();
         order.sort_unstable_by_key(|&at| set(at));
         self.triangles = vec![[0; 3]; order.len() / 3];
-        let mut vertex = 0;
-        for same in order.chunk_by(|&a, &b| set(a) == set(b)) {
+        for (vertex, same) in (0..).zip(order.chunk_by(|&a, &b| set(a) == set(b))) {
             self.sets.extend_from_slice(set(same[0]));
             for &at in same {
                 self.triangles[at as usize / 3][at as usize % 3] = vertex;
             }
-            vertex += 1;
         }
     }
 }

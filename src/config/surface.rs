@@ -8,6 +8,7 @@ use crate::delaunay2::{Kernel, Triangulation};
 use crate::error::{Error, Result};
 use crate::predicates::TotalPredicates;
 use crate::random::Random;
+use foldhash::HashMap;
 
 /// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the place.
 pub(super) type Corner = u32;
@@ -21,25 +22,46 @@ pub struct Start {
     pub(super) standing: Standing,
 }
 
-/// The triangles of the canonical Delaunay triangulation, infinite ones included; of knots at one place only the first.
-fn delaunay_triangles(knots: &Knots) -> Result<Vec<[u32; 3]>> {
+/// The canonical Delaunay triangulation; of knots at one place only the first is a vertex.
+fn kernel_mesh(knots: &Knots) -> Result<Triangulation> {
     let mut mesh = Triangulation::default();
     Kernel::new().triangulate(knots.points(), &mut mesh)?;
-    if mesh.triangles().is_empty() {
-        return Err(Knots::collinear());
-    }
+    if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh) }
+}
+
+/// Its triangles, and after them the infinite ones at the edges of the hull.
+fn triangles_of(mesh: &Triangulation) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(mesh.triangles().len() + mesh.hull.len());
     triangles.extend(mesh.triangles().iter().map(|triangle| triangle.vertices));
     let ends = mesh.hull.iter().cycle().skip(1);
     triangles.extend(mesh.hull.iter().zip(ends).map(|(&a, &b)| [b, a, FARAWAY]));
-    Ok(triangles)
+    triangles
+}
+
+/// For each half-edge of [`triangles_of`] that on the other side.
+fn across_of(mesh: &Triangulation) -> Vec<[Corner; 3]> {
+    let (finite, infinite) = (mesh.triangles().len() as u32, mesh.hull.len() as u32);
+    let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
+    let mut across = Vec::with_capacity((finite + infinite) as usize);
+    across.extend(mesh.triangles().iter().map(|triangle| {
+        [0, 1, 2].map(|i| match triangle.across(i) {
+            Some(beyond) => 3 * beyond.triangle + beyond.corner,
+            None => 3 * outside[&triangle.vertices[(i + 1) % 3]] + 2,
+        })
+    }));
+    let around = |place: u32| 3 * (finite + place % infinite);
+    across.extend((0..infinite).map(|place| [around(place + infinite - 1) + 1, around(place + 1), 0]));
+    for t in 0..finite {
+        for (i, beyond) in (0..).zip(across[t as usize]).filter(|&(_, beyond)| beyond / 3 >= finite) {
+            across[beyond as usize / 3][2] = 3 * t + i;
+        }
+    }
+    across
 }
 
 /// The border of the convex hull, counterclockwise, with all knots on it; of those at one place the first.
 pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
-    let mut mesh = Triangulation::default();
-    Kernel::new().triangulate(knots.points(), &mut mesh)?;
-    if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh.hull) }
+    Ok(kernel_mesh(knots)?.hull)
 }
 
 /// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if no knots are at
@@ -50,7 +72,7 @@ pub fn delaunay(knots: &Knots) -> Result<Configurations> {
     if knots.has_copies() {
         return Ok(Start::delaunay(knots)?.configurations());
     }
-    Ok(Configurations::of_triangles(Standing::Delaunay, delaunay_triangles(knots)?))
+    Ok(Configurations::of_triangles(Standing::Delaunay, triangles_of(&kernel_mesh(knots)?)))
 }
 
 impl Start {
@@ -58,8 +80,10 @@ impl Start {
     ///
     /// Errors: knots on one line.
     pub fn delaunay(knots: &Knots) -> Result<Start> {
-        let triangles = delaunay_triangles(knots)?;
-        let mut start = Start { across: join(&triangles)?, triangles, standing: Standing::Delaunay };
+        let mesh = kernel_mesh(knots)?;
+        let (triangles, across) = (triangles_of(&mesh), across_of(&mesh));
+        drop(mesh);
+        let mut start = Start { triangles, across, standing: Standing::Delaunay };
         if knots.has_copies() {
             start.insert_copies(knots);
         }

@@ -3,6 +3,7 @@
 use super::{delaunay, knots, listed};
 use crate::reference::configurations::{by_definition, lines};
 use crate::reference::sets::{self, Random};
+use spmesh::audit::config::check_circles;
 use spmesh::config::{self, Rule};
 use spmesh::error::ErrorKind;
 
@@ -13,6 +14,7 @@ fn assert_definition(points: &[[f64; 2]], degree: usize) {
     for (k, configurations) in all.iter().enumerate() {
         assert_eq!(configurations.degree(), k);
         assert_eq!(listed(configurations), expected[k], "degree {k}; let points = vec!{points:?};");
+        check_circles(&knots(points), configurations).expect("circles");
         let infinite = configurations
             .groups()
             .flat_map(|group| group.infinite.iter().map(move |&[p, q, _]| ([p, q], group.interior.to_vec())));
@@ -41,7 +43,7 @@ fn random_sets_agree() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "takes two minutes"]
 fn two_hundred_random_sets_agree() {
     random_sets(0..200);
 }

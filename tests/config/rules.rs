@@ -112,7 +112,7 @@ fn any_rule_from_any_triangulation() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes five minutes"]
 fn two_thousand_runs() {
     let mut tally = Tally::default();
     (1000..3000).for_each(|seed| run(seed, 6, &mut tally));
