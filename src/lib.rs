@@ -10,6 +10,7 @@ mod cell_index;
 pub mod cells;
 pub mod cells4;
 pub mod cli;
+pub mod config;
 pub mod convert;
 pub mod dd4;
 pub mod delaunay2;

@@ -51,3 +51,6 @@ pub const CONDITION_LEN_MAX: usize = 1 << 12;
 
 /// Deepest parentheses of a condition.
 pub const CONDITION_DEPTH_MAX: usize = 32;
+
+/// Most vertices of a link that is not triangulated by circles: looking for its diagonals takes cubic time.
+pub const LINK_VERTICES_MAX: usize = 512;

@@ -5,6 +5,7 @@ mod audit;
 mod cell_grid;
 mod circle;
 mod cli;
+mod config;
 mod convert;
 mod dd4;
 mod delaunay3_float;

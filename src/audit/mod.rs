@@ -31,6 +31,7 @@
 
 mod cells;
 mod check;
+pub mod config;
 pub mod diagram;
 mod edges;
 mod exact;

@@ -1,6 +1,7 @@
 //! Independent canonical Delaunay triangulations, slow and plain. They share no code with the library.
 
 pub mod clouds;
+pub mod configurations;
 pub mod diagram4;
 pub mod exact;
 pub mod exact3;

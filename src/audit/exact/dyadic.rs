@@ -43,7 +43,7 @@ fn scaled<const N: usize, const D: usize>(points: &[[f64; D]; N]) -> Option<[[i1
 }
 
 /// The points times a common power of two.
-pub(super) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
+pub(in crate::audit) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
     let (dyadics, unit) = dyadics(&points);
     dyadics.map(|point| {
         point.map(|value| match value.mantissa {

@@ -1,0 +1,69 @@
+//! Times configurations against the 2D kernel on the same knots, in one thread.
+//!
+//! `config_time POINTS|uniform:N [DEGREE]` reads knots as `kernel_time` does, or makes uniform ones, runs the kernel and the
+//! configurations in turn three times, and prints the least times, seconds and microseconds per knot, with their ratio.
+
+#[path = "../benchmark/rust/src/lib.rs"]
+#[allow(dead_code, missing_docs)]
+mod files;
+
+use std::path::PathBuf;
+
+use files::{Paths, timed};
+use spmesh::config::{self, Knots, Rule};
+use spmesh::delaunay2::{Kernel, Triangulation};
+
+const ROUNDS: usize = 3;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let (source, degree) = match &words[..] {
+        [source] => (source, 1),
+        [source, degree] => (source, degree.parse()?),
+        _ => return Err("usage: config_time POINTS|uniform:N [DEGREE]".into()),
+    };
+    let points = read(source)?;
+    let (mut kernel_seconds, mut config_seconds, mut bytes, mut count) = (f64::INFINITY, f64::INFINITY, 0, 0);
+    for _ in 0..ROUNDS {
+        let mut mesh = Triangulation::default();
+        let (result, seconds) = timed(|| Kernel::new().triangulate(&points, &mut mesh));
+        result?;
+        drop(mesh);
+        kernel_seconds = seconds.min(kernel_seconds);
+        let copy = points.clone();
+        let (result, seconds) = timed(|| {
+            let knots = Knots::new(copy)?;
+            config::generate(&knots, config::delaunay(&knots)?, &Rule::Delaunay, degree)
+        });
+        config_seconds = seconds.min(config_seconds);
+        let all = result?;
+        bytes = all.iter().map(config::Configurations::bytes).sum();
+        count = all[degree].len();
+    }
+    let micros = |seconds: f64| seconds * 1e6 / points.len() as f64;
+    println!(
+        "{{\"knots\": {}, \"degree\": {degree}, \"configurations\": {count}, \"bytes\": {bytes}, \
+         \"kernel_seconds\": {kernel_seconds:.6}, \"seconds\": {config_seconds:.6}, \"kernel_us_per_knot\": {:.4}, \
+         \"us_per_knot\": {:.4}, \"ratio\": {:.3}}}",
+        points.len(),
+        micros(kernel_seconds),
+        micros(config_seconds),
+        config_seconds / kernel_seconds,
+    );
+    Ok(())
+}
+
+/// Knots of a file, or uniform in the unit square, by a sequence of SplitMix64 with the seed 1.
+fn read(source: &str) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
+    let Some(count) = source.strip_prefix("uniform:") else {
+        return Ok(Paths { points: source.into(), triangles: PathBuf::new() }.read_points()?);
+    };
+    let mut state = 1u64;
+    let mut unit = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
+    };
+    Ok((0..count.parse()?).map(|_| [unit(), unit()]).collect())
+}

@@ -1,0 +1,118 @@
+//! Whether circles have the knots inside that they should.
+
+use std::cmp::Ordering;
+
+use num_bigint::BigInt;
+
+use super::grid::Grid;
+use crate::audit::exact::dyadic::integers;
+use crate::audit::exact::plane::{Xy, in_circle, in_raised_circle, orientation};
+use crate::config::{Configurations, Knots};
+use crate::error::{Error, ErrorKind, Result};
+
+/// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken as the canonical
+/// triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for a small number e.
+///
+/// Infinite configurations are not checked. Errors: the first violation (kind [`ErrorKind::Audit`]).
+///
+/// Cost: for each configuration, the knots in the bounding box of its circle.
+pub fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<()> {
+    let points = knots.points();
+    let grid = Grid::of(points);
+    for (boundary, interior) in configurations.iter() {
+        let fail = |what: String| {
+            Err(Error::new(ErrorKind::Audit, what).at(format!("configuration {boundary:?}, {interior:?}")))
+        };
+        if boundary.iter().chain(interior).any(|&id| id as usize >= knots.len()) {
+            return fail("a knot is unknown".into());
+        }
+        if turn(knots, boundary) != Ordering::Greater {
+            return fail("the boundary is not counterclockwise".into());
+        }
+        let mut inside = 0;
+        for id in grid.near(reach(boundary.map(|id| points[id as usize]))) {
+            if boundary.contains(&id) || !is_inside(knots, boundary, id) {
+                continue;
+            }
+            if interior.binary_search(&id).is_err() {
+                return fail(format!("knot {id} is inside of the circle"));
+            }
+            inside += 1;
+        }
+        if inside != interior.len() {
+            return fail(format!("of the {} knots inside, only {inside} are", interior.len()));
+        }
+    }
+    Ok(())
+}
+
+/// A box around the circle of three points, with a margin for rounding; everything, if the circle is not well known.
+fn reach([a, b, c]: [Xy; 3]) -> [Xy; 2] {
+    let everything = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
+    let [p, q] = [[b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]];
+    let (products, area) = ([p[0] * q[1], p[1] * q[0]], p[0] * q[1] - p[1] * q[0]);
+    if area.abs() < 1e-6 * (products[0].abs() + products[1].abs()) || !area.is_normal() {
+        return everything;
+    }
+    let (k, l) = (p[0] * p[0] + p[1] * p[1], q[0] * q[0] + q[1] * q[1]);
+    let centre = [(q[1] * k - p[1] * l) / (2.0 * area), (p[0] * l - q[0] * k) / (2.0 * area)];
+    let radius = centre[0].hypot(centre[1]) * 1.001 + f64::MIN_POSITIVE;
+    let scale = a[0].abs().max(a[1].abs()) * 1e-9;
+    if !(radius + scale).is_finite() {
+        return everything;
+    }
+    let centre = [a[0] + centre[0], a[1] + centre[1]];
+    [centre.map(|c| c - radius - scale), centre.map(|c| c + radius + scale)]
+}
+
+fn turn(knots: &Knots, ids: [u32; 3]) -> Ordering {
+    let [a, b, c] = ids.map(|id| knots.points()[id as usize]);
+    match orientation(a, b, c).sign {
+        Ordering::Equal => turn_of(&moved(knots, ids), [0, 1, 2]),
+        sign => sign,
+    }
+}
+
+fn is_inside(knots: &Knots, [a, b, c]: [u32; 3], d: u32) -> bool {
+    let ids = [a, b, c, d];
+    let [p, q, r, s] = ids.map(|id| knots.points()[id as usize]);
+    let sign = match in_circle(p, q, r, s).sign {
+        Ordering::Equal if ids.iter().any(|&id| knots.rank(id) > 0) => circle_of(&moved(knots, ids)),
+        Ordering::Equal => in_raised_circle(p, q, r, s),
+        sign => sign,
+    };
+    sign == Ordering::Greater
+}
+
+/// Positions with a number for e: one that exceeds no coefficient of a determinant of these points, which is less than
+/// 2^(4 bits + 16) with ranks counted.
+fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[BigInt; 2]; N] {
+    let points = integers(ids.map(|id| knots.points()[id as usize]));
+    let bits = points.as_flattened().iter().map(BigInt::bits).max().unwrap_or(0).max(64);
+    let shift = 6 * bits + 400;
+    std::array::from_fn(|i| {
+        let rank = BigInt::from(knots.rank(ids[i]));
+        [(&points[i][0] << shift) + &rank, (&points[i][1] << shift) + &rank * &rank]
+    })
+}
+
+fn area<const N: usize>(points: &[[BigInt; 2]; N], [i, j, k]: [usize; 3]) -> BigInt {
+    let [p, q, r] = [&points[i], &points[j], &points[k]];
+    (&q[0] - &p[0]) * (&r[1] - &p[1]) - (&q[1] - &p[1]) * (&r[0] - &p[0])
+}
+
+fn turn_of<const N: usize>(points: &[[BigInt; 2]; N], places: [usize; 3]) -> Ordering {
+    area(points, places).cmp(&BigInt::ZERO)
+}
+
+/// Side of the last point against the circle of the others, counterclockwise; by ranks if it is on it.
+fn circle_of(points: &[[BigInt; 2]; 4]) -> Ordering {
+    let coefficients = [[3, 1, 2], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+    let lift = |p: &[BigInt; 2]| &p[0] * &p[0] + &p[1] * &p[1];
+    let sum: BigInt = (0..4).map(|i| lift(&points[i]) * area(points, coefficients[i])).sum();
+    let mut ranked = [0, 1, 2, 3];
+    ranked.sort_by(|&i, &j| points[j].cmp(&points[i]));
+    let ties = ranked.iter().map(|&i| turn_of(points, coefficients[i]));
+    let mut signs = std::iter::once(sum.cmp(&BigInt::ZERO)).chain(ties);
+    signs.find(|&sign| sign != Ordering::Equal).unwrap_or(Ordering::Equal)
+}

@@ -1,0 +1,11 @@
+//! Checks of configurations, which know the arrays but none of the code that fills them.
+//!
+//! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word: what splines need, by whatever rule
+//! the configurations were made. [`check_circles`] is the definition of Delaunay configurations.
+
+mod circles;
+mod facets;
+mod grid;
+
+pub use circles::check_circles;
+pub use facets::{FacetCounts, check_facets};

@@ -1,0 +1,98 @@
+//! The union map, which makes faces of k-set polytopes of configurations, and its inverse (thesis, equations 7.3 and 7.4).
+
+/// The sets that a configuration makes with `count` knots of its boundary at a time, each sorted, in lexicographic order:
+/// all unions of I with `count` of B.
+///
+/// Domain: disjoint sets, `count` from 1 to one less than the size of `boundary`; otherwise there are none. (The thesis has
+/// one less in equation 7.3 than in theorem 7.1.2, which is right.)
+#[must_use]
+pub fn union_map(boundary: &[u32], interior: &[u32], count: usize) -> Vec<Vec<u32>> {
+    if count == 0 || count >= boundary.len() {
+        return Vec::new();
+    }
+    let mut sets = Vec::new();
+    choose(boundary, count, interior.to_vec(), &mut sets);
+    sets.iter_mut().for_each(|set| set.sort_unstable());
+    sets.sort_unstable();
+    sets
+}
+
+/// Adds to `sets` all unions of `with` and `count` of `from`.
+fn choose(from: &[u32], count: usize, with: Vec<u32>, sets: &mut Vec<Vec<u32>>) {
+    if count == 0 {
+        sets.push(with);
+        return;
+    }
+    for (place, &knot) in from.iter().enumerate().take((from.len() + 1).saturating_sub(count)) {
+        choose(&from[place + 1..], count - 1, [&with[..], &[knot]].concat(), sets);
+    }
+}
+
+/// A configuration and how many of its boundary are taken at a time; sets are sorted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnionSource {
+    /// The boundary set B.
+    pub boundary: Vec<u32>,
+    /// The interior set I.
+    pub interior: Vec<u32>,
+    /// The number of knots of B in each set.
+    pub count: usize,
+}
+
+/// What the union map made `sets` of; `None` if it does not make them of anything.
+///
+/// B is the union of the sets without their intersection, which is I.
+#[must_use]
+pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
+    let first = sets.first()?;
+    let interior: Vec<u32> =
+        first.iter().copied().filter(|v| sets.iter().all(|set| set.contains(v))).collect();
+    let mut boundary: Vec<u32> = sets.iter().flatten().copied().filter(|v| !interior.contains(v)).collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    let mut source = UnionSource { count: first.len() - interior.len(), boundary, interior };
+    source.interior.sort_unstable();
+    let mut given: Vec<Vec<u32>> = sets.to_vec();
+    given.iter_mut().for_each(|set| set.sort_unstable());
+    given.sort_unstable();
+    // More sets than were given would be made only if they are not an image; there is no need to make them all.
+    let expected = binomial(source.boundary.len(), source.count)?;
+    let is_image =
+        expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;
+    is_image.then_some(source)
+}
+
+fn binomial(n: usize, k: usize) -> Option<usize> {
+    (0..k).try_fold(1usize, |product, i| Some(product.checked_mul(n.checked_sub(i)?)? / (i + 1)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_undoes_the_map() {
+        for (boundary, interior) in
+            [(vec![4, 7], vec![2]), (vec![1, 5, 9], vec![3, 8]), (vec![1, 2, 3, 4], vec![])]
+        {
+            for count in 1..boundary.len() {
+                let sets = union_map(&boundary, &interior, count);
+                let source = inverse_union_map(&sets);
+                let expected = UnionSource { boundary: boundary.clone(), interior: interior.clone(), count };
+                assert_eq!(source, Some(expected), "{sets:?}");
+            }
+        }
+        assert_eq!(union_map(&[1, 2, 3, 4], &[9], 2).len(), 6);
+        assert_eq!(union_map(&[3, 1, 2], &[0], 2), [[0, 1, 2], [0, 1, 3], [0, 2, 3]]);
+        assert!(union_map(&[1, 2, 3], &[], 3).is_empty() && union_map(&[1, 2, 3], &[], 0).is_empty());
+    }
+
+    #[test]
+    fn what_is_no_image_has_no_source() {
+        assert_eq!(inverse_union_map(&[]), None);
+        assert_eq!(inverse_union_map(&[vec![1, 2]]), None, "one set");
+        assert_eq!(inverse_union_map(&[vec![1, 2], vec![1, 3], vec![2, 4]]), None, "a set is missing");
+        assert_eq!(inverse_union_map(&[vec![1, 2], vec![1, 3], vec![4]]), None, "sets of different sizes");
+        assert_eq!(inverse_union_map(&[vec![1, 2], vec![1, 2]]), None, "a set twice");
+    }
+}
