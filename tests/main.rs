@@ -6,6 +6,7 @@ mod cell_grid;
 mod circle;
 mod cli;
 mod config;
+mod configgen;
 mod convert;
 mod dd4;
 mod delaunay3_float;

@@ -12,6 +12,7 @@ pub fn tool(name: &str) -> Command {
         "spdelaunay2d" => env!("CARGO_BIN_EXE_spdelaunay2d"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),
         "spconvert" => env!("CARGO_BIN_EXE_spconvert"),
+        "configgen" => env!("CARGO_BIN_EXE_configgen"),
         "dd4" => env!("CARGO_BIN_EXE_dd4"),
         "tess3" => env!("CARGO_BIN_EXE_tess3"),
         other => panic!("no tool {other}"),

@@ -86,9 +86,14 @@ impl Input {
 
     /// As `open`, from one file that is open already; `name` is what messages call it.
     pub(super) fn open_file(file: File, name: &str, options: &SourceOptions) -> Result<Input> {
+        Input::of_origin(Origin::Open(Arc::new(file)), name.to_string(), options)
+    }
+
+    /// As `open`, from the bytes of one file; `name` is what messages call it.
+    pub(super) fn of_origin(origin: Origin, name: String, options: &SourceOptions) -> Result<Input> {
+        check_options(&[PathBuf::from(&name)], options)?;
         let mut notices = Vec::new();
-        let origin = Origin::Open(Arc::new(file));
-        let source = Source::new(origin, name.to_string(), options, &mut notices)?;
+        let source = Source::new(origin, name, options, &mut notices)?;
         Input::of_sources(vec![source], options, notices)
     }
 

@@ -1,0 +1,190 @@
+//! `configgen`: flags.
+
+mod report;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Parser, ValueEnum};
+
+use super::{Common, StatsFormat, notice, open_input, progress::Progress};
+use crate::configgen::{self, Border, Flips, Made, Options, Places, RuleName, write};
+use crate::error::{Error, ErrorKind, Result};
+use crate::output::Output;
+use crate::source::read_values;
+use crate::system;
+
+const TOOL: &str = "configgen";
+
+const EXAMPLES: &str = "\
+Examples:
+  Configurations up to degree 2, for splines of degree 2 or, by their links, 3:
+    configgen --degree 2 knots.csv -o knots2.spm
+  Of a LIDAR tile in which points that coincide are one knot; the counts of each degree:
+    spfinalize tile.laz | spdelaunay2d | configgen --degree 1 --stats -o tile1.spm
+  Splines that sum to one up to the border and interpolate at its corners:
+    configgen --degree 2 --boundary clamped knots.txt -o clamped.spm
+  Edges along level lines of the third coordinate; the centroid triangulation of order 2:
+    configgen --degree 1 --rule data knots.xyz --centroids -o centroids.spm
+  From a triangulation with 100 random flips, by random triangulations of links:
+    configgen --degree 3 --flip random:100:7 --rule random --seed 7 knots.txt -o random.spm
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+A configuration of degree k is three knots B and k knots I; with the rule delaunay, those inside of the circle through B. The \
+configurations of each degree triangulate the links of the degree before, by a rule. The start is the Delaunay triangulation, \
+or with the rules lifted:... the regular one; a mesh that is not the Delaunay triangulation of its vertices is the start itself.
+
+Rules: delaunay; lifted:heights (values are those of a strictly convex function) and lifted:weights (power circles), which \
+give projective configurations; min-weight; ear; fan; random; aligned:ANGLE (edges near a direction, in degrees \
+counterclockwise from the x axis); data (edges along which values differ least or, where they are gradients, slopes). Values \
+are elevations, or those of --values.
+
+Knots are numbered in the order of the input, from 0. Knots at one place are repeated knots, which lowers the smoothness of \
+splines there; spdelaunay2d makes one of them. Copies that --boundary and --pull-apart add come last.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed or truncated \
+input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
+
+/// What is said after the number of bytes that could not be had.
+const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a lower degree\n";
+
+/// Delaunay configurations of any degree, and their generalisation.
+///
+/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, point streams) or a triangle mesh stream, and writes the
+/// configurations of all degrees up to one, which bivariate splines are defined by. The result is exact, whatever lies on
+/// one circle, on one line or in one place.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Files of points, read as one input, or one triangle mesh; - is stdin
+    #[arg(value_name = "FILE", default_value = "-")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the configurations go; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Highest degree
+    #[arg(short, long, value_name = "K", default_value_t = 1)]
+    degree: u32,
+
+    /// How links are triangulated: delaunay, lifted:heights, lifted:weights, min-weight, ear, fan, random, data or
+    /// aligned:ANGLE
+    #[arg(long, value_name = "RULE", default_value = "delaunay")]
+    rule: RuleName,
+
+    /// Values of the knots for rules that need some, instead of elevations: lines of one number, or of two for gradients
+    #[arg(long, value_name = "FILE")]
+    values: Option<PathBuf>,
+
+    /// Flip edges of the start triangulation: random:N:SEED, or aligned:ANGLE for those that come nearer to a direction
+    #[arg(long, value_name = "FLIPS")]
+    flip: Option<Flips>,
+
+    /// Repeat knots on the border, so that splines sum to one up to it: corners as often as the degree needs, or all of
+    /// them once, which is for degree 1
+    #[arg(long, value_enum, value_name = "clamped|pulled-apart", hide_possible_values = true)]
+    boundary: Option<BorderFlag>,
+
+    /// Make two of each of these knots: all, boundary, or ids between commas. Their links are triangulated from each
+    /// other, so that splines of degree 2 interpolate there
+    #[arg(long, value_name = "KNOTS")]
+    pull_apart: Option<Places>,
+
+    /// Seed of --rule random, and of flips without one of their own
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+
+    /// Write the centroid triangulation of the highest two degrees as a triangle mesh stream instead
+    #[arg(long)]
+    centroids: bool,
+
+    /// Print what the run did on stderr, with the counts of each degree
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--boundary` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum BorderFlag {
+    /// Corners
+    Clamped,
+    /// All
+    PulledApart,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`configgen::read_sites`], [`configgen::make`] and the writers.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    Ok(flags.run()?)
+}
+
+impl Flags {
+    fn run(&self) -> Result<()> {
+        let started = Instant::now();
+        system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        let options = self.options()?;
+        // An output that cannot be is better known before the work.
+        let mut output = Output::create(&self.output, true)?;
+        let mut progress = Progress::new(&self.common, "reading", None);
+        let sites = configgen::read_sites(&self.inputs, |points| progress.set(points))?;
+        let read_time = started.elapsed();
+        drop(progress);
+        sites.notices.iter().for_each(|text| self.notice(text));
+        let progress = Progress::waiting(&self.common, "configurations");
+        let made = configgen::make(sites, &options)?;
+        let begun = Instant::now();
+        self.write(&made, &mut output)?;
+        let output_bytes = output.bytes_written();
+        output.commit()?;
+        let times = report::Times { read: read_time, write: begun.elapsed(), total: started.elapsed() };
+        drop(progress);
+        report::notices(&made.report, &options).iter().for_each(|text| self.notice(text));
+        report::print(self.stats, &made, &options, &times, output_bytes)
+    }
+
+    fn options(&self) -> Result<Options> {
+        if self.values.is_some() && !self.rule.needs_values() {
+            return Err(Error::usage("--values is for the rules lifted:heights, lifted:weights and data"));
+        }
+        let is_stdin = |path: &PathBuf| path.as_os_str() == "-";
+        if self.values.as_ref().is_some_and(is_stdin) && self.inputs.iter().any(is_stdin) {
+            return Err(Error::usage("knots and values cannot both come from stdin"));
+        }
+        let values = self.values.as_ref().map(|path| {
+            let (input, name) = open_input(path)?;
+            read_values(input).map_err(|e| e.of_input(name))
+        });
+        Ok(Options {
+            degree: self.degree as usize,
+            rule: self.rule,
+            seed: self.seed,
+            flips: self.flip,
+            border: match self.boundary {
+                None => Border::Free,
+                Some(BorderFlag::Clamped) => Border::Clamped,
+                Some(BorderFlag::PulledApart) => Border::PulledApart,
+            },
+            pull_apart: self.pull_apart.clone(),
+            values: values.transpose()?,
+        })
+    }
+
+    fn write(&self, made: &Made, output: &mut Output) -> Result<()> {
+        if self.centroids {
+            return configgen::write_centroids(&made.knots, &made.frame, &made.centroids()?, output);
+        }
+        write::write_configurations(&made.knots, &made.degrees, output)
+    }
+
+    fn notice(&self, message: &str) {
+        notice(TOOL, &self.common, message);
+    }
+}

@@ -1,0 +1,62 @@
+//! How many configurations and links there are, by kind.
+
+use crate::config::{self, Configurations, Knots};
+use crate::error::Result;
+use crate::predicates::{Predicates2, Sign, TotalPredicates};
+
+/// Counts of one degree.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct DegreeCounts {
+    /// The degree.
+    pub degree: u64,
+    /// Configurations, without infinite ones.
+    pub configurations: u64,
+    /// Those of them whose boundary triangle has no area: they have copies of knots in it.
+    pub flat: u64,
+    /// Infinite configurations: lines with as many knots to the left as the degree.
+    pub infinite: u64,
+    /// Interior sets.
+    pub interiors: u64,
+    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come from.
+    pub links: u64,
+    /// Links that are null.
+    pub null_links: u64,
+    /// Links through the faraway point.
+    pub infinite_links: u64,
+    /// Most vertices of a link.
+    pub link_vertices_max: u64,
+}
+
+impl DegreeCounts {
+    /// Counts configurations and the links that they leave.
+    ///
+    /// # Errors
+    /// As [`config::links`].
+    pub fn of(knots: &Knots, configurations: &Configurations) -> Result<DegreeCounts> {
+        let mut counts = DegreeCounts {
+            degree: configurations.degree() as u64,
+            configurations: configurations.len() as u64,
+            infinite: configurations.infinite_len() as u64,
+            interiors: configurations.group_count() as u64,
+            ..DegreeCounts::default()
+        };
+        if knots.has_copies() {
+            let mut predicates = TotalPredicates::default();
+            let mut is_flat = |boundary: [u32; 3]| {
+                let [a, b, c] = boundary.map(|id| knots.at(id));
+                predicates.orient2d(a, b, c) == Sign::Zero
+            };
+            counts.flat = configurations.iter().filter(|&(boundary, _)| is_flat(boundary)).count() as u64;
+        }
+        for link in config::links(knots, configurations)?.iter() {
+            let kind = match (link.is_infinite(), link.is_null()) {
+                (true, _) => &mut counts.infinite_links,
+                (false, true) => &mut counts.null_links,
+                (false, false) => &mut counts.links,
+            };
+            *kind += 1;
+            counts.link_vertices_max = counts.link_vertices_max.max(link.polygon.len() as u64);
+        }
+        Ok(counts)
+    }
+}

@@ -1,0 +1,84 @@
+//! `configgen`: knots in, configurations of all degrees up to one out.
+//!
+//! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of them, `start` makes
+//! of both what [`crate::config`] needs; `write` and `mesh` write it.
+
+mod counts;
+mod mesh;
+mod options;
+mod sites;
+mod start;
+pub mod write;
+
+pub use counts::DegreeCounts;
+pub use mesh::write_centroids;
+pub use options::{Border, Flips, Options, Places, RuleName};
+pub use sites::{Frame, Sites, read_sites};
+
+use std::time::{Duration, Instant};
+
+use crate::config::{self, CentroidMesh, Configurations, Knots};
+use crate::error::Result;
+
+/// What a run made.
+#[derive(Debug)]
+pub struct Made {
+    /// All knots: those of the input, and after them the copies that borders and pulling apart add.
+    pub knots: Knots,
+    /// Coordinates and elevations of the knots.
+    pub frame: Frame,
+    /// Configurations of the degrees from 0 on.
+    pub degrees: Vec<Configurations>,
+    /// What was done on the way.
+    pub report: Report,
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// Points, or vertices, of the input.
+    pub points: u64,
+    /// Those of them at the place of an earlier one.
+    pub repeated: u64,
+    /// Knots, with the copies that were added.
+    pub knots: u64,
+    /// Whether the triangles of the input were the start.
+    pub own_start: bool,
+    /// Flips of the start triangulation.
+    pub flips: u64,
+    /// Finding the start triangulation.
+    pub start_time: Duration,
+    /// Going from degree to degree.
+    pub degrees_time: Duration,
+}
+
+/// Makes the configurations of knots, up to the degree that is wanted.
+///
+/// # Errors
+/// Usage, if there are too few knots for the degree, all on one line, or options do not fit them or each other; as
+/// [`config::generate`].
+pub fn make(sites: Sites, options: &Options) -> Result<Made> {
+    let name = sites.name.clone();
+    make_unnamed(sites, options).map_err(|e| e.of_input(name))
+}
+
+fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
+    let began = Instant::now();
+    let setup = start::set_up(sites, options)?;
+    let start_time = began.elapsed();
+    let began = Instant::now();
+    let degrees = config::generate(&setup.knots, setup.start, &setup.rule, options.degree)?;
+    let report = Report { start_time, degrees_time: began.elapsed(), ..setup.report };
+    Ok(Made { knots: setup.knots, frame: setup.frame, degrees, report })
+}
+
+impl Made {
+    /// The centroid triangulation of the highest two degrees.
+    ///
+    /// # Errors
+    /// As [`CentroidMesh::of`].
+    pub fn centroids(&self) -> Result<CentroidMesh> {
+        let (upper, lower) = self.degrees.split_last().expect("there is at least degree 0");
+        CentroidMesh::of(&self.knots, lower.last(), upper)
+    }
+}
