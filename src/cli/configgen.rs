@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
-use crate::configgen::{self, Border, Flips, Made, Options, Places, RuleName, write};
+use crate::configgen::{self, Border, Flips, Made, Options, Places, RuleName};
 use crate::error::{Error, ErrorKind, Result};
 use crate::output::Output;
 use crate::source::read_values;
@@ -181,7 +181,7 @@ impl Flags {
         if self.centroids {
             return configgen::write_centroids(&made.knots, &made.frame, &made.centroids()?, output);
         }
-        write::write_configurations(&made.knots, &made.degrees, output)
+        made.write(output)
     }
 
     fn notice(&self, message: &str) {

@@ -15,10 +15,12 @@ pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
 pub use sites::{Frame, Sites, read_sites};
 
+use std::io::Write;
 use std::time::{Duration, Instant};
 
 use crate::config::{self, CentroidMesh, Configurations, Knots};
 use crate::error::Result;
+use crate::stream::Header;
 
 /// What a run made.
 #[derive(Debug)]
@@ -73,6 +75,29 @@ fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
 }
 
 impl Made {
+    /// Writes the configurations of all degrees, with their knots.
+    ///
+    /// # Errors
+    /// As [`write::write_configurations_as`].
+    pub fn write(&self, output: impl Write) -> Result<()> {
+        let elevations = self.frame.elevations.as_deref();
+        write::write_configurations_as(self.header(), &self.knots, elevations, &self.degrees, output)
+    }
+
+    fn header(&self) -> Header {
+        let Frame { coordinates, crs, elevations } = &self.frame;
+        let mut header = Header {
+            has_elevation: elevations.is_some(),
+            producer: concat!("configgen ", env!("CARGO_PKG_VERSION")).to_string(),
+            ..write::header(&self.knots, *coordinates, crs.clone())
+        };
+        if let (Some(bounds), Some(elevations)) = (&mut header.bounds, elevations) {
+            bounds.min[2] = elevations.iter().copied().fold(f64::INFINITY, f64::min);
+            bounds.max[2] = elevations.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        }
+        header
+    }
+
     /// The centroid triangulation of the highest two degrees.
     ///
     /// # Errors

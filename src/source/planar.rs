@@ -14,7 +14,7 @@ use crate::stream::{Kind, StreamReader};
 /// What an input is.
 pub enum Planar {
     /// Points of any source.
-    Points(Input),
+    Points(Box<Input>),
     /// A triangle mesh stream, or the text twin of one.
     Mesh(Box<dyn EventSource>),
 }
@@ -28,7 +28,7 @@ pub enum Planar {
 pub fn open_planar(paths: &[PathBuf], options: &SourceOptions) -> Result<Planar> {
     match paths {
         [path] => open_one(path, options),
-        _ => Input::open(paths, options).map(Planar::Points),
+        _ => Ok(Planar::Points(Box::new(Input::open(paths, options)?))),
     }
 }
 
@@ -40,7 +40,7 @@ fn open_one(path: &Path, options: &SourceOptions) -> Result<Planar> {
     if let Some(mesh) = open_mesh(&origin, &name).map_err(|e| e.of_input(&name))? {
         return Ok(Planar::Mesh(mesh));
     }
-    Input::of_origin(origin, name, options).map(Planar::Points)
+    Ok(Planar::Points(Box::new(Input::of_origin(origin, name, options)?)))
 }
 
 /// `None` if it is no triangle mesh.
