@@ -11,6 +11,7 @@ pub mod cells;
 pub mod cells4;
 pub mod cli;
 pub mod config;
+pub mod configgen;
 pub mod convert;
 pub mod dd4;
 pub mod delaunay2;
