@@ -108,7 +108,7 @@ impl Tally {
         Ok(())
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.11). A mesh
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.12). A mesh
     /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
     /// residual.
     ///

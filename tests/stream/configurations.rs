@@ -67,7 +67,11 @@ fn configurations_come_back_as_they_were_written() {
         assert_eq!(set.knots.points(), knots.points(), "seed {seed}");
         assert_eq!(set.heights, None);
         for (before, after) in degrees.iter().zip(&set.degrees) {
-            assert_eq!(config::links(&set.knots, after).ok(), config::links(&knots, before).ok(), "seed {seed}");
+            assert_eq!(
+                config::links(&set.knots, after).ok(),
+                config::links(&knots, before).ok(),
+                "seed {seed}"
+            );
         }
     }
 }
