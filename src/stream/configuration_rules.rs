@@ -100,8 +100,8 @@ impl ConfigurationRules {
         if let Some(last) = group.boundary {
             let was_infinite = last[2] == FARAWAY;
             // The start triangulation is in an order of its own.
-            let is_sorted = degree == 0 || is_infinite > was_infinite || last < boundary;
-            if is_infinite < was_infinite || !is_sorted {
+            let is_sorted = degree == 0 || (is_infinite && !was_infinite) || last < boundary;
+            if (was_infinite && !is_infinite) || !is_sorted {
                 return fail(&format!("does not follow {last:?} in its group"));
             }
         }
