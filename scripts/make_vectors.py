@@ -16,7 +16,8 @@ FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats
 UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
-         "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7}
+         "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7,
+         "configurations": 8}
 INF, NAN = float("inf"), float("nan")
 
 
@@ -214,6 +215,23 @@ class Vector:
         return self.block(b"SIM4", [(struct.pack("<5I", *simplex), "simplex of vertices " + text)
                                     for simplex, text in zip(simplices, texts)])
 
+    def configurations(self, degree, *groups, standing=0, goes_on=False, head=None):
+        """Groups of an interior set and boundaries; of two knots if they are infinite. `goes_on` says that the degree was
+        begun by the block before, and "group" that the first group was; `head` overrides degree, standing and count."""
+        if not goes_on:
+            self.lines.append("degree %d %s" % (degree, ("any", "delaunay", "lifted", "?")[standing]))
+        for number, (interior, boundaries) in enumerate(groups):
+            if number or goes_on != "group":
+                self.lines.append(" ".join(["in"] + [str(v + 1) for v in interior]))
+            self.lines += [" ".join(["on" if len(b) == 3 else "line"] + [str(v + 1) for v in b]) for b in boundaries]
+        pack = lambda words: struct.pack("<%dI" % len(words), *words)
+        payload = [(pack(head or (degree, standing, len(groups))), "degree, standing, groups")]
+        payload += [(pack(interior), "interior set") for interior, _ in groups if interior]
+        payload += [(pack([len(boundaries)]), "configurations of a group") for _, boundaries in groups]
+        payload += [(pack(tuple(b) + (2**32 - 1,) * (3 - len(b))), "boundary" if len(b) == 3 else "infinite boundary")
+                    for _, boundaries in groups for b in boundaries]
+        return self.block(b"CONF", payload)
+
     def end(self, points=0, cells=0, vertices=0, simplices=0, merged=0, residual=0, walls=0, **damage):
         totals = dict(points=points, cells=cells, vertices=vertices, simplices=simplices, merged=merged,
                       residual=residual, walls=walls)
@@ -253,6 +271,12 @@ CELLS4 = [(0, (0, 1, 2, 3, 4), (1, 2, 3, 4, 5))] + [
 POINTS4 = dict(kind="points in 4 dimensions", dims=4)
 DIAGRAM4 = dict(kind="cells in 4 dimensions", dims=4)
 SIMPLICES4 = dict(kind="simplices in 4 dimensions", dims=4)
+
+# Four knots: a triangle with one inside. Degree 0, with the lines of the hull, and degree 1.
+CONFIGURATIONS = dict(kind="configurations", grid=HALF)
+KNOTS = [(0, 0), (8, 0), (0, 8), (2, 2)]
+DEGREE0 = ((), [(0, 1, 3), (1, 2, 3), (0, 3, 2), (1, 0), (2, 1), (0, 2)])
+DEGREE1 = [((0,), [(1, 3), (3, 2)]), ((1,), [(2, 3), (3, 0)]), ((2,), [(0, 3), (3, 1)]), ((3,), [(0, 1, 2)])]
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
 
 
@@ -350,6 +374,19 @@ def passing():
     yield "simplices4-values", "Points with values, no simplices", Vector(**SIMPLICES4, elevation=1).points4(
         ("1", "0", "0", "0", "7"), ("0", "0", "0", "0", "7")).end(2, vertices=2)
 
+    yield "configurations-empty", "No knots, no configurations", Vector(**CONFIGURATIONS).end()
+    yield "configurations", "Four knots with all their configurations", Vector(
+        **CONFIGURATIONS, bounds=(0, 0, 0, 8, 8, 0), points=4).points(*KNOTS).configurations(
+        0, DEGREE0, standing=1).configurations(1, *DEGREE1, standing=1).end(4, simplices=13)
+    yield "configurations-split", "Groups that go on in later blocks, an empty block, a degree that is left out", Vector(
+        **CONFIGURATIONS).points(*KNOTS[:3]).points(*KNOTS[3:]).configurations(0, ((), DEGREE0[1][:1])).configurations(
+        0, ((), DEGREE0[1][1:5]), goes_on="group").configurations(0, goes_on=True).configurations(
+        0, ((), DEGREE0[1][5:]), goes_on="group").configurations(2, ((1, 2), [(0, 3)]), standing=2).configurations(
+        2, ((1, 3), [(0, 2)]), standing=2, goes_on=True).end(4, simplices=8)
+    yield "configurations-copies", "Knots at one place, with heights; a degree without configurations", Vector(
+        "configurations", elevation=1).points(("0", "0", "1"), ("0", "0", "2"), ("1", "0", "0"), ("0", "1", "0")).configurations(
+        0, ((), [(0, 1, 2), (0, 3, 1), (0, 2)])).configurations(3).end(4, simplices=3)
+
 
 def failing_headers():
     """Name, words of the error, and vector of headers that break a rule. Bytes override a field as it is stored."""
@@ -411,6 +448,10 @@ def failing_headers():
         ("points4-i32", "expected f64", dict(**POINTS4, grid=HALF)),
         ("cells4-box", "no bounding box", dict(**DIAGRAM4, bounds=(0, 0, 0, 1, 1, 1))),
         ("simplices4-region", "no bounding box, tree or region", dict(**SIMPLICES4, region=(0, 0, 1, 1))),
+        ("configurations-in-3d", "a configurations in 3", dict(kind="configurations", dims=3)),
+        ("configurations-tree", "no finalization tree", dict(kind="configurations", tree=QUADTREE)),
+        ("configurations-region", "region goes with a partial mesh", dict(kind="configurations", region=(0, 0, 1, 1))),
+        ("configurations-chunked", "can be chunked", dict(kind="configurations", chunked=True)),
         ("cells4-chunked", "is not chunked", dict(**DIAGRAM4, chunked=True)),
     ]
     for name, words, fields in damage:
@@ -577,6 +618,7 @@ def failing_streams():
 
 
     yield from failing_streams4(raw)
+    yield from failing_configurations(raw)
 
 
 def failing_streams4(raw):
@@ -662,6 +704,66 @@ def failing_streams4(raw):
     yield "end-simplices4", "END states", Vector(**SIMPLICES4).points4(*CORNERS4).simplices4((4, 0, 1, 2, 3)).end(
         5, vertices=5, simplices=2)
     yield "simplices4-nan", "not finite", Vector(**SIMPLICES4).points4(("nan", "0", "0", "0")).end(1, vertices=1)
+
+
+def failing_configurations(raw):
+    """Name, words of the error, and vector of streams of configurations; `raw` makes a payload of bytes."""
+    words = lambda *numbers: raw(struct.pack("<%dI" % len(numbers), *numbers))
+    knots = lambda: Vector(**CONFIGURATIONS).points(*KNOTS)
+    block = lambda *numbers: knots().block(b"CONF", words(*numbers)).end(4)
+    both = lambda first, second: knots().configurations(*first).configurations(*second).end(4, simplices=2)
+    degree = lambda k, *groups: knots().configurations(k, *groups).end(
+        4, simplices=sum(len(boundaries) for _, boundaries in groups))
+    boundary = lambda k, interior, *boundaries: degree(k, (interior, boundaries))
+
+    yield "configurations-short", "expected at least 12", block(0, 0)
+    yield "configurations-degree", "the maximum is 4096", block(4097, 0, 0)
+    yield "configurations-standing", "standing 3", block(0, 3, 0)
+    yield "configurations-groups-huge", "do not add up", block(4096, 0, 2**32 - 1)
+    yield "configurations-counts-huge", "do not add up", block(0, 0, 1, 2**32 - 1, 0, 1, 3)
+    yield "configurations-left-over", "do not add up", block(0, 0, 1, 1, 0, 1, 3, 0)
+    yield "configurations-missing", "do not add up", block(0, 0, 1, 2, 0, 1, 3)
+    yield "configurations-none", "has no configuration", block(1, 0, 1, 0, 0)
+    yield "configurations-degree-lower", "of degree 0 after those of 1", both(
+        (1, ((3,), [(0, 1, 2)])), (0, ((), [(0, 1, 3)])))
+    yield "configurations-change-standing", "change their standing", knots().configurations(
+        0, ((), [(0, 1, 3)])).configurations(0, ((), [(0, 1, 2)]), standing=1).end(4, simplices=2)
+    yield "interior-unknown", "not of increasing numbers of 4 knots", boundary(1, (4,), (0, 1, 2))
+    yield "interior-faraway", "not of increasing numbers of 4 knots", boundary(1, (2**32 - 1,), (0, 1, 2))
+    yield "interior-not-increasing", "not of increasing numbers", boundary(2, (3, 2), (0, 1))
+    yield "interior-repeats-knot", "not of increasing numbers", boundary(2, (2, 2), (0, 1))
+    yield "interior-not-sorted", "does not follow", degree(1, ((3,), [(0, 1)]), ((2,), [(0, 1)]))
+    yield "interior-twice", "does not follow", degree(1, ((3,), [(0, 1)]), ((3,), [(0, 2)]))
+    yield "interior-again", "does not follow", both((1, ((3,), [(0, 1)])), (1, ((2,), [(0, 1)])))
+    yield "boundary-unknown", "is not of numbers of 4 knots", boundary(0, (), (0, 1, 4))
+    yield "boundary-infinite-unknown", "is not of numbers of 4 knots", boundary(0, (), (0, 4))
+    yield "boundary-faraway-first", "is not of numbers of 4 knots", boundary(0, (), (0, 2**32 - 1, 1))
+    yield "boundary-faraway-twice", "is not of numbers of 4 knots", boundary(0, (), (0, 2**32 - 1))
+    yield "boundary-repeats-knot", "repeats a knot", boundary(0, (), (0, 1, 1))
+    yield "boundary-infinite-repeats-knot", "repeats a knot", boundary(0, (), (1, 1))
+    yield "boundary-not-least-first", "least knot first", boundary(0, (), (1, 3, 0))
+    yield "boundary-in-interior", "which is in the interior set", boundary(1, (1,), (0, 1, 2))
+    yield "boundary-not-sorted", "does not follow", boundary(1, (3,), (0, 2, 1), (0, 1, 2))
+    yield "boundary-twice", "does not follow", boundary(1, (3,), (0, 1, 2), (0, 1, 2))
+    yield "boundary-twice-again", "does not follow", both((1, ((3,), [(0, 1, 2)])), (1, ((3,), [(0, 1, 2)])))
+    yield "boundary-infinite-not-sorted", "does not follow", boundary(1, (3,), (1, 2), (0, 1))
+    yield "boundary-after-infinite", "does not follow", boundary(0, (), (0, 1), (0, 1, 3))
+    yield "configurations-before-knots", "numbers of 0 knots", Vector(**CONFIGURATIONS).configurations(
+        *(0, DEGREE0)).end(simplices=6)
+    yield "knots-after-configurations", "may stand here", knots().configurations(0, DEGREE0).points((1, 1)).end(
+        5, simplices=6)
+    yield "configurations-in-points", "may stand here", Vector().block(b"CONF", words(0, 0, 0)).end()
+    yield "configurations-in-mesh", "may stand here", Vector("triangle mesh").block(b"CONF", words(0, 0, 0)).end()
+    yield "cells-in-configurations", "may stand here", knots().cells().end(4)
+    yield "knot-outside-box", "outside of the header's bounding box", Vector(
+        **CONFIGURATIONS, bounds=(0, 0, 0, 7, 8, 0)).points(*KNOTS).end(4)
+    yield "end-configurations", "END states", knots().configurations(0, DEGREE0).end(4, simplices=3)
+    yield "end-configurations-knots", "END states", knots().configurations(0, DEGREE0).end(5, simplices=6)
+    yield "end-configurations-vertices", "END states", knots().end(4, vertices=4)
+    yield "end-configurations-merged", "END states", knots().end(5, merged=1)
+    yield "end-configurations-header", "another number of points", Vector(**CONFIGURATIONS, points=5).points(
+        *KNOTS).end(4)
+    yield "configurations-no-end", "truncated", knots().configurations(0, DEGREE0)
 
 
 def files():

@@ -17,6 +17,7 @@ import sys
 from decimal import Decimal
 
 UNKNOWN = 2**64 - 1
+FARAWAY = 2**32 - 1
 NOT_KNOWN = bytes.fromhex("000000000000f87f")
 
 
@@ -65,6 +66,7 @@ KINDS = {
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
     6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
     7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
+    8: ("configurations", (2,), ((b"PNTS",), (b"CONF",))),
 }
 
 
@@ -94,7 +96,7 @@ class Header:
         self.has_elevation = elevation == 1
         self.axes = self.dims + elevation
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
-        self.is_mesh = self.kind not in ("points", "points in 4 dimensions")
+        self.is_mesh = self.kind not in ("points", "points in 4 dimensions", "configurations")
         (self.points,) = struct.unpack_from("<Q", data, 24)
         self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
         if self.is_integer:
@@ -105,6 +107,10 @@ class Header:
         self.region = struct.unpack_from("<4d", data, 168) if flags & 4 else None
         self.check_region()
         self.chunked = flags & 8 != 0
+        require(
+            self.kind != "configurations" or not self.tree,
+            "a stream of configurations has no finalization tree",
+        )
         require(
             not self.chunked or (self.tree and not self.is_mesh),
             "only points with a finalization tree can be chunked",
@@ -349,6 +355,7 @@ class Stream:
         self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
         self.live = {}
         self.last, self.words, self.neighbour = None, [], -1
+        self.degree = self.group = self.boundary = None
         self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
@@ -398,6 +405,7 @@ class Stream:
             b"PNT4": self.points4,
             b"CEL4": self.cells4,
             b"SIM4": self.simplices4,
+            b"CONF": self.configurations,
             b"END ": self.end,
         }
         require(tag in readers, "unknown block tag")
@@ -565,6 +573,78 @@ class Stream:
             require(len(set(simplex)) == 5, "simplex %r uses a vertex twice" % (simplex,))
             self.total["simplices"] += 1
             self.text.numbers("s4", simplex)
+
+    def configurations(self, payload):
+        require(len(payload) >= 12, "configurations in %d bytes, expected at least 12" % len(payload))
+        degree, standing, groups = struct.unpack_from("<3I", payload)
+        require(degree <= 4096, "configurations of degree %d, the maximum is 4096" % degree)
+        require(standing < 3, "configurations of standing %d, expected 0, 1 or 2" % standing)
+        unfit = "the counts of the configurations do not add up to the block's length"
+        start = 12 + groups * (degree + 1) * 4
+        require(start <= len(payload), unfit)
+        counts = struct.unpack_from("<%dI" % groups, payload, 12 + groups * degree * 4)
+        require(start + sum(counts) * 12 == len(payload), unfit)
+        self.start_degree(degree, standing)
+        at = start
+        for number, count in enumerate(counts):
+            interior = struct.unpack_from("<%dI" % degree, payload, 12 + number * degree * 4)
+            self.start_group(interior, number == 0)
+            require(count > 0, "interior set %r has no configuration" % (interior,))
+            for boundary in struct.iter_unpack("<3I", payload[at : at + count * 12]):
+                self.configuration(interior, boundary)
+            at += count * 12
+
+    def start_degree(self, degree, standing):
+        if self.degree:
+            last, known = self.degree
+            require(degree >= last, "configurations of degree %d after those of %d" % (degree, last))
+            require(
+                degree > last or standing == known,
+                "the configurations of degree %d change their standing" % degree,
+            )
+        if self.degree != (degree, standing):
+            self.degree, self.group = (degree, standing), None
+            self.text.line("degree %d %s" % (degree, ("any", "delaunay", "lifted")[standing]))
+
+    def start_group(self, interior, is_first):
+        if is_first and interior == self.group:
+            return
+        require(
+            self.group is None or interior > self.group,
+            "interior set %r does not follow %r" % (interior, self.group),
+        )
+        knots = self.total["points"]
+        require(
+            is_increasing(interior) and all(knot < knots for knot in interior),
+            "interior set %r is not of increasing numbers of %d knots" % (interior, knots),
+        )
+        self.group, self.boundary = interior, None
+        self.text.line("in" + "".join([" %d" % (knot + 1) for knot in interior]))
+
+    def configuration(self, interior, boundary):
+        a, b, c = boundary
+        knots, infinite, name = self.total["points"], c == FARAWAY, "boundary %r " % (boundary,)
+        ends = boundary[:2] if infinite else boundary
+        require(
+            all(knot < knots and knot != FARAWAY for knot in ends), name + "is not of numbers of %d knots" % knots
+        )
+        require(len(set(boundary)) == 3, name + "repeats a knot")
+        require(infinite or a == min(boundary), name + "does not have its least knot first")
+        for knot in ends:
+            at = bisect.bisect_left(interior, knot)
+            require(
+                at == len(interior) or interior[at] != knot,
+                name + "has knot %d, which is in the interior set %r" % (knot, interior),
+            )
+        if self.boundary:
+            was = self.boundary[2] == FARAWAY
+            require(
+                infinite > was or infinite == was and (not interior or self.boundary < boundary),
+                name + "does not follow %r in its group" % (self.boundary,),
+            )
+        self.boundary = boundary
+        self.total["simplices"] += 1
+        self.text.line(("line" if infinite else "on") + "".join([" %d" % (knot + 1) for knot in ends]))
 
     def end(self, payload):
         require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))

@@ -13,6 +13,9 @@ pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 /// Words of one cell of four dimensions: 8 GB, so that a block that completes it has fewer than 2^32.
 pub const CELL_WORDS_MAX: u64 = 1 << 31;
 
+/// Highest degree of configurations in a stream: an interior set fits a block, and a line of a text twin.
+pub const CONFIGURATION_DEGREE_MAX: u32 = 1 << 12;
+
 /// Longest line of a text input, in bytes.
 pub const TEXT_LINE_MAX: usize = 1 << 16;
 

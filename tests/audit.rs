@@ -4,6 +4,8 @@
 mod census;
 #[path = "audit/command.rs"]
 mod command;
+#[path = "audit/configurations.rs"]
+mod configurations;
 #[path = "audit/diagram.rs"]
 pub mod diagram;
 #[path = "audit/diagram_damage.rs"]

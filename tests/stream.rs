@@ -1,5 +1,6 @@
 //! The reader believes nothing and the writer loses nothing.
 
+mod configurations;
 mod four;
 mod tools4;
 
@@ -46,6 +47,7 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
             Event::Points4(points) => writer.points4(&points.points, points.values.as_deref())?,
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell))?,
             Event::Simplices4(simplices) => writer.simplices4(simplices)?,
+            Event::Configurations(block) => writer.configurations(block)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),
         }
     }
@@ -67,6 +69,11 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
                 cells.iter().for_each(|cell| before.push(cell))
             }
             (Some(Event::Simplices4(before)), Event::Simplices4(simplices)) => before.extend(simplices),
+            (Some(Event::Configurations(before)), Event::Configurations(block))
+                if before.degree == block.degree =>
+            {
+                block.groups().for_each(|(interior, boundaries)| before.push(interior, boundaries));
+            }
             (_, Event::Points4(points)) if points.points.is_empty() => {}
             (_, Event::Cells4(cells)) if cells.is_empty() => {}
             (_, Event::Simplices4(simplices)) if simplices.is_empty() => {}

@@ -43,6 +43,7 @@ mod point_set;
 mod points;
 mod survey;
 mod survey4;
+mod survey_configurations;
 mod tetrahedra;
 mod triangles;
 
@@ -50,6 +51,7 @@ pub(crate) use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use point_set::PointSet;
 pub use survey::{CellPoints, PatchSize, Survey};
+pub use survey_configurations::{ConfigurationSurvey, DegreeSurvey};
 pub use survey4::Survey4;
 pub use tetrahedra::{Census, Faults, Figures};
 pub use triangles::Standard;
@@ -65,7 +67,7 @@ use crate::error::Error;
 use crate::stream::{Event, Header, Kind};
 
 /// Audit of one stream of two or three dimensions: give it every event, and ask for the report. Those of four dimensions
-/// have [`diagram::StreamAudit`].
+/// have [`diagram::StreamAudit`], configurations [`config::StreamAudit`].
 ///
 /// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
 pub struct Audit {
@@ -111,7 +113,7 @@ impl Audit {
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
             }
-            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => {
+            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 | Kind::Configurations => {
                 let kind = header.kind.name();
                 let message =
                     format!("streams of kind {kind} have an audit of their own, or nothing to prove");

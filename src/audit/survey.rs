@@ -1,5 +1,6 @@
 //! What a stream holds, in numbers.
 
+use super::survey_configurations::ConfigurationSurvey;
 use super::survey4::Survey4;
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
@@ -22,6 +23,7 @@ pub struct Survey {
     run: u64,
     /// What is of four dimensions.
     four: Survey4,
+    configurations: ConfigurationSurvey,
 }
 
 /// Size of a patch.
@@ -89,6 +91,7 @@ impl Survey {
             }
             Event::Walls(walls) => self.totals.walls += walls.len() as u64,
             Event::Points4(_) | Event::Cells4(_) | Event::Simplices4(_) => self.four.event(event),
+            Event::Configurations(block) => self.configurations.block(block),
             Event::End(totals) => self.totals = *totals,
         }
         Ok(())
@@ -104,6 +107,12 @@ impl Survey {
     #[must_use]
     pub fn four(&self) -> &Survey4 {
         &self.four
+    }
+
+    /// The configurations.
+    #[must_use]
+    pub fn configurations(&self) -> &ConfigurationSurvey {
+        &self.configurations
     }
 
     /// Bounding box of what was read, in stored coordinates, of two or three dimensions.

@@ -1,6 +1,7 @@
 //! The tool `spinfo`.
 
 mod census;
+mod configurations;
 mod diagram;
 mod report;
 
@@ -11,6 +12,7 @@ use clap::{Parser, ValueEnum};
 
 use super::progress::Progress;
 use super::{Common, notice, open_input};
+use crate::audit::config::{self as config_audit};
 use crate::audit::diagram::{self as diagram4, StreamAudit};
 use crate::audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey};
 use crate::error::{Error, ErrorKind, Result};
@@ -29,6 +31,7 @@ Examples:
   spinfo --audit=delaunay foreign.spm     any Delaunay triangulation will do
   spinfo --audit --points a.laz mesh.spm  and it has exactly these points
   spinfo --audit diagram.spm              prove the cells that dd4 made; they are held in memory
+  spinfo --audit configurations.spm       prove circles, facets and counts of configurations; they are held
   spinfo --audit --count-violations tetrahedra.spm
                                           how wrong is it, exactly and in plain floating point
   spinfo --json mesh.spm | jq .counts     for programs
@@ -116,7 +119,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         progress.set(survey.totals().points.max(survey.totals().vertices));
     }
     drop(progress);
-    let failure = failure.or_else(|| Some(proof.verdict()?.of_input(reader.name())));
+    let mut failure = failure.or_else(|| Some(proof.verdict()?.of_input(reader.name())));
+    if let Some(error) = failure.take_if(|error| error.kind() != ErrorKind::Audit) {
+        return Err(error.into());
+    }
     let summary = Summary {
         name: reader.name(),
         header: &header,
@@ -124,6 +130,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         audit: proof.report(),
         census: proof.figures(),
         diagram: proof.diagram(),
+        configurations: proof.configurations(),
         failure: failure.as_ref(),
         bytes: reader.bytes_read(),
     };
@@ -139,6 +146,8 @@ enum Proof {
     Audit(Box<Audit>),
     /// Whether cells or simplices of four dimensions are what they claim to be.
     Diagram(Box<StreamAudit>),
+    /// Whether configurations are what they claim to be.
+    Configurations(Box<config_audit::StreamAudit>),
     /// How often they are not.
     Census(Box<Census>, Standard),
 }
@@ -148,6 +157,9 @@ impl Proof {
         let Some(standard) = flags.audit.map(Standard::from) else { return Ok(Proof::None) };
         if header.kind.is_4d() && !flags.count_violations && flags.points.is_empty() {
             return Ok(Proof::Diagram(Box::new(StreamAudit::new(header.kind)?)));
+        }
+        if header.kind == Kind::Configurations && !flags.count_violations && flags.points.is_empty() {
+            return Ok(Proof::Configurations(Box::new(config_audit::StreamAudit::new(header))));
         }
         if !flags.count_violations {
             let audit = Audit::new(header, standard, given_points(flags, header)?)?;
@@ -166,6 +178,7 @@ impl Proof {
             Proof::None => Ok(()),
             Proof::Audit(audit) => audit.event(event).map_err(|violation| violation.to_error(header)),
             Proof::Diagram(audit) => audit.event(event),
+            Proof::Configurations(audit) => audit.event(event),
             Proof::Census(census, _) => census.event(event).map_err(|violation| violation.to_error(header)),
         }
     }
@@ -176,6 +189,7 @@ impl Proof {
             Proof::Diagram(audit) => {
                 audit.prove().err().map(|violation| Error::new(ErrorKind::Audit, violation.to_string()))
             }
+            Proof::Configurations(audit) => audit.prove().err(),
             Proof::Census(census, standard) if !census.figures().is_clean(*standard) => {
                 Some(Error::new(ErrorKind::Audit, "the mesh is wrong: the counts are in the report"))
             }
@@ -193,6 +207,13 @@ impl Proof {
     fn diagram(&self) -> Option<&std::result::Result<diagram4::Proof, diagram4::Violation>> {
         match self {
             Proof::Diagram(audit) => audit.proof(),
+            _ => None,
+        }
+    }
+
+    fn configurations(&self) -> Option<&std::result::Result<config_audit::Proof, config_audit::Violation>> {
+        match self {
+            Proof::Configurations(audit) => audit.proof(),
             _ => None,
         }
     }

@@ -1,10 +1,11 @@
 //! Configurations of one degree, and links: flat arrays, grouped by sets of knots.
 
 use super::knots::FARAWAY;
+use crate::error::{Error, ErrorKind, Result};
 
 /// By which lift configurations are those of the lower side of a k-set polytope; nothing is known of others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Standing {
+pub enum Standing {
     /// Delaunay configurations.
     Delaunay,
     /// Projective configurations of the lift of the rule.
@@ -103,6 +104,41 @@ impl Configurations {
         self.finite += group.iter().take_while(|triangle| triangle[2] != FARAWAY).count();
         self.interiors.extend_from_slice(interior);
         self.offsets.push(self.boundaries.len() as u32);
+    }
+
+    /// No configurations, to be given with [`Configurations::extend`].
+    #[must_use]
+    pub fn new(degree: usize, standing: Standing) -> Configurations {
+        Configurations::empty(degree, standing)
+    }
+
+    /// Appends configurations with one interior set, to the last group if that has the same set.
+    ///
+    /// Domain: groups, and boundaries in a group, in the order that the type has, and in its form; nothing is checked.
+    ///
+    /// Errors: too many configurations.
+    pub fn extend(&mut self, interior: &[u32], boundaries: &[[u32; 3]]) -> Result<()> {
+        debug_assert_eq!(interior.len(), self.degree);
+        let Ok(end) = u32::try_from(self.boundaries.len() + boundaries.len()) else {
+            let message = "2^32 configurations of one degree or more cannot be held: use fewer knots";
+            return Err(Error::new(ErrorKind::Memory, message));
+        };
+        let groups = self.group_count();
+        if groups > 0 && self.interiors[(groups - 1) * self.degree..] == *interior {
+            self.offsets[groups] = end;
+        } else {
+            self.interiors.extend_from_slice(interior);
+            self.offsets.push(end);
+        }
+        self.finite += boundaries.iter().filter(|boundary| boundary[2] != FARAWAY).count();
+        self.boundaries.extend_from_slice(boundaries);
+        Ok(())
+    }
+
+    /// What the configurations are by the way they were made.
+    #[must_use]
+    pub fn standing(&self) -> Standing {
+        self.standing
     }
 
     /// The degree k: the size of interior sets.

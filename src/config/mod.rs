@@ -27,7 +27,7 @@ mod symbolic;
 mod union_map;
 
 pub use centroids::{CentroidMesh, centroid};
-pub use configurations::{Configurations, Group, Link, Links};
+pub use configurations::{Configurations, Group, Link, Links, Standing};
 pub use gathering::links;
 pub use knots::{FARAWAY, Knots};
 pub use lift::Lift;
@@ -38,7 +38,6 @@ pub use union_map::{UnionSource, inverse_union_map, union_map};
 use crate::error::{Error, Result};
 use crate::order::{Curve, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};
-use configurations::Standing;
 use polygon::Triangulator;
 
 /// The configurations of the next degree: every link is triangulated by `rule` (thesis, table 7.1).

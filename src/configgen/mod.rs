@@ -1,11 +1,13 @@
 //! `configgen`: knots in, configurations of all degrees up to one out.
 //!
 //! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of them, `start` makes
-//! of both what [`crate::config`] needs; `write` and `mesh` write it.
+//! of both what [`crate::config`] needs; `write` and `mesh` write it, and
+//! `read` has it back.
 
 mod counts;
 mod mesh;
 mod options;
+pub mod read;
 mod sites;
 mod start;
 pub mod write;

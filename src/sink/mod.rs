@@ -15,6 +15,7 @@ mod spool;
 mod triangles;
 mod twin;
 mod twin4;
+mod twin_configurations;
 mod volume;
 mod vtu;
 mod world;

@@ -34,6 +34,7 @@ impl<W: Write> EventSink for SpmSink<W> {
             Event::Points4(points) => writer.points4(&points.points, points.values.as_deref()),
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell)),
             Event::Simplices4(simplices) => writer.simplices4(simplices),
+            Event::Configurations(block) => writer.configurations(block),
             Event::End(totals) => {
                 let writer = self.writer.take().expect("there is one end");
                 writer.end(totals.points, totals.merged).map(drop)

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use super::twin_configurations::OpenGroup;
 use super::world::{world_of, write_numbers};
 use super::{EventSink, twin4, write_error};
 use crate::bounds::Point;
@@ -12,6 +13,7 @@ use crate::stream::{Coordinates, Crs, Event, Header, Kind, Patch, Totals};
 pub struct TwinSink<W> {
     output: W,
     header: Header,
+    open: OpenGroup,
 }
 
 impl<W: Write> TwinSink<W> {
@@ -21,7 +23,7 @@ impl<W: Write> TwinSink<W> {
     /// If writing fails.
     pub fn new(mut output: W, header: &Header) -> Result<Self> {
         write_header(&mut output, header)?;
-        Ok(TwinSink { output, header: header.clone() })
+        Ok(TwinSink { output, header: header.clone(), open: OpenGroup::default() })
     }
 
     fn point(&mut self, start: &str, point: Point) -> Result<()> {
@@ -80,6 +82,7 @@ impl<W: Write> EventSink for TwinSink<W> {
             Event::Points4(points) => twin4::points(&mut self.output, points),
             Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
             Event::Simplices4(simplices) => twin4::simplices(&mut self.output, simplices),
+            Event::Configurations(block) => self.open.write(&mut self.output, block),
             Event::End(totals) => self.end(totals),
         }
     }

@@ -40,6 +40,7 @@ pub mod structure;
 mod text;
 mod twin;
 mod twin4;
+mod twin_configurations;
 mod twin_header;
 mod values;
 

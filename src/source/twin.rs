@@ -7,13 +7,16 @@ use super::patches::patch_of_ids;
 use super::statements::{
     Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
 };
+use super::twin_configurations::{self, ConfigurationLine, OpenLines};
 use super::twin_header::TwinHeader;
 use super::twin4::{self, Group4, Statement4};
 use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::error::{Error, Result};
 use crate::limits::BLOCK_PAYLOAD_MAX;
-use crate::stream::{Coordinates, Event, Header, Kind, Patch, Tally, Totals, check_place};
+use crate::stream::{
+    ConfigurationBlock, Coordinates, Event, Header, Kind, Patch, Tally, Totals, check_place,
+};
 
 /// Lines of one sort that become one event at most.
 const BATCH_MAX: usize = 4096;
@@ -30,6 +33,7 @@ enum Statement {
     Residual(Option<u64>, Point),
     Wall([u64; 2]),
     Four(Statement4),
+    Configuration(ConfigurationLine),
     End(Totals),
 }
 
@@ -59,6 +63,7 @@ enum Group {
     Residual(Vec<(Option<u64>, Point)>),
     Walls(Vec<[u32; 2]>),
     Four(Group4),
+    Configurations(ConfigurationBlock),
 }
 
 /// Reads a text twin. Memory: one line, and one block's worth of lines.
@@ -69,6 +74,7 @@ pub struct TwinSource<R> {
     header: Header,
     held: Option<Statement>,
     group: Group,
+    open: OpenLines,
     tally: Tally,
     ended: bool,
 }
@@ -97,7 +103,8 @@ impl<R: Read> TwinSource<R> {
         }
         let header = header.finish().map_err(|e| lines.locate(e))?;
         let tally = Tally::new(&header);
-        let mut source = TwinSource { lines, header, held: None, group: Group::Empty, tally, ended: false };
+        let (group, open) = (Group::Empty, OpenLines::default());
+        let mut source = TwinSource { lines, header, held: None, group, open, tally, ended: false };
         if is_first_content {
             source.held =
                 parse_statement(source.lines.current(), &source.header).map_err(|e| source.locate(e))?;
@@ -127,6 +134,7 @@ impl<R: Read> TwinSource<R> {
                 return self.take_group();
             }
             if let Statement::End(stated) = statement {
+                self.open.check_closed()?;
                 self.tally.check_end(&self.header, &stated)?;
                 self.expect_end_of_input()?;
                 self.ended = true;
@@ -139,7 +147,8 @@ impl<R: Read> TwinSource<R> {
     /// Adds a statement to the group, which it starts if there is none.
     fn push(&mut self, statement: Statement) -> Result<()> {
         let is_mesh = self.header.kind.vertices_per_simplex() > 0;
-        let is_points = self.header.kind == Kind::Points;
+        let is_points = self.header.kind == Kind::Points
+            || self.header.kind == Kind::Configurations && !self.open.is_begun();
         let is_partial = self.header.kind == Kind::PartialTriangleMesh;
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
         let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
@@ -155,6 +164,7 @@ impl<R: Read> TwinSource<R> {
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
             (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
             (Group::Four(group), Statement::Four(statement)) => group.push(statement)?,
+            (Group::Configurations(block), Statement::Configuration(line)) => self.open.push(block, line)?,
             (Group::Empty, statement) => {
                 self.group = match statement {
                     Statement::Vertex(_) if is_points => Group::Points(Vec::new()),
@@ -165,6 +175,11 @@ impl<R: Read> TwinSource<R> {
                     Statement::Label(_) if is_tetrahedral => Group::Labels(Vec::new()),
                     Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
+                    Statement::Configuration(ref first) => Group::Configurations(
+                        self.open
+                            .start(first)?
+                            .ok_or_else(|| Error::malformed("a degree starts with a line \"degree\""))?,
+                    ),
                     Statement::Four(ref first) if Group4::can_start(&self.header, first, simplices > 0) => {
                         Group::Four(Group4::start(&self.header, first))
                     }
@@ -206,6 +221,7 @@ impl<R: Read> TwinSource<R> {
             }
             Group::Walls(walls) => Event::Walls(walls),
             Group::Four(group) => group.finish()?,
+            Group::Configurations(block) => Event::Configurations(block),
         };
         self.tally.count(&event)?;
         Ok(event)
@@ -267,6 +283,9 @@ impl Group {
             (Group::Residual(points), Statement::Residual(..)) => points.len() < BATCH_MAX,
             (Group::Walls(walls), Statement::Wall(_)) => walls.len() < BATCH_MAX,
             (Group::Four(group), Statement::Four(statement)) => group.takes(statement, BATCH_MAX),
+            (Group::Configurations(block), Statement::Configuration(line)) => {
+                twin_configurations::takes(block, line)
+            }
             _ => false,
         }
     }
@@ -292,6 +311,12 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     let per_simplex = header.kind.vertices_per_simplex();
     let statement = match next_field(fields)? {
         word if header.kind.is_4d() && word != b"#" => Statement::Four(twin4::parse(word, fields, header)?),
+        word if header.kind == Kind::Configurations && !matches!(word, b"v" | b"#") => {
+            match twin_configurations::parse(word, fields)? {
+                Some(line) => Statement::Configuration(line),
+                None => return Err(unexpected(word, statements_of(header.kind))),
+            }
+        }
         b"v" => Statement::Vertex(parse_point(fields, header)?),
         b"f" if per_simplex == 3 => Statement::Simplex(parse_simplex(fields, 3)?),
         b"c" if per_simplex == 4 => Statement::Simplex(parse_simplex(fields, 4)?),
@@ -323,6 +348,7 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::TriangleMesh => "v, f, x or a comment",
         Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
         Kind::TetrahedralMesh => "v, c, x, label or a comment",
+        Kind::Configurations => "v, degree, in, on, line or a comment",
         Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",
     }
 }

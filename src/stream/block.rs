@@ -17,10 +17,11 @@ pub(super) enum Tag {
     Points4,
     Cells4,
     Simplices4,
+    Configurations,
     End,
 }
 
-const NAMES: [(Tag, [u8; 4]); 10] = [
+const NAMES: [(Tag, [u8; 4]); 11] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -30,6 +31,7 @@ const NAMES: [(Tag, [u8; 4]); 10] = [
     (Tag::Points4, *b"PNT4"),
     (Tag::Cells4, *b"CEL4"),
     (Tag::Simplices4, *b"SIM4"),
+    (Tag::Configurations, *b"CONF"),
     (Tag::End, *b"END "),
 ];
 

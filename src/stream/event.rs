@@ -1,5 +1,6 @@
 //! What a stream says, block by block.
 
+use super::configurations::ConfigurationBlock;
 use super::points4::Points4;
 use crate::bounds::Point;
 use crate::cells::CellCode;
@@ -29,6 +30,8 @@ pub enum Event {
     Cells4(Cells4),
     /// Simplices of four dimensions: numbers of points, five each.
     Simplices4(Vec<[u32; 5]>),
+    /// Configurations of one degree.
+    Configurations(ConfigurationBlock),
     /// The end: nothing follows.
     End(Totals),
 }
@@ -120,7 +123,7 @@ pub struct Totals {
     pub cells: u64,
     /// Vertices.
     pub vertices: u64,
-    /// Simplices.
+    /// Simplices; cells of four dimensions; configurations, infinite ones included.
     pub simplices: u64,
     /// Points of the input that coincide with another and are not vertices of their own.
     pub merged: u64,

@@ -20,6 +20,8 @@ pub enum Kind {
     Cells4,
     /// Points of four dimensions and the simplices between them.
     Simplices4,
+    /// Knots, and the configurations of one or several degrees (B, I) of them.
+    Configurations,
 }
 
 struct Row {
@@ -33,7 +35,7 @@ struct Row {
     is_ordered: bool,
 }
 
-const ROWS: [Row; 7] = [
+const ROWS: [Row; 8] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -97,6 +99,15 @@ const ROWS: [Row; 7] = [
         blocks: &[Tag::Points4, Tag::Simplices4],
         is_ordered: true,
     },
+    Row {
+        kind: Kind::Configurations,
+        code: 8,
+        name: "configurations",
+        dims: &[2],
+        vertices_per_simplex: 0,
+        blocks: &[Tag::Points, Tag::Configurations],
+        is_ordered: true,
+    },
 ];
 
 impl Kind {
@@ -140,10 +151,10 @@ impl Kind {
         self.dims() == [4]
     }
 
-    /// Whether its points are the vertices of something, so that END counts merged ones.
+    /// Whether END counts vertices apart from points, and points that were merged. The knots of configurations are points.
     #[must_use]
     pub fn has_vertices(self) -> bool {
-        !matches!(self, Kind::Points | Kind::Points4)
+        !matches!(self, Kind::Points | Kind::Points4 | Kind::Configurations)
     }
 
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.

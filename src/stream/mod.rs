@@ -5,6 +5,8 @@
 mod block;
 mod cell_words;
 mod chunks;
+mod configuration_rules;
+mod configurations;
 mod diagram4;
 mod ending;
 mod event;
@@ -20,6 +22,8 @@ mod rules4;
 mod tally;
 mod writer;
 
+pub use configurations::ConfigurationBlock;
+pub(crate) use configurations::{check_degree, standing_from_name, standing_name};
 pub use diagram4::Diagram4;
 pub use ending::ends_with_end;
 pub use event::{Event, Patch, Totals};

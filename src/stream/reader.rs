@@ -7,6 +7,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::cell_words::CellWords;
+use super::configurations::ConfigurationBlock;
 use super::event::{Event, Totals};
 use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
@@ -191,6 +192,7 @@ impl<R: Read> StreamReader<R> {
             Tag::Points4 => Event::Points4(Points4::decode(header, payload)?),
             Tag::Cells4 => Event::Cells4(self.cell_words.take(totals.vertices, payload)?),
             Tag::Simplices4 => Event::Simplices4(points4::simplices(payload)?),
+            Tag::Configurations => Event::Configurations(ConfigurationBlock::decode(payload)?),
             Tag::End => Event::End(payload::totals(payload)?),
         };
         self.tally.count(&event)?;

@@ -1,6 +1,7 @@
 //! Counts what a stream holds, and compares it at the end with what the end states.
 
 use super::chunks::ChunkCheck;
+use super::configuration_rules::ConfigurationRules;
 use super::event::{Event, Totals};
 use super::header::Header;
 use super::rules4::Rules4;
@@ -17,6 +18,7 @@ pub(crate) struct Tally {
     per_simplex: usize,
     has_vertices: bool,
     rules4: Rules4,
+    configuration_rules: ConfigurationRules,
     chunks: Option<ChunkCheck>,
 }
 
@@ -33,6 +35,7 @@ impl Tally {
             per_simplex,
             has_vertices: header.kind.has_vertices(),
             rules4: Rules4::new(header.kind),
+            configuration_rules: ConfigurationRules::default(),
             chunks,
         }
     }
@@ -46,7 +49,7 @@ impl Tally {
     ///
     /// # Errors
     /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or what is of
-    /// four dimensions breaks a rule.
+    /// four dimensions, or configurations, break a rule.
     pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -73,6 +76,10 @@ impl Tally {
             Event::Points4(points) => self.rules4.points(points, &mut self.totals)?,
             Event::Cells4(cells) => self.rules4.cells(cells, &mut self.totals)?,
             Event::Simplices4(simplices) => self.rules4.simplices(simplices, &mut self.totals)?,
+            Event::Configurations(block) => {
+                self.configuration_rules.block(block, self.totals.points)?;
+                self.totals.simplices += block.boundaries.len() as u64;
+            }
             Event::End(_) => {}
         }
         Ok(())
@@ -101,7 +108,7 @@ impl Tally {
         Ok(())
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.11). A mesh
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.12). A mesh
     /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
     /// residual.
     ///

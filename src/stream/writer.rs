@@ -1,10 +1,12 @@
 //! Writes a stream block by block. Only [`StreamWriter::end`] makes it whole.
 
+mod configurations;
 mod four;
 
 use std::io::Write;
 
 use super::block::{Frame, Tag};
+use super::configuration_rules::ConfigurationRules;
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
 use super::patch_blocks::PatchBlocks;
@@ -34,6 +36,8 @@ pub struct StreamWriter<W: Write> {
     totals: Totals,
     labels: u64,
     rules4: Rules4,
+    configuration_rules: ConfigurationRules,
+    waiting: Option<configurations::Waiting>,
 }
 
 impl<W: Write> StreamWriter<W> {
@@ -55,6 +59,8 @@ impl<W: Write> StreamWriter<W> {
             totals: Totals::default(),
             labels: 0,
             rules4,
+            configuration_rules: ConfigurationRules::default(),
+            waiting: None,
         })
     }
 
@@ -248,6 +254,7 @@ impl<W: Write> StreamWriter<W> {
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
         assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;
+        self.flush_configurations()?;
         self.rules4.check_end(&self.totals)?;
         if self.header.kind.has_vertices() {
             self.totals.points = input_points;

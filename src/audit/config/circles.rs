@@ -65,7 +65,7 @@ fn reach([a, b, c]: [Xy; 3]) -> [Xy; 2] {
     [centre.map(|c| c - radius - scale), centre.map(|c| c + radius + scale)]
 }
 
-fn turn(knots: &Knots, ids: [u32; 3]) -> Ordering {
+pub(super) fn turn(knots: &Knots, ids: [u32; 3]) -> Ordering {
     let [a, b, c] = ids.map(|id| knots.points()[id as usize]);
     match orientation(a, b, c).sign {
         Ordering::Equal => turn_of(&moved(knots, ids), [0, 1, 2]),
@@ -86,7 +86,7 @@ fn is_inside(knots: &Knots, [a, b, c]: [u32; 3], d: u32) -> bool {
 
 /// Positions with a number for e: one that exceeds no coefficient of a determinant of these points, which is less than
 /// 2^(4 bits + 16) with ranks counted.
-fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[BigInt; 2]; N] {
+pub(super) fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[BigInt; 2]; N] {
     let points = integers(ids.map(|id| knots.points()[id as usize]));
     let bits = points.as_flattened().iter().map(BigInt::bits).max().unwrap_or(0).max(64);
     let shift = 6 * bits + 400;

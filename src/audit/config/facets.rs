@@ -42,17 +42,34 @@ pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<Fa
             }
         }
     }
-    for group in upper.groups() {
-        for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
-            for edge in [[a, b], [b, c], [c, a]] {
-                rows.push(group.interior, None, edge, 2)?;
-            }
-        }
+    rows.push_upper(upper)?;
+    rows.count()
+}
+
+/// Checks the same of degree 0 alone: every edge has a triangle on each side.
+///
+/// Errors: another degree; the first edge that violates it (kind [`ErrorKind::Audit`]).
+pub fn check_start(start: &Configurations) -> Result<FacetCounts> {
+    if start.degree() != 0 {
+        return Err(Error::usage(format!("degree {} is not that of a triangulation", start.degree())));
     }
+    let mut rows = Rows { width: 3, words: Vec::new() };
+    rows.push_upper(start)?;
     rows.count()
 }
 
 impl Rows {
+    fn push_upper(&mut self, upper: &Configurations) -> Result<()> {
+        for group in upper.groups() {
+            for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
+                for edge in [[a, b], [b, c], [c, a]] {
+                    self.push(group.interior, None, edge, 2)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     fn push(&mut self, interior: &[u32], also: Option<u32>, [p, q]: [u32; 2], from_upper: u32) -> Result<()> {
         let start = self.words.len();
         self.words.extend_from_slice(interior);

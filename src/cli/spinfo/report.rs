@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{census, diagram};
+use super::{census, configurations, diagram};
+use crate::audit::config;
 use crate::audit::diagram::{Proof, Violation};
 use crate::audit::{Figures, Report, Survey, shortest};
 use crate::bounds::Point;
@@ -18,6 +19,7 @@ pub(super) struct Summary<'a> {
     pub(super) audit: Option<Report>,
     pub(super) census: Option<&'a Figures>,
     pub(super) diagram: Option<&'a Result<Proof, Violation>>,
+    pub(super) configurations: Option<&'a Result<config::Proof, config::Violation>>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
 }
@@ -53,6 +55,9 @@ impl Summary<'_> {
         }
         if let Some(verdict) = self.diagram {
             text += &diagram::text(verdict);
+        }
+        if let Some(verdict) = self.configurations {
+            text += &configurations::text(verdict);
         }
         if let Some(figures) = self.census {
             text += &census::text(figures);
@@ -94,6 +99,9 @@ impl Summary<'_> {
             );
         } else if self.header.kind.is_4d() {
             self.figures4(line);
+        } else if self.header.kind == Kind::Configurations {
+            let degrees = self.survey.configurations().degrees();
+            configurations::figures(degrees).for_each(|(name, value)| line(&name, value));
         } else {
             let cells = self.survey.cell_points();
             line("chunked", if self.header.chunked { "yes" } else { "no" }.into());
@@ -134,6 +142,14 @@ impl Summary<'_> {
             "cell_vertices_max": four.vertices_max,
             "cell_neighbours_max": four.neighbours_max,
         })
+    }
+
+    /// The figures of each degree; null for other kinds.
+    fn configurations_json(&self) -> Value {
+        match self.header.kind {
+            Kind::Configurations => configurations::figures_json(self.survey.configurations().degrees()),
+            _ => Value::Null,
+        }
     }
 
     /// One object; counts of what was read so far if the audit failed.
@@ -177,6 +193,7 @@ impl Summary<'_> {
                 self.simplices(): largest.simplices, "new": largest.new, "imported": largest.imported,
             },
             "four_dimensions": self.json4(),
+            "configurations": self.configurations_json(),
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
             "audit": self.audit_json(),
@@ -188,6 +205,9 @@ impl Summary<'_> {
     fn audit_json(&self) -> Value {
         if let Some(verdict) = self.diagram {
             return diagram::json(verdict, self.failure);
+        }
+        if let Some(verdict) = self.configurations {
+            return configurations::json(verdict, self.failure);
         }
         let Some(report) = &self.audit else { return Value::Null };
         let checks: Vec<Value> = report
@@ -266,6 +286,7 @@ impl Summary<'_> {
             Kind::TetrahedralMesh => "tetrahedra",
             Kind::Cells4 => "cells4",
             Kind::Simplices4 => "simplices",
+            Kind::Configurations => "configurations",
             _ => "triangles",
         }
     }

@@ -1,0 +1,113 @@
+//! Whether centroid triangulations are planar.
+//!
+//! The centroid triangulation of order k + 1 has the (k + 1)-sets as vertices, at their centroids. A configuration (B, I) of
+//! degree k is the triangle of the sets I + b, one of degree k - 1 that of the sets I + B - b; both are homothetic to B. An
+//! edge is a facet (F, J): it joins J with either knot of F. So triangles are counterclockwise if boundaries are; and if
+//! facets match ([`super::check_facets`]), then every edge has a triangle on each side, but for those that an infinite
+//! configuration of degree k has. If these make one convex polygon that goes around once, the triangles tile it: the
+//! argument is that of [`crate::audit`].
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use num_bigint::BigInt;
+
+use super::circles::{moved, turn};
+use crate::config::{Configurations, FARAWAY, Knots};
+use crate::error::{Error, ErrorKind, Result};
+
+/// A directed edge of the border, from the set `interior` + `from` to `interior` + `to`.
+#[derive(Debug)]
+struct BorderEdge<'a> {
+    interior: &'a [u32],
+    from: u32,
+    to: u32,
+}
+
+impl BorderEdge<'_> {
+    fn set_with(&self, knot: u32) -> Vec<u32> {
+        let mut set = [self.interior, &[knot]].concat();
+        set.sort_unstable();
+        set
+    }
+}
+
+/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order k + 1 is a convex
+/// polygon; edges may be in line. With matching facets, and the same of degree k - 1, that triangulation is planar. Copies
+/// of a knot count as the limit that [`Knots`] has.
+///
+/// Errors: the first violation (kind [`ErrorKind::Audit`]).
+///
+/// Cost: an orientation per configuration, integers without limit for each infinite one.
+pub fn check_centroids(knots: &Knots, configurations: &Configurations) -> Result<()> {
+    for (boundary, interior) in configurations.iter() {
+        let what = format!("configuration {boundary:?}, {interior:?}");
+        if boundary.iter().chain(interior).any(|&id| id as usize >= knots.len()) {
+            return Err(Error::new(ErrorKind::Audit, "a knot is unknown").at(what));
+        }
+        if turn(knots, boundary) != Ordering::Greater {
+            return Err(Error::new(ErrorKind::Audit, "the boundary is not counterclockwise").at(what));
+        }
+    }
+    let edges = border(knots, configurations)?;
+    check_convex(knots, &edges).map_err(|error| {
+        error.at(format!("border of the centroid triangulation of order {}", configurations.degree() + 1))
+    })
+}
+
+fn border<'a>(knots: &Knots, configurations: &'a Configurations) -> Result<Vec<BorderEdge<'a>>> {
+    let mut edges = Vec::new();
+    for group in configurations.groups() {
+        for &[from, to, last] in group.infinite {
+            let ids = || [from, to].into_iter().chain(group.interior.iter().copied());
+            if last != FARAWAY || ids().any(|id| id as usize >= knots.len()) {
+                return Err(Error::new(ErrorKind::Audit, "a knot is unknown")
+                    .at(format!("infinite configuration {from}, {to}, {:?}", group.interior)));
+            }
+            // The line has its set to the left and the centroids to the right.
+            edges.push(BorderEdge { interior: group.interior, from: to, to: from });
+        }
+    }
+    Ok(edges)
+}
+
+/// That the edges are those of one polygon that turns left by less than half a turn at each vertex, and once in all.
+fn check_convex(knots: &Knots, edges: &[BorderEdge]) -> Result<()> {
+    let fail = |what: String| Err(Error::new(ErrorKind::Audit, what));
+    let mut starts: HashMap<Vec<u32>, usize> = HashMap::new();
+    for (number, edge) in edges.iter().enumerate() {
+        if starts.insert(edge.set_with(edge.from), number).is_some() {
+            return fail(format!("two edges start at {:?}", edge.set_with(edge.from)));
+        }
+    }
+    let (mut at, mut steps, mut rounds) = (0, 0, 0);
+    while steps == 0 || at != 0 {
+        let Some(edge) = edges.get(at) else { return fail("there is none".into()) };
+        let end = edge.set_with(edge.to);
+        let Some(&next) = starts.get(&end) else { return fail(format!("it ends at {end:?}")) };
+        let [cross, dot, height, next_height] = corner(knots, [edge, &edges[next]]);
+        if cross == Ordering::Less || cross == Ordering::Equal && dot != Ordering::Greater {
+            return fail(format!("it is not convex at {end:?}"));
+        }
+        rounds += usize::from(height == Ordering::Less && next_height == Ordering::Greater);
+        (at, steps) = (next, steps + 1);
+    }
+    if steps != edges.len() {
+        return fail(format!("only {steps} of {} edges are on one polygon", edges.len()));
+    }
+    if rounds != 1 {
+        return fail(format!("it goes around {rounds} times"));
+    }
+    Ok(())
+}
+
+/// Signs of cross product and scalar product of two edges, and the half of the turn that either points to.
+fn corner(knots: &Knots, edges: [&BorderEdge; 2]) -> [Ordering; 4] {
+    let points = moved(knots, [edges[0].from, edges[0].to, edges[1].from, edges[1].to]);
+    let zero = BigInt::ZERO;
+    let [u, v] = [0, 2].map(|i| [&points[i + 1][0] - &points[i][0], &points[i + 1][1] - &points[i][1]]);
+    let half = |u: &[BigInt; 2]| u[1].cmp(&zero).then(u[0].cmp(&zero));
+    let cross = (&u[0] * &v[1] - &u[1] * &v[0]).cmp(&zero);
+    let dot = (&u[0] * &v[0] + &u[1] * &v[1]).cmp(&zero);
+    [cross, dot, half(&u), half(&v)]
+}

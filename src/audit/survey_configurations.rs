@@ -1,0 +1,50 @@
+//! What a stream of configurations holds, in numbers.
+
+use crate::config::{FARAWAY, Standing};
+use crate::stream::ConfigurationBlock;
+
+/// Figures of the configurations of one degree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DegreeSurvey {
+    /// The degree.
+    pub degree: u32,
+    /// What they claim to be.
+    pub standing: Standing,
+    /// Interior sets.
+    pub groups: u64,
+    /// Configurations of three knots.
+    pub finite: u64,
+    /// Configurations of two knots and the faraway point.
+    pub infinite: u64,
+}
+
+/// Figures of all degrees, gathered block by block.
+#[derive(Debug, Default)]
+pub struct ConfigurationSurvey {
+    degrees: Vec<DegreeSurvey>,
+    last: Option<Vec<u32>>,
+}
+
+impl ConfigurationSurvey {
+    /// Figures by increasing degree.
+    #[must_use]
+    pub fn degrees(&self) -> &[DegreeSurvey] {
+        &self.degrees
+    }
+
+    /// Adds a block.
+    pub(super) fn block(&mut self, block: &ConfigurationBlock) {
+        if self.degrees.last().is_none_or(|last| last.degree != block.degree) {
+            let (degree, standing) = (block.degree, block.standing);
+            self.degrees.push(DegreeSurvey { degree, standing, groups: 0, finite: 0, infinite: 0 });
+            self.last = None;
+        }
+        let Some(survey) = self.degrees.last_mut() else { return };
+        let goes_on = block.groups().next().is_some_and(|(first, _)| self.last.as_deref() == Some(first));
+        let infinite = block.boundaries.iter().filter(|boundary| boundary[2] == FARAWAY).count() as u64;
+        survey.groups += block.counts.len() as u64 - u64::from(goes_on);
+        survey.finite += block.boundaries.len() as u64 - infinite;
+        survey.infinite += infinite;
+        self.last = block.last_interior().map(<[u32]>::to_vec).or(self.last.take());
+    }
+}

@@ -1,0 +1,84 @@
+//! Reads a stream of configurations, whole.
+
+use std::io::Read;
+
+use crate::config::{Configurations, Knots};
+use crate::error::{Error, Result};
+use crate::predicates::Point2;
+use crate::stream::{Event, Header, Kind, StreamReader};
+
+/// Knots and their configurations, as a stream holds them.
+#[derive(Debug, Clone, Default)]
+pub struct ConfigurationSet {
+    /// The knots, in stored coordinates.
+    pub knots: Knots,
+    /// The z of each knot, if knots have one.
+    pub heights: Option<Vec<f64>>,
+    /// Configurations, by increasing degree. [`crate::config::links`] makes links of them.
+    pub degrees: Vec<Configurations>,
+}
+
+impl ConfigurationSet {
+    /// Reads a stream of kind [`Kind::Configurations`] to its end.
+    ///
+    /// Memory: what the stream holds.
+    ///
+    /// # Errors
+    /// Usage, if the stream is of another kind or has more knots than can be handled; otherwise as
+    /// [`StreamReader::next_event`].
+    pub fn read<R: Read>(reader: &mut StreamReader<R>) -> Result<Self> {
+        let kind = reader.header().kind;
+        if kind != Kind::Configurations {
+            let message = format!("this is a stream of kind {}, expected configurations", kind.name());
+            return Err(Error::usage(message).of_input(reader.name()));
+        }
+        let mut collector = Collector::new(reader.header());
+        while let Some(event) = reader.next_event()? {
+            collector.event(&event).map_err(|error| error.of_input(reader.name()))?;
+        }
+        collector.finish().map_err(|error| error.of_input(reader.name()))
+    }
+}
+
+/// Gathers what events hold.
+#[derive(Debug, Default)]
+pub(crate) struct Collector {
+    points: Vec<Point2>,
+    heights: Option<Vec<f64>>,
+    degrees: Vec<Configurations>,
+}
+
+impl Collector {
+    pub(crate) fn new(header: &Header) -> Self {
+        Collector { heights: header.has_elevation.then(Vec::new), ..Collector::default() }
+    }
+
+    /// Takes the next event of a stream of configurations.
+    pub(crate) fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => {
+                self.points.extend(points.iter().map(|&[x, y, _]| [x, y]));
+                if let Some(heights) = &mut self.heights {
+                    heights.extend(points.iter().map(|point| point[2]));
+                }
+            }
+            Event::Configurations(block) => {
+                let degree = block.degree as usize;
+                if self.degrees.last().is_none_or(|last| last.degree() != degree) {
+                    self.degrees.push(Configurations::new(degree, block.standing));
+                }
+                if let Some(last) = self.degrees.last_mut() {
+                    block
+                        .groups()
+                        .try_for_each(|(interior, boundaries)| last.extend(interior, boundaries))?;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    pub(crate) fn finish(self) -> Result<ConfigurationSet> {
+        Ok(ConfigurationSet { knots: Knots::new(self.points)?, heights: self.heights, degrees: self.degrees })
+    }
+}

@@ -1,0 +1,116 @@
+//! The rules of configurations that span blocks, for readers of either form and for the writer.
+
+use std::cmp::Ordering;
+
+use super::configurations::{ConfigurationBlock, check_degree};
+use crate::config::{FARAWAY, Standing};
+use crate::error::{Error, Result};
+
+/// What later blocks are compared with.
+#[derive(Debug, Default)]
+pub(super) struct ConfigurationRules {
+    degree: Option<(u32, Standing)>,
+    /// The last group of the degree.
+    group: Option<LastGroup>,
+}
+
+#[derive(Debug)]
+struct LastGroup {
+    interior: Vec<u32>,
+    /// Its last boundary.
+    boundary: Option<[u32; 3]>,
+}
+
+impl ConfigurationRules {
+    /// The rules of the next block; `knots` came before.
+    pub(super) fn block(&mut self, block: &ConfigurationBlock, knots: u64) -> Result<()> {
+        self.degree(block.degree, block.standing)?;
+        for (number, (interior, boundaries)) in block.groups().enumerate() {
+            self.group(interior, number == 0, knots)?;
+            if boundaries.is_empty() {
+                return Err(Error::malformed(format!("interior set {interior:?} has no configuration")));
+            }
+            boundaries.iter().try_for_each(|&boundary| self.boundary(block.degree, boundary, knots))?;
+        }
+        Ok(())
+    }
+
+    fn degree(&mut self, degree: u32, standing: Standing) -> Result<()> {
+        check_degree(degree)?;
+        match self.degree {
+            Some((last, _)) if degree < last => {
+                return Err(Error::malformed(format!(
+                    "configurations of degree {degree} after those of {last}"
+                )));
+            }
+            Some((last, known)) if degree == last && standing != known => {
+                return Err(Error::malformed(format!(
+                    "the configurations of degree {degree} change their standing"
+                )));
+            }
+            Some((last, _)) if degree == last => {}
+            _ => self.group = None,
+        }
+        self.degree = Some((degree, standing));
+        Ok(())
+    }
+
+    /// The next group of the degree, or the last one again if it is the first of a block.
+    fn group(&mut self, interior: &[u32], is_first: bool, knots: u64) -> Result<()> {
+        if let Some(last) = &self.group {
+            match interior.cmp(&last.interior) {
+                Ordering::Equal if is_first => return Ok(()),
+                Ordering::Greater => {}
+                _ => {
+                    return Err(Error::malformed(format!(
+                        "interior set {interior:?} does not follow {:?}",
+                        last.interior
+                    )));
+                }
+            }
+        }
+        let is_increasing = interior.windows(2).all(|pair| pair[0] < pair[1]);
+        if !is_increasing || interior.last().is_some_and(|&knot| !is_knot(knot, knots)) {
+            return Err(Error::malformed(format!(
+                "interior set {interior:?} is not of increasing numbers of {knots} knots"
+            )));
+        }
+        self.group = Some(LastGroup { interior: interior.to_vec(), boundary: None });
+        Ok(())
+    }
+
+    /// The next boundary of the group.
+    fn boundary(&mut self, degree: u32, boundary: [u32; 3], knots: u64) -> Result<()> {
+        let group = self.group.as_mut().expect("a boundary is in a group");
+        let fail = |what: &str| Err(Error::malformed(format!("boundary {boundary:?} {what}")));
+        let [a, b, c] = boundary;
+        let is_infinite = c == FARAWAY;
+        if ![a, b].iter().all(|&v| is_knot(v, knots)) || !(is_infinite || is_knot(c, knots)) {
+            return fail(&format!("is not of numbers of {knots} knots"));
+        }
+        if a == b || b == c || c == a {
+            return fail("repeats a knot");
+        }
+        if !is_infinite && a > b.min(c) {
+            return fail("does not have its least knot first");
+        }
+        if let Some(knot) = boundary.iter().find(|knot| group.interior.binary_search(knot).is_ok()) {
+            return fail(&format!("has knot {knot}, which is in the interior set {:?}", group.interior));
+        }
+        if let Some(last) = group.boundary {
+            let was_infinite = last[2] == FARAWAY;
+            // The start triangulation is in an order of its own.
+            let is_sorted = degree == 0 || (is_infinite && !was_infinite) || last < boundary;
+            if (was_infinite && !is_infinite) || !is_sorted {
+                return fail(&format!("does not follow {last:?} in its group"));
+            }
+        }
+        group.boundary = Some(boundary);
+        Ok(())
+    }
+}
+
+/// Whether a number is that of a knot; the faraway point never is.
+fn is_knot(number: u32, knots: u64) -> bool {
+    u64::from(number) < knots && number != FARAWAY
+}

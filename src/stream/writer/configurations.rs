@@ -1,0 +1,70 @@
+//! Writes configurations.
+
+use std::io::Write;
+
+use super::{POINTS_PAYLOAD, StreamWriter, Tag};
+use crate::error::Result;
+use crate::stream::ConfigurationBlock;
+
+/// Words from which a block takes no further configuration.
+const WORDS: usize = POINTS_PAYLOAD / 4;
+
+/// Configurations that wait for their block to fill.
+pub(super) struct Waiting {
+    block: ConfigurationBlock,
+    /// Whether no block of the degree was written: one is, even if it has no configurations.
+    is_news: bool,
+}
+
+impl<W: Write> StreamWriter<W> {
+    /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. Blocks come out cut
+    /// as lengths have it, whatever the cuts of `block`.
+    ///
+    /// # Errors
+    /// If degrees, interior sets or boundaries do not follow each other, or name knots that there are not; or if writing
+    /// fails.
+    pub fn configurations(&mut self, block: &ConfigurationBlock) -> Result<()> {
+        self.flush_points()?;
+        self.configuration_rules.block(block, self.totals.points)?;
+        if self.waiting.as_ref().is_none_or(|waiting| waiting.block.degree != block.degree) {
+            self.flush_configurations()?;
+            let empty = ConfigurationBlock::new(block.degree, block.standing);
+            self.waiting = Some(Waiting { block: empty, is_news: true });
+        }
+        for (interior, boundaries) in block.groups() {
+            self.group(interior, boundaries)?;
+        }
+        self.totals.simplices += block.boundaries.len() as u64;
+        Ok(())
+    }
+
+    fn group(&mut self, interior: &[u32], boundaries: &[[u32; 3]]) -> Result<()> {
+        let mut rest = boundaries;
+        while let (false, Some(Waiting { block, .. })) = (rest.is_empty(), &mut self.waiting) {
+            let is_open = block.last_interior() == Some(interior);
+            let words = block.words() + if is_open { 0 } else { interior.len() + 1 };
+            let room = WORDS.saturating_sub(words) / 3;
+            if room == 0 {
+                self.flush_configurations()?;
+                continue;
+            }
+            let (now, later) = rest.split_at(room.min(rest.len()));
+            block.push(interior, now);
+            rest = later;
+        }
+        Ok(())
+    }
+
+    /// Writes what waits, and keeps the degree open.
+    pub(super) fn flush_configurations(&mut self) -> Result<()> {
+        let Some(waiting) = &mut self.waiting else { return Ok(()) };
+        if waiting.block.is_empty() && !waiting.is_news {
+            return Ok(());
+        }
+        self.payload.clear();
+        waiting.block.encode(&mut self.payload);
+        waiting.block.clear();
+        waiting.is_news = false;
+        self.flush_block(Tag::Configurations)
+    }
+}

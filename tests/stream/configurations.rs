@@ -1,0 +1,256 @@
+//! Streams of configurations.
+
+use spmesh::config::{self, Configurations, FARAWAY, Knots, Rule, Standing, Start};
+use spmesh::configgen::read::ConfigurationSet;
+use spmesh::configgen::write::{header, write_configurations, write_configurations_as};
+use spmesh::convert::{Format, Options, convert};
+use spmesh::error::{ErrorKind, Result};
+use spmesh::stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
+
+use super::Random;
+use crate::vectors::{load, run_python, verify};
+
+/// Knots on a small grid, so that some are on lines, on circles, and at one place.
+pub fn random_knots(random: &mut Random, count: usize) -> Knots {
+    let points = (0..count).map(|_| [random.below(7) as f64, random.below(6) as f64 - 2.0]);
+    let corners = [[0.0, -2.0], [6.0, -2.0], [0.0, 3.0]];
+    Knots::new(points.chain(corners).collect()).unwrap()
+}
+
+/// Configurations of a random rule up to a degree.
+pub fn random_configurations(random: &mut Random, knots: &Knots, degree: usize) -> Vec<Configurations> {
+    let mut start = Start::delaunay(knots).unwrap();
+    let rule = match random.below(3) {
+        0 => Rule::Delaunay,
+        1 => {
+            start.flip_random(knots, 9, random.next());
+            Rule::Random(random.next())
+        }
+        _ => Rule::Ear,
+    };
+    config::generate(knots, start.configurations(), &rule, degree).unwrap()
+}
+
+pub fn written(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write_configurations(knots, degrees, &mut bytes).unwrap();
+    bytes
+}
+
+fn read(bytes: &[u8]) -> ConfigurationSet {
+    ConfigurationSet::read(&mut StreamReader::new(bytes, "test").unwrap()).unwrap()
+}
+
+fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
+    let options = Options { from: Some(from), ..Options::default() };
+    let mut output = Vec::new();
+    convert(std::io::Cursor::new(input.to_vec()), "test", to, &mut output, &options, |_| ())?;
+    Ok(output)
+}
+
+fn text_of(stream: &[u8]) -> String {
+    String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
+}
+
+#[test]
+fn configurations_come_back_as_they_were_written() {
+    for seed in 0..300 {
+        let mut random = Random(seed);
+        let count = 4 + random.below(20);
+        let knots = random_knots(&mut random, count);
+        let mut degrees = random_configurations(&mut random, &knots, seed as usize % 5);
+        if random.coin() {
+            degrees.remove(random.below(degrees.len()));
+        }
+        let set = read(&written(&knots, &degrees));
+        assert_eq!(set.degrees, degrees, "seed {seed}");
+        assert_eq!(set.knots.points(), knots.points(), "seed {seed}");
+        assert_eq!(set.heights, None);
+        for (before, after) in degrees.iter().zip(&set.degrees) {
+            assert_eq!(
+                config::links(&set.knots, after).ok(),
+                config::links(&knots, before).ok(),
+                "seed {seed}"
+            );
+        }
+    }
+}
+
+#[test]
+fn configurations_go_through_their_twins() {
+    for seed in 0..60 {
+        let mut random = Random(seed);
+        let knots = random_knots(&mut random, 5 + seed as usize / 3);
+        let bytes = written(&knots, &random_configurations(&mut random, &knots, seed as usize % 4));
+        let text = text_of(&bytes);
+        let back = converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        assert!(back == bytes, "seed {seed}");
+        if seed < 8 {
+            let Some(python) = run_python("scripts/spmesh_reader.py", &["-"], &bytes) else { return };
+            assert_eq!(String::from_utf8(python.stdout).unwrap(), text, "seed {seed}");
+        }
+    }
+}
+
+/// 12,000 knots, so that groups and degrees are cut over blocks.
+fn large() -> (Knots, Vec<Configurations>) {
+    let mut random = Random(5);
+    let point = |_| [random.below(1 << 20) as f64, random.below(1 << 20) as f64];
+    let knots = Knots::new((0..12_000).map(point).collect()).unwrap();
+    let start = config::delaunay(&knots).unwrap();
+    let degrees = config::generate(&knots, start, &Rule::Delaunay, 2).unwrap();
+    (knots, degrees)
+}
+
+#[test]
+fn degrees_longer_than_a_block_come_back_and_go_through_their_twins() {
+    let (knots, degrees) = large();
+    let bytes = written(&knots, &degrees);
+    assert_eq!(read(&bytes).degrees, degrees);
+    let text = text_of(&bytes);
+    assert_eq!(text.lines().filter(|line| line.starts_with("degree ")).count(), 3);
+    let groups: usize = degrees.iter().map(Configurations::group_count).sum();
+    assert_eq!(text.lines().filter(|line| line.starts_with("in")).count(), groups);
+    assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes);
+}
+
+#[test]
+fn grids_heights_and_systems_are_kept() {
+    let knots = Knots::new(vec![[0.0, 0.0], [40.0, 0.0], [0.0, 30.0], [-7.0, 12.0]]).unwrap();
+    let degrees = config::generate(&knots, config::delaunay(&knots).unwrap(), &Rule::Delaunay, 1).unwrap();
+    let grid = Coordinates::I32 { scale: [0.5; 3], offset: [1000.0, 0.0, 0.0] };
+    let mut header = header(&knots, grid, Crs::Wkt("a system".into()));
+    header.has_elevation = true;
+    header.bounds = None;
+    let heights = [4.0, 3.0, 2.0, 1.0];
+    let mut bytes = Vec::new();
+    write_configurations_as(header.clone(), &knots, Some(&heights), &degrees, &mut bytes).unwrap();
+    assert_eq!(verify(&bytes).unwrap().0, header);
+    let set = read(&bytes);
+    assert_eq!((set.heights.as_deref(), &set.degrees), (Some(&heights[..]), &degrees));
+    assert!(text_of(&bytes).contains("\nv 1020 0 1.5\n"), "{}", text_of(&bytes));
+    let refused =
+        write_configurations_as(header, &knots, None, &degrees, Vec::new()).expect_err("no heights");
+    assert_eq!(refused.kind(), ErrorKind::Usage);
+}
+
+#[test]
+fn the_writer_refuses_what_no_reader_accepts() {
+    let knots = Knots::new(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]).unwrap();
+    let degrees = config::generate(&knots, config::delaunay(&knots).unwrap(), &Rule::Delaunay, 1).unwrap();
+    let reversed: Vec<Configurations> = degrees.iter().rev().cloned().collect();
+    let error = write_configurations(&knots, &reversed, Vec::new()).expect_err("degrees 1, 0");
+    assert!(
+        error.kind() == ErrorKind::Usage && error.to_string().contains("degree 0 after degree 1"),
+        "{error}"
+    );
+    let too_high = Configurations::new(4097, Standing::Any);
+    let error = write_configurations(&knots, &[too_high], Vec::new()).expect_err("degree 4097");
+    assert!(error.to_string().contains("cannot write degree 4097"), "{error}");
+    let few = Knots::new(knots.points()[..3].to_vec()).unwrap();
+    let error = write_configurations(&few, &degrees, Vec::new()).expect_err("a knot is missing");
+    assert!(error.to_string().contains("numbers of 3 knots"), "{error}");
+
+    let mut writer =
+        StreamWriter::new(Vec::new(), Header::new(Kind::Configurations, Coordinates::F64, 2, false)).unwrap();
+    writer.points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
+    let mut block = ConfigurationBlock::new(0, Standing::Any);
+    block.push(&[], &[[0, 1, FARAWAY], [0, 1, 2]]);
+    let error = writer.configurations(&block).expect_err("an infinite one first");
+    assert!(error.to_string().contains("does not follow"), "{error}");
+}
+
+#[test]
+fn other_kinds_are_refused_by_name() {
+    for vector in load("pass", "txt") {
+        let mut reader = StreamReader::new(&vector.bytes[..], "whole").unwrap();
+        let kind = reader.header().kind;
+        let read = ConfigurationSet::read(&mut reader);
+        if kind == Kind::Configurations {
+            assert_eq!(read.unwrap().knots.len() as u64, reader.totals().points, "{}", vector.name);
+            continue;
+        }
+        let error = read.expect_err(&vector.name);
+        assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
+        assert!(error.to_string().contains(kind.name()), "{error}");
+    }
+}
+
+#[test]
+fn errors_in_twins_name_the_line() {
+    let text =
+        load("pass", "txt").into_iter().find(|vector| vector.name == "configurations").unwrap().expected;
+    let cases = [
+        ("degree 0 delaunay", "degree 0 round", "any, delaunay or lifted"),
+        ("degree 0 delaunay", "degree 4097 delaunay", "the maximum is 4096"),
+        ("degree 0 delaunay", "degree 4294967296 delaunay", "a degree"),
+        ("degree 0 delaunay", "degree 2 delaunay", "interior set of 0 knots, expected 2"),
+        ("degree 0 delaunay\n", "", "a degree starts with"),
+        ("degree 1 delaunay", "degree 0 delaunay", "degree 0 after those of 0"),
+        ("in\n", "", "after the line \"in\""),
+        ("in\n", "in\nin\n", "has no configuration"),
+        ("in 2\n", "in 1\n", "does not follow"),
+        ("in 4\n", "in 5\n", "not of increasing numbers of 4 knots"),
+        ("in 4\n", "in 3 4\n", "interior set of 2 knots, expected 1"),
+        ("in 4\non 1 2 3\n", "in 4\n", "has no configuration"),
+        ("on 1 2 4", "on 0 2 4", "from 1 to 2^32 - 1"),
+        ("on 1 2 4", "on 1 2 4294967296", "from 1 to 2^32 - 1"),
+        ("on 1 2 4", "on 1 2 5", "is not of numbers of 4 knots"),
+        ("on 1 2 4", "on 2 4 1", "least knot first"),
+        ("on 1 2 4", "on 1 2 4 3", "end of the line"),
+        ("on 1 2 4", "on 1 2", "a field is missing"),
+        ("on 1 2 4", "f 1 2 4", "expected v, degree, in, on, line"),
+        ("line 2 1", "line 2 2", "repeats a knot"),
+        ("# end", "v 0 0 0\n# end", "cannot have this line here"),
+        ("# end", "x cell 1\n# end", "expected v, degree, in, on, line"),
+        ("# end", "# patch\n# end", "cannot have this line here"),
+        ("simplices 13", "simplices 12", "END states"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert!(text.contains(found), "{found} in {text}");
+        let damaged = text.replacen(found, replaced, 1);
+        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).expect_err(replaced);
+        assert_eq!(error.kind(), ErrorKind::Malformed, "{replaced}: {error}");
+        let message = error.to_string();
+        assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+    }
+}
+
+#[test]
+fn every_truncation_of_a_twin_is_refused() {
+    for vector in load("pass", "txt").into_iter().filter(|vector| vector.name.starts_with("configurations")) {
+        for end in 0..vector.expected.len() - 1 {
+            let text = &vector.expected.as_bytes()[..end];
+            let error = converted(text, Format::Text, Format::Spm).expect_err(&vector.name);
+            assert_eq!(error.kind(), ErrorKind::Malformed, "{} cut at {end}: {error}", vector.name);
+        }
+    }
+}
+
+#[test]
+fn every_changed_byte_and_every_cut_is_malformed() {
+    let vector = load("pass", "txt").into_iter().find(|vector| vector.name == "configurations").unwrap();
+    for at in 0..vector.bytes.len() {
+        assert_eq!(verify(&vector.bytes[..at]).expect_err("cut").kind(), ErrorKind::Malformed, "cut at {at}");
+        for bit in 0..8 {
+            let mut bytes = vector.bytes.clone();
+            bytes[at] ^= 1 << bit;
+            assert_eq!(
+                verify(&bytes).expect_err("a bit").kind(),
+                ErrorKind::Malformed,
+                "bit {bit} of byte {at}"
+            );
+        }
+    }
+}
+
+#[test]
+fn formats_that_hold_none_refuse_them() {
+    let vector = load("pass", "txt").into_iter().find(|vector| vector.name == "configurations").unwrap();
+    for name in Format::names().filter(|name| !matches!(*name, "spm" | "text")) {
+        let error = converted(&vector.bytes, Format::Spm, Format::from_name(name).unwrap()).expect_err(name);
+        assert_eq!(error.kind(), ErrorKind::Usage, "{name}: {error}");
+        let expected = "a stream of kind configurations cannot be written as";
+        assert!(error.to_string().contains(expected), "{name}: {error}");
+    }
+}
