@@ -80,7 +80,7 @@ impl Collection {
         let places = Places::of(knots);
         let special = self.by_edge();
         let mut terms: BTreeMap<FunctionKind, Vec<([u32; 2], f64)>> = BTreeMap::new();
-        for link in links.iter().filter(|link| !link.is_null() && !link.is_infinite()) {
+        for link in links.iter().filter(|link| !link.is_null()) {
             let edge = [link.set[0], link.set[1]];
             let mut add = |kind, share| terms.entry(kind).or_default().push((edge, share));
             if let Some(kind) = places.kind(edge) {

@@ -53,9 +53,7 @@ impl<'a> Constrained<'a> {
                 return Err(stuck([a, b]));
             };
             if let Some(&[c, d]) = crossed.iter().find(|&&edge| self.is_fixed(edge)) {
-                let what = format!("it crosses the one from knot {} to knot {}", c.min(d), c.max(d));
-                let remedy = "add a knot where they cross, or leave one out";
-                return Err(Error::usage(format!("{what}: {remedy}")).at(segment([a, b])));
+                return Err(self.crossing([a, b], [c, d]));
             }
             let fresh = self.clear([from, to], crossed)?;
             self.fixed.insert([from.min(to), from.max(to)]);
@@ -64,6 +62,17 @@ impl<'a> Constrained<'a> {
             from = to;
         }
         Ok(path)
+    }
+
+    /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment goes through.
+    #[cold]
+    fn crossing(&self, ends: [u32; 2], [c, d]: [u32; 2]) -> Error {
+        let (c, d) = (c.min(d), c.max(d));
+        if self.plane.knots.at(c) == self.plane.knots.at(d) {
+            return through(ends, c);
+        }
+        let what = format!("it crosses the one from knot {c} to knot {d}");
+        Error::usage(format!("{what}: add a knot where they cross, or leave one out")).at(segment(ends))
     }
 
     /// Whether an edge stays.
@@ -241,6 +250,12 @@ impl Start {
 /// Where in the input a segment is: for error messages.
 pub(super) fn segment([a, b]: [u32; 2]) -> String {
     format!("segment from knot {a} to knot {b}")
+}
+
+/// The error of a segment with a knot on it.
+#[cold]
+pub(super) fn through(ends: [u32; 2], knot: u32) -> Error {
+    Error::usage(format!("knot {knot} is on it: name it, too, between the two")).at(segment(ends))
 }
 
 #[cold]

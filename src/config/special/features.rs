@@ -2,7 +2,7 @@
 
 use super::Special;
 use super::basis::Collection;
-use super::constrained::{Constrained, segment};
+use super::constrained::{Constrained, segment, through};
 use super::diagonals::Diagonals;
 use crate::config::knots::Knots;
 use crate::config::surface::Start;
@@ -16,7 +16,7 @@ pub struct Crease {
     /// Ids of knots along it, two at least.
     pub knots: Vec<u32>,
     /// Whether the crease is sharp up to its ends, which are pulled apart like all its knots, and can be interpolated at;
-    /// otherwise it fades out at each of its knots, and has a further knot in each edge.
+    /// otherwise each edge has a further knot in its middle, and no knot is pulled apart.
     pub has_sharp_ends: bool,
 }
 
@@ -34,6 +34,9 @@ pub struct Features {
 
 /// Configurations for features: their knots are pulled apart, and their segments are edges.
 ///
+/// All functions sum to one, so that one of them alone cannot be sharp: of a crease with smooth ends, the B-splines of the
+/// knot between and the knots opposite to the edge are sharp, too, and the sum of all three is smooth. (The thesis has one.)
+///
 /// Copies come after the knots given, and after them one knot for each edge of creases with smooth ends, in their order: the
 /// middle of the edge as near as numbers allow. Its link has the edge itself as a diagonal.
 ///
@@ -48,7 +51,7 @@ pub fn features(knots: &Knots, features: &Features) -> Result<Special> {
     fix_copies(&mut mesh, &firsts)?;
     for (what, polyline) in features.polylines() {
         for edge in polyline.windows(2) {
-            fix(&mut mesh, [edge[0], edge[1]].map(|id| firsts[id as usize]))
+            fix(&mut mesh, &firsts, [edge[0], edge[1]].map(|id| firsts[id as usize]))
                 .map_err(|e| e.of_input(&what))?;
         }
     }
@@ -99,24 +102,23 @@ impl Features {
     }
 }
 
-/// The edges between knots at one place stay.
+/// The edge between the first two knots at each place stays.
 fn fix_copies(mesh: &mut Constrained, firsts: &[u32]) -> Result<()> {
-    let mut last: Vec<u32> = (0..firsts.len() as u32).collect();
+    let mut has_second = vec![false; firsts.len()];
     for (id, &first) in (0..).zip(firsts).filter(|&(id, &first)| id != first) {
-        mesh.fix(last[first as usize], id)?;
-        last[first as usize] = id;
+        if !std::mem::replace(&mut has_second[first as usize], true) {
+            mesh.fix(first, id)?;
+        }
     }
     Ok(())
 }
 
-/// A segment without knots between its ends.
-fn fix(mesh: &mut Constrained, [a, b]: [u32; 2]) -> Result<()> {
-    match mesh.fix(a, b)?[..] {
-        [_, through, _, ..] => {
-            let what = format!("knot {through} is on it: name it, too, between the two");
-            Err(Error::usage(what).at(segment([a, b])))
-        }
-        _ => Ok(()),
+/// A segment without knots between its ends, but for copies of them.
+fn fix(mesh: &mut Constrained, firsts: &[u32], ends: [u32; 2]) -> Result<()> {
+    let path = mesh.fix(ends[0], ends[1])?;
+    match path.iter().map(|&knot| firsts[knot as usize]).find(|knot| !ends.contains(knot)) {
+        Some(between) => Err(through(ends, between)),
+        None => Ok(()),
     }
 }
 

@@ -52,8 +52,8 @@ impl Special {
 
     /// The functions that quadratic splines are made of, as sums of B-splines; `links` are those of degree 1.
     ///
-    /// Each B-spline has shares of one altogether: so the functions sum to one where the B-splines do. B-splines of links
-    /// through the faraway point are none, and those of null links are zero.
+    /// Each B-spline has shares of one altogether: so the functions sum to one where the B-splines do. Those of null links
+    /// are zero, and left out; of a link through the faraway point, the finite edges make the B-spline.
     ///
     /// Errors: links of another size.
     pub fn functions(&self, links: &Links) -> Result<Vec<Function>> {
