@@ -45,7 +45,7 @@ impl Start {
     }
 
     /// The corners at the vertex of a corner, counterclockwise.
-    fn star(&self, first: Corner) -> impl Iterator<Item = Corner> + '_ {
+    pub(super) fn star(&self, first: Corner) -> impl Iterator<Item = Corner> + '_ {
         let mut next = Some(first);
         std::iter::from_fn(move || {
             let corner = next?;

@@ -7,7 +7,8 @@
 //! 2021); [`Rule::Delaunay`] gives the Delaunay configurations. What theory promises of links is asserted in every step.
 //!
 //! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the arrays, `gathering`
-//! the way from configurations to links, `polygon`, `rule` and `apex` that from links to configurations.
+//! the way from configurations to links, `polygon`, `rule` and `apex` that from links to configurations. [`special`] sets up
+//! starts and links for splines of a purpose.
 
 mod apex;
 mod border;
@@ -21,6 +22,7 @@ mod plane;
 mod polygon;
 mod rule;
 mod simple;
+pub mod special;
 mod start_check;
 mod surface;
 mod symbolic;
@@ -56,8 +58,18 @@ pub fn link_triangulate(
     configurations: &Configurations,
     rule: &Rule,
 ) -> Result<Configurations> {
+    step(knots, configurations, rule, &special::Diagonals::default())
+}
+
+/// [`link_triangulate`] with diagonals that links must have.
+fn step(
+    knots: &Knots,
+    configurations: &Configurations,
+    rule: &Rule,
+    diagonals: &special::Diagonals,
+) -> Result<Configurations> {
     rule.check(knots)?;
-    let step = Step { knots, configurations, rule };
+    let step = Step { knots, configurations, rule, diagonals };
     Arithmetic::of(&Extent::of(knots.points())).run(step, &mut PredicateCounts::default())
 }
 
@@ -96,20 +108,22 @@ struct Step<'a> {
     knots: &'a Knots,
     configurations: &'a Configurations,
     rule: &'a Rule,
+    diagonals: &'a special::Diagonals,
 }
 
 impl WithPredicates2 for Step<'_> {
     type Output = Result<Configurations>;
 
     fn with(self, predicates: &mut impl Predicates2) -> Result<Configurations> {
-        let Step { knots, configurations, rule } = self;
+        let Step { knots, configurations, rule, diagonals } = self;
         let standing = match (configurations.standing, rule) {
+            _ if !diagonals.is_empty() => Standing::Any,
             (Standing::Delaunay, Rule::Delaunay) => Standing::Delaunay,
             (Standing::Lifted, Rule::Lifted(_)) => Standing::Lifted,
             _ => Standing::Any,
         };
         let mut next = Configurations::empty(configurations.degree + 1, standing);
-        let mut triangulator = Triangulator::new(knots, rule, standing, predicates);
+        let mut triangulator = Triangulator::new(knots, (rule, diagonals), standing, predicates);
         // Along a curve, so that what is near in the plane is near in time: ids may be in any order.
         let mut curve = SpatialOrder::default();
         let order: Vec<u32> =

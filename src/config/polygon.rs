@@ -6,6 +6,7 @@ use super::knots::{FARAWAY, Knots};
 use super::plane::Plane;
 use super::rule::Rule;
 use super::simple;
+use super::special::Diagonals;
 use crate::error::{Error, ErrorKind, Result};
 use crate::limits::LINK_VERTICES_MAX;
 use crate::predicates::{Predicates2, Sign};
@@ -14,6 +15,8 @@ use crate::predicates::{Predicates2, Sign};
 pub(super) struct Triangulator<'a, P> {
     pub(super) plane: Plane<'a, P>,
     pub(super) rule: &'a Rule,
+    /// What links must have, whatever the rule is.
+    diagonals: &'a Diagonals,
     /// What is triangulated by the lift that all before was triangulated by: no diagonal can be in the way.
     pub(super) is_regular: bool,
     /// The set whose link it is.
@@ -26,11 +29,17 @@ pub(super) struct Triangulator<'a, P> {
 }
 
 impl<'a, P: Predicates2> Triangulator<'a, P> {
-    pub(super) fn new(knots: &'a Knots, rule: &'a Rule, standing: Standing, predicates: &'a mut P) -> Self {
+    pub(super) fn new(
+        knots: &'a Knots,
+        (rule, diagonals): (&'a Rule, &'a Diagonals),
+        standing: Standing,
+        predicates: &'a mut P,
+    ) -> Self {
         let lift = if let Rule::Lifted(lift) = rule { Some(lift) } else { None };
         Triangulator {
             plane: Plane::new(knots, lift, predicates),
             rule,
+            diagonals,
             is_regular: standing != Standing::Any,
             set: Vec::new(),
             polygon: Vec::new(),
@@ -133,6 +142,10 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
 
     /// The polygon, by the rule.
     fn bounded(&mut self) -> Result<()> {
+        let diagonals: Vec<[u32; 2]> = self.diagonals.of(&self.set).collect();
+        if !diagonals.is_empty() {
+            return self.by_diagonals(diagonals);
+        }
         let count = self.polygon.len();
         if count == 3 {
             return self.emit(0, 1, 2);

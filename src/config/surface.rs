@@ -188,7 +188,7 @@ impl Start {
     }
 
     /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are finite.
-    fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
+    pub(super) fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
         let (t, i) = (corner as usize / 3, corner as usize % 3);
         let beyond = self.across[t][i];
         let w = self.triangles[beyond as usize / 3][beyond as usize % 3];
@@ -197,13 +197,13 @@ impl Start {
         (!all.contains(&FARAWAY)).then_some(all)
     }
 
-    fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+    pub(super) fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
         self.quadrilateral(corner)
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
     /// Replaces the edge opposite to a corner by the other diagonal.
-    fn flip(&mut self, corner: Corner) {
+    pub(super) fn flip(&mut self, corner: Corner) {
         let (t, i) = (corner as usize / 3, corner as usize % 3);
         let beyond = self.across[t][i];
         let (u, j) = (beyond as usize / 3, beyond as usize % 3);

@@ -5,6 +5,9 @@ mod centroids;
 mod definition;
 mod lifted;
 mod rules;
+mod special_boxes;
+mod special_features;
+mod spline;
 
 use spmesh::config::{self, Configurations, Knots, Rule};
 

@@ -1,0 +1,150 @@
+//! Configurations for figures, and many runs of link triangulation.
+//!
+//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N random knots with
+//! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
+//! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
+
+use spmesh::audit::config::check_facets;
+use spmesh::config::special::{self, ZpSplit};
+use spmesh::config::{self, Configurations, Knots, Rule, Start};
+use spmesh::error::Result;
+
+/// SplitMix64.
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64) -> Random {
+        Random(seed.wrapping_mul(0xd134_2543_de82_ef95))
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
+    }
+}
+
+/// What happened at one degree.
+#[derive(Default, Clone)]
+struct Row {
+    runs: usize,
+    links: usize,
+    null: usize,
+    infinite: usize,
+    largest: usize,
+    configurations: usize,
+    failures: usize,
+}
+
+fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match words[..] {
+        ["runs", count, degree, seed] => runs(count.parse()?, degree.parse()?, seed.parse()?),
+        [source, degree, seed] => {
+            let (degree, seed) = (degree.parse()?, seed.parse()?);
+            match source.split_once(':') {
+                Some(("random", count)) => {
+                    let knots = Knots::new(points(&mut Random::new(seed), count.parse()?, 0))?;
+                    let start = flipped(&knots, count.parse::<usize>()? / 3, seed)?;
+                    print(&knots, &config::generate(&knots, start, &Rule::Random(seed), degree)?);
+                }
+                Some(("zp", side)) => {
+                    let side: u32 = side.parse()?;
+                    let at = |site: u32| [f64::from(site % side), f64::from(site / side)];
+                    let knots = Knots::new((0..side * side).map(at).collect())?;
+                    let zp = special::zp(&knots, ZpSplit::default())?;
+                    print(&knots, &zp.generate(&Rule::Delaunay, degree)?);
+                }
+                _ => return Err("knots must be random:N or zp:N".into()),
+            }
+        }
+        _ => return Err("usage: config_runs random:N|zp:N DEGREE SEED | runs COUNT DEGREE SEED".into()),
+    }
+    Ok(())
+}
+
+fn flipped(knots: &Knots, flips: usize, seed: u64) -> Result<Configurations> {
+    let mut start = Start::delaunay(knots)?;
+    start.flip_random(knots, flips, seed);
+    Ok(start.configurations())
+}
+
+/// Random knots: in general position, on a small grid, or with copies.
+fn points(random: &mut Random, count: usize, family: u64) -> Vec<[f64; 2]> {
+    let unit = |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
+    let mut coordinate = || match family {
+        0 => unit(random),
+        1 => random.below(7) as f64,
+        _ => random.below(4) as f64,
+    };
+    (0..count).map(|_| [coordinate(), coordinate()]).collect()
+}
+
+fn rule(random: &mut Random, count: usize) -> Rule {
+    match random.below(7) {
+        0 => Rule::Delaunay,
+        1 => Rule::MinWeight,
+        2 => Rule::Ear,
+        3 => Rule::Fan,
+        4 => Rule::Aligned(random.below(180) as f64),
+        5 => Rule::Data((0..count).map(|_| random.below(1000) as f64).collect()),
+        _ => Rule::Random(random.bits()),
+    }
+}
+
+fn runs(count: u64, degree: usize, seed: u64) {
+    let mut rows = vec![Row::default(); degree + 1];
+    for run in 0..count {
+        let mut random = Random::new(seed.wrapping_add(run));
+        let knots = (degree + 4) as u64 + random.below(20);
+        let points = points(&mut random, knots as usize, run % 3);
+        let Ok(knots) = Knots::new(points) else { continue };
+        // Knots on one line have no configurations.
+        let Ok(mut lower) = flipped(&knots, random.below(60) as usize, random.bits()) else { continue };
+        for row in rows.iter_mut().skip(1) {
+            match step(&knots, &lower, &rule(&mut random, knots.len()), row) {
+                Ok(upper) => lower = upper,
+                Err(error) => {
+                    row.failures += 1;
+                    eprintln!("run {run}: {error}");
+                    break;
+                }
+            }
+        }
+    }
+    println!("degree\truns\tlinks\tnull\tinfinite\tlargest\tconfigurations\tfailures");
+    for (degree, row) in rows.iter().enumerate().skip(1) {
+        let Row { runs, links, null, infinite, largest, configurations, failures } = row;
+        println!("{degree}\t{runs}\t{links}\t{null}\t{infinite}\t{largest}\t{configurations}\t{failures}");
+    }
+}
+
+/// One degree more.
+fn step(knots: &Knots, lower: &Configurations, rule: &Rule, row: &mut Row) -> Result<Configurations> {
+    row.runs += 1;
+    for link in config::links(knots, lower)?.iter() {
+        row.links += 1;
+        row.null += usize::from(link.is_null());
+        row.infinite += usize::from(link.is_infinite());
+        row.largest = row.largest.max(link.polygon.len());
+    }
+    let upper = config::link_triangulate(knots, lower, rule)?;
+    check_facets(lower, &upper)?;
+    row.configurations += upper.len();
+    Ok(upper)
+}
+
+fn print(knots: &Knots, all: &[Configurations]) {
+    let pairs = |configurations: &Configurations| -> String {
+        let each: Vec<String> = configurations.iter().map(|(b, i)| format!("[{b:?}, {i:?}]")).collect();
+        format!("[{}]", each.join(", "))
+    };
+    let degrees: Vec<String> = all.iter().map(pairs).collect();
+    println!("{{\"knots\": {:?}, \"degrees\": [{}]}}", knots.points(), degrees.join(",\n"));
+}
