@@ -31,10 +31,18 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
 
 /// The numbers of the cells in order.
 fn order(cells: &Cells4) -> Vec<u32> {
-    // The kind and the first vertices decide mostly: no cell has to be looked at for these.
+    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices have room if they
+    // have 21 bits, otherwise two of 31, and what the last bit would tell is left to the cell.
+    let greatest = cells.iter().filter_map(|cell| cell.vertices.last().copied()).max().unwrap_or_default();
+    let is_narrow = greatest < 1 << 21;
     let key = |number: u32| {
         let cell = cells.get(number as usize);
-        let first = u64::from(cell.vertices[0]) << 31 | u64::from(cell.vertices[1]) >> 1;
+        let vertex = |i: usize| u64::from(cell.vertices[i]);
+        let first = if is_narrow {
+            vertex(0) << 42 | vertex(1) << 21 | vertex(2)
+        } else {
+            vertex(0) << 31 | vertex(1) >> 1
+        };
         (u64::from(cell.is_infinite) << 63 | first, number)
     };
     let mut keys: Vec<(u64, u32)> = (0..cells.len() as u32).map(key).collect();

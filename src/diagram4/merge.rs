@@ -141,6 +141,7 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
         met.clear();
         met.mark(class as u32);
         let places = classes.places(class);
+        let is_simplex = places.len() == 1;
         let first = simplices[simplex_of(classes.members[places.start])].vertices;
         vertices.extend(first.into_iter().filter(|&vertex| vertex != INFINITE && listed.mark(vertex)));
         for place in places {
@@ -154,7 +155,12 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
                 vertices.push(opposite);
             }
             let around = simplex.beyond.into_iter().map(|beyond| classes.of[simplex_of(beyond)]);
-            neighbours.extend(around.filter(|&other| met.mark(other)));
+            if is_simplex {
+                // Two convex cells have one facet in common, if any: none of these is met twice.
+                neighbours.extend(around);
+            } else {
+                neighbours.extend(around.filter(|&other| met.mark(other)));
+            }
         }
         vertices.iter_mut().for_each(|vertex| *vertex = order[*vertex as usize]);
         vertices.sort_unstable();

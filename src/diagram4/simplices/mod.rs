@@ -23,15 +23,16 @@ mod insertion;
 mod lanes;
 mod links;
 mod locate;
+mod order;
 
 pub(super) use coefficient::Coefficient;
 pub(super) use complex::{Complex, FACETS, Facet, INFINITE, Simplex, facet, facet_of, simplex_of};
 
+pub(super) use order::insertions;
+
 use super::Stats;
 use super::sites::Sites;
 use crate::error::Result;
-use crate::order::{Curve, Rounds, SpatialOrder};
-use crate::predicates::Extent;
 use insertion::Insertion;
 use std::time::Instant;
 
@@ -51,17 +52,4 @@ pub(super) fn triangulate<'a, C: Coefficient>(sites: &'a Sites, stats: &mut Stat
     stats.created = insertion.created;
     stats.in_sphere_tests = insertion.tests;
     Ok(insertion.complex)
-}
-
-/// The sites in the order of their insertion, five that span space first.
-///
-/// Errors: there are none.
-pub(super) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
-    let extent = Extent::of(&sites.points);
-    let curve: Vec<u32> = SpatialOrder::default().sort(&sites.points, &extent, Curve::Hilbert).collect();
-    // Of a full grid, one pass along the curve creates twice as many simplices as rounds do, and lexicographic order ten
-    // times as many.
-    let mut order: Vec<u32> = Rounds::new(curve.len()).map(|place| curve[place as usize]).collect();
-    first::to_front(sites, &mut order)?;
-    Ok(order)
 }
