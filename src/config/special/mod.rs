@@ -1,7 +1,7 @@
 //! Special configurations of degree 1, for quadratic splines of a purpose (thesis, chapter 8).
 //!
 //! Each is knots, a triangulation of them, and diagonals that links of some knots must have: a [`Special`]. [`zp`] and
-//! [`patches`] reproduce box splines on grids ([`boxes`](self), thesis 8.2), [`features`] makes corners and creases sharp,
+//! [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2), [`features()`] makes corners and creases sharp,
 //! and linear elements linear (8.3.1). The B-splines of degree 2 that belong together, on account of knots at one place for
 //! instance, are summed: [`Special::functions`] says how.
 
