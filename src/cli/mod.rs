@@ -3,6 +3,7 @@
 pub mod configgen;
 pub mod dd4;
 pub mod progress;
+mod rows;
 pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spfinalize;

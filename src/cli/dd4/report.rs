@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::cli::rows::{Row, entries, lines, seconds};
 use crate::cli::{StatsFormat, peak_memory, say};
 use crate::dd4::Report;
 
@@ -21,13 +22,10 @@ pub(super) fn print(format: Option<StatsFormat>, report: &Report, read: Duration
     }
 }
 
-/// A label for people, a key for programs, the value.
-type Row<T> = (&'static str, &'static str, T);
-
 /// Times in seconds.
-fn times(report: &Report, read: Duration, elapsed: Duration) -> [Row<f64>; 7] {
+fn times(report: &Report, read: Duration, elapsed: Duration) -> Vec<Row<f64>> {
     let stats = &report.stats;
-    [
+    seconds([
         ("time (s)", "seconds", elapsed),
         ("reading (s)", "seconds_read", read),
         ("diagram (s)", "seconds_diagram", report.diagram_time),
@@ -35,8 +33,7 @@ fn times(report: &Report, read: Duration, elapsed: Duration) -> [Row<f64>; 7] {
         ("  insertion (s)", "seconds_insertion", stats.insertion),
         ("  making cells (s)", "seconds_cells", stats.merge),
         ("writing (s)", "seconds_write", report.write_time),
-    ]
-    .map(|(label, key, time)| (label, key, time.as_secs_f64()))
+    ])
 }
 
 /// With the times and the share of cells, the columns of thesis table 3.4, and what figure 3.9 shows.
@@ -63,21 +60,13 @@ fn counts(report: &Report) -> [Row<u64>; 16] {
 }
 
 fn text(report: &Report, read: Duration, elapsed: Duration) -> String {
-    let mut text = String::new();
-    for (label, _, seconds) in times(report, read, elapsed) {
-        text += &format!("{label:<30} {seconds:>15.3}\n");
-    }
-    for (label, _, count) in counts(report) {
-        text += &format!("{label:<30} {count:>15}\n");
-    }
-    text + &format!("{:<30} {:>15.3}\n", "share that are not simplices", report.figures.share_not_simplices())
+    let share = report.figures.share_not_simplices();
+    lines(&times(report, read, elapsed), counts(report))
+        + &format!("{:<30} {share:>15.3}\n", "share that are not simplices")
 }
 
 fn json(report: &Report, read: Duration, elapsed: Duration) -> String {
-    let mut object = serde_json::Map::new();
-    let times = times(report, read, elapsed);
-    object.extend(times.into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
-    object.extend(counts(report).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
+    let mut object = entries(&times(report, read, elapsed), counts(report));
     object.insert("share_not_simplices".into(), report.figures.share_not_simplices().into());
     serde_json::Value::Object(object).to_string()
 }

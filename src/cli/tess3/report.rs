@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::cli::rows::{Row, entries, lines, seconds};
 use crate::cli::{StatsFormat, peak_memory, say};
 use crate::tess3::{Arithmetic, Method, Report, Stats};
 
@@ -36,9 +37,6 @@ pub(super) fn print(format: Option<StatsFormat>, stats: &Stats, method: &Method,
     }
 }
 
-/// A label for people, a key for programs, the value.
-type Row<T> = (&'static str, &'static str, T);
-
 /// Times in seconds. With the counts these are the columns of thesis table 3.3, as far as they were measured.
 fn times(stats: &Stats, elapsed: Duration) -> Vec<Row<f64>> {
     let times = stats.sums.times;
@@ -52,7 +50,7 @@ fn times(stats: &Stats, elapsed: Duration) -> Vec<Row<f64>> {
         ("  update (s)", "seconds_update", measured(times.update)),
         ("writing (s)", "seconds_write", Some(times.write)),
     ];
-    rows.into_iter().filter_map(|(label, key, time)| Some((label, key, time?.as_secs_f64()))).collect()
+    seconds(rows.into_iter().filter_map(|(label, key, time)| Some((label, key, time?))))
 }
 
 fn measured(time: Duration) -> Option<Duration> {
@@ -103,21 +101,12 @@ fn bytes_per_point(stats: &Stats) -> f64 {
 }
 
 fn text(stats: &Stats, method: &Method, elapsed: Duration) -> String {
-    let mut text = String::new();
-    for (label, _, seconds) in times(stats, elapsed) {
-        text += &format!("{label:<30} {seconds:>15.3}\n");
-    }
-    for (label, _, count) in counts(stats, method) {
-        text += &format!("{label:<30} {count:>15}\n");
-    }
-    text + &format!("{:<30} {:>15.1}\n", "kernel bytes per point", bytes_per_point(stats))
+    lines(&times(stats, elapsed), counts(stats, method))
+        + &format!("{:<30} {:>15.1}\n", "kernel bytes per point", bytes_per_point(stats))
 }
 
 fn json(stats: &Stats, method: &Method, elapsed: Duration) -> String {
-    let mut object = serde_json::Map::new();
-    object
-        .extend(times(stats, elapsed).into_iter().map(|(_, key, seconds)| (key.to_string(), seconds.into())));
-    object.extend(counts(stats, method).into_iter().map(|(_, key, count)| (key.to_string(), count.into())));
+    let mut object = entries(&times(stats, elapsed), counts(stats, method));
     object.insert("kernel_bytes_per_point".into(), bytes_per_point(stats).into());
     serde_json::Value::Object(object).to_string()
 }

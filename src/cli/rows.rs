@@ -1,0 +1,31 @@
+//! What `--stats` prints: rows for people, or the entries of a JSON object.
+
+use std::time::Duration;
+
+use serde_json::{Map, Value};
+
+/// A label for people, a key for programs, the value.
+pub(super) type Row<T> = (&'static str, &'static str, T);
+
+/// Times in seconds.
+pub(super) fn seconds(rows: impl IntoIterator<Item = Row<Duration>>) -> Vec<Row<f64>> {
+    rows.into_iter().map(|(label, key, time)| (label, key, time.as_secs_f64())).collect()
+}
+
+/// Lines of times, then lines of counts.
+pub(super) fn lines(times: &[Row<f64>], counts: impl IntoIterator<Item = Row<u64>>) -> String {
+    let mut text = String::new();
+    for (label, _, seconds) in times {
+        text += &format!("{label:<30} {seconds:>15.3}\n");
+    }
+    for (label, _, count) in counts {
+        text += &format!("{label:<30} {count:>15}\n");
+    }
+    text
+}
+
+/// The same for programs.
+pub(super) fn entries(times: &[Row<f64>], counts: impl IntoIterator<Item = Row<u64>>) -> Map<String, Value> {
+    let times = times.iter().map(|&(_, key, seconds)| (key.to_string(), seconds.into()));
+    times.chain(counts.into_iter().map(|(_, key, count)| (key.to_string(), count.into()))).collect()
+}
