@@ -189,12 +189,22 @@ impl Start {
 
     /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are finite.
     pub(super) fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
-        let (t, i) = (corner as usize / 3, corner as usize % 3);
-        let beyond = self.across[t][i];
-        let w = self.triangles[beyond as usize / 3][beyond as usize % 3];
-        let [v, a, b] = [i, (i + 1) % 3, (i + 2) % 3].map(|place| self.triangles[t][place]);
-        let all = [v, a, w, b];
+        let all = self.around(corner).corners;
         (!all.contains(&FARAWAY)).then_some(all)
+    }
+
+    /// The two triangles at the edge opposite to a corner, with what is around them.
+    pub(super) fn around(&self, corner: Corner) -> Around {
+        let beyond = self.across[corner as usize / 3][corner as usize % 3];
+        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the second and third.
+        let seen = |from: Corner| {
+            let (triangle, place) = (from as usize / 3, from as usize % 3);
+            let places = [place, (place + 1) % 3, (place + 2) % 3];
+            (places.map(|i| self.triangles[triangle][i]), places.map(|i| self.across[triangle][i]))
+        };
+        let ([v, a, b], [_, bv, va]) = seen(corner);
+        let ([w, ..], [_, aw, wb]) = seen(beyond);
+        Around { triangles: [corner / 3, beyond / 3], corners: [v, a, w, b], across: [va, aw, wb, bv] }
     }
 
     pub(super) fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
@@ -204,14 +214,8 @@ impl Start {
 
     /// Replaces the edge opposite to a corner by the other diagonal.
     pub(super) fn flip(&mut self, corner: Corner) {
-        let (t, i) = (corner as usize / 3, corner as usize % 3);
-        let beyond = self.across[t][i];
-        let (u, j) = (beyond as usize / 3, beyond as usize % 3);
-        let [v, a, b] = [i, (i + 1) % 3, (i + 2) % 3].map(|place| self.triangles[t][place]);
-        let w = self.triangles[u][j];
-        let (bv, va) = (self.across[t][(i + 1) % 3], self.across[t][(i + 2) % 3]);
-        let (aw, wb) = (self.across[u][(j + 1) % 3], self.across[u][(j + 2) % 3]);
-        let (t, u) = (t as u32, u as u32);
+        let Around { triangles: [t, u], corners: [v, a, w, b], across: [va, aw, wb, bv] } =
+            self.around(corner);
         self.triangles[t as usize] = [v, a, w];
         self.triangles[u as usize] = [w, b, v];
         for (here, there) in
@@ -226,6 +230,15 @@ impl Start {
         self.across[here as usize / 3][here as usize % 3] = there;
         self.across[there as usize / 3][there as usize % 3] = here;
     }
+}
+
+/// Two triangles that share an edge.
+pub(super) struct Around {
+    pub(super) triangles: [u32; 2],
+    /// Counterclockwise from a corner that is not on the edge.
+    pub(super) corners: [u32; 4],
+    /// What is across the sides of the quadrilateral, from that corner on.
+    pub(super) across: [Corner; 4],
 }
 
 /// How far an edge is from a direction: the sine of the angle. An edge without length is not far from any.

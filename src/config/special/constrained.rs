@@ -5,7 +5,7 @@
 
 use crate::config::knots::{FARAWAY, Knots};
 use crate::config::plane::Plane;
-use crate::config::surface::{Corner, Start};
+use crate::config::surface::{Around, Corner, Start};
 use crate::error::{Error, ErrorKind, Result};
 use crate::predicates::{Sign, TotalPredicates};
 use foldhash::{HashSet, HashSetExt};
@@ -229,14 +229,9 @@ impl<'a> Constrained<'a> {
 impl Start {
     /// Puts a vertex on the edge opposite to a corner: four triangles take the place of two.
     fn split(&mut self, corner: Corner, middle: u32) {
-        let (t, i) = (corner as usize / 3, corner as usize % 3);
-        let beyond = self.across[t][i];
-        let (u, j) = (beyond as usize / 3, beyond as usize % 3);
-        let [v, a, b] = [i, (i + 1) % 3, (i + 2) % 3].map(|place| self.triangles[t][place]);
-        let w = self.triangles[u][j];
-        let (bv, va) = (self.across[t][(i + 1) % 3], self.across[t][(i + 2) % 3]);
-        let (aw, wb) = (self.across[u][(j + 1) % 3], self.across[u][(j + 2) % 3]);
-        let (t, u, m, n) = (t as u32, u as u32, self.triangles.len() as u32, self.triangles.len() as u32 + 1);
+        let Around { triangles: [t, u], corners: [v, a, w, b], across: [va, aw, wb, bv] } =
+            self.around(corner);
+        let (m, n) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
         self.triangles[t as usize] = [v, a, middle];
         self.triangles[u as usize] = [w, b, middle];
         self.triangles.extend([[v, middle, b], [w, middle, a]]);
