@@ -13,10 +13,12 @@ mod volume;
 use std::io::Cursor;
 
 use spmesh::convert::{Format, Options, convert};
-use spmesh::error::Result;
+use spmesh::error::{ErrorKind, Result};
+
+use crate::vectors::load;
 
 /// `input`, of format `from`, as `to`.
-fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
+pub fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
     with_notices(input, from, to).map(|(output, _)| output)
 }
 
@@ -27,6 +29,31 @@ fn with_notices(input: &[u8], from: Format, to: Format) -> Result<(Vec<u8>, Vec<
     Ok((output, notices))
 }
 
-fn text_of(stream: &[u8]) -> String {
+pub fn text_of(stream: &[u8]) -> String {
     String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
+}
+
+/// Asserts that a text twin in which `found` is `replaced` is refused, with the line and `expected` in the message.
+pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
+    assert!(text.contains(found), "{found} in {text}");
+    let damaged = text.replacen(found, replaced, 1);
+    let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).expect_err(replaced);
+    assert_eq!(error.kind(), ErrorKind::Malformed, "{replaced}: {error}");
+    let message = error.to_string();
+    assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+}
+
+/// Asserts that a text twin cannot be cut anywhere, but for its last line feed.
+pub fn assert_cuts_are_refused(text: &str) {
+    for end in 0..text.len() - 1 {
+        let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).expect_err("cut");
+        assert_eq!(error.kind(), ErrorKind::Malformed, "cut at byte {end}: {error}");
+    }
+}
+
+/// The same of the twins of all vectors with such names.
+pub fn assert_cut_vectors_are_refused(is_meant: impl Fn(&str) -> bool) {
+    let vectors: Vec<_> = load("pass", "txt").into_iter().filter(|vector| is_meant(&vector.name)).collect();
+    assert!(!vectors.is_empty());
+    vectors.iter().for_each(|vector| assert_cuts_are_refused(&vector.expected));
 }

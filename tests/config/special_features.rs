@@ -174,13 +174,19 @@ fn inner_edge(points: &[[f64; 2]]) -> [u32; 2] {
     [a, b]
 }
 
-#[test]
-fn creases_with_smooth_ends_have_three_sharp_functions() {
+/// Scattered points, an edge between them, and what is built with a crease along it.
+fn with_crease(has_sharp_ends: bool, rule: &Rule) -> (Vec<[f64; 2]>, [u32; 2], Built) {
     let points = scattered(3, 60);
     let edge = inner_edge(&points);
-    let crease = Crease { knots: edge.to_vec(), has_sharp_ends: false };
+    let crease = Crease { knots: edge.to_vec(), has_sharp_ends };
     let features = Features { creases: vec![crease], ..Features::default() };
-    let built = build(&points, &features, &Rule::Delaunay);
+    let built = build(&points, &features, rule);
+    (points, edge, built)
+}
+
+#[test]
+fn creases_with_smooth_ends_have_three_sharp_functions() {
+    let (points, edge, built) = with_crease(false, &Rule::Delaunay);
     assert_eq!(built.special.knots.len(), 65);
     let kind = FunctionKind::Crease([edge[0], edge[1], 64]);
     let ends = edge.map(|v| points[v as usize]);
@@ -203,11 +209,7 @@ fn creases_with_smooth_ends_have_three_sharp_functions() {
 
 #[test]
 fn creases_with_sharp_ends_are_tents() {
-    let points = scattered(3, 60);
-    let edge = inner_edge(&points);
-    let crease = Crease { knots: edge.to_vec(), has_sharp_ends: true };
-    let features = Features { creases: vec![crease], ..Features::default() };
-    let built = build(&points, &features, &Rule::Ear);
+    let (points, edge, built) = with_crease(true, &Rule::Ear);
     let ends = edge.map(|v| points[v as usize]);
     let tent = built.of_kind(FunctionKind::Tent([edge[0].min(edge[1]), edge[0].max(edge[1])]));
     assert!(jump(&built, tent, ends) > 0.1);

@@ -1,9 +1,8 @@
 //! The text twin loses nothing.
 
 use spmesh::convert::Format;
-use spmesh::error::ErrorKind;
 
-use super::{converted, samples, text_of};
+use super::{assert_cuts_are_refused, assert_refused, converted, samples, text_of};
 use crate::vectors::load;
 
 #[test]
@@ -30,11 +29,7 @@ fn every_truncation_is_refused() {
     let tetrahedra =
         load("pass", "txt").into_iter().find(|vector| vector.name == "tetrahedra-labels").unwrap();
     for stream in [samples::points(3, false, true), samples::partial(), tetrahedra.bytes] {
-        let text = text_of(&stream);
-        for end in 0..text.len() - 1 {
-            let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).unwrap_err();
-            assert_eq!(error.kind(), ErrorKind::Malformed, "cut at byte {end}: {error}");
-        }
+        assert_cuts_are_refused(&text_of(&stream));
     }
 }
 
@@ -68,12 +63,7 @@ fn errors_name_the_line() {
         ("version 1", "version 2", "expected 1"),
     ];
     for (found, replaced, expected) in cases {
-        assert!(text.contains(found), "{found} in {text}");
-        let damaged = text.replacen(found, replaced, 1);
-        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Malformed);
-        let message = error.to_string();
-        assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+        assert_refused(&text, found, replaced, expected);
     }
 }
 

@@ -3,11 +3,12 @@
 use spmesh::config::{self, Configurations, FARAWAY, Knots, Rule, Standing, Start};
 use spmesh::configgen::read::ConfigurationSet;
 use spmesh::configgen::write::{header, write_configurations, write_configurations_as};
-use spmesh::convert::{Format, Options, convert};
-use spmesh::error::{ErrorKind, Result};
+use spmesh::convert::Format;
+use spmesh::error::ErrorKind;
 use spmesh::stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
 
 use super::Random;
+use crate::convert::{assert_cut_vectors_are_refused, assert_refused, converted, text_of};
 use crate::vectors::{load, run_python, verify};
 
 /// Knots on a small grid, so that some are on lines, on circles, and at one place.
@@ -39,17 +40,6 @@ pub fn written(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
 
 fn read(bytes: &[u8]) -> ConfigurationSet {
     ConfigurationSet::read(&mut StreamReader::new(bytes, "test").unwrap()).unwrap()
-}
-
-fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
-    let options = Options { from: Some(from), ..Options::default() };
-    let mut output = Vec::new();
-    convert(std::io::Cursor::new(input.to_vec()), "test", to, &mut output, &options, |_| ())?;
-    Ok(output)
-}
-
-fn text_of(stream: &[u8]) -> String {
-    String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
 }
 
 #[test]
@@ -207,24 +197,13 @@ fn errors_in_twins_name_the_line() {
         ("simplices 13", "simplices 12", "END states"),
     ];
     for (found, replaced, expected) in cases {
-        assert!(text.contains(found), "{found} in {text}");
-        let damaged = text.replacen(found, replaced, 1);
-        let error = converted(damaged.as_bytes(), Format::Text, Format::Spm).expect_err(replaced);
-        assert_eq!(error.kind(), ErrorKind::Malformed, "{replaced}: {error}");
-        let message = error.to_string();
-        assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+        assert_refused(&text, found, replaced, expected);
     }
 }
 
 #[test]
 fn every_truncation_of_a_twin_is_refused() {
-    for vector in load("pass", "txt").into_iter().filter(|vector| vector.name.starts_with("configurations")) {
-        for end in 0..vector.expected.len() - 1 {
-            let text = &vector.expected.as_bytes()[..end];
-            let error = converted(text, Format::Text, Format::Spm).expect_err(&vector.name);
-            assert_eq!(error.kind(), ErrorKind::Malformed, "{} cut at {end}: {error}", vector.name);
-        }
-    }
+    assert_cut_vectors_are_refused(|name| name.starts_with("configurations"));
 }
 
 #[test]
