@@ -20,6 +20,13 @@ pub(super) enum Exactness {
     Big,
 }
 
+impl Exactness {
+    /// Whether values in `f64` have no rounding error.
+    pub(super) fn is_double(self) -> bool {
+        matches!(self, Exactness::Small | Exactness::Double)
+    }
+}
+
 /// Greatest difference of integer coordinates with which coefficients of spheres have 32 bits.
 ///
 /// With differences up to E, coordinates are at most H = E/2, rounded up, about the centre of the box, and their lifts 4 H^2.

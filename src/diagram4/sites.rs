@@ -35,10 +35,10 @@ impl Sites {
         } else {
             Exactness::Big
         };
-        let is_small = matches!(exactness, Exactness::Small | Exactness::Double);
-        let unit = if is_small { 1.0 } else { unit_for(&extent) };
+        let is_double = exactness.is_double();
+        let unit = if is_double { 1.0 } else { unit_for(&extent) };
         let middle = |axis: usize| extent.lower[axis] * unit * 0.5 + extent.upper[axis] * unit * 0.5;
-        let centre = std::array::from_fn(|axis| if is_small { middle(axis).floor() } else { middle(axis) });
+        let centre = std::array::from_fn(|axis| if is_double { middle(axis).floor() } else { middle(axis) });
         Sites { points, exactness, greatest, unit, centre }
     }
 

@@ -4,7 +4,7 @@ use super::coefficient::Coefficient;
 use super::lanes::{LANES, Lanes};
 use crate::cells4::Point4;
 use crate::diagram4::determinant::{difference, dot, lift, normal, sphere};
-use crate::diagram4::exact::{Exactness, in_sphere, orientation};
+use crate::diagram4::exact::{in_sphere, orientation};
 use crate::diagram4::sites::Sites;
 use crate::prefetch::prefetch;
 use std::cmp::Ordering;
@@ -78,10 +78,7 @@ pub(in crate::diagram4) struct Complex<'a, C> {
 impl<'a, C: Coefficient> Complex<'a, C> {
     pub(super) fn new(sites: &'a Sites, order: Vec<u32>) -> Complex<'a, C> {
         let near = order.iter().map(|&number| sites.near(number)).collect();
-        let rounding = match sites.exactness {
-            Exactness::Small | Exactness::Double => 0.0,
-            Exactness::Int128 | Exactness::Big => ROUNDING,
-        };
+        let rounding = if sites.exactness.is_double() { 0.0 } else { ROUNDING };
         let (simplices, spheres) = (vec![Simplex::default()], vec![[C::DEAD; 6]]);
         Complex { sites, order, near, simplices, spheres, free: Vec::new(), rounding }
     }
