@@ -8,7 +8,7 @@ use super::crs::{self, common_crs};
 use super::detect::{self, detect};
 use super::grid::{self, Member};
 use super::las_header::LasHeader;
-use super::origin::Origin;
+use super::origin::{Origin, name_of};
 use super::placement::Placement;
 use super::records::RecordPass;
 use super::text::Columns;
@@ -159,7 +159,7 @@ impl Source {
     fn open(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Source> {
         let temp_dir = options.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
         let origin = Origin::new(path, &temp_dir, notices)?;
-        let name = if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() };
+        let name = name_of(path);
         Source::new(origin, name, options, notices)
     }
 

@@ -51,6 +51,7 @@ pub use crs::crs_name;
 pub use events::EventSource;
 pub use input::Input;
 pub use obj::open_obj;
+pub(crate) use origin::name_of;
 pub use planar::{Planar, open_planar};
 pub use ply::open_ply;
 pub use sma::open_sma;

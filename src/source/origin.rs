@@ -9,6 +9,11 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result};
 
+/// What messages call an input: its path, or stdin for "-".
+pub(crate) fn name_of(path: &Path) -> String {
+    if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() }
+}
+
 /// Bytes that can be read several times.
 #[derive(Debug)]
 pub(super) enum Origin {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::detect::{self, detect};
 use super::events::EventSource;
-use super::origin::Origin;
+use super::origin::{Origin, name_of};
 use super::twin::TwinSource;
 use super::{Input, SourceOptions};
 use crate::error::Result;
@@ -36,7 +36,7 @@ fn open_one(path: &Path, options: &SourceOptions) -> Result<Planar> {
     let temp_dir = options.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
     // That a pipe is copied tells nobody anything: all of it is held in memory later.
     let origin = Origin::new(path, &temp_dir, &mut Vec::new())?;
-    let name = if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() };
+    let name = name_of(path);
     if let Some(mesh) = open_mesh(&origin, &name).map_err(|e| e.of_input(&name))? {
         return Ok(Planar::Mesh(mesh));
     }

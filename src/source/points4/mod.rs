@@ -26,7 +26,7 @@ pub use sample::Share;
 
 use self::lattice::Lattice;
 use self::scan::Supply;
-use super::origin::Origin;
+use super::origin::{Origin, name_of};
 use crate::cells4::Point4;
 use crate::error::{Error, Result};
 
@@ -115,7 +115,7 @@ pub fn read_points4(request: &Request) -> Result<Points4> {
             let temp_dir = request.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
             let origin = Origin::new(path, &temp_dir, &mut warnings)?;
             let is_stdin = path.as_os_str() == "-";
-            let name = if is_stdin { "stdin".to_string() } else { path.display().to_string() };
+            let name = name_of(path);
             let path = (!is_stdin).then_some(path.as_path());
             let supply = match &request.from {
                 From4::Raw(_, layout) => raw::open(origin, path, layout).map(Supply::Volume),
