@@ -1,25 +1,29 @@
 //! `configgen`: knots in, configurations of all degrees up to one out.
 //!
 //! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of them, `start` makes
-//! of both what [`crate::config`] needs; `write` and `mesh` write it, and
-//! `read` has it back.
+//! of both what [`crate::config`] needs, `purpose` that what special configurations need; `write` and `mesh` write it, and `read`
+//! has it back.
 
 mod counts;
 mod mesh;
 mod options;
+mod purpose;
 pub mod read;
 mod sites;
 mod start;
 pub mod write;
 
-pub use counts::DegreeCounts;
+pub use counts::{DegreeCounts, FunctionCounts};
 pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
+pub use purpose::{BoxName, Purpose};
 pub use sites::{Frame, Sites, read_sites};
 
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use self::start::Beginning;
+use crate::config::special::{Function, Special};
 use crate::config::{self, CentroidMesh, Configurations, Knots};
 use crate::error::Result;
 use crate::stream::Header;
@@ -33,6 +37,8 @@ pub struct Made {
     pub frame: Frame,
     /// Configurations of the degrees from 0 on.
     pub degrees: Vec<Configurations>,
+    /// What the configurations are made from, if they have a purpose.
+    pub special: Option<Special>,
     /// What was done on the way.
     pub report: Report,
 }
@@ -71,9 +77,14 @@ fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
     let setup = start::set_up(sites, options)?;
     let start_time = began.elapsed();
     let began = Instant::now();
-    let degrees = config::generate(&setup.knots, setup.start, &setup.rule, options.degree)?;
+    let (degrees, special) = match setup.beginning {
+        Beginning::Start(start) => {
+            (config::generate(&setup.knots, start, &setup.rule, options.degree)?, None)
+        }
+        Beginning::Special(special) => (special.generate(&setup.rule, options.degree)?, Some(special)),
+    };
     let report = Report { start_time, degrees_time: began.elapsed(), ..setup.report };
-    Ok(Made { knots: setup.knots, frame: setup.frame, degrees, report })
+    Ok(Made { knots: setup.knots, frame: setup.frame, degrees, special, report })
 }
 
 impl Made {
@@ -98,6 +109,16 @@ impl Made {
             bounds.max[2] = elevations.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         }
         header
+    }
+
+    /// The functions that quadratic splines for a purpose are made of, as sums of B-splines; `None` without a purpose, and
+    /// without degree 1, whose links they come from.
+    ///
+    /// # Errors
+    /// As [`config::links`].
+    pub fn functions(&self) -> Result<Option<Vec<Function>>> {
+        let (Some(special), Some(first)) = (&self.special, self.degrees.get(1)) else { return Ok(None) };
+        special.functions(&config::links(&self.knots, first)?).map(Some)
     }
 
     /// The centroid triangulation of the highest two degrees.
