@@ -22,8 +22,9 @@ pub use sites::{Frame, Sites, read_sites};
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use self::start::Beginning;
-use crate::config::special::{Function, Special};
+use self::start::{Beginning, Setup};
+use self::write::Content;
+use crate::config::special::{self, Function};
 use crate::config::{self, CentroidMesh, Configurations, Knots};
 use crate::error::Result;
 use crate::stream::Header;
@@ -37,8 +38,9 @@ pub struct Made {
     pub frame: Frame,
     /// Configurations of the degrees from 0 on.
     pub degrees: Vec<Configurations>,
-    /// What the configurations are made from, if they have a purpose.
-    pub special: Option<Special>,
+    /// The functions that quadratic splines are made of, as sums of B-splines; none if all B-splines of links are: without a
+    /// purpose and without copies that were added, and without degree 1, whose links they come from.
+    pub functions: Vec<Function>,
     /// What was done on the way.
     pub report: Report,
 }
@@ -77,24 +79,33 @@ fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
     let setup = start::set_up(sites, options)?;
     let start_time = began.elapsed();
     let began = Instant::now();
-    let (degrees, special) = match setup.beginning {
-        Beginning::Start(start) => {
-            (config::generate(&setup.knots, start, &setup.rule, options.degree)?, None)
-        }
-        Beginning::Special(special) => (special.generate(&setup.rule, options.degree)?, Some(special)),
+    let Setup { knots, frame, beginning, rule, report } = setup;
+    let (degrees, special) = match beginning {
+        Beginning::Start(start) => (config::generate(&knots, start, &rule, options.degree)?, None),
+        Beginning::Special(special) => (special.generate(&rule, options.degree)?, Some(special)),
     };
-    let report = Report { start_time, degrees_time: began.elapsed(), ..setup.report };
-    Ok(Made { knots: setup.knots, frame: setup.frame, degrees, special, report })
+    let has_copies = knots.len() as u64 > report.points;
+    let functions = match (special, degrees.get(1)) {
+        (Some(special), Some(first)) => special.functions(&config::links(&knots, first)?)?,
+        (None, Some(first)) if has_copies => special::functions(&knots, &config::links(&knots, first)?)?,
+        _ => Vec::new(),
+    };
+    let report = Report { start_time, degrees_time: began.elapsed(), ..report };
+    Ok(Made { knots, frame, degrees, functions, report })
 }
 
 impl Made {
     /// Writes the configurations of all degrees, with their knots.
     ///
     /// # Errors
-    /// As [`write::write_configurations_as`].
+    /// As [`write::write_as`].
     pub fn write(&self, output: impl Write) -> Result<()> {
-        let elevations = self.frame.elevations.as_deref();
-        write::write_configurations_as(self.header(), &self.knots, elevations, &self.degrees, output)
+        let content = Content {
+            heights: self.frame.elevations.as_deref(),
+            functions: &self.functions,
+            ..Content::of(&self.knots, &self.degrees)
+        };
+        write::write_as(self.header(), content, output)
     }
 
     fn header(&self) -> Header {
@@ -109,16 +120,6 @@ impl Made {
             bounds.max[2] = elevations.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         }
         header
-    }
-
-    /// The functions that quadratic splines for a purpose are made of, as sums of B-splines; `None` without a purpose, and
-    /// without degree 1, whose links they come from.
-    ///
-    /// # Errors
-    /// As [`config::links`].
-    pub fn functions(&self) -> Result<Option<Vec<Function>>> {
-        let (Some(special), Some(first)) = (&self.special, self.degrees.get(1)) else { return Ok(None) };
-        special.functions(&config::links(&self.knots, first)?).map(Some)
     }
 
     /// The centroid triangulation of the highest two degrees.

@@ -42,6 +42,7 @@ mod text;
 mod twin;
 mod twin4;
 mod twin_configurations;
+mod twin_functions;
 mod twin_header;
 mod values;
 

@@ -101,6 +101,23 @@ fn smooth_creases_have_knots_amid_their_edges() {
 }
 
 #[test]
+fn streams_have_the_functions() {
+    let of = |arguments: &[&str]| {
+        let text = text(&output(arguments, &grid(6, 5)));
+        let lines = |start: &str| text.lines().filter(|line| line.starts_with(start)).count() as u64;
+        ["edge", "vertex", "tent", "crease", "face"].map(|kind| lines(&format!("function {kind} ")))
+    };
+    for arguments in [&["--box", "zp"][..], &["--boundary", "pulled-apart"], &["--pull-apart", "7,8"]] {
+        let counted = functions(&counts(arguments, &grid(6, 5)));
+        assert_eq!(of(arguments), counted, "{arguments:?}");
+        assert!(counted[0] > 10, "{counted:?}");
+    }
+    // All on the border have a tent, and all edges between them.
+    assert_eq!(of(&["--boundary", "pulled-apart"])[1], 18);
+    assert_eq!((of(&[]), of(&["--boundary", "pulled-apart", "--degree", "0"])), ([0; 5], [0; 5]));
+}
+
+#[test]
 fn features_go_together_with_borders() {
     let folder = Folder::new();
     let features = folder.write("crease.txt", "crease 5 9\n");

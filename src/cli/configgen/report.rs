@@ -33,7 +33,7 @@ pub(super) fn notices(report: &Report, options: &Options) -> Vec<String> {
 /// Prints what `--stats` asks for.
 ///
 /// # Errors
-/// As [`DegreeCounts::of`] and [`Made::functions`].
+/// As [`DegreeCounts::of`].
 pub(super) fn print(
     format: Option<StatsFormat>,
     made: &Made,
@@ -46,7 +46,7 @@ pub(super) fn print(
     let peak = peak_memory();
     let count = |configurations| DegreeCounts::of(&made.knots, configurations);
     let degrees = made.degrees.iter().map(count).collect::<Result<Vec<_>>>()?;
-    let functions = made.functions()?.map(|functions| FunctionCounts::of(&functions));
+    let functions = (!made.functions.is_empty()).then(|| FunctionCounts::of(&made.functions));
     let whole: Vec<Row<u64>> = whole_rows(&made.report, output_bytes, peak)
         .into_iter()
         .chain(uses_seed(options).then_some(("seed", "seed", options.seed)))
