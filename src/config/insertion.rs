@@ -9,7 +9,9 @@
 //! taken out of the polygon in random order, and come back the other way around.
 //!
 //! Triangles of a part of the vertices may be clockwise, or flat: J is not within the vertices then, and their planes stand for
-//! the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes them as they are.
+//! the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes them as they are. No lift decides whether
+//! a vertex is in conflict with three others on its line. It is taken not to be, as if it was moved by less than all vertices
+//! before, and such triangles are gone in the end.
 
 use super::polygon::Triangulator;
 use super::surface::Corner;
@@ -217,6 +219,26 @@ mod tests {
                 let knots = Knots::new([around.clone(), inside].concat()).expect("knots");
                 let start = Start::delaunay(&knots).expect("triangles").configurations();
                 assert!(compare(&knots, start, &Rule::Delaunay, 3) > 10);
+            }
+        }
+    }
+
+    #[test]
+    fn they_agree_along_a_line() {
+        // All knots of the line are in the link of the knot next to it, and any four of them may come first.
+        let turns: [fn([f64; 2]) -> [f64; 2]; 4] =
+            [|p| p, |[x, y]| [y, x], |[x, y]| [y, -x], |[x, y]| [x + y, x - 2.0 * y]];
+        for turn in turns {
+            for count in 6..24 {
+                let line = (0..count).map(|i| [f64::from(i), 0.0]);
+                let others = [[5.0, 1.0], [-4000.0, 4000.0], [4000.0, 5000.0]];
+                let points: Vec<[f64; 2]> = line.chain(others).map(turn).collect();
+                let lift = Lift::Heights(points.iter().map(|p| p[0] * p[0] + p[1] * p[1]).collect());
+                let knots = Knots::new(points).expect("knots");
+                let start = Start::delaunay(&knots).expect("triangles").configurations();
+                assert!(compare(&knots, start, &Rule::Delaunay, 1) > 0);
+                let start = Start::lifted(&knots, &lift).expect("convex").configurations();
+                assert!(compare(&knots, start, &Rule::Lifted(lift), 1) > 0);
             }
         }
     }

@@ -4,7 +4,6 @@ use super::knots::{FARAWAY, Knots, opposite};
 use super::lift::Lift;
 use super::symbolic;
 use crate::predicates::{Predicates2, Sign};
-use std::cmp::Ordering;
 
 /// The knots, and the predicates for them.
 pub(super) struct Plane<'a, P> {
@@ -52,8 +51,8 @@ impl<'a, P: Predicates2> Plane<'a, P> {
     }
 
     /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others on which it is
-    /// below if abc is counterclockwise. If they are clockwise, this is above; and the side of a vertical plane if they lie on
-    /// a line.
+    /// below if abc is counterclockwise. If they are clockwise, this is above; and one side of a vertical plane if they lie on a
+    /// line. False for four on a line.
     pub(super) fn is_beyond(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
         let ids = [a, b, c, d];
         let sign = match self.lift {
@@ -77,16 +76,7 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         let mut ranked = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
         ranked.sort_unstable_by(|p, q| self.knots.order(q.0, p.0));
         let mut signs = ranked.into_iter().map(|(_, [p, q, r])| self.orient(p, q, r));
-        signs.find(|&sign| sign != Sign::Zero).unwrap_or_else(|| self.tie_on_line([a, b, c, d]))
-    }
-
-    /// The sign for four knots on one line, which no lift decides: ordinates are raised, too, by infinitesimals that are less
-    /// than those of lifts, that of the knot of largest order most (and its abscissa is lowered, if the line is vertical). As
-    /// lifts are strictly convex, the sign is that of the permutation from the order of knots.
-    fn tie_on_line(&self, ids: [u32; 4]) -> Sign {
-        let is_greater = |i: usize, j: usize| self.knots.order(ids[i], ids[j]) == Ordering::Greater;
-        let inversions = (0..4).flat_map(|j| (0..j).map(move |i| (i, j))).filter(|&(i, j)| is_greater(i, j));
-        if inversions.count() % 2 == 0 { Sign::Positive } else { Sign::Negative }
+        signs.find(|&sign| sign != Sign::Zero).unwrap_or(Sign::Negative)
     }
 
     /// Whether `d` is in conflict with a triangle, counterclockwise, that may be infinite.
