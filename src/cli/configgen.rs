@@ -50,7 +50,8 @@ Special configurations of degree 1 are for quadratic splines. --box zp cuts the 
 half the sum of the B-splines of the sides of a square is a box spline. --patches does the same on grids, with the knots of \
 the input, if there is one, between them. --features reads lines of a word and ids: corner (splines interpolate there), crease \
 (sharp up to its ends, which are interpolated), smooth-crease (smooth at its ends) or linear (values along it are \
-interpolated linearly). Segments between consecutive ids become edges of the triangulation; they may touch at knots only. \
+interpolated linearly). Segments between consecutive ids become edges of the triangulation; they may touch at knots only. Patches may touch along \
+whole sides. In both files # starts a comment. \
 --stats counts the functions that splines are made of.
 
 Knots are numbered in the order of the input, from 0. Knots at one place are repeated knots, which lowers the smoothness of \

@@ -8,9 +8,9 @@ use crate::predicates::Point2;
 /// A planar triangulation of the centroids of k-sets; with Delaunay configurations, the order-k Delaunay triangulation.
 #[derive(Debug, Clone, Default)]
 pub struct CentroidMesh {
-    order: usize,
+    pub(super) order: usize,
     /// The k-sets, sorted, one after the other.
-    sets: Vec<u32>,
+    pub(super) sets: Vec<u32>,
     /// Centroids of the k-sets, in lexicographic order of the sets. Coordinates are rounded.
     pub vertices: Vec<Point2>,
     /// Counterclockwise; those from the higher degree (one knot of the boundary and all of the interior make a vertex), then

@@ -19,6 +19,7 @@ mod gathering;
 mod insertion;
 mod knots;
 mod lift;
+mod merged;
 mod plane;
 mod polygon;
 mod rule;

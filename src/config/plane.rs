@@ -33,6 +33,11 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         sign
     }
 
+    /// Whether three knots are on one line where they are, not where they are moved to.
+    pub(super) fn is_flat(&mut self, a: u32, b: u32, c: u32) -> bool {
+        self.predicates.orient2d(self.knots.at(a), self.knots.at(b), self.knots.at(c)) == Sign::Zero
+    }
+
     #[inline]
     pub(super) fn is_left(&mut self, a: u32, b: u32, c: u32) -> bool {
         self.orient(a, b, c) == Sign::Positive

@@ -4,6 +4,12 @@ use super::knots::Knots;
 use super::lift::Lift;
 use crate::error::{Error, Result};
 
+/// What coordinates and values are multiplied by, so that sums of differences of the greatest are finite; exact but for numbers
+/// next to zero.
+const SCALE: f64 = 1.0 / (1u64 << 40) as f64;
+/// More than any difference of scaled numbers, and little enough for long sums.
+const WEIGHT_MAX: f64 = f64::MAX * SCALE;
+
 /// How links are triangulated.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rule {
@@ -44,22 +50,25 @@ impl Rule {
         }
     }
 
-    /// What a diagonal costs, for rules that minimise a sum.
+    /// What a diagonal costs, for rules that minimise a sum: finite, and so are sums, whatever coordinates and values are.
     pub(super) fn weight(&self, knots: &Knots, a: u32, b: u32) -> f64 {
         let (p, q) = (knots.at(a), knots.at(b));
-        let [x, y] = [q[0] - p[0], q[1] - p[1]];
-        match self {
+        let less = |from: f64, to: f64| SCALE * to - SCALE * from;
+        let [x, y] = [less(p[0], q[0]), less(p[1], q[1])];
+        let weight = match self {
             Rule::Aligned(degrees) => {
                 let (sin, cos) = degrees.to_radians().sin_cos();
                 (x * sin - y * cos).abs()
             }
-            Rule::Data(values) => (values[a as usize] - values[b as usize]).abs(),
+            Rule::Data(values) => less(values[a as usize], values[b as usize]).abs(),
             Rule::Gradients(gradients) => {
                 let (g, h) = (gradients[a as usize], gradients[b as usize]);
-                ((h[0] - g[0]) * x + (h[1] - g[1]) * y).abs()
+                (less(g[0], h[0]) * x + less(g[1], h[1]) * y).abs()
             }
             _ => x.hypot(y),
-        }
+        };
+        // Of great gradients and coordinates the product may be no number, and is not less than any.
+        if weight < WEIGHT_MAX { weight } else { WEIGHT_MAX }
     }
 }
 

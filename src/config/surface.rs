@@ -158,7 +158,7 @@ impl Start {
                 break;
             }
             let corner = random.below(corners) as Corner;
-            if self.can_flip(&mut plane, corner) {
+            if self.can_flip(&mut plane, corner) && self.keeps_places(&mut plane, corner) {
                 self.flip(corner);
                 flips += 1;
             }
@@ -177,7 +177,8 @@ impl Start {
         while let Some(corner) = waiting.pop() {
             let Some([v, a, w, b]) = self.quadrilateral(corner) else { continue };
             let [now, then] = [[a, b], [v, w]].map(|edge| deviation(knots, edge, degrees));
-            if then < now && self.can_flip(&mut plane, corner) {
+            let is_better = then < now && self.can_flip(&mut plane, corner);
+            if is_better && self.keeps_places(&mut plane, corner) {
                 let beyond = self.across[corner as usize / 3][corner as usize % 3] / 3;
                 self.flip(corner);
                 flips += 1;
@@ -207,9 +208,24 @@ impl Start {
         Around { triangles: [corner / 3, beyond / 3], corners: [v, a, w, b], across: [va, aw, wb, bv] }
     }
 
+    /// Whether the edge opposite to a corner can be flipped.
     pub(super) fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
         self.quadrilateral(corner)
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
+    }
+
+    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length stay, and no
+    /// triangle becomes flat but those that have such an edge.
+    fn keeps_places(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+        let knots = plane.knots;
+        let Some([v, a, w, b]) = self.quadrilateral(corner).filter(|_| knots.has_copies()) else {
+            return true;
+        };
+        let mut is_fit = |[p, q, r]: [u32; 3]| {
+            let at = [p, q, r].map(|id| knots.at(id));
+            at[0] == at[1] || at[1] == at[2] || at[2] == at[0] || !plane.is_flat(p, q, r)
+        };
+        knots.at(a) != knots.at(b) && is_fit([v, a, w]) && is_fit([w, b, v])
     }
 
     /// Replaces the edge opposite to a corner by the other diagonal.

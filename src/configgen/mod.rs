@@ -122,12 +122,13 @@ impl Made {
         header
     }
 
-    /// The centroid triangulation of the highest two degrees.
+    /// The centroid triangulation of the highest two degrees; without flat triangles, where knots are repeated.
     ///
     /// # Errors
     /// As [`CentroidMesh::of`].
     pub fn centroids(&self) -> Result<CentroidMesh> {
         let (upper, lower) = self.degrees.split_last().expect("there is at least degree 0");
-        CentroidMesh::of(&self.knots, lower.last(), upper)
+        let mesh = CentroidMesh::of(&self.knots, lower.last(), upper)?;
+        Ok(if self.knots.has_copies() { mesh.without_flat(&self.knots) } else { mesh })
     }
 }

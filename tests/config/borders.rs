@@ -86,6 +86,38 @@ fn links_of_pulled_apart_knots_are_fans() {
 }
 
 #[test]
+fn flips_leave_knots_that_are_pulled_apart_as_they_are() {
+    for seed in 0..60 {
+        // On a grid, many triangles would be flat but for symbolic displacements.
+        let points: Vec<[f64; 2]> = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5)]).collect();
+        let apart = knots(&points).pull_apart(&Vec::from_iter(0..25)).expect("known knots");
+        let mut start = Start::delaunay(&apart).expect("triangles").generalised();
+        let flips = if seed % 4 == 0 {
+            start.flip_aligned(&apart, 20.0 * seed as f64)
+        } else {
+            start.flip_random(&apart, 25, seed)
+        };
+        assert!(flips > 10, "seed {seed}: {flips}");
+        let rule = if seed % 2 == 0 { Rule::Random(seed) } else { Rule::Delaunay };
+        let degree_1 = config::link_triangulate(&apart, &start.configurations(), &rule).expect("links");
+        let links = config::links(&apart, &degree_1).expect("links");
+        for (knot, copy) in (0..25).zip(25..) {
+            let both = links.link(links.find(&[knot, copy]).expect("an edge of copies"));
+            let [x, y] = apart.at(knot);
+            let near = [x + 1e-7 * (2.03 - x), y + 1e-7 * (1.96 - y)];
+            let near = if knot == 12 { [2.0 + 1e-7, 2.0 + 3e-8] } else { near };
+            let value = b_spline(&apart, both, near);
+            assert!((value - 1.0).abs() < 1e-5, "seed {seed}, knot {knot}: {value}");
+            for [one, other] in [[knot, copy], [copy, knot]] {
+                let group = degree_1.groups().find(|group| group.interior == [one]).expect("its link");
+                let is_inner = group.infinite.is_empty();
+                assert!(!is_inner || group.triangles.iter().all(|triangle| triangle.contains(&other)));
+            }
+        }
+    }
+}
+
+#[test]
 fn unknown_knots_and_lines_are_errors() {
     let few = knots(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]);
     assert_eq!(few.pull_apart(&[1, 7]).expect_err("unknown").to_string(), "unknown knot 7: there are 3");

@@ -196,5 +196,5 @@ fn bad_patches_are_errors() {
     assert!(other(&|p| p.cells = [u32::MAX, u32::MAX]).contains("at most"));
     assert!(other(&|p| p.origin = [f64::NAN, 0.0]).contains("patch 1: a number is not finite"));
     assert!(other(&|p| p.steps[0] = [1e308, 0.0]).contains("coordinate is not finite"));
-    assert!(other(&|p| p.origin = [0.5, 0.25]).contains("crosses the one from knot"));
+    assert!(other(&|p| p.origin = [0.5, 0.25]).contains("crosses that of another patch"));
 }

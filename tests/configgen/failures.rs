@@ -48,6 +48,20 @@ fn each_failure_has_its_exit_code() {
 }
 
 #[test]
+fn the_greatest_numbers_are_no_failure() {
+    let extreme = b"1e308 1e308\n-1e308 1e308\n1e308 -1e308\n-1e308 -1e308\n0 0\n1e300 5\n";
+    let folder = Folder::new();
+    let values = folder.write("values.txt", "1e308\n-1e308\n1e308\n-1e308\n3\n0\n");
+    let gradients = folder.write("gradients.txt", "1e308 -1e308\n-1e308 1e308\n1e308 0\n0 0\n3 1e308\n0 1\n");
+    for rule in ["min-weight", "aligned:17", "random", "ear", "fan", "delaunay"] {
+        output(&["--degree", "2", "--rule", rule], extreme);
+    }
+    for file in [values, gradients] {
+        output(&["--degree", "2", "--rule", "data", "--values", &file], extreme);
+    }
+}
+
+#[test]
 fn a_failure_leaves_no_file_and_keeps_the_old_one() {
     let folder = Folder::new();
     folder.file("old.spm", "old");

@@ -1,6 +1,6 @@
 //! Special configurations by flags: box splines on grids, corners, creases and linear elements.
 
-use super::{counts, lines, output, scattered, text, total};
+use super::{counts, lines, output, plane, scattered, text, total};
 use crate::programs::{Folder, outcome, run};
 
 /// Knots of the integer grid, with third coordinates.
@@ -68,6 +68,58 @@ fn grids_that_meet_are_stitched() {
     assert_eq!(alone[1], [1.0, 0.0, 0.0]);
     let more = knots(&audited(&["--patches", &patches, "-"], b"3 9 1\n2 2 2\n4 -7 3\n"));
     assert_eq!((more.len(), &more[78], &more[79]), (80, &vec![3.0, 9.0, 0.0], &vec![4.0, -7.0, 0.0]));
+}
+
+#[test]
+fn grids_that_overlap_are_refused() {
+    let folder = Folder::new();
+    let cases = [
+        ("0 0 1 0 0 1 4 4\n2 0 1 0 0 1 4 4\n", "patches 0 and 1 overlap at (3, "),
+        ("0 0 1 0 0 1 4 4\n0 0 1 0 0 1 4 4\n", "patches 0 and 1 overlap at ("),
+        ("0 0 1 0 0 1 4 4\n4 4 -1 0 0 -1 4 4\n", "overlap"),
+        ("0 0 1 0 0 1 4 4\n0.5 0.25 1 0 0 1 2 2\n", "patch 1: the side of a cell from ("),
+    ];
+    for (number, (text, part)) in cases.iter().enumerate() {
+        let patches = folder.write(&format!("{number}.txt"), text);
+        let (code, message) = outcome(&run("configgen", &["--patches", &patches], b""));
+        assert_eq!(code, Some(2), "{text}: {message}");
+        assert!(message.contains(part) && message.contains("may touch"), "{text}: {message}");
+    }
+}
+
+/// Areas of the triangles of a mesh stream.
+fn areas(mesh: &[u8]) -> Vec<f64> {
+    let area = |t: &Vec<Vec<f64>>| {
+        let (p, q) = ([t[1][0] - t[0][0], t[1][1] - t[0][1]], [t[2][0] - t[0][0], t[2][1] - t[0][1]]);
+        (p[0] * q[1] - p[1] * q[0]).abs() / 2.0
+    };
+    plane(mesh).iter().map(area).collect()
+}
+
+#[test]
+fn centroids_of_repeated_knots_are_no_flat_triangles() {
+    let borders: [&[&str]; 3] =
+        [&["--pull-apart", "all"], &["--boundary", "clamped"], &["--boundary", "pulled-apart"]];
+    for border in borders {
+        for degree in ["0", "1", "2"] {
+            let arguments = [&["--centroids", "--degree", degree], border].concat();
+            let mesh = output(&arguments, &grid(5, 4));
+            let areas = areas(&mesh);
+            assert!(areas.iter().all(|&area| area > 1e-3), "{arguments:?}");
+            // What is there is one polygon with every edge inside of it twice: its border has the rest.
+            let mut edges = std::collections::HashMap::new();
+            for corners in plane(&mesh) {
+                for (p, q) in [(0, 1), (1, 2), (0, 2)] {
+                    let bits = |at: &[f64]| [at[0].to_bits(), at[1].to_bits()];
+                    *edges.entry([bits(&corners[p]), bits(&corners[q])]).or_insert(0) += 1;
+                }
+            }
+            assert!(edges.values().all(|&count| count <= 2), "{arguments:?}");
+            let area: f64 = areas.iter().sum();
+            let is_whole = degree == "0" || degree == "1" && border[1] != "clamped";
+            assert!(!is_whole || (area - 12.0).abs() < 1e-9, "{arguments:?}: {area}");
+        }
+    }
 }
 
 #[test]

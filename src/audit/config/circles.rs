@@ -4,9 +4,10 @@ use std::cmp::Ordering;
 
 use num_bigint::BigInt;
 
-use super::grid::Grid;
+use super::disk::Disk;
+use super::tree::Tree;
 use crate::audit::exact::dyadic::integers;
-use crate::audit::exact::plane::{Xy, in_circle, in_raised_circle, orientation};
+use crate::audit::exact::plane::{in_circle, in_raised_circle, orientation};
 use crate::config::{Configurations, Knots};
 use crate::error::{Error, ErrorKind, Result};
 
@@ -15,10 +16,9 @@ use crate::error::{Error, ErrorKind, Result};
 ///
 /// Infinite configurations are not checked. Errors: the first violation (kind [`ErrorKind::Audit`]).
 ///
-/// Cost: for each configuration, the knots in the bounding box of its circle.
+/// Cost: for each configuration, the knots in boxes of a tree that its circle meets.
 pub fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<()> {
-    let points = knots.points();
-    let grid = Grid::of(points);
+    let tree = Tree::of(knots.points());
     for (boundary, interior) in configurations.iter() {
         let fail = |what: String| {
             Err(Error::new(ErrorKind::Audit, what).at(format!("configuration {boundary:?}, {interior:?}")))
@@ -29,40 +29,24 @@ pub fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<(
         if turn(knots, boundary) != Ordering::Greater {
             return fail("the boundary is not counterclockwise".into());
         }
-        let mut inside = 0;
-        for id in grid.near(reach(boundary.map(|id| points[id as usize]))) {
-            if boundary.contains(&id) || !is_inside(knots, boundary, id) {
-                continue;
+        let (mut inside, mut excess) = (0, None);
+        tree.for_each_in(&Disk::of(knots, boundary), |id| {
+            if !boundary.contains(&id) && is_inside(knots, boundary, id) {
+                match interior.binary_search(&id) {
+                    Ok(_) => inside += 1,
+                    Err(_) => excess = Some(id),
+                }
             }
-            if interior.binary_search(&id).is_err() {
-                return fail(format!("knot {id} is inside of the circle"));
-            }
-            inside += 1;
+            excess.is_none()
+        });
+        if let Some(id) = excess {
+            return fail(format!("knot {id} is inside of the circle"));
         }
         if inside != interior.len() {
             return fail(format!("of the {} knots inside, only {inside} are", interior.len()));
         }
     }
     Ok(())
-}
-
-/// A box around the circle of three points, with a margin for rounding; everything, if the circle is not well known.
-fn reach([a, b, c]: [Xy; 3]) -> [Xy; 2] {
-    let everything = [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]];
-    let [p, q] = [[b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]];
-    let (products, area) = ([p[0] * q[1], p[1] * q[0]], p[0] * q[1] - p[1] * q[0]);
-    if area.abs() < 1e-6 * (products[0].abs() + products[1].abs()) || !area.is_normal() {
-        return everything;
-    }
-    let (k, l) = (p[0] * p[0] + p[1] * p[1], q[0] * q[0] + q[1] * q[1]);
-    let centre = [(q[1] * k - p[1] * l) / (2.0 * area), (p[0] * l - q[0] * k) / (2.0 * area)];
-    let radius = centre[0].hypot(centre[1]) * 1.001 + f64::MIN_POSITIVE;
-    let scale = a[0].abs().max(a[1].abs()) * 1e-9;
-    if !(radius + scale).is_finite() {
-        return everything;
-    }
-    let centre = [a[0] + centre[0], a[1] + centre[1]];
-    [centre.map(|c| c - radius - scale), centre.map(|c| c + radius + scale)]
 }
 
 pub(super) fn turn(knots: &Knots, ids: [u32; 3]) -> Ordering {

@@ -5,10 +5,11 @@
 //! makes centroid triangulations planar. [`StreamAudit`] asks all of it of a stream.
 
 mod circles;
+mod disk;
 mod facets;
-mod grid;
 mod planar;
 mod stream;
+mod tree;
 
 pub use circles::check_circles;
 pub use facets::{FacetCounts, check_facets, check_start};

@@ -154,13 +154,16 @@ fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special
     let mut predicates = TotalPredicates::default();
     let mut mesh = Constrained::new(&knots, Start::delaunay(&knots)?, &mut predicates);
     let sides = |cell: &Cell| [0, 1, 2, 3].map(|i| [cell[i], cell[(i + 1) % 4]]);
-    for [a, b] in grids.iter().flatten().flat_map(sides) {
-        if !mesh.is_fixed([a, b]) {
-            mesh.fix(a, b)?;
+    for (number, grid) in grids.iter().enumerate() {
+        for [a, b] in grid.iter().flat_map(sides) {
+            if !mesh.is_fixed([a, b]) {
+                mesh.fix(a, b).map_err(|_| crossing(number, [a, b].map(|id| knots.at(id))))?;
+            }
         }
     }
     let (mut rows, mut collection) = (Vec::new(), Collection::default());
-    for grid in grids {
+    let mut taken: HashMap<u32, usize> = HashMap::default();
+    for (number, grid) in grids.iter().enumerate() {
         let cells: Vec<Cell> = grid.iter().copied().filter(|cell| is_empty(&mesh, cell)).collect();
         for [a, b, c, d] in &cells {
             if split.is_falling {
@@ -170,11 +173,34 @@ fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special
             };
         }
         let inner = inner_knots(&cells);
+        for &knot in inner.keys() {
+            if let Some(other) = taken.insert(knot, number) {
+                return Err(overlap(other, number, knots.at(knot)));
+            }
+        }
         rows.extend(inner.iter().flat_map(|(&knot, &around)| diagonals_around(knot, around, split)));
         collection.faces.extend(cells.iter().filter(|cell| cell.iter().all(|knot| inner.contains_key(knot))));
     }
     let start = mesh.into_start();
     Ok(Special { knots, start, diagonals: Diagonals::new(rows), collection })
+}
+
+/// The error of a side of a cell that crosses one of another grid.
+#[cold]
+fn crossing(patch: usize, [p, q]: [Point2; 2]) -> Error {
+    let ([a, b], [c, d]) = (p, q);
+    let what = format!(
+        "the side of a cell from ({a}, {b}) to ({c}, {d}) crosses that of another patch: patches may touch along whole sides"
+    );
+    Error::usage(what).at(format!("patch {patch}"))
+}
+
+/// The error of two grids that have something in common amid cells of both.
+#[cold]
+fn overlap(first: usize, second: usize, [x, y]: Point2) -> Error {
+    let what =
+        format!("patches {first} and {second} overlap at ({x}, {y}): patches may touch along whole sides");
+    Error::usage(what)
 }
 
 /// Whether the triangulation has just two triangles in a cell, of whole sides.
