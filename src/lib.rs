@@ -30,6 +30,7 @@ pub mod reduce;
 pub mod sink;
 pub mod source;
 pub mod spacetime;
+pub mod spline;
 pub mod stream;
 pub mod system;
 pub mod tess3;

@@ -25,6 +25,7 @@ mod reduction;
 mod reference;
 mod sources;
 mod spacetime;
+mod spline;
 mod stream;
 mod system;
 mod tess3;

@@ -1,0 +1,104 @@
+//! Where all functions sum to one.
+//!
+//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every closed half-plane has
+//! k knots at least: the *domain*. (Simplex splines of configurations of degree k need k + 1; functions of degree 0 need
+//! what those of degree 1 do, the convex hull.)
+//!
+//! *Why they do.* The sum over links with polar forms P is, configuration by configuration, that of P(I, x) N(x | B, I) over
+//! configurations of degree k - 1 (thesis 6.2.2), and it is what the links of degree k - 1 give with the polar form P(., x) but
+//! for the infinite configurations (p, q, I): these add terms that vanish unless x is in the hull of I and p, q, which lies to
+//! the left of the line pq. No point of the domain, for which k knots are needed, is left of a line with less than k knots to
+//! its left. So all degrees down to 0 give the same, and degree 0 is a triangulation.
+//!
+//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of degree k - 1 (left of
+//! it are k - 1 knots). A half-plane left of such a line that contains x, moved to x, has only these k - 1 knots.
+//! Conversely let s(t) be the k-th greatest of the scalar products of knots with the unit vector n(t), so that x is in the domain if g(t) = n(t) x -
+//! s(t) is nowhere positive. Pieces of g are sinusoids, g'' + g = 0. Where the k-th knot changes from p to q, the two are on a
+//! line with normal n(t); either k - 1 knots are left of it, and it is an infinite configuration, or k - 2 are, s is the lesser one of both
+//! products there, and the slope of g increases. If g is positive somewhere, but not at any infinite configuration, then it is positive
+//! on an interval of length pi at least (Sturm): hence at t, and at t + pi or in the limit. So less than k knots are on either
+//! side of x, and there are at most 2k - 2 knots; the domain is empty then. Copies, and knots on one line, are the limit of
+//! knots that are moved.
+
+use super::approach::Approach;
+use crate::config::{Configurations, Knots};
+use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+
+/// Closed half-planes to the right of directed lines, in common.
+#[derive(Debug, Clone)]
+pub(super) struct Domain {
+    pub(super) lines: Vec<[Point2; 2]>,
+    /// A point of the interior, if there is any.
+    pub(super) inner: Point2,
+    /// Whether nothing is inside.
+    pub(super) is_empty: bool,
+}
+
+impl Domain {
+    /// Domain of the functions of links of configurations, or of the triangles of degree 0 themselves.
+    pub(super) fn of(knots: &Knots, configurations: &Configurations) -> Domain {
+        let infinite = configurations.groups().flat_map(|group| group.infinite);
+        let lines = infinite.map(|&[p, q, _]| [knots.at(p), knots.at(q)]);
+        let mut lines: Vec<[Point2; 2]> = lines.filter(|[p, q]| p != q).collect();
+        lines.sort_unstable_by(|a, b| {
+            a.as_flattened().partial_cmp(b.as_flattened()).unwrap_or(std::cmp::Ordering::Equal)
+        });
+        lines.dedup();
+        let count = knots.len() as f64;
+        let mean = [0, 1].map(|axis| knots.points().iter().map(|point| point[axis] / count).sum());
+        let needed = configurations.degree() + 1;
+        let mut domain = Domain { lines, inner: mean, is_empty: knots.len() + 1 < 2 * needed };
+        if !domain.has_inside(mean) {
+            let found = domain.clipped(knots.points());
+            domain.inner = found.filter(|&point| domain.has_inside(point)).unwrap_or(mean);
+        }
+        domain
+    }
+
+    /// The approach from inside.
+    #[inline(always)]
+    pub(super) fn approach(&self, x: Point2) -> Approach {
+        Approach::new(x, self.inner)
+    }
+
+    fn has_inside(&self, x: Point2) -> bool {
+        let mut predicates = TotalPredicates::default();
+        self.lines.iter().all(|&[p, q]| predicates.orient2d(p, q, x) == Sign::Negative)
+    }
+
+    /// A point amid the corners of the domain, which are computed in plain arithmetic.
+    fn clipped(&self, points: &[Point2]) -> Option<Point2> {
+        let corner = |pick: fn(f64, f64) -> f64| {
+            points.iter().copied().reduce(|a, b| [pick(a[0], b[0]), pick(a[1], b[1])])
+        };
+        let ([x, y], [right, top]) = (corner(f64::min)?, corner(f64::max)?);
+        let mut polygon = vec![[x, y], [right, y], [right, top], [x, top]];
+        for &[p, q] in &self.lines {
+            polygon = cut(&polygon, [p, q]);
+        }
+        let count = polygon.len() as f64;
+        (count > 0.0).then(|| [0, 1].map(|axis| polygon.iter().map(|corner| corner[axis] / count).sum()))
+    }
+}
+
+/// Whether x is not to the left of a line.
+pub(super) fn is_right_or_on([p, q]: [Point2; 2], x: Point2) -> bool {
+    TotalPredicates::default().orient2d(p, q, x) != Sign::Positive
+}
+
+/// What of a convex polygon is to the right of a line.
+fn cut(polygon: &[Point2], [p, q]: [Point2; 2]) -> Vec<Point2> {
+    let depth = |x: Point2| super::area(q, p, x);
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (&a, &b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (at_a, at_b) = (depth(a), depth(b));
+        if at_a >= 0.0 {
+            kept.push(a);
+        }
+        if (at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0) {
+            let share = at_a / (at_a - at_b);
+            kept.push([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])));
+        }
+    }
+    kept
+}

@@ -1,0 +1,249 @@
+//! Which elements may be alive at a point, and which lines of the domain a point may be beyond: a tree of boxes.
+//!
+//! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not length of lists;
+//! leaves list all elements whose hulls meet their cell. A search is one way down.
+
+use super::domain::{Domain, is_right_or_on};
+use super::elements::HullEdge;
+use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+
+/// Cells with so few elements are not halved.
+const FEW: usize = 6;
+/// Neither half of a cell may have more than this share of its elements, or halving it is no use.
+const SHARE_MAX: f64 = 0.9;
+/// Levels of the tree, at most.
+const LEVELS_MAX: usize = 48;
+/// Entries of lists per element, at most, after which no cell is halved: for elements that all meet in one knot.
+const ENTRIES_MAX: usize = 48;
+/// Of the magnitude of the products in an orientation, more than what rounding may do.
+const MARGIN: f64 = 16.0 * f64::EPSILON;
+
+/// The axis of a node that is a leaf.
+const LEAF: u32 = 2;
+
+/// A convex polygon, by its box and its edges.
+pub(super) struct Hull {
+    pub(super) lower: Point2,
+    pub(super) upper: Point2,
+    pub(super) edges: Vec<HullEdge>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    /// Where the cell is cut: the first child is below.
+    cut: f64,
+    axis: u32,
+    /// The first of two children, or the number of the leaf.
+    next: u32,
+}
+
+/// What a leaf lists.
+#[derive(Debug, Clone, Copy, Default)]
+struct Leaf {
+    elements: [u32; 2],
+    lines: [u32; 2],
+    is_outside: bool,
+}
+
+/// The tree, and the lists of all leaves.
+#[derive(Debug, Clone)]
+pub(super) struct Tree {
+    lower: Point2,
+    upper: Point2,
+    nodes: Vec<Node>,
+    leaves: Vec<Leaf>,
+    elements: Vec<u32>,
+    lines: Vec<u32>,
+}
+
+/// A cell that may yet be halved.
+struct Cell {
+    node: usize,
+    lower: Point2,
+    upper: Point2,
+    elements: Vec<u32>,
+    lines: Vec<u32>,
+    /// Whether it is left of some line of the domain.
+    is_outside: bool,
+}
+
+/// The lists for a point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lists<'a> {
+    pub(super) elements: &'a [u32],
+    pub(super) lines: &'a [u32],
+    pub(super) is_outside: bool,
+}
+
+impl Tree {
+    /// A tree over the box from `lower` to `upper`.
+    pub(super) fn new(hulls: &[Hull], domain: &Domain, lower: Point2, upper: Point2) -> Tree {
+        let mut tree = Tree {
+            lower,
+            upper,
+            nodes: Vec::new(),
+            leaves: Vec::new(),
+            elements: Vec::new(),
+            lines: Vec::new(),
+        };
+        tree.nodes.push(Node { cut: 0.0, axis: LEAF, next: 0 });
+        let (elements, lines) = ((0..hulls.len() as u32).collect(), (0..domain.lines.len() as u32).collect());
+        let mut root = Cell { node: 0, lower, upper, elements, lines, is_outside: domain.is_empty };
+        root.keep_lines(domain);
+        let mut cells = vec![root];
+        for _ in 0..LEVELS_MAX {
+            let entries: usize = cells.iter().map(|cell| cell.elements.len()).sum();
+            if cells.is_empty() || entries + tree.elements.len() > ENTRIES_MAX * (hulls.len() + FEW) {
+                break;
+            }
+            let mut halves = Vec::new();
+            for cell in cells {
+                match cell.halves(hulls) {
+                    Some((axis, cut, pair)) => tree.grow(&cell, axis, cut, pair, domain, &mut halves),
+                    None => tree.close(cell),
+                }
+            }
+            cells = halves;
+        }
+        cells.into_iter().for_each(|cell| tree.close(cell));
+        tree
+    }
+
+    /// What is listed for a point; nothing if it is outside of the box.
+    #[inline]
+    pub(super) fn lists(&self, x: Point2) -> Option<Lists<'_>> {
+        if !(0..2).all(|axis| self.lower[axis] <= x[axis] && x[axis] <= self.upper[axis]) {
+            return None;
+        }
+        let mut node = self.nodes[0];
+        while node.axis != LEAF {
+            let is_upper = x[node.axis as usize] >= node.cut;
+            node = self.nodes[node.next as usize + usize::from(is_upper)];
+        }
+        let leaf = &self.leaves[node.next as usize];
+        Some(Lists {
+            elements: &self.elements[leaf.elements[0] as usize..leaf.elements[1] as usize],
+            lines: &self.lines[leaf.lines[0] as usize..leaf.lines[1] as usize],
+            is_outside: leaf.is_outside,
+        })
+    }
+
+    fn grow(
+        &mut self,
+        cell: &Cell,
+        axis: usize,
+        cut: f64,
+        halves: [Vec<u32>; 2],
+        domain: &Domain,
+        cells: &mut Vec<Cell>,
+    ) {
+        let next = self.nodes.len();
+        self.nodes[cell.node] = Node { cut, axis: axis as u32, next: next as u32 };
+        for (half, elements) in halves.into_iter().enumerate() {
+            let (mut lower, mut upper) = (cell.lower, cell.upper);
+            if half == 0 {
+                upper[axis] = cut
+            } else {
+                lower[axis] = cut
+            }
+            let (lines, is_outside) = (cell.lines.clone(), cell.is_outside);
+            let mut part = Cell { node: next + half, lower, upper, elements, lines, is_outside };
+            part.keep_lines(domain);
+            self.nodes.push(Node { cut: 0.0, axis: LEAF, next: 0 });
+            cells.push(part);
+        }
+    }
+
+    fn close(&mut self, cell: Cell) {
+        let [elements, lines] = [self.elements.len(), self.lines.len()];
+        self.elements.extend_from_slice(&cell.elements);
+        self.lines.extend_from_slice(&cell.lines);
+        self.nodes[cell.node] = Node { cut: 0.0, axis: LEAF, next: self.leaves.len() as u32 };
+        self.leaves.push(Leaf {
+            elements: [elements as u32, self.elements.len() as u32],
+            lines: [lines as u32, self.lines.len() as u32],
+            is_outside: cell.is_outside,
+        });
+    }
+}
+
+impl Cell {
+    /// Drops the lines that the cell is right of; all of them if it is left of one.
+    fn keep_lines(&mut self, domain: &Domain) {
+        if self.is_outside {
+            self.lines.clear();
+            return;
+        }
+        let corners = self.corners();
+        let is_beyond = |&[p, q]: &[Point2; 2]| {
+            let mut predicates = TotalPredicates::default();
+            corners.iter().all(|&corner| predicates.orient2d(p, q, corner) == Sign::Positive)
+        };
+        self.lines.retain(|&line| {
+            let line = domain.lines[line as usize];
+            !corners.iter().all(|&corner| is_right_or_on(line, corner))
+        });
+        self.is_outside = self.lines.iter().any(|&line| is_beyond(&domain.lines[line as usize]));
+        if self.is_outside {
+            self.lines.clear();
+        }
+    }
+
+    fn corners(&self) -> [Point2; 4] {
+        let ([x, y], [right, top]) = (self.lower, self.upper);
+        [[x, y], [right, y], [right, top], [x, top]]
+    }
+
+    /// The axis, the place of the cut, and the elements below and above it, if it is of use to halve the cell.
+    fn halves(&self, hulls: &[Hull]) -> Option<(usize, f64, [Vec<u32>; 2])> {
+        if self.elements.len() <= FEW {
+            return None;
+        }
+        let cuts = [0, 1].map(|axis| self.cut(hulls, axis));
+        let mut candidates: Vec<(usize, f64, [Vec<u32>; 2])> = (0..2)
+            .filter(|&axis| self.lower[axis] < cuts[axis] && cuts[axis] < self.upper[axis])
+            .map(|axis| (axis, cuts[axis], self.divided(hulls, axis, cuts[axis])))
+            .collect();
+        candidates.sort_by_key(|(_, _, halves)| halves[0].len() + halves[1].len());
+        let greatest = (SHARE_MAX * self.elements.len() as f64) as usize;
+        candidates.into_iter().find(|(_, _, halves)| halves.iter().all(|half| half.len() <= greatest))
+    }
+
+    /// The median of the middles of elements, as far as they are in the cell.
+    fn cut(&self, hulls: &[Hull], axis: usize) -> f64 {
+        let middle = |&at: &u32| {
+            let hull = &hulls[at as usize];
+            hull.lower[axis].max(self.lower[axis]).midpoint(hull.upper[axis].min(self.upper[axis]))
+        };
+        let mut middles: Vec<f64> = self.elements.iter().map(middle).collect();
+        let half = middles.len() / 2;
+        *middles.select_nth_unstable_by(half, f64::total_cmp).1
+    }
+
+    fn divided(&self, hulls: &[Hull], axis: usize, cut: f64) -> [Vec<u32>; 2] {
+        let (mut below, mut above) = (self.upper, self.lower);
+        (below[axis], above[axis]) = (cut, cut);
+        let among = |lower, upper| {
+            self.elements.iter().copied().filter(|&at| hulls[at as usize].meets(lower, upper)).collect()
+        };
+        [among(self.lower, below), among(above, self.upper)]
+    }
+}
+
+impl Hull {
+    /// Whether the hull may have a point in a box; never wrong if it has.
+    fn meets(&self, lower: Point2, upper: Point2) -> bool {
+        let is_apart = |axis: usize| self.upper[axis] < lower[axis] || upper[axis] < self.lower[axis];
+        if is_apart(0) || is_apart(1) {
+            return false;
+        }
+        !self.edges.iter().any(|edge| {
+            let [[ax, ay], [bx, by]] = edge.ends;
+            // The corner that is furthest to the left of the edge.
+            let x = if by > ay { lower[0] } else { upper[0] };
+            let y = if bx > ax { upper[1] } else { lower[1] };
+            let (left, right) = ((bx - ax) * (y - ay), (by - ay) * (x - ax));
+            left - right < -MARGIN * (left.abs() + right.abs())
+        })
+    }
+}
