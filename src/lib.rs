@@ -20,6 +20,7 @@ pub mod delaunay3_float;
 pub mod diagram4;
 pub mod error;
 pub mod finalize;
+pub mod fit;
 pub mod limits;
 pub mod order;
 pub mod output;

@@ -12,6 +12,7 @@ mod dd4;
 mod delaunay3_float;
 mod diagram4;
 mod finalize;
+mod fit;
 mod kernel;
 mod kernel3;
 mod kernel_predicates;

@@ -1,5 +1,7 @@
 //! Bases of splines: functions that sum to one, and where they are not zero.
 
+mod bends;
+
 use super::approach::Approach;
 use super::area::area;
 use super::domain::Domain;

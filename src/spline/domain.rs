@@ -68,16 +68,24 @@ impl Domain {
 
     /// A point amid the corners of the domain, which are computed in plain arithmetic.
     fn clipped(&self, points: &[Point2]) -> Option<Point2> {
+        let polygon = self.corners(points);
+        let count = polygon.len() as f64;
+        (count > 0.0).then(|| [0, 1].map(|axis| polygon.iter().map(|corner| corner[axis] / count).sum()))
+    }
+
+    /// The corners of the domain of these knots, counterclockwise, in plain arithmetic.
+    pub(super) fn corners(&self, points: &[Point2]) -> Vec<Point2> {
         let corner = |pick: fn(f64, f64) -> f64| {
             points.iter().copied().reduce(|a, b| [pick(a[0], b[0]), pick(a[1], b[1])])
         };
-        let ([x, y], [right, top]) = (corner(f64::min)?, corner(f64::max)?);
+        let (Some([x, y]), Some([right, top])) = (corner(f64::min), corner(f64::max)) else {
+            return Vec::new();
+        };
         let mut polygon = vec![[x, y], [right, y], [right, top], [x, top]];
         for &[p, q] in &self.lines {
             polygon = cut(&polygon, [p, q]);
         }
-        let count = polygon.len() as f64;
-        (count > 0.0).then(|| [0, 1].map(|axis| polygon.iter().map(|corner| corner[axis] / count).sum()))
+        polygon
     }
 }
 

@@ -1,0 +1,12 @@
+//! Fits of splines against their theory, and against equations that are set up in another way.
+
+mod bases;
+mod choices;
+mod energies;
+mod failures;
+mod figure;
+mod interpolation;
+mod normal_equations;
+mod refinement;
+mod robustness;
+mod smoothing;
