@@ -1,9 +1,9 @@
 //! From configurations to elements: simplex splines of one degree less, each with a linear factor for some functions.
 //!
-//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis, equation
-//! 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in all of
-//! them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at one place,
-//! edges of one element cancel, and elements of different knots are the same function: they are merged.
+//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis,
+//! equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in
+//! all of them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at
+//! one place, edges of one element cancel, and elements of different knots are the same function: they are merged.
 
 use super::area::area;
 use crate::config::{Configurations, Knots};
@@ -69,6 +69,11 @@ impl Elements {
     /// The shares, those of one function next to each other, in order.
     pub(super) fn shares(&self, element: usize) -> &[Share] {
         &self.shares[self.offsets[element] as usize..self.offsets[element + 1] as usize]
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        4 * (self.knots.len() + self.offsets.len()) + std::mem::size_of_val(&self.shares[..])
     }
 
     /// Gives functions new numbers.

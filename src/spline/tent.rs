@@ -7,19 +7,21 @@
 //! area(x, a, b) / (area(a, b, c) area(a, b, d)),    c and d the other knots,
 //! ```
 //!
-//! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the fourth knot or over the
-//! crossing of the diagonals, and there it is one over the area of the hull. If c or d is on ab, there is no such function:
-//! the edge is a *wall*, at which the spline jumps to zero. A triangle has three walls, and is capped by a constant.
+//! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the fourth knot or over
+//! the crossing of the diagonals, and there it is one over the area of the hull. If c or d is on ab, there is no such
+//! function: the edge is a *wall*, at which the spline jumps to zero. A triangle has three walls, and is capped by a
+//! constant.
 
 use super::approach::Approach;
-use super::area::area;
+use super::area::{area, exact_area};
 use super::elements::{HullEdge, hull_area, hull_edges};
 use crate::predicates::{Point2, Sign};
 
-/// Relative to the greatest value, the error from which on linear functions are not good enough.
-const TOLERATED: f64 = f64::EPSILON * 256.0;
-/// Roundings of 2^-53 in a linear function of three terms, coefficients and differences included, and some more.
-const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+/// Relative to the greatest value, the error from which on linear functions are not good enough. It is a bound: errors that
+/// occur are a tenth of it, and less.
+const TOLERATED: f64 = f64::EPSILON * 512.0;
+/// A linear function is off by six roundings of 2^-53 at most, if its constant is off by two; and some more.
+const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// A linear function of the offset from some origin: constant, and factors of x and y.
 pub(super) type Line = [f64; 3];
@@ -76,10 +78,52 @@ impl Tent {
             error = error.max(bound);
             error_of_values = if is_wall[at] { error_of_values } else { error_of_values.max(bound) };
         }
-        // The linear factors of functions are of the size of the box at most.
-        let of_factors = ROUNDINGS * 8.0 * reach[0].max(reach[1]).powi(2) * greatest;
+        // The terms of the area of a triangle in the box sum to its area at most.
+        let of_factors = ROUNDINGS * 4.0 * reach[0] * reach[1] * greatest;
         let is_exact_enough = error_of_values <= TOLERATED * greatest && of_factors <= TOLERATED;
         Tent { origin, reach, lines, is_wall, cap, error, is_exact_enough }
+    }
+
+    /// Where a point is, seen from the origin.
+    #[inline(always)]
+    pub(super) fn offset(&self, x: Point2) -> Point2 {
+        [x[0] - self.origin[0], x[1] - self.origin[1]]
+    }
+
+    /// Linear functions that are positive inside, one for each edge of the support; infinite ones for edges that are not.
+    pub(super) fn edges(&self) -> [Line; 4] {
+        self.lines
+    }
+
+    /// Linear functions of which the least, if it is less than the cap, is the value inside.
+    pub(super) fn lines_of_values(&self) -> [Line; 4] {
+        let line = |at: usize| if self.is_wall[at] { [f64::INFINITY, 0.0, 0.0] } else { self.lines[at] };
+        [0, 1, 2, 3].map(line)
+    }
+
+    /// What the value is at most.
+    pub(super) fn cap(&self) -> f64 {
+        self.cap
+    }
+
+    /// How far edges may be from the truth in the box of the support.
+    pub(super) fn error(&self) -> f64 {
+        self.error
+    }
+
+    /// The linear function that the spline is in the neighbourhood of an offset, at which it is [`Found::Inside`]; nothing
+    /// if rounding might confuse it with another one.
+    pub(super) fn piece(&self, offset: Point2) -> Option<Line> {
+        let (mut least, mut next, mut piece) = (self.cap, f64::INFINITY, [self.cap, 0.0, 0.0]);
+        for line in self.lines_of_values() {
+            let value = value(&line, offset);
+            if value < least {
+                (least, next, piece) = (value, least, line);
+            } else {
+                next = next.min(value);
+            }
+        }
+        (next - least > 2.0 * self.error).then_some(piece)
     }
 
     /// The value at an offset from the origin.
@@ -132,7 +176,7 @@ fn slope(edge: &HullEdge) -> Option<f64> {
 
 /// `area(x, a, b)` as a function of the offset from an origin.
 pub(super) fn line_of([a, b]: [Point2; 2], origin: Point2) -> Line {
-    [area(origin, a, b), 0.5 * (a[1] - b[1]), 0.5 * (b[0] - a[0])]
+    [exact_area(origin, a, b), 0.5 * (a[1] - b[1]), 0.5 * (b[0] - a[0])]
 }
 
 pub(super) fn scaled(line: Line, factor: f64) -> Line {

@@ -128,6 +128,12 @@ impl Tree {
         })
     }
 
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        let lists = 4 * (self.elements.len() + self.lines.len());
+        lists + std::mem::size_of_val(&self.nodes[..]) + std::mem::size_of_val(&self.leaves[..])
+    }
+
     fn grow(
         &mut self,
         cell: &Cell,
