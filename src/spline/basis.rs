@@ -3,7 +3,7 @@
 use super::approach::Approach;
 use super::area::area;
 use super::domain::Domain;
-use super::elements::{Elements, Share, hull_edges};
+use super::elements::{Elements, Share, hull_area, hull_edges};
 use super::jet::Jet;
 use super::simplex::{self, MAX_DEGREE};
 use super::tent::{self, Found, Line, Tent, line_of, scaled};
@@ -174,12 +174,15 @@ impl Basis {
         let hulls: Vec<Hull> = (0..elements.len()).map(|at| hull(&elements, at, &points)).collect();
         let extent = Extent::of(&points);
         let tree = Tree::new(&hulls, &domain, extent.lower, extent.upper);
-        let mut tents = Vec::new();
+        let (mut tents, mut sizes) = (Vec::new(), Vec::new());
         if elements.size <= 4 {
-            let all = |at| elements.knots(at).iter().map(|&id| points[id as usize]).collect::<Vec<Point2>>();
-            tents.extend((0..elements.len()).map(|at| Tent::new(&all(at))));
+            for (at, hull) in hulls.iter().enumerate() {
+                let knots: Vec<Point2> = elements.knots(at).iter().map(|&id| points[id as usize]).collect();
+                sizes.push(hull_area(&hull.edges));
+                tents.push(Tent::new(&knots, &hull.edges, sizes[at]));
+            }
         }
-        let factors = Factors::of(&elements, &tents, &points);
+        let factors = Factors::of(&elements, &tents, &sizes, &points);
         let greville = (0..sets.len()).map(|function| sets.greville(function, &points)).collect();
         let supports = supports(&elements, &hulls, sets.len());
         let degree =
@@ -580,15 +583,15 @@ impl FunctionSets {
 }
 
 impl Factors {
-    /// Those of elements that have tents.
-    fn of(elements: &Elements, tents: &[Tent], points: &[Point2]) -> Factors {
+    /// Those of elements that have tents, over supports of given sizes.
+    fn of(elements: &Elements, tents: &[Tent], sizes: &[f64], points: &[Point2]) -> Factors {
         let mut factors = Factors { offsets: vec![0], all: Vec::new() };
-        for (at, tent) in tents.iter().enumerate() {
+        for (at, (tent, size)) in tents.iter().zip(sizes).enumerate() {
             for shares in elements.shares(at).chunk_by(|a, b| a.function == b.function) {
                 let mut sum = [0.0; 3];
                 for share in shares {
                     let edge = share.edge.map(|id| points[id as usize]);
-                    let line = scaled(line_of(edge, tent.origin), share.factor);
+                    let line = scaled(line_of(edge, tent.origin), share.factor / size);
                     sum = [0, 1, 2].map(|place| sum[place] + line[place]);
                 }
                 factors.all.push((shares[0].function, sum));

@@ -12,17 +12,17 @@
 //! triangulation.
 //!
 //! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of degree k - 1. If
-//! x is left of such a line, then the parallel to it through x has only knots on its left that the line has, which are k -
-//! 1. For the converse, let n(t) be the unit vector in the direction t, s(t) the k-th greatest of the scalar products of
-//! n(t) with knots, and g(t) = n(t) x - s(t), so that x is in the domain if g is nowhere positive. While the k-th knot is
-//! the same one, g'' + g = 0. Where it changes from p to q, both are on a line with the normal n(t). Either this is an
-//! infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is the lesser one of the scalar
-//! products of p and q nearby, and the slope of g increases. Now let g be positive somewhere, but not at any infinite
-//! configuration. Then g'' + g is not negative on the interval around where g is positive, so its length is pi at least
-//! (Sturm); it is more, because a single knot cannot be the k-th in a half circle of directions unless all are on one line.
-//! So g is positive in two opposite directions: less than k knots are on either side of the line through x, on it included,
-//! and there are at most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line, are limits of
-//! knots that are moved.
+//! x is left of such a line, then the parallel to it through x has only knots to its left, and on it, that are left of the
+//! line: less than k. For the converse, let n(t) be the unit vector in the direction t, s(t) the k-th greatest of the scalar
+//! products of n(t) with knots, and g(t) the product of n(t) with x less s(t), so that x is in the domain if g is nowhere
+//! positive. While the k-th knot is the same one, g'' + g is zero. Where it changes from p to q, both are on a line with the
+//! normal n(t). Either this is an infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is
+//! the lesser one of the products of p and q nearby, and the slope of g increases. Now let g be positive somewhere, but not
+//! at any infinite configuration. Then g'' + g is not negative on the interval around where g is positive, so its length is
+//! pi at least (Sturm); it is more, because a single knot cannot be the k-th in a half circle of directions unless all are
+//! on one line. So g is positive in two opposite directions: less than k knots are on either side of the line through x, on
+//! it included, and there are at most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line,
+//! are limits of knots that are moved.
 
 use super::approach::Approach;
 use crate::config::{Configurations, Knots};

@@ -6,7 +6,7 @@
 //! in a loop without branches. Columns too near to an edge are evaluated like single points.
 
 use super::basis::{Basis, Scratch};
-use super::tent::{Line, Tent, value};
+use super::tent::{Line, Tent, lesser, value};
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
 use std::ops::Range;
@@ -238,14 +238,11 @@ fn add_inside(tent: &Tent, factor: Line, y: f64, abscissae: &[f64], values: &mut
     let along = |line: Line| [value(&line, [0.0, up]), line[1]];
     let lines = tent.lines_of_values().map(along);
     let factor = along(factor);
-    let (cap, origin) = (tent.cap(), tent.origin[0]);
+    let origin = tent.origin[0];
     for (x, sum) in abscissae.iter().zip(values) {
         let right = x - origin;
-        let mut height = cap;
-        for line in &lines {
-            let other = line[0] + line[1] * right;
-            height = if other < height { other } else { height };
-        }
+        let [a, b, c, d] = lines.map(|[constant, slope]| constant + slope * right);
+        let height = lesser(lesser(a, b), lesser(c, d));
         *sum += height * (factor[0] + factor[1] * right);
     }
 }
@@ -254,8 +251,7 @@ impl Tent {
     /// The abscissae outside of which a row is not in the support, and those where it certainly is; `up` is the ordinate of
     /// the row from the origin.
     fn intervals(&self, up: f64) -> [[f64; 2]; 2] {
-        let whole = [self.origin[0] - self.reach[0], self.origin[0] + self.reach[0]];
-        let (mut around, mut inside) = (whole, whole);
+        let (mut around, mut inside) = (self.range(), self.range());
         for line in self.edges() {
             let [constant, slope] = [value(&line, [0.0, up]), line[1]];
             narrow(&mut around, [constant + 2.0 * self.error(), slope], self.origin[0]);

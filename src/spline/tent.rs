@@ -14,8 +14,8 @@
 
 use super::approach::Approach;
 use super::area::{area, exact_area};
-use super::elements::{HullEdge, hull_area, hull_edges};
-use crate::predicates::{Point2, Sign};
+use super::elements::{HullEdge, hull_edges};
+use crate::predicates::{Extent, Point2, Sign};
 
 /// Relative to the greatest value, the error from which on linear functions are not good enough. It is a bound: errors that
 /// occur are a tenth of it, and less.
@@ -31,23 +31,24 @@ pub(super) fn value(line: &Line, offset: Point2) -> f64 {
     line[0] + line[1] * offset[0] + line[2] * offset[1]
 }
 
-/// A simplex spline of degree 0 or 1.
+/// A simplex spline of degree 0 or 1, times the area of its support: it is one at most.
+///
+/// Shape: two cache lines, of which the first is enough for points outside of the box.
 #[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
 pub(super) struct Tent {
     /// Middle of the box of the support.
     pub(super) origin: Point2,
     /// Half the sides of the box, rounded up.
-    pub(super) reach: Point2,
-    /// Positive inside; an infinite constant takes the place of a fourth edge.
-    lines: [Line; 4],
-    /// Which of these are walls.
-    is_wall: [bool; 4],
-    /// What the value is at most: it has no meaning for degree 1.
-    cap: f64,
-    /// How far values of lines may be from the truth in the box.
-    error: f64,
+    reach: [f32; 2],
+    /// How far values of lines may be from the truth in the box, rounded up.
+    error: f32,
+    /// Which lines are walls: bits.
+    walls: u8,
     /// Whether lines are good enough for values, and not just as a filter for the sides of edges.
     pub(super) is_exact_enough: bool,
+    /// Linear functions that are positive inside, by coefficients: for each edge; the last one a constant, if there are three.
+    lines: [[f64; 4]; 3],
 }
 
 /// Whether a point is in the support.
@@ -61,27 +62,28 @@ pub(super) enum Found {
 }
 
 impl Tent {
-    /// Domain: three or four knots, not all on one line.
-    pub(super) fn new(knots: &[Point2]) -> Tent {
-        let edges = hull_edges(knots);
-        let size = hull_area(&edges);
+    /// Domain: three or four knots, not all on one line, and the area of their hull.
+    pub(super) fn new(knots: &[Point2], edges: &[HullEdge], size: f64) -> Tent {
         let (origin, reach) = middle(knots);
-        let greatest = 1.0 / size;
-        let cap = if knots.len() == 3 { greatest } else { f64::INFINITY };
-        let (mut lines, mut is_wall) = ([[f64::INFINITY, 0.0, 0.0]; 4], [false; 4]);
-        let (mut error, mut error_of_values) = (0f64, 0f64);
+        let wide = reach.map(f64::from);
+        // Without a fourth edge, the cap of a triangle, or nothing.
+        let mut all = [[if knots.len() == 3 { 1.0 } else { f64::INFINITY }, 0.0, 0.0]; 4];
+        let (mut walls, mut error, mut error_of_values) = (0, ROUNDINGS, 0f64);
         for (at, edge) in edges.iter().enumerate().take(4) {
             let factor = slope(edge);
-            is_wall[at] = factor.is_none();
-            lines[at] = scaled(line_of(edge.ends, origin), factor.unwrap_or(greatest / size));
-            let bound = ROUNDINGS * magnitude(&lines[at], reach);
+            all[at] = scaled(line_of(edge.ends, origin), factor.map_or(1.0 / size, |factor| factor * size));
+            let bound = ROUNDINGS * magnitude(&all[at], wide);
             error = error.max(bound);
-            error_of_values = if is_wall[at] { error_of_values } else { error_of_values.max(bound) };
+            match factor {
+                Some(_) => error_of_values = error_of_values.max(bound),
+                None => walls |= 1 << at,
+            }
         }
         // The terms of the area of a triangle in the box sum to its area at most.
-        let of_factors = ROUNDINGS * 4.0 * reach[0] * reach[1] * greatest;
-        let is_exact_enough = error_of_values <= TOLERATED * greatest && of_factors <= TOLERATED;
-        Tent { origin, reach, lines, is_wall, cap, error, is_exact_enough }
+        let of_factors = ROUNDINGS * 4.0 * wide[0] * wide[1] / size;
+        let is_exact_enough = error_of_values <= TOLERATED && of_factors <= TOLERATED;
+        let lines = [0, 1, 2].map(|coefficient| all.map(|line| line[coefficient]));
+        Tent { origin, reach, error: rounded_up(error), walls, is_exact_enough, lines }
     }
 
     /// Where a point is, seen from the origin.
@@ -90,62 +92,89 @@ impl Tent {
         [x[0] - self.origin[0], x[1] - self.origin[1]]
     }
 
-    /// Linear functions that are positive inside, one for each edge of the support; infinite ones for edges that are not.
+    /// The abscissae between which the support is, at least.
+    pub(super) fn range(&self) -> [f64; 2] {
+        let half = f64::from(self.reach[0]);
+        [self.origin[0] - half, self.origin[0] + half]
+    }
+
+    /// Linear functions that are positive inside, one for each edge of the support.
     pub(super) fn edges(&self) -> [Line; 4] {
-        self.lines
+        [0, 1, 2, 3].map(|at| self.lines.map(|coefficients| coefficients[at]))
     }
 
-    /// Linear functions of which the least, if it is less than the cap, is the value inside.
+    /// Linear functions of which the least is the value inside.
     pub(super) fn lines_of_values(&self) -> [Line; 4] {
-        let line = |at: usize| if self.is_wall[at] { [f64::INFINITY, 0.0, 0.0] } else { self.lines[at] };
-        [0, 1, 2, 3].map(line)
+        let edges = self.edges();
+        [0, 1, 2, 3].map(|at| if self.is_wall(at) { [f64::INFINITY, 0.0, 0.0] } else { edges[at] })
     }
 
-    /// What the value is at most.
-    pub(super) fn cap(&self) -> f64 {
-        self.cap
+    #[inline(always)]
+    fn is_wall(&self, at: usize) -> bool {
+        self.walls >> at & 1 == 1
     }
 
     /// How far edges may be from the truth in the box of the support.
+    #[inline(always)]
     pub(super) fn error(&self) -> f64 {
-        self.error
+        f64::from(self.error)
     }
 
     /// The linear function that the spline is in the neighbourhood of an offset, at which it is [`Found::Inside`]; nothing
     /// if rounding might confuse it with another one.
     pub(super) fn piece(&self, offset: Point2) -> Option<Line> {
-        let (mut least, mut next, mut piece) = (self.cap, f64::INFINITY, [self.cap, 0.0, 0.0]);
-        for line in self.lines_of_values() {
-            let value = value(&line, offset);
+        let values = self.values(offset);
+        let (mut least, mut next, mut place) = (f64::INFINITY, f64::INFINITY, 0);
+        for (at, &value) in values.iter().enumerate().filter(|&(at, _)| !self.is_wall(at)) {
             if value < least {
-                (least, next, piece) = (value, least, line);
+                (least, next, place) = (value, least, at);
             } else {
-                next = next.min(value);
+                next = lesser(next, value);
             }
         }
-        (next - least > 2.0 * self.error).then_some(piece)
+        (next - least > 2.0 * self.error()).then(|| self.lines.map(|coefficients| coefficients[place]))
+    }
+
+    #[inline(always)]
+    fn values(&self, [right, up]: Point2) -> [f64; 4] {
+        let [constants, along, across] = &self.lines;
+        std::array::from_fn(|at| constants[at] + along[at] * right + across[at] * up)
     }
 
     /// The value at an offset from the origin.
     #[inline(always)]
     pub(super) fn find(&self, offset: Point2) -> Found {
-        if offset[0].abs() > self.reach[0] || offset[1].abs() > self.reach[1] {
+        let [right, up] = offset;
+        if right.abs() > f64::from(self.reach[0]) || up.abs() > f64::from(self.reach[1]) {
             return Found::Outside;
         }
-        let (mut least, mut height) = (f64::INFINITY, self.cap);
-        for (line, is_wall) in self.lines.iter().zip(self.is_wall) {
-            let value = value(line, offset);
-            least = least.min(value);
-            height = if is_wall { height } else { height.min(value) };
+        let values = self.values(offset);
+        let least = lesser(lesser(values[0], values[1]), lesser(values[2], values[3]));
+        if least < -self.error() {
+            return Found::Outside;
         }
-        if least > self.error {
-            Found::Inside(height)
-        } else if least < -self.error {
-            Found::Outside
-        } else {
-            Found::Unclear(height.max(0.0))
-        }
+        let height = if self.walls == 0 { least } else { self.height(values) };
+        if least > self.error() { Found::Inside(height) } else { Found::Unclear(height.max(0.0)) }
     }
+
+    /// The least value of what is no wall.
+    #[inline]
+    fn height(&self, values: [f64; 4]) -> f64 {
+        let heights = values.into_iter().enumerate().filter(|&(at, _)| !self.is_wall(at));
+        heights.fold(f64::INFINITY, |least, (_, value)| lesser(least, value))
+    }
+}
+
+/// The lesser one of two numbers: unlike `f64::min`, it has no rule for what is not a number, and costs nothing for it.
+#[inline(always)]
+pub(super) fn lesser(p: f64, q: f64) -> f64 {
+    if p < q { p } else { q }
+}
+
+/// The least number of fewer bits that is not less.
+fn rounded_up(number: f64) -> f32 {
+    let near = number as f32;
+    if f64::from(near) < number { near.next_up() } else { near }
 }
 
 /// Whether a point, as it is approached, is inside of the hull of knots.
@@ -155,15 +184,11 @@ pub(super) fn is_inside(at: &Approach, knots: &[Point2]) -> bool {
 }
 
 /// Middle of the bounding box and half of its sides, rounded up.
-pub(super) fn middle(points: &[Point2]) -> (Point2, Point2) {
-    let least = |axis: usize| points.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
-    let greatest = |axis: usize| points.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
-    let origin = [0, 1].map(|axis| least(axis).midpoint(greatest(axis)));
-    let reach = [0, 1].map(|axis| {
-        let half = (greatest(axis) - origin[axis]).max(origin[axis] - least(axis));
-        half + half * f64::EPSILON
-    });
-    (origin, reach)
+fn middle(points: &[Point2]) -> (Point2, [f32; 2]) {
+    let Extent { lower, upper, .. } = Extent::of(points);
+    let origin = [0, 1].map(|axis| lower[axis].midpoint(upper[axis]));
+    let half = |axis: usize| (upper[axis] - origin[axis]).max(origin[axis] - lower[axis]);
+    (origin, [0, 1].map(|axis| rounded_up(half(axis))))
 }
 
 /// What the area of x and the edge is multiplied by, unless the edge is a wall.

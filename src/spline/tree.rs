@@ -1,7 +1,8 @@
 //! Which elements may be alive at a point, and which lines of the domain a point may be beyond: a tree of boxes.
 //!
 //! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not length of lists;
-//! leaves list all elements whose hulls meet their cell. A search is one way down.
+//! leaves list all elements whose hulls meet their cell. A search is one way down, from the node that a grid over the box
+//! names: where knots are spread evenly, that is near to the leaves.
 
 use super::domain::{Domain, is_right_or_on};
 use super::elements::HullEdge;
@@ -17,6 +18,11 @@ const LEVELS_MAX: usize = 48;
 const ENTRIES_MAX: usize = 48;
 /// Of the magnitude of the products in an orientation, more than what rounding may do.
 const MARGIN: f64 = 16.0 * f64::EPSILON;
+
+/// Cells in a row of the grid, at most.
+const SIDE_MAX: usize = 1024;
+/// Rounding moves points by less than this part of a cell of the grid.
+const BORDER: f64 = 1.0 / (1 << 20) as f64;
 
 /// The axis of a node that is a leaf.
 const LEAF: u32 = 2;
@@ -50,6 +56,11 @@ struct Leaf {
 pub(super) struct Tree {
     lower: Point2,
     upper: Point2,
+    /// Cells of the grid in a row, and cells per unit of either axis.
+    side: usize,
+    scale: [f64; 2],
+    /// The node to start from, for each cell of the grid.
+    starts: Vec<u32>,
     nodes: Vec<Node>,
     leaves: Vec<Leaf>,
     elements: Vec<u32>,
@@ -78,14 +89,7 @@ pub(super) struct Lists<'a> {
 impl Tree {
     /// A tree over the box from `lower` to `upper`.
     pub(super) fn new(hulls: &[Hull], domain: &Domain, lower: Point2, upper: Point2) -> Tree {
-        let mut tree = Tree {
-            lower,
-            upper,
-            nodes: Vec::new(),
-            leaves: Vec::new(),
-            elements: Vec::new(),
-            lines: Vec::new(),
-        };
+        let mut tree = Tree::empty(lower, upper);
         tree.nodes.push(Node { cut: 0.0, axis: LEAF, next: 0 });
         let (elements, lines) = ((0..hulls.len() as u32).collect(), (0..domain.lines.len() as u32).collect());
         let mut root = Cell { node: 0, lower, upper, elements, lines, is_outside: domain.is_empty };
@@ -106,7 +110,42 @@ impl Tree {
             cells = halves;
         }
         cells.into_iter().for_each(|cell| tree.close(cell));
+        tree.set_grid();
         tree
+    }
+
+    fn empty(lower: Point2, upper: Point2) -> Tree {
+        let (nodes, leaves, elements) = (Vec::new(), Vec::new(), Vec::new());
+        let (starts, lines) = (vec![0], Vec::new());
+        Tree { lower, upper, side: 1, scale: [0.0; 2], starts, nodes, leaves, elements, lines }
+    }
+
+    /// The grid has about half as many cells as there are leaves.
+    fn set_grid(&mut self) {
+        self.side = ((self.leaves.len() as f64 / 2.0).sqrt() as usize).clamp(1, SIDE_MAX);
+        self.scale = [0, 1].map(|axis| self.side as f64 / (self.upper[axis] - self.lower[axis]));
+        self.starts =
+            (0..self.side * self.side).map(|at| self.start([at % self.side, at / self.side])).collect();
+    }
+
+    /// The last node whose cell contains a cell of the grid, and some more around it.
+    fn start(&self, place: [usize; 2]) -> u32 {
+        let range = |axis: usize| {
+            let (lower, step) = (self.lower[axis], 1.0 / self.scale[axis]);
+            let border = BORDER * step + 8.0 * f64::EPSILON * lower.abs().max(self.upper[axis].abs());
+            let from = lower + place[axis] as f64 * step;
+            [from - border, from + step + border]
+        };
+        let ranges = [range(0), range(1)];
+        let mut at = 0;
+        loop {
+            let Node { cut, axis, next } = self.nodes[at];
+            match ranges.get(axis as usize) {
+                Some(&[_, end]) if end < cut => at = next as usize,
+                Some(&[from, _]) if from >= cut => at = next as usize + 1,
+                _ => return at as u32,
+            }
+        }
     }
 
     /// What is listed for a point; nothing if it is outside of the box.
@@ -115,7 +154,12 @@ impl Tree {
         if !(0..2).all(|axis| self.lower[axis] <= x[axis] && x[axis] <= self.upper[axis]) {
             return None;
         }
-        let mut node = self.nodes[0];
+        let place = |axis: usize| {
+            let cells = (x[axis] - self.lower[axis]) * self.scale[axis];
+            (cells as usize).min(self.side - 1)
+        };
+        let start = self.starts[place(1) * self.side + place(0)];
+        let mut node = self.nodes[start as usize];
         while node.axis != LEAF {
             let is_upper = x[node.axis as usize] >= node.cut;
             node = self.nodes[node.next as usize + usize::from(is_upper)];
@@ -130,7 +174,7 @@ impl Tree {
 
     /// Bytes held.
     pub(super) fn bytes(&self) -> usize {
-        let lists = 4 * (self.elements.len() + self.lines.len());
+        let lists = 4 * (self.elements.len() + self.lines.len() + self.starts.len());
         lists + std::mem::size_of_val(&self.nodes[..]) + std::mem::size_of_val(&self.leaves[..])
     }
 
