@@ -136,7 +136,8 @@ impl Basis {
         check(knots, configurations)?;
         let mut sets = FunctionSets::new(3);
         configurations.iter().for_each(|(triangle, _)| sets.push([(&triangle[..], 1.0)].into_iter()));
-        let elements = Elements::of_configurations(knots, configurations, |number, _, _| vec![(number, 1.0)]);
+        let elements =
+            Elements::of_configurations(knots, configurations, |number, _, _, take| take(number, 1.0));
         Basis::without_zeros(knots, configurations, sets, elements)
     }
 
@@ -522,11 +523,12 @@ fn of_links(
     of_link: &[Vec<(u32, f64)>],
 ) -> Elements {
     let mut set = Vec::new();
-    Elements::of_configurations(knots, configurations, |_, corner, interior| {
+    Elements::of_configurations(knots, configurations, |_, corner, interior, take| {
         set.clear();
         set.extend_from_slice(interior);
         set.insert(interior.partition_point(|&id| id < corner), corner);
-        links.find(&set).map_or_else(Vec::new, |at| of_link[at].clone())
+        let at = links.find(&set);
+        at.into_iter().flat_map(|at| &of_link[at]).for_each(|&(function, factor)| take(function, factor));
     })
 }
 

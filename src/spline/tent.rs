@@ -14,7 +14,7 @@
 
 use super::approach::Approach;
 use super::area::{area, exact_area};
-use super::elements::{HullEdge, hull_edges};
+use super::elements::hull_edges;
 use crate::predicates::{Extent, Point2, Sign};
 
 /// Relative to the greatest value, the error from which on linear functions are not good enough. It is a bound: errors that
@@ -63,15 +63,15 @@ pub(super) enum Found {
 
 impl Tent {
     /// Domain: three or four knots, not all on one line, and the area of their hull.
-    pub(super) fn new(knots: &[Point2], edges: &[HullEdge], size: f64) -> Tent {
+    pub(super) fn new(knots: &[Point2], edges: &[[Point2; 2]], size: f64) -> Tent {
         let (origin, reach) = middle(knots);
         let wide = reach.map(f64::from);
         // Without a fourth edge, the cap of a triangle, or nothing.
         let mut all = [[if knots.len() == 3 { 1.0 } else { f64::INFINITY }, 0.0, 0.0]; 4];
         let (mut walls, mut error, mut error_of_values) = (0, ROUNDINGS, 0f64);
-        for (at, edge) in edges.iter().enumerate().take(4) {
-            let factor = slope(edge);
-            all[at] = scaled(line_of(edge.ends, origin), factor.map_or(1.0 / size, |factor| factor * size));
+        for (at, &edge) in edges.iter().enumerate().take(4) {
+            let factor = slope(knots, edge);
+            all[at] = scaled(line_of(edge, origin), factor.map_or(1.0 / size, |factor| factor * size));
             let bound = ROUNDINGS * magnitude(&all[at], wide);
             error = error.max(bound);
             match factor {
@@ -180,7 +180,7 @@ fn rounded_up(number: f64) -> f32 {
 /// Whether a point, as it is approached, is inside of the hull of knots.
 #[cold]
 pub(super) fn is_inside(at: &Approach, knots: &[Point2]) -> bool {
-    hull_edges(knots).iter().all(|edge| at.side(edge.ends[0], edge.ends[1]) == Sign::Positive)
+    hull_edges(knots).iter().all(|&[p, q]| at.side(p, q) == Sign::Positive)
 }
 
 /// Middle of the bounding box and half of its sides, rounded up.
@@ -192,11 +192,11 @@ fn middle(points: &[Point2]) -> (Point2, [f32; 2]) {
 }
 
 /// What the area of x and the edge is multiplied by, unless the edge is a wall.
-fn slope(edge: &HullEdge) -> Option<f64> {
-    let &[c, d] = &edge.others[..] else { return None };
-    let [a, b] = edge.ends;
-    let product = area(a, b, c) * area(a, b, d);
-    (product != 0.0).then(|| 1.0 / product)
+fn slope(knots: &[Point2], [a, b]: [Point2; 2]) -> Option<f64> {
+    let [first, second] = [a, b].map(|end| knots.iter().position(|&knot| knot == end));
+    let others = (0..knots.len()).filter(|&at| Some(at) != first && Some(at) != second);
+    let product: f64 = others.map(|at| area(a, b, knots[at])).product();
+    (knots.len() == 4 && product != 0.0).then(|| 1.0 / product)
 }
 
 /// `area(x, a, b)` as a function of the offset from an origin.
