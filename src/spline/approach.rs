@@ -1,8 +1,8 @@
 //! On which side of a line a point is, when it is on the line.
 //!
-//! Simplex splines of degree 0, derivatives, and splines over repeated or collinear knots jump across lines through knots. On
-//! such a line closed triangles would count twice. So a function has at x the value that it has at x + e d + e^2 d' for all
-//! small e > 0, with d towards a point that is fixed, and d' the same turned left: no line contains these points for all
+//! Simplex splines of degree 0, derivatives, and splines over repeated or collinear knots jump across lines through knots.
+//! On such a line closed triangles would count twice. So a function has at x the value that it has at x + e d + e^2 d' for
+//! all small e > 0, with d towards a point that is fixed, and d' the same turned left: no line contains these points for all
 //! small e, and all functions are asked for one side. With an inner point of a convex domain, d points inward on its border.
 
 use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};

@@ -8,8 +8,8 @@ const TRUSTED: f64 = 1.0 / 16.0;
 
 /// Signed area of the triangle abc: positive if it is counterclockwise.
 ///
-/// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are zero or have magnitudes
-/// in the range of [`crate::predicates::ExpansionPredicates`].
+/// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are zero or have
+/// magnitudes in the range of [`crate::predicates::ExpansionPredicates`].
 #[inline]
 #[must_use]
 pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
@@ -19,11 +19,16 @@ pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
     if determinant.abs() >= TRUSTED * (left.abs() + right.abs()) {
         return 0.5 * determinant;
     }
+    exact_area(a, b, c)
+}
+
+/// The same to two units in the last place.
+#[cold]
+pub(super) fn exact_area(a: Point2, b: Point2, c: Point2) -> f64 {
     0.5 * exact_determinant(a, b, c)
 }
 
 /// The determinant as a sum of products of exact differences, rounded at the end only.
-#[cold]
 fn exact_determinant(a: Point2, b: Point2, c: Point2) -> f64 {
     let [ax, ay, bx, by] =
         [difference(a[0], c[0]), difference(a[1], c[1]), difference(b[0], c[0]), difference(b[1], c[1])];

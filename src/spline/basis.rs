@@ -5,7 +5,7 @@ mod bends;
 use super::approach::Approach;
 use super::area::area;
 use super::domain::Domain;
-use super::elements::{Elements, Share, hull_edges};
+use super::elements::{Elements, Share, hull_area, hull_edges};
 use super::jet::Jet;
 use super::simplex::{self, MAX_DEGREE};
 use super::tent::{self, Found, Line, Tent, line_of, scaled};
@@ -14,15 +14,17 @@ use crate::config::special::Function;
 use crate::config::{self, Configurations, FARAWAY, Knots};
 use crate::error::{Error, Result};
 use crate::predicates::{ExpansionPredicates, Extent, Point2};
+use crate::prefetch::prefetch;
 
 /// Functions of one degree over configurations of knots.
 ///
 /// A function is a sum of B-splines with factors, and a B-spline is what configurations collect around a set of k knots, its
-/// *interior set*. On lines through knots, where functions or derivatives may jump, they have the values that they have next to
-/// the line on the side of the middle of the domain: sides are told by exact predicates, so that values at knots, on lines and on
-/// the border are right.
+/// *interior set*. On lines through knots, where functions or derivatives may jump, they have the values that they have next
+/// to the line on the side of the middle of the domain: sides are told by exact predicates, so that values at knots, on
+/// lines and on the border are right.
 ///
-/// Cost: one way down a tree and a few elements for each point; for degree 2, about four elements and seven functions are not zero.
+/// Cost: one way down a tree and a few elements for each point; for degree 2, about four elements and seven functions are
+/// not zero.
 #[derive(Debug, Clone)]
 pub struct Basis {
     degree: usize,
@@ -63,15 +65,15 @@ pub struct Scratch {
 }
 
 impl Basis {
-    /// The B-splines of degree k that the links of configurations of degree k - 1 make, in the order of links, without those that
-    /// are zero everywhere.
+    /// The B-splines of degree k that the links of configurations of degree k - 1 make, in the order of links, without those
+    /// that are zero everywhere.
     ///
     /// They sum to one, and reproduce polynomials of degree k by polar forms, where every closed half-plane has k knots.
     ///
     /// Domain: the configurations are of these knots.
     ///
-    /// Errors: knots with coordinates so great or small that areas are no numbers, too great a degree, configurations that leave
-    /// no links, or of which nothing is not zero.
+    /// Errors: knots with coordinates so great or small that areas are no numbers, too great a degree, configurations that
+    /// leave no links, or of which nothing is not zero.
     ///
     /// Source: Neamtu 2004; thesis 8.1.
     pub fn new(knots: &Knots, configurations: &Configurations) -> Result<Basis> {
@@ -87,8 +89,8 @@ impl Basis {
         Basis::without_zeros(knots, configurations, sets, elements)
     }
 
-    /// Functions that are sums of B-splines of degree 2, as [`config::special::Special::functions`] collects them, in their order;
-    /// `configurations` are those of degree 1.
+    /// Functions that are sums of B-splines of degree 2, as [`config::special::Special::functions`] collects them, in their
+    /// order; `configurations` are those of degree 1.
     ///
     /// Errors: those of [`Basis::new`]; configurations of another degree; a set without a link; a factor that is not finite.
     pub fn of_functions(
@@ -136,7 +138,8 @@ impl Basis {
         check(knots, configurations)?;
         let mut sets = FunctionSets::new(3);
         configurations.iter().for_each(|(triangle, _)| sets.push([(&triangle[..], 1.0)].into_iter()));
-        let elements = Elements::of_configurations(knots, configurations, |number, _, _| vec![(number, 1.0)]);
+        let elements =
+            Elements::of_configurations(knots, configurations, |number, _, _, take| take(number, 1.0));
         Basis::without_zeros(knots, configurations, sets, elements)
     }
 
@@ -174,12 +177,15 @@ impl Basis {
         let hulls: Vec<Hull> = (0..elements.len()).map(|at| hull(&elements, at, &points)).collect();
         let extent = Extent::of(&points);
         let tree = Tree::new(&hulls, &domain, extent.lower, extent.upper);
-        let mut tents = Vec::new();
+        let (mut tents, mut sizes) = (Vec::new(), Vec::new());
         if elements.size <= 4 {
-            let all = |at| elements.knots(at).iter().map(|&id| points[id as usize]).collect::<Vec<Point2>>();
-            tents.extend((0..elements.len()).map(|at| Tent::new(&all(at))));
+            for (at, hull) in hulls.iter().enumerate() {
+                let knots: Vec<Point2> = elements.knots(at).iter().map(|&id| points[id as usize]).collect();
+                sizes.push(hull_area(&hull.edges));
+                tents.push(Tent::new(&knots, &hull.edges, sizes[at]));
+            }
         }
-        let factors = Factors::of(&elements, &tents, &points);
+        let factors = Factors::of(&elements, &tents, &sizes, &points);
         let greville = (0..sets.len()).map(|function| sets.greville(function, &points)).collect();
         let supports = supports(&elements, &hulls, sets.len());
         let degree =
@@ -212,8 +218,8 @@ impl Basis {
         self.sets.terms(function)
     }
 
-    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets by their factors; for
-    /// degree 0, that of the triangle.
+    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets by their
+    /// factors; for degree 0, that of the triangle.
     #[must_use]
     pub fn greville(&self, function: usize) -> Point2 {
         self.greville[function]
@@ -226,9 +232,16 @@ impl Basis {
         (lower[0] <= upper[0]).then_some([lower, upper])
     }
 
+    /// Bytes held, without knots, sets and Greville sites.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let tents = std::mem::size_of_val(&self.tents[..]) + std::mem::size_of_val(&self.factors.all[..]);
+        tents + self.tree.bytes() + self.elements.bytes()
+    }
+
     /// Whether a point is in the domain: the convex, closed region where functions sum to one, and reproduce polynomials of
-    /// their degree k. It is where every closed half-plane has k knots, copies counted; for degree 0 as for degree 1, that is the
-    /// convex hull.
+    /// their degree k. It is where every closed half-plane has k knots, copies counted; for degree 0 as for degree 1, that
+    /// is the convex hull.
     ///
     /// (A domain that is a segment or a point only, without an inside, is not one where functions sum to one.)
     #[must_use]
@@ -249,6 +262,7 @@ impl Basis {
     pub fn at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, f64)] {
         scratch.values.clear();
         if let Some(lists) = self.tree.lists(x) {
+            lists.elements.iter().for_each(|&element| self.prefetch(element as usize));
             for &element in lists.elements {
                 self.add_values(element as usize, x, scratch);
             }
@@ -257,32 +271,93 @@ impl Basis {
         &scratch.values
     }
 
-    /// The functions alive at a point, with values and derivatives, in order of their numbers.
+    /// The functions alive at a point, with values and derivatives, in order of their numbers: limits from the middle of the
+    /// domain, where there is a jump.
     ///
     /// These are the functions of [`Basis::at`].
     pub fn jets_at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, Jet)] {
         scratch.jets.clear();
         if let Some(lists) = self.tree.lists(x) {
-            let at = self.domain.approach(x);
             for &element in lists.elements {
-                let Some(jet) = self.jet(element as usize, &at, true, &mut scratch.knots) else { continue };
-                for share in self.elements.shares(element as usize) {
-                    add(&mut scratch.jets, share.function, self.linear(share, x).product(jet));
-                }
+                self.add_jets(element as usize, x, scratch);
             }
             scratch.jets.sort_unstable_by_key(|&(function, _)| function);
         }
         &scratch.jets
     }
 
+    /// The spline with the given coefficients, one for each function, at a point.
+    #[must_use]
+    pub fn value(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> f64 {
+        self.at(x, scratch).iter().map(|&(function, value)| coefficients[function as usize] * value).sum()
+    }
+
+    /// The spline with the given coefficients, one for each function, with its derivatives at a point.
+    #[must_use]
+    pub fn jet(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> Jet {
+        let jets = self.jets_at(x, scratch).iter();
+        jets.fold(Jet::default(), |sum, &(function, jet)| sum + jet * coefficients[function as usize])
+    }
+
+    /// Errors: not one finite coefficient for each function.
+    pub(super) fn check_coefficients(&self, coefficients: &[f64]) -> Result<()> {
+        if coefficients.len() != self.len() {
+            let what = format!(
+                "{} coefficients for {} functions: one each is needed",
+                coefficients.len(),
+                self.len()
+            );
+            return Err(Error::usage(what));
+        }
+        match coefficients.iter().position(|coefficient| !coefficient.is_finite()) {
+            Some(bad) => Err(Error::malformed("coefficient is not finite").at(format!("function {bad}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Has closed forms brought into the cache: points may come in any order.
+    #[inline(always)]
+    fn prefetch(&self, element: usize) {
+        prefetch(&self.tents, element);
+    }
+
+    /// What an element adds to values at a point.
+    #[inline]
     fn add_values(&self, element: usize, x: Point2, scratch: &mut Scratch) {
+        let values = &mut scratch.values;
+        self.for_each_share(element, x, &mut scratch.knots, |function, value| add(values, function, value));
+    }
+
+    /// What an element adds to a spline at a point.
+    pub(super) fn value_of_element(
+        &self,
+        element: usize,
+        x: Point2,
+        coefficients: &[f64],
+        scratch: &mut Scratch,
+    ) -> f64 {
+        let mut sum = 0.0;
+        self.for_each_share(element, x, &mut scratch.knots, |function, value| {
+            sum += coefficients[function as usize] * value;
+        });
+        sum
+    }
+
+    /// Calls `take` with functions and what the element adds to their values, if the point is inside.
+    #[inline(always)]
+    fn for_each_share(
+        &self,
+        element: usize,
+        x: Point2,
+        knots: &mut Vec<Point2>,
+        mut take: impl FnMut(u32, f64),
+    ) {
         if let Some(tent) = self.tents.get(element) {
-            let offset = [x[0] - tent.origin[0], x[1] - tent.origin[1]];
+            let offset = tent.offset(x);
             let found = match tent.find(offset) {
                 Found::Outside => return,
                 Found::Unclear(height) => {
-                    self.take_knots(element, &mut scratch.knots);
-                    if !tent::is_inside(&self.approach(x), &scratch.knots) {
+                    if !self.is_inside(element, x) {
                         return;
                     }
                     height
@@ -290,34 +365,70 @@ impl Basis {
                 Found::Inside(height) => height,
             };
             if tent.is_exact_enough {
-                for &(function, line) in self.factors.of_element(element) {
-                    add(&mut scratch.values, function, tent::value(&line, offset) * found);
+                let factors = self.factors.of_element(element);
+                return factors
+                    .iter()
+                    .for_each(|(function, line)| take(*function, tent::value(line, offset) * found));
+            }
+        }
+        self.for_each_careful_share(element, x, knots, take);
+    }
+
+    /// The same by the recurrence.
+    #[cold]
+    fn for_each_careful_share(
+        &self,
+        element: usize,
+        x: Point2,
+        knots: &mut Vec<Point2>,
+        mut take: impl FnMut(u32, f64),
+    ) {
+        let Some(jet) = self.jet_of_element(element, x, false, knots) else { return };
+        for share in self.elements.shares(element) {
+            take(share.function, self.linear(share, x).value * jet.value);
+        }
+    }
+
+    fn add_jets(&self, element: usize, x: Point2, scratch: &mut Scratch) {
+        if let Some(tent) = self.tents.get(element) {
+            let offset = tent.offset(x);
+            let found = tent.find(offset);
+            if found == Found::Outside {
+                return;
+            }
+            let is_clear = tent.is_exact_enough && matches!(found, Found::Inside(_));
+            if let Some(piece) = tent.piece(offset).filter(|_| is_clear) {
+                let linear = |line: &Line| Jet::linear(tent::value(line, offset), [line[1], line[2]]);
+                let jet = linear(&piece);
+                for (function, line) in self.factors.of_element(element) {
+                    add(&mut scratch.jets, *function, linear(line).product(jet));
                 }
                 return;
             }
         }
-        let Some(jet) = self.jet(element, &self.approach(x), false, &mut scratch.knots) else { return };
+        let Some(jet) = self.jet_of_element(element, x, true, &mut scratch.knots) else { return };
         for share in self.elements.shares(element) {
-            add(&mut scratch.values, share.function, self.linear(share, x).value * jet.value);
+            add(&mut scratch.jets, share.function, self.linear(share, x).product(jet));
         }
     }
 
     /// The simplex spline of an element, by the recurrence.
-    fn jet(
+    fn jet_of_element(
         &self,
         element: usize,
-        at: &Approach,
+        x: Point2,
         has_derivatives: bool,
         knots: &mut Vec<Point2>,
     ) -> Option<Jet> {
-        if let Some(tent) = self.tents.get(element) {
-            let offset = [at.x()[0] - tent.origin[0], at.x()[1] - tent.origin[1]];
-            if tent.find(offset) == Found::Outside {
-                return None;
-            }
-        }
         self.take_knots(element, knots);
-        simplex::evaluate(at, knots, has_derivatives)
+        simplex::evaluate(&self.approach(x), knots, has_derivatives)
+    }
+
+    #[cold]
+    fn is_inside(&self, element: usize, x: Point2) -> bool {
+        let mut knots = Vec::new();
+        self.take_knots(element, &mut knots);
+        tent::is_inside(&self.approach(x), &knots)
     }
 
     fn take_knots(&self, element: usize, knots: &mut Vec<Point2>) {
@@ -328,6 +439,46 @@ impl Basis {
     fn linear(&self, share: &Share, x: Point2) -> Jet {
         let [a, b] = share.edge.map(|id| self.points[id as usize]);
         Jet::linear(area(x, a, b), [0.5 * (a[1] - b[1]), 0.5 * (b[0] - a[0])]) * share.factor
+    }
+}
+
+/// What rasters need.
+impl Basis {
+    pub(super) fn element_count(&self) -> usize {
+        self.elements.len()
+    }
+
+    pub(super) fn tents(&self) -> &[Tent] {
+        &self.tents
+    }
+
+    pub(super) fn domain_lines(&self) -> &[[Point2; 2]] {
+        &self.domain.lines
+    }
+
+    /// Least and greatest ordinate of an element.
+    pub(super) fn rows_of(&self, element: usize) -> [f64; 2] {
+        self.range_of(element, 1)
+    }
+
+    /// Least and greatest abscissa of an element.
+    pub(super) fn columns_of(&self, element: usize) -> [f64; 2] {
+        self.range_of(element, 0)
+    }
+
+    fn range_of(&self, element: usize, axis: usize) -> [f64; 2] {
+        let coordinates = self.elements.knots(element).iter().map(|&id| self.points[id as usize][axis]);
+        coordinates
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], c| [least.min(c), greatest.max(c)])
+    }
+
+    /// The factor of an element with a tent in a spline.
+    pub(super) fn factor_of_spline(&self, element: usize, coefficients: &[f64]) -> Line {
+        let factors = self.factors.of_element(element);
+        factors.iter().fold([0.0; 3], |sum, (function, line)| {
+            let added = scaled(*line, coefficients[*function as usize]);
+            [0, 1, 2].map(|place| sum[place] + added[place])
+        })
     }
 }
 
@@ -374,11 +525,12 @@ fn of_links(
     of_link: &[Vec<(u32, f64)>],
 ) -> Elements {
     let mut set = Vec::new();
-    Elements::of_configurations(knots, configurations, |_, corner, interior| {
+    Elements::of_configurations(knots, configurations, |_, corner, interior, take| {
         set.clear();
         set.extend_from_slice(interior);
         set.insert(interior.partition_point(|&id| id < corner), corner);
-        links.find(&set).map_or_else(Vec::new, |at| of_link[at].clone())
+        let at = links.find(&set);
+        at.into_iter().flat_map(|at| &of_link[at]).for_each(|&(function, factor)| take(function, factor));
     })
 }
 
@@ -435,15 +587,15 @@ impl FunctionSets {
 }
 
 impl Factors {
-    /// Those of elements that have tents.
-    fn of(elements: &Elements, tents: &[Tent], points: &[Point2]) -> Factors {
+    /// Those of elements that have tents, over supports of given sizes.
+    fn of(elements: &Elements, tents: &[Tent], sizes: &[f64], points: &[Point2]) -> Factors {
         let mut factors = Factors { offsets: vec![0], all: Vec::new() };
-        for (at, tent) in tents.iter().enumerate() {
+        for (at, (tent, size)) in tents.iter().zip(sizes).enumerate() {
             for shares in elements.shares(at).chunk_by(|a, b| a.function == b.function) {
                 let mut sum = [0.0; 3];
                 for share in shares {
                     let edge = share.edge.map(|id| points[id as usize]);
-                    let line = scaled(line_of(edge, tent.origin), share.factor);
+                    let line = scaled(line_of(edge, tent.origin), share.factor / size);
                     sum = [0, 1, 2].map(|place| sum[place] + line[place]);
                 }
                 factors.all.push((shares[0].function, sum));

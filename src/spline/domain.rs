@@ -1,24 +1,28 @@
 //! Where all functions sum to one.
 //!
-//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every closed half-plane has
-//! k knots at least: the *domain*. (Simplex splines of configurations of degree k need k + 1; functions of degree 0 need
-//! what those of degree 1 do, the convex hull.)
+//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every closed half-plane
+//! has k knots at least: the *domain*. (Simplex splines of configurations of degree k need k + 1 knots; functions of degree
+//! 0 need what those of degree 1 do, the convex hull.)
 //!
-//! *Why they do.* The sum over links with polar forms P is, configuration by configuration, that of P(I, x) N(x | B, I) over
-//! configurations of degree k - 1 (thesis 6.2.2), and it is what the links of degree k - 1 give with the polar form P(., x) but
-//! for the infinite configurations (p, q, I): these add terms that vanish unless x is in the hull of I and p, q, which lies to
-//! the left of the line pq. No point of the domain, for which k knots are needed, is left of a line with less than k knots to
-//! its left. So all degrees down to 0 give the same, and degree 0 is a triangulation.
+//! *Why they do.* Take a polynomial with the polar form P. The sum of P(J) times the B-spline of J, over all links, is
+//! configuration by configuration that of P(I, x) N(x | B, I) over those of degree k - 1, as in the thesis (6.2.2). This is
+//! what the links of degree k - 1 give with the polar form P(., x), but for the infinite configurations (p, q, I): these
+//! add terms that vanish unless x is in the hull of I, p and q, to the left of the line from p to q. No point of the domain
+//! is strictly left of a line with less than k knots to its left. So all degrees down to 0 give the same, and degree 0 is a
+//! triangulation.
 //!
-//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of degree k - 1 (left of
-//! it are k - 1 knots). A half-plane left of such a line that contains x, moved to x, has only these k - 1 knots.
-//! Conversely let s(t) be the k-th greatest of the scalar products of knots with the unit vector n(t), so that x is in the domain if g(t) = n(t) x -
-//! s(t) is nowhere positive. Pieces of g are sinusoids, g'' + g = 0. Where the k-th knot changes from p to q, the two are on a
-//! line with normal n(t); either k - 1 knots are left of it, and it is an infinite configuration, or k - 2 are, s is the lesser one of both
-//! products there, and the slope of g increases. If g is positive somewhere, but not at any infinite configuration, then it is positive
-//! on an interval of length pi at least (Sturm): hence at t, and at t + pi or in the limit. So less than k knots are on either
-//! side of x, and there are at most 2k - 2 knots; the domain is empty then. Copies, and knots on one line, are the limit of
-//! knots that are moved.
+//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of degree k - 1. If
+//! x is left of such a line, then the parallel to it through x has only knots to its left, and on it, that are left of the
+//! line: less than k. For the converse, let n(t) be the unit vector in the direction t, s(t) the k-th greatest of the scalar
+//! products of n(t) with knots, and g(t) the product of n(t) with x less s(t), so that x is in the domain if g is nowhere
+//! positive. While the k-th knot is the same one, g'' + g is zero. Where it changes from p to q, both are on a line with the
+//! normal n(t). Either this is an infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is
+//! the lesser one of the products of p and q nearby, and the slope of g increases. Now let g be positive somewhere, but not
+//! at any infinite configuration. Then g'' + g is not negative on the interval around where g is positive, so its length is
+//! pi at least (Sturm); it is more, because a single knot cannot be the k-th in a half circle of directions unless all are
+//! on one line. So g is positive in two opposite directions: less than k knots are on either side of the line through x, on
+//! it included, and there are at most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line,
+//! are limits of knots that are moved.
 
 use super::approach::Approach;
 use crate::config::{Configurations, Knots};

@@ -1,9 +1,9 @@
 //! From configurations to elements: simplex splines of one degree less, each with a linear factor for some functions.
 //!
-//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis, equation
-//! 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in all of
-//! them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at one place,
-//! edges of one element cancel, and elements of different knots are the same function: they are merged.
+//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis,
+//! equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in
+//! all of them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at
+//! one place, edges of one element cancel, and elements of different knots are the same function: they are merged.
 
 use super::area::area;
 use crate::config::{Configurations, Knots};
@@ -31,31 +31,32 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    /// Elements of all finite configurations; `functions_of` tells which functions, with which factors, the set of a
-    /// configuration, by its number, and of one of its corners belongs to. Those that are zero everywhere are left out.
+    /// Elements of all finite configurations. `functions_of` names the functions, with their factors, that the set of a
+    /// configuration, of which it gets the number, and of one of its corners belongs to. What is zero everywhere is left
+    /// out.
     pub(super) fn of_configurations(
         knots: &Knots,
         configurations: &Configurations,
-        mut functions_of: impl FnMut(u32, u32, &[u32]) -> Vec<(u32, f64)>,
+        mut functions_of: impl FnMut(u32, u32, &[u32], &mut dyn FnMut(u32, f64)),
     ) -> Elements {
         let size = configurations.degree() + 3;
-        let mut gathered = Gathered::new(knots);
+        let mut gathered = Gathered::new(knots, size);
+        let mut all = Vec::with_capacity(size);
         for (number, (boundary, interior)) in (0..).zip(configurations.iter()) {
-            let all: Vec<u32> = boundary.iter().chain(interior).copied().collect();
+            all.clear();
+            all.extend(boundary.iter().chain(interior));
             if is_flat(knots, &all) {
                 continue;
             }
-            let mut shares = Vec::with_capacity(3);
+            let element = gathered.element(&mut all);
             for corner in 0..3 {
                 let edge = [boundary[(corner + 1) % 3], boundary[(corner + 2) % 3]];
-                let functions = functions_of(number, boundary[corner], interior);
-                let of_edge =
-                    functions.into_iter().map(|(function, factor)| Share { function, edge, factor });
-                shares.extend(of_edge);
+                functions_of(number, boundary[corner], interior, &mut |function, factor| {
+                    gathered.add(element, Share { function, edge, factor });
+                });
             }
-            gathered.add(all, shares);
         }
-        gathered.sorted(knots, size)
+        gathered.sorted()
     }
 
     pub(super) fn len(&self) -> usize {
@@ -71,6 +72,11 @@ impl Elements {
         &self.shares[self.offsets[element] as usize..self.offsets[element + 1] as usize]
     }
 
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        4 * (self.knots.len() + self.offsets.len()) + std::mem::size_of_val(&self.shares[..])
+    }
+
     /// Gives functions new numbers.
     pub(super) fn renumber(&mut self, numbers: &[u32]) {
         self.shares.iter_mut().for_each(|share| share.function = numbers[share.function as usize]);
@@ -80,77 +86,89 @@ impl Elements {
 /// Elements while they are found.
 struct Gathered<'a> {
     knots: &'a Knots,
-    /// The first knots at all places.
+    size: usize,
+    /// The first knots at all places; empty if no knots are at one place.
     firsts: Vec<u32>,
-    elements: Vec<(Vec<u32>, Vec<Share>)>,
-    /// Elements by their places; empty if no knots are at one place.
-    by_places: HashMap<Vec<u32>, usize>,
+    /// Knots of elements, one after the other.
+    all: Vec<u32>,
+    /// Shares with their elements.
+    shares: Vec<(u32, Share)>,
+    /// Elements by their places, where knots are at one place.
+    by_places: HashMap<Vec<u32>, u32>,
 }
 
 impl<'a> Gathered<'a> {
-    fn new(knots: &'a Knots) -> Gathered<'a> {
+    fn new(knots: &'a Knots, size: usize) -> Gathered<'a> {
         let firsts = if knots.has_copies() { distinct(knots.points()) } else { Vec::new() };
-        Gathered { knots, firsts, elements: Vec::new(), by_places: HashMap::default() }
+        Gathered { knots, size, firsts, all: Vec::new(), shares: Vec::new(), by_places: HashMap::default() }
     }
 
-    fn add(&mut self, knots: Vec<u32>, mut shares: Vec<Share>) {
-        if !self.knots.has_copies() {
-            self.elements.push((knots, shares));
-            return;
+    /// The number of the element of some knots, or of those at the same places.
+    fn element(&mut self, knots: &mut [u32]) -> u32 {
+        let next = (self.all.len() / self.size) as u32;
+        if !self.firsts.is_empty() {
+            knots.iter_mut().for_each(|id| *id = self.firsts[*id as usize]);
+            knots.sort_unstable();
+            match self.by_places.get(&*knots) {
+                Some(&known) => return known,
+                None => self.by_places.insert(knots.to_vec(), next),
+            };
         }
-        let place = |id: u32| self.firsts[id as usize];
-        shares.iter_mut().for_each(|share| share.edge = share.edge.map(place));
-        let mut places: Vec<u32> = knots.into_iter().map(place).collect();
-        places.sort_unstable();
-        let next = self.elements.len();
-        let at = *self.by_places.entry(places.clone()).or_insert(next);
-        if at == next {
-            self.elements.push((places, Vec::new()));
-        }
-        self.elements[at].1.append(&mut shares);
+        self.all.extend_from_slice(knots);
+        next
+    }
+
+    fn add(&mut self, element: u32, share: Share) {
+        let edge = share.edge.map(|id| self.firsts.get(id as usize).copied().unwrap_or(id));
+        self.shares.push((element, Share { edge, ..share }));
     }
 
     /// The elements that are left when opposite edges have cancelled, along a curve.
-    fn sorted(mut self, knots: &Knots, size: usize) -> Elements {
-        for (_, shares) in &mut self.elements {
-            cancel(shares);
+    fn sorted(mut self) -> Elements {
+        let Gathered { knots, size, .. } = self;
+        cancel(&mut self.shares);
+        let count = self.all.len() / size;
+        let mut ranges = vec![0..0; count];
+        let mut start = 0;
+        for of_element in self.shares.chunk_by(|a, b| a.0 == b.0) {
+            ranges[of_element[0].0 as usize] = start..start + of_element.len();
+            start += of_element.len();
         }
-        self.elements.retain(|(_, shares)| !shares.is_empty());
-        let middle = |(all, _): &(Vec<u32>, Vec<Share>)| {
-            let mean = |axis: usize| all.iter().map(|&id| knots.at(id)[axis] / size as f64).sum();
-            [mean(0), mean(1)]
-        };
-        let middles: Vec<Point2> = self.elements.iter().map(middle).collect();
+        let middles: Vec<Point2> = self.all.chunks_exact(size).map(|all| middle(knots, all)).collect();
         let mut curve = SpatialOrder::default();
         let order = curve.sort(&middles, &Extent::of(&middles), Curve::Hilbert);
         let mut elements = Elements { size, knots: Vec::new(), offsets: vec![0], shares: Vec::new() };
-        for at in order {
-            let (all, shares) = &self.elements[at as usize];
-            elements.knots.extend_from_slice(all);
-            elements.shares.extend_from_slice(shares);
+        for at in order.map(|at| at as usize).filter(|&at| !ranges[at].is_empty()) {
+            elements.knots.extend_from_slice(&self.all[at * size..][..size]);
+            elements.shares.extend(self.shares[ranges[at].clone()].iter().map(|&(_, share)| share));
             elements.offsets.push(elements.shares.len() as u32);
         }
         elements
     }
 }
 
-/// Sorts shares by function and edge, sums those of one edge, and drops what is zero.
-fn cancel(shares: &mut Vec<Share>) {
-    for share in shares.iter_mut() {
+fn middle(knots: &Knots, all: &[u32]) -> Point2 {
+    [0, 1].map(|axis| all.iter().map(|&id| knots.at(id)[axis] / all.len() as f64).sum())
+}
+
+/// Sorts shares by element, function and edge, sums those of one edge, and drops what is zero.
+fn cancel(shares: &mut Vec<(u32, Share)>) {
+    for (_, share) in shares.iter_mut() {
         if share.edge[0] > share.edge[1] {
             share.edge.reverse();
             share.factor = -share.factor;
         }
     }
-    shares.sort_unstable_by_key(|share| (share.function, share.edge));
+    let key = |(element, share): &(u32, Share)| (*element, share.function, share.edge);
+    shares.sort_unstable_by_key(key);
     shares.dedup_by(|next, kept| {
-        let is_same = next.function == kept.function && next.edge == kept.edge;
+        let is_same = key(next) == key(kept);
         if is_same {
-            kept.factor += next.factor;
+            kept.1.factor += next.1.factor;
         }
         is_same
     });
-    shares.retain(|share| share.factor != 0.0 && share.edge[0] != share.edge[1]);
+    shares.retain(|(_, share)| share.factor != 0.0 && share.edge[0] != share.edge[1]);
 }
 
 /// Whether all knots are on one line.
@@ -161,32 +179,19 @@ fn is_flat(knots: &Knots, all: &[u32]) -> bool {
     all.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
 }
 
-/// An edge of the convex hull of some knots, with the other knots.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct HullEdge {
-    /// The ends, the hull on the left.
-    pub(super) ends: [Point2; 2],
-    /// All knots but one at either end.
-    pub(super) others: Vec<Point2>,
-}
-
-/// The edges of the strict convex hull, from corner to corner. Domain: knots that are not all on one line.
-pub(super) fn hull_edges(points: &[Point2]) -> Vec<HullEdge> {
+/// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots that are not all on
+/// one line.
+pub(super) fn hull_edges(points: &[Point2]) -> Vec<[Point2; 2]> {
     let mut predicates = TotalPredicates::default();
-    let mut edges: Vec<HullEdge> = Vec::new();
-    for (i, &p) in points.iter().enumerate() {
-        for (j, &q) in points.iter().enumerate() {
-            let mut is_outside = |r: Point2| match predicates.orient2d(p, q, r) {
-                Sign::Negative => true,
-                Sign::Zero => !is_between(p, q, r),
-                Sign::Positive => false,
-            };
-            if p == q || points.iter().any(|&r| is_outside(r)) || edges.iter().any(|edge| edge.ends == [p, q])
-            {
-                continue;
-            }
-            let others = points.iter().enumerate().filter(|&(at, _)| at != i && at != j);
-            edges.push(HullEdge { ends: [p, q], others: others.map(|(_, &point)| point).collect() });
+    let mut edges: Vec<[Point2; 2]> = Vec::with_capacity(points.len());
+    for (&p, &q) in points.iter().flat_map(|p| points.iter().map(move |q| (p, q))) {
+        let mut is_outside = |r: Point2| match predicates.orient2d(p, q, r) {
+            Sign::Negative => true,
+            Sign::Zero => !is_between(p, q, r),
+            Sign::Positive => false,
+        };
+        if p != q && !points.iter().any(|&r| is_outside(r)) && !edges.contains(&[p, q]) {
+            edges.push([p, q]);
         }
     }
     edges
@@ -198,7 +203,7 @@ fn is_between(p: Point2, q: Point2, r: Point2) -> bool {
 }
 
 /// The area of the convex hull.
-pub(super) fn hull_area(edges: &[HullEdge]) -> f64 {
-    let Some(first) = edges.first() else { return 0.0 };
-    edges.iter().map(|edge| area(first.ends[0], edge.ends[0], edge.ends[1])).sum()
+pub(super) fn hull_area(edges: &[[Point2; 2]]) -> f64 {
+    let Some(&[first, _]) = edges.first() else { return 0.0 };
+    edges.iter().map(|&[p, q]| area(first, p, q)).sum()
 }

@@ -1,11 +1,11 @@
 //! Bivariate splines over configurations (thesis 6.2 and chapter 8).
 //!
-//! [`simplex_spline`] evaluates single simplex splines of any degree, [`Basis`] all functions at a point that [`crate::config`]
-//! makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
+//! [`simplex_spline`] evaluates single simplex splines of any degree, [`Basis`] all functions at a point that
+//! [`crate::config`] makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
 //!
-//! `area` has accurate areas, `approach` the sides of lines that points lie on, `simplex` the recurrence, `tent` closed forms of
-//! degrees 0 and 1, `elements` the way from configurations to simplex splines, `domain` where functions sum to one, and `tree`
-//! finds what is alive.
+//! `area` has accurate areas, `approach` the sides of lines that points lie on, `simplex` the recurrence, `tent` closed
+//! forms of degrees 0 and 1, `elements` the way from configurations to simplex splines, `domain` where functions sum to one,
+//! and `tree` finds what is alive.
 
 mod approach;
 mod area;
@@ -13,6 +13,7 @@ mod basis;
 mod domain;
 mod elements;
 mod jet;
+mod raster;
 mod simplex;
 mod tent;
 mod tree;
@@ -21,4 +22,5 @@ pub use approach::Approach;
 pub use area::area;
 pub use basis::{Basis, Scratch};
 pub use jet::Jet;
+pub use raster::{Raster, Row};
 pub use simplex::{MAX_DEGREE, simplex_spline, simplex_spline_jet};

@@ -1,16 +1,17 @@
 //! Simplex splines by the recurrence of Micchelli (thesis 6.2.1).
 //!
-//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor in the recurrence:
-//! the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's geometric definition has integral one,
-//! and the base case that it prints lacks the area.)
+//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor in the
+//! recurrence: the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's geometric definition
+//! has integral one, and the base case that it prints lacks the area.)
 //!
-//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x: all terms are then
-//! positive, nothing cancels, and with areas that are accurate (`area`) so is the value, however flat sets of knots are.
+//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x: all terms are
+//! then positive, nothing cancels, and with areas that are accurate (`area`) so is the value, however flat sets of knots
+//! are.
 
 use super::approach::Approach;
 use super::area::area;
 use super::jet::Jet;
-use crate::predicates::Point2;
+use crate::predicates::{Point2, Sign};
 use foldhash::{HashMap, HashMapExt};
 
 /// Greatest degree of a simplex spline: sets of knots are held in 32 bits.
@@ -23,7 +24,8 @@ const REMEMBERED: u32 = 6;
 ///
 /// Units: one over those of an area. Knots may be repeated; if all lie on one line, as any two do, the function is zero.
 ///
-/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about 1e-14 times the degree.
+/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about 1e-14 times the
+/// degree.
 ///
 /// Cost: O(3^k) areas for degrees k up to 2, then at most one evaluation for each subset of the knots.
 ///
@@ -35,8 +37,8 @@ pub fn simplex_spline(at: &Approach, knots: &[Point2]) -> f64 {
 
 /// The simplex spline of degree `knots.len() - 3` with its derivatives at a point: limits where there is a jump.
 ///
-/// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v M(x | X \ v)`, if
-/// the `mu_v v` sum to y and the `mu_v` to zero.
+/// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v M(x | X \ v)`,
+/// if the `mu_v v` sum to y and the `mu_v` to zero.
 #[must_use]
 pub fn simplex_spline_jet(at: &Approach, knots: &[Point2]) -> Jet {
     Evaluation::new(at, knots, true).of_all().unwrap_or_default()
@@ -51,8 +53,8 @@ pub(super) fn evaluate(at: &Approach, knots: &[Point2], has_derivatives: bool) -
 struct Evaluation<'a> {
     at: &'a Approach,
     knots: &'a [Point2],
-    /// The side of the line from knot i to knot j that the point is on, at 32 i + j.
-    sides: Vec<i8>,
+    /// For each knot, to which others it has a line with the point on its left.
+    left: [u32; 32],
     has_derivatives: bool,
     known: HashMap<u32, Option<Jet>>,
 }
@@ -60,15 +62,17 @@ struct Evaluation<'a> {
 impl<'a> Evaluation<'a> {
     fn new(at: &'a Approach, knots: &'a [Point2], has_derivatives: bool) -> Evaluation<'a> {
         debug_assert!(knots.len() <= MAX_DEGREE + 3);
-        let mut sides = vec![0; 32 * knots.len()];
+        let mut left = [0; 32];
         for i in 0..knots.len() {
             for j in 0..i {
-                let side = at.side(knots[i], knots[j]) as i8;
-                sides[32 * i + j] = side;
-                sides[32 * j + i] = -side;
+                match at.side(knots[i], knots[j]) {
+                    Sign::Positive => left[i] |= 1 << j,
+                    Sign::Negative => left[j] |= 1 << i,
+                    Sign::Zero => (),
+                }
             }
         }
-        Evaluation { at, knots, sides, has_derivatives, known: HashMap::new() }
+        Evaluation { at, knots, left, has_derivatives, known: HashMap::new() }
     }
 
     fn of_all(&mut self) -> Option<Jet> {
@@ -110,21 +114,20 @@ impl<'a> Evaluation<'a> {
     /// The largest triangle, counterclockwise, of knots of a set that contains the point, and its area.
     fn largest_around(&self, set: u32) -> Option<([usize; 3], f64)> {
         let mut best = (0.0, [0; 3]);
+        let mut take = |triple: [usize; 3]| {
+            let [a, b, c] = triple.map(|place| self.knots[place]);
+            let size = area(a, b, c);
+            if size > best.0 {
+                best = (size, triple);
+            }
+        };
         for i in places(set) {
-            for j in places(set & !((2 << i) - 1)) {
-                let side = self.sides[32 * i + j];
-                for k in places(set & !((2 << j) - 1)) {
-                    let [next, last] = [self.sides[32 * j + k], self.sides[32 * k + i]];
-                    if side == 0 || side != next || side != last {
-                        continue;
-                    }
-                    let triple = if side > 0 { [i, j, k] } else { [i, k, j] };
-                    let [a, b, c] = triple.map(|place| self.knots[place]);
-                    let size = area(a, b, c);
-                    if size > best.0 {
-                        best = (size, triple);
-                    }
-                }
+            let (left, later) = (self.left[i], set & !((2 << i) - 1));
+            // From i around to j, to k, and back, with i before the others.
+            for j in places(left & later) {
+                places(self.left[j] & later)
+                    .filter(|&k| self.left[k] >> i & 1 == 1)
+                    .for_each(|k| take([i, j, k]));
             }
         }
         (best.0 > 0.0).then_some((best.1, best.0))

@@ -10,6 +10,14 @@ pub struct Case {
     pub knots: Knots,
     pub configurations: Configurations,
     pub basis: Basis,
+    /// Where the unit square is: constants and factors of its coordinates.
+    shape: [[f64; 3]; 2],
+}
+
+const UNIT: [[f64; 3]; 2] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+fn mapped(shape: [[f64; 3]; 2], [u, v]: [f64; 2]) -> [f64; 2] {
+    shape.map(|[constant, along, across]| constant + along * u + across * v)
 }
 
 impl Case {
@@ -26,7 +34,7 @@ impl Case {
         });
         let (configurations, basis) =
             made.unwrap_or_else(|error| panic!("{name}: {error}: let points = vec!{:?};", knots.points()));
-        Case { name, knots, configurations, basis }
+        Case { name, knots, configurations, basis, shape: UNIT }
     }
 
     /// Points of the domain: anywhere, at knots, on lines through two knots, and on the border of the domain.
@@ -41,8 +49,8 @@ impl Case {
             let x = match round % 5 {
                 0 => p,
                 1 => [0, 1].map(|axis| p[axis] + share * (q[axis] - p[axis])),
-                2 => [random.unit(), [0.0, 1.0][round / 5 % 2]],
-                _ => [random.unit(), random.unit()],
+                2 => mapped(self.shape, [random.unit(), [0.0, 1.0][round / 5 % 2]]),
+                _ => mapped(self.shape, [random.unit(), random.unit()]),
             };
             if self.basis.is_in_domain(x) {
                 found.push(x);
@@ -56,8 +64,8 @@ impl Case {
     }
 }
 
-/// A square with knots on its sides and inside, as multiples of 2^-12, so that many lines through knots have middles that are
-/// numbers.
+/// A square with knots on its sides and inside, as multiples of 2^-12, so that many lines through knots have middles that
+/// are numbers.
 pub fn square(seed: u64, inside: usize) -> Vec<[f64; 2]> {
     let mut random = Random::new(seed);
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -100,4 +108,20 @@ pub fn cases(degree: usize) -> Vec<Case> {
     let apart = clamped(&square(5, 25)).pull_apart(&(9..34).collect::<Vec<u32>>()).expect("known knots");
     add("pulled apart", apart.clone(), start(&apart).generalised(), Rule::Delaunay);
     cases
+}
+
+/// Knots far from the origin, and in a narrow strip at an angle, so that all triangles are flat.
+pub fn distorted(degree: usize) -> Vec<Case> {
+    let shapes = [
+        ("far", [[431_250.0, 1.0, 0.0], [4_918_000.5, 0.0, 1.0]]),
+        ("narrow", [[0.0, 1.0, 0.0], [0.0, 0.5, 1e-6]]),
+        ("very narrow", [[0.0, 1.0, 1e-11], [0.0, 0.7, 0.0]]),
+    ];
+    let case = |(name, shape): (&str, [[f64; 3]; 2])| {
+        let points = square(6, 40).into_iter().map(|point| mapped(shape, point)).collect();
+        let knots = Knots::new(points).expect("finite points");
+        let start = config::delaunay(&knots).expect("triangles");
+        Case { shape, ..Case::new(name, knots, start, &Rule::Delaunay, degree) }
+    };
+    shapes.into_iter().map(case).collect()
 }
