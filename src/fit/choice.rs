@@ -47,7 +47,7 @@ pub struct Choice {
 /// Errors: those of [`Equations::solve`], if no `lambda` will do.
 ///
 /// Cost: about 25 factorisations. Source: Craven and Wahba 1979.
-pub fn generalised(equations: &Equations, seed: u64) -> Result<Choice> {
+pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<Choice> {
     let normal = equations.normal();
     search(equations.unit(), |lambda| {
         equations.with_factor(lambda, |factor| {

@@ -21,8 +21,10 @@ use crate::spline::{Basis, Scratch};
 /// Each triangle of knots is divided into the square of this number of triangles for quadrature.
 const DIVISIONS: usize = 4;
 /// A rule of degree 4 on triangles: barycentric coordinate of two of three points, and weight (Dunavant 1985).
-const RULE: [(f64, f64); 2] =
-    [(0.445_948_490_915_964_9, 0.223_381_589_678_011_47), (0.091_576_213_509_770_74, 0.109_951_743_655_321_87)];
+const RULE: [(f64, f64); 2] = [
+    (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
+    (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
+];
 
 /// The matrix E of the thin-plate energy: that of a spline with coefficients c is c'Ec.
 ///
@@ -38,7 +40,9 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
     }
     let domain = basis.domain_corners();
     if polygon::area(&domain) <= 0.0 {
-        return Err(Error::usage("the domain of the knots has no area: pull the knots of their border apart"));
+        return Err(Error::usage(
+            "the domain of the knots has no area: pull the knots of their border apart",
+        ));
     }
     let mut rows = Rows::new(basis.len(), 1);
     if basis.degree() == 2 {

@@ -76,7 +76,8 @@ impl Mesh {
         loop {
             let triangle = &self.triangulation.triangles()[*near as usize];
             let beyond = (0..3).find(|&side| {
-                let [a, b] = [(side + 1) % 3, (side + 2) % 3].map(|i| self.points[triangle.vertices[i] as usize]);
+                let [a, b] =
+                    [(side + 1) % 3, (side + 2) % 3].map(|i| self.points[triangle.vertices[i] as usize]);
                 predicates.orient2d(a, b, x) == Sign::Negative
             });
             match beyond {
@@ -88,7 +89,8 @@ impl Mesh {
 
     /// The value at x of the function that is linear on triangles and has these values at points; nothing outside of the hull.
     ///
-    /// Panics if there are fewer values than points.
+    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if there are fewer values than
+    /// points, or no such triangle.
     #[must_use]
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;

@@ -30,7 +30,7 @@ mod solve;
 mod spread;
 mod symmetric;
 
-pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised};
+pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
 pub use cover::Cover;
 pub use elevations::Elevations;
 pub use energy::thin_plate;

@@ -163,8 +163,7 @@ impl Parts {
             });
             Ok(())
         })?;
-        let rights: Vec<Vec<f64>> =
-            shards.iter_mut().map(|shard| std::mem::take(&mut shard.right)).collect();
+        let rights: Vec<Vec<f64>> = shards.iter_mut().map(|shard| std::mem::take(&mut shard.right)).collect();
         let right = (0..basis.len())
             .flat_map(|function| &rights[function % turns][function / turns * count..][..count])
             .copied()

@@ -41,7 +41,8 @@ impl<V: FnMut(u32, u32)> Search<'_, V> {
                 let (a, b) = (self.boxes[first as usize], self.boxes[second as usize]);
                 let corner = [0, 1].map(|axis| a[0][axis].max(b[0][axis]));
                 let is_common = (0..2).all(|axis| corner[axis] <= a[1][axis].min(b[1][axis]));
-                let is_here = (0..2).all(|axis| part[0][axis] <= corner[axis] && corner[axis] < part[1][axis]);
+                let is_here =
+                    (0..2).all(|axis| part[0][axis] <= corner[axis] && corner[axis] < part[1][axis]);
                 if is_common && is_here {
                     (self.visit)(first, second);
                 }
@@ -67,9 +68,8 @@ impl<V: FnMut(u32, u32)> Search<'_, V> {
             };
             (axis, cut, [among(&|[lower, _]| lower[axis] < cut), among(&|[_, upper]| upper[axis] >= cut)])
         };
-        let is_useful = |(_, _, halves): &(usize, f64, [Vec<u32>; 2])| {
-            halves.iter().all(|half| half.len() <= greatest)
-        };
+        let is_useful =
+            |(_, _, halves): &(usize, f64, [Vec<u32>; 2])| halves.iter().all(|half| half.len() <= greatest);
         let both = [0, 1].map(halved).into_iter().filter(is_useful);
         both.min_by_key(|(_, _, halves)| halves[0].len() + halves[1].len())
     }
@@ -95,7 +95,9 @@ mod tests {
         for_each_pair(&boxes, &mut |a, b| found.push((a, b)));
         found.sort_unstable();
         let overlap = |a: usize, b: usize| {
-            (0..2).all(|axis| boxes[a][0][axis].max(boxes[b][0][axis]) <= boxes[a][1][axis].min(boxes[b][1][axis]))
+            (0..2).all(|axis| {
+                boxes[a][0][axis].max(boxes[b][0][axis]) <= boxes[a][1][axis].min(boxes[b][1][axis])
+            })
         };
         let all = (0..boxes.len()).flat_map(|a| (a + 1..boxes.len()).map(move |b| (a, b)));
         let expected: Vec<(u32, u32)> =

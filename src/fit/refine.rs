@@ -49,7 +49,7 @@ impl Goal {
     }
 
     fn check(&self) -> Result<()> {
-        if !(self.tolerance > 0.0) {
+        if self.tolerance.is_nan() || self.tolerance <= 0.0 {
             return Err(Error::usage(format!("tolerance {}: expected a number above zero", self.tolerance)));
         }
         if self.max_knots < KNOTS_MIN {
@@ -262,7 +262,8 @@ fn settled(known: &[Point2], mut added: Vec<Point2>, room: usize) -> Result<Vec<
             continue;
         }
         let before = added.len();
-        let dropped: Vec<usize> = ends.iter().flatten().filter(|&&end| is_new(end)).map(|&end| end as usize).collect();
+        let dropped: Vec<usize> =
+            ends.iter().flatten().filter(|&&end| is_new(end)).map(|&end| end as usize).collect();
         let mut id = known.len()..;
         added.retain(|_| id.next().is_none_or(|id| !dropped.contains(&id)));
         if added.len() == before {

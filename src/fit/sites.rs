@@ -1,5 +1,6 @@
 //! Interpolation at Greville sites: one value for each function.
 
+use super::mesh::Mesh;
 use crate::error::{Error, ErrorKind, Result};
 use crate::predicates::Point2;
 use crate::spline::{Basis, Scratch};
@@ -46,9 +47,8 @@ impl<'a> Interpolation<'a> {
         check_sites(basis, &functions, &values)?;
         let count = basis.len();
         let pattern = SymbolicSparseColMatRef::new_checked(count, count, &offsets, None, &functions);
-        let singular = || {
-            Error::usage("functions depend on each other at Greville sites: least squares can tell where")
-        };
+        let singular =
+            || Error::usage("functions depend on each other at Greville sites: least squares can tell where");
         let symbolic = SymbolicLu::try_new(pattern).map_err(|_| too_large(count))?;
         let matrix = SparseColMatRef::new(pattern, &values);
         let factors = Lu::try_new_with_symbolic(symbolic, matrix).map_err(|_| singular())?;
@@ -83,6 +83,32 @@ impl<'a> Interpolation<'a> {
         let residual = values.iter().zip(product).map(|(value, found)| value - found).collect();
         coefficients.iter_mut().zip(self.solve(residual)).for_each(|(c, step)| *c += step);
         Ok(coefficients)
+    }
+
+    /// Coefficients of the spline that has, at Greville sites, the values of the function that is linear on the triangles of a mesh
+    /// and has these values at its points.
+    ///
+    /// Errors: another number of values than points; sites outside of the hull of the points, with their number and the place
+    /// of the first; a value that is not finite.
+    pub fn of_points(&self, mesh: &Mesh, values: &[f64]) -> Result<Vec<f64>> {
+        if values.len() != mesh.points().len() {
+            let (found, needed) = (values.len(), mesh.points().len());
+            return Err(Error::usage(format!("{found} values for {needed} points: one each is needed")));
+        }
+        let mut near = 0;
+        let sites: Vec<Point2> = (0..self.basis.len()).map(|site| self.basis.greville(site)).collect();
+        let found: Vec<Option<f64>> =
+            sites.iter().map(|&site| mesh.interpolate(values, site, &mut near)).collect();
+        let mut outside = sites.iter().zip(&found).filter(|(_, value)| value.is_none());
+        if let Some(([x, y], _)) = outside.next() {
+            let what = format!(
+                "{} of {} Greville sites are outside of the hull of the points: use least squares, or knots inside",
+                outside.count() + 1,
+                sites.len()
+            );
+            return Err(Error::usage(what).at(format!("site {x} {y}")));
+        }
+        self.of_values(&found.into_iter().flatten().collect::<Vec<f64>>())
     }
 
     /// Estimate of the condition of the equations in the 1-norm. It is a lower bound, and rarely less than a third of the truth.
@@ -160,7 +186,7 @@ impl<'a> Interpolation<'a> {
         }
         // Higham's second vector, for matrices that the first steps are blind for.
         let last = (count.max(2) - 1) as f64;
-        let alternating = |i: usize| if i % 2 == 0 { 1.0 + i as f64 / last } else { -1.0 - i as f64 / last };
+        let alternating = |i: usize| (1.0 + i as f64 / last) * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let y = self.solve((0..count).map(alternating).collect());
         let norm = y.iter().map(|value| value.abs()).sum::<f64>() * 2.0 / (3.0 * count as f64);
         if norm > best.0 { (norm, greatest(&y)) } else { best }

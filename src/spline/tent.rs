@@ -192,7 +192,7 @@ fn middle(points: &[Point2]) -> (Point2, [f32; 2]) {
 }
 
 /// What the area of x and the edge is multiplied by, unless the edge is a wall.
-fn slope(knots: &[Point2], [a, b]: [Point2; 2]) -> Option<f64> {
+pub(super) fn slope(knots: &[Point2], [a, b]: [Point2; 2]) -> Option<f64> {
     let [first, second] = [a, b].map(|end| knots.iter().position(|&knot| knot == end));
     let others = (0..knots.len()).filter(|&at| Some(at) != first && Some(at) != second);
     let product: f64 = others.map(|at| area(a, b, knots[at])).product();

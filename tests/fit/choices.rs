@@ -62,7 +62,7 @@ fn both_ways_choose_nearly_the_best() {
     let at = |lambda: f64| distance(&basis, &equations.solve(lambda).expect("coefficients"));
     let best = (-40..20).map(|tenth| at(equations.unit() * 10f64.powf(f64::from(tenth) / 5.0)));
     let best = best.fold(f64::INFINITY, f64::min);
-    let generalised = fit::generalised(&equations, 7).expect("a choice");
+    let generalised = fit::generalised_cross_validation(&equations, 7).expect("a choice");
     let folds = Folds::of(&basis, &all, 5, 7, ONE).expect("folds").choose(&basis, &energy).expect("a choice");
     for choice in [&generalised, &folds] {
         let found = at(choice.best.lambda);
@@ -81,7 +81,8 @@ fn folds_predict_what_they_leave_out() {
     let basis = pulled_apart(&grid(3, 0.2));
     let all = noisy(400, 0.2);
     let energy = thin_plate(&basis).expect("an energy");
-    let choice = Folds::of(&basis, &all, 2, 3, ONE).expect("folds").choose(&basis, &energy).expect("a choice");
+    let choice =
+        Folds::of(&basis, &all, 2, 3, ONE).expect("folds").choose(&basis, &energy).expect("a choice");
     assert!(choice.best.score > 0.03 && choice.best.score < 0.08, "{choice:?}");
     assert!(Folds::of(&basis, &all, 1, 3, ONE).is_err());
     let few = &all[..2];

@@ -55,7 +55,11 @@ fn energies_of_quadratic_polynomials_are_exact() {
 #[test]
 fn energies_of_splines_are_those_of_many_points() {
     // Knots on lines, and knots far from lines: where they are nearly on one, second derivatives are great on narrow triangles.
-    for (basis, tolerance) in [(pulled_apart(&grid(4, 0.0)), 0.01), (pulled_apart(&sunflower(20)), 0.01), (cubic(&grid(3, 0.2)), 0.01)] {
+    for (basis, tolerance) in [
+        (pulled_apart(&grid(4, 0.0)), 0.01),
+        (pulled_apart(&sunflower(20)), 0.01),
+        (cubic(&grid(3, 0.2)), 0.01),
+    ] {
         let energy = thin_plate(&basis).expect("an energy");
         let mut random = Random::new(6);
         for _ in 0..3 {

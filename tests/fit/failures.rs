@@ -4,8 +4,8 @@ use super::bases::{ONE, cubic, grid, pulled_apart, scattered};
 use spmesh::config::special::{Features, features};
 use spmesh::config::{self, Knots};
 use spmesh::fit::{
-    Equations, Interpolation, Loss, Mesh, Normal, Observation, for_each_residual, interpolate, least_squares, robust,
-    thin_plate,
+    Equations, Interpolation, Loss, Mesh, Normal, Observation, for_each_residual, interpolate, least_squares,
+    robust, thin_plate,
 };
 use spmesh::spline::Basis;
 
@@ -50,7 +50,10 @@ fn too_few_observations_are_not_enough() {
         assert!((c - basis.greville(function)[0]).abs() < 1e-6);
     }
     let line: Vec<Observation> = (0..50).map(|i| Observation::new([0.02 * f64::from(i), 0.5], 1.0)).collect();
-    assert!(message(least_squares(&basis, &line, 1.0, ONE)).contains("not determined"), "tilted around the line");
+    assert!(
+        message(least_squares(&basis, &line, 1.0, ONE)).contains("not determined"),
+        "tilted around the line"
+    );
 }
 
 #[test]
@@ -119,9 +122,11 @@ fn degrees_that_cannot_be_smoothed_are_refused() {
 fn sites_that_depend_on_each_other_are_named() {
     // A function that is there twice.
     let knots = Knots::new(grid(3, 0.2)).expect("finite points");
-    let special = features(&knots, &Features { corners: (0..16).collect(), ..Features::default() }).expect("knots");
+    let special =
+        features(&knots, &Features { corners: (0..16).collect(), ..Features::default() }).expect("knots");
     let all = special.generate(&config::Rule::Delaunay, 1).expect("configurations");
-    let mut functions = special.functions(&config::links(&special.knots, &all[1]).expect("links")).expect("functions");
+    let mut functions =
+        special.functions(&config::links(&special.knots, &all[1]).expect("links")).expect("functions");
     functions.push(functions[0].clone());
     let basis = Basis::of_functions(&special.knots, &all[1], &functions).expect("a basis");
     let said = message(Interpolation::new(&basis));

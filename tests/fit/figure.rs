@@ -21,8 +21,8 @@ fn errors(basis: &Basis, side: f64, f: fn([f64; 2]) -> f64) -> (f64, f64) {
     let coefficients = interpolation.of_function(|[x, y]| f([x / side, y / side])).expect("a spline");
     let points = (0..101 * 101).map(|i| [f64::from(i % 101) / 100.0, f64::from(i / 101) / 100.0]);
     let errors = points.map(|x| value(basis, &coefficients, x.map(|c| c * side)) - f(x));
-    let (greatest, square) =
-        errors.fold((0f64, 0.0), |(greatest, square), error| (greatest.max(error.abs()), square + error * error));
+    let (greatest, square) = errors
+        .fold((0f64, 0.0), |(greatest, square), error| (greatest.max(error.abs()), square + error * error));
     (greatest, (square / (101.0 * 101.0)).sqrt())
 }
 

@@ -64,5 +64,26 @@ fn values_between_points_are_linear() {
     for outside in [[-1e-9, 0.5], [0.5, 1.1], [3.0, -8.0]] {
         assert_eq!(mesh.interpolate(&values, outside, &mut near), None);
     }
-    assert!(mesh.interpolate(&values, [0.5, 0.5], &mut near).is_some(), "a walk that has left the hull goes on");
+    assert!(
+        mesh.interpolate(&values, [0.5, 0.5], &mut near).is_some(),
+        "a walk that has left the hull goes on"
+    );
+}
+
+#[test]
+fn values_at_sites_come_from_points() {
+    let basis = pulled_apart(&grid(5, 0.2));
+    let plane = |[x, y]: [f64; 2]| 3.0 * x - y + 1.0;
+    let points = grid(9, 0.3);
+    let values: Vec<f64> = points.iter().map(|&point| plane(point)).collect();
+    let interpolation = Interpolation::new(&basis).expect("sites");
+    let mesh = Mesh::of(points.clone()).expect("triangles");
+    let coefficients = interpolation.of_points(&mesh, &values).expect("a spline");
+    assert!(deviation(&basis, &coefficients, 31, plane) < 1e-12);
+    let inner = Mesh::of(points.iter().map(|x| x.map(|c| 0.1 + 0.8 * c)).collect()).expect("triangles");
+    let sites = (0..basis.len()).map(|function| basis.greville(function));
+    let outside = sites.filter(|site| site.iter().any(|&c| !(0.1..=0.9).contains(&c))).count();
+    let said = interpolation.of_points(&inner, &values).expect_err("sites outside").to_string();
+    assert!(said.contains(&format!("{outside} of {}", basis.len())) && said.contains("site 0 0"), "{said}");
+    assert!(interpolation.of_points(&mesh, &values[1..]).is_err());
 }

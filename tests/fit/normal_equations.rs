@@ -15,7 +15,8 @@ fn weighted(count: usize) -> Vec<Observation> {
 fn by_hand(basis: &Basis, all: &[Observation]) -> (Vec<Vec<f64>>, Vec<f64>, f64) {
     let rows = dense(basis, all.iter().map(|one| one.point));
     let count = basis.len();
-    let entry = |i: usize, j: usize| rows.iter().zip(all).map(|(row, one)| one.weight * row[i] * row[j]).sum();
+    let entry =
+        |i: usize, j: usize| rows.iter().zip(all).map(|(row, one)| one.weight * row[i] * row[j]).sum();
     let right = |i: usize| rows.iter().zip(all).map(|(row, one)| one.weight * row[i] * one.value).sum();
     (
         (0..count).map(|i| (0..count).map(|j| entry(i, j)).collect()).collect(),
@@ -43,8 +44,10 @@ fn sums_are_those_of_dense_matrices() {
     let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(error < 1e-9, "{error}");
     let mut by_residuals = 0.0;
-    for_each_residual(&basis, &found, &all, ONE, |one| by_residuals += one.weight * one.residual * one.residual)
-        .expect("residuals");
+    for_each_residual(&basis, &found, &all, ONE, |one| {
+        by_residuals += one.weight * one.residual * one.residual
+    })
+    .expect("residuals");
     assert!((normal.residual_square(&found) - by_residuals).abs() < 1e-12 * square);
 }
 
@@ -52,7 +55,8 @@ fn sums_are_those_of_dense_matrices() {
 fn results_do_not_depend_on_threads() {
     let basis = pulled_apart(&grid(6, 0.2));
     let all = weighted(150_000);
-    let of = |threads| Normal::of(&basis, &all, NonZeroUsize::new(threads).expect("threads")).expect("equations");
+    let of =
+        |threads| Normal::of(&basis, &all, NonZeroUsize::new(threads).expect("threads")).expect("equations");
     let one = of(1);
     for threads in [2, 3, 5] {
         let more = of(threads);

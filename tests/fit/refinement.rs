@@ -34,16 +34,20 @@ fn ridges_take_fewer_knots_than_uniform_ones() {
     let coefficients = least_squares(&grid, &all, 0.0, ONE).expect("coefficients");
     let of_grid = summarise(&grid, &coefficients, &all, ONE).expect("residuals").worst.expect("residuals");
     let found = of_grid.residual.abs();
-    assert!(found > 0.01, "a grid of {} knots has {found}, {knots} knots have {}", (cells + 1).pow(2), last.greatest);
+    assert!(
+        found > 0.01,
+        "a grid of {} knots has {found}, {knots} knots have {}",
+        (cells + 1).pow(2),
+        last.greatest
+    );
 }
 
 #[test]
 fn knots_do_not_depend_on_threads() {
     let all = scattered(5_000, 18, ridge);
     let goal = Goal::new(0.02, 200);
-    let [one, two] = [1, 2].map(|threads| {
-        refine(&all, &goal, NonZeroUsize::new(threads).expect("threads")).expect("a spline")
-    });
+    let [one, two] = [1, 2]
+        .map(|threads| refine(&all, &goal, NonZeroUsize::new(threads).expect("threads")).expect("a spline"));
     assert_eq!(one.rounds, two.rounds);
     assert_eq!(one.coefficients, two.coefficients);
     assert!(one.rounds.iter().all(|round| round.knots <= 200));
@@ -81,13 +85,15 @@ fn areas_without_observations_get_no_knots() {
 #[test]
 fn goals_and_data_that_make_no_sense_are_refused() {
     let good = scattered(100, 8, ridge);
-    let said = |all: &Vec<Observation>, goal: Goal| refine(all, &goal, ONE).expect_err("an error").to_string();
+    let said =
+        |all: &Vec<Observation>, goal: Goal| refine(all, &goal, ONE).expect_err("an error").to_string();
     assert!(said(&good, Goal::new(0.0, 100)).contains("tolerance 0"));
     assert!(said(&good, Goal::new(f64::NAN, 100)).contains("tolerance NaN"));
     assert!(said(&good, Goal::new(1.0, 28)).contains("28 knots"));
     assert!(said(&good, Goal { smoothing: 0.0, ..Goal::new(1.0, 40) }).contains("smoothing 0"));
     assert!(said(&Vec::new(), Goal::new(1.0, 40)).contains("no observations"));
-    let line: Vec<Observation> = good.iter().map(|one| Observation { point: [one.point[0], 7.0], ..*one }).collect();
+    let line: Vec<Observation> =
+        good.iter().map(|one| Observation { point: [one.point[0], 7.0], ..*one }).collect();
     assert!(said(&line, Goal::new(1.0, 40)).contains("no area"));
     let mut bad = good.clone();
     bad[9].value = f64::NAN;

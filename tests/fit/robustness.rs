@@ -57,7 +57,8 @@ fn noise_is_measured_and_kept() {
         })
         .expect("residuals");
     assert!(count >= 600 && wrong <= 3, "{count} rejected, {wrong} of them wrongly");
-    let two = robust(&basis, &all, Loss::Tukey, None, 0.0, NonZeroUsize::new(2).expect("two")).expect("a fit");
+    let two =
+        robust(&basis, &all, Loss::Tukey, None, 0.0, NonZeroUsize::new(2).expect("two")).expect("a fit");
     assert_eq!(fit, two);
 }
 

@@ -42,8 +42,7 @@ fn more_smoothing_means_less_energy_and_greater_residuals() {
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     let mut before = (f64::INFINITY, 0.0);
     for exponent in -8..4 {
-        let coefficients =
-            equations.solve(equations.unit() * 10f64.powi(exponent)).expect("coefficients");
+        let coefficients = equations.solve(equations.unit() * 10f64.powi(exponent)).expect("coefficients");
         let (bending, square) = (energy.form(&coefficients), normal.residual_square(&coefficients));
         assert!(bending < before.0 * (1.0 + 1e-9) && square > before.1 * (1.0 - 1e-9));
         before = (bending, square);

@@ -8,7 +8,8 @@
 use super::Basis;
 use crate::predicates::Point2;
 use crate::spline::area::area;
-use crate::spline::elements::{HullEdge, Share, hull_edges};
+use crate::spline::elements::{Share, hull_edges};
+use crate::spline::tent::slope;
 
 /// Second derivatives of some functions, as far as they come from one element, on a triangle.
 #[derive(Debug, Clone)]
@@ -29,8 +30,9 @@ impl Basis {
             let edges = hull_edges(&knots);
             let apex = apex(&knots, &edges);
             edges.into_iter().filter_map(move |edge| {
-                let corners = [edge.ends[0], edge.ends[1], apex?];
-                let gradient = gradient_on(&edge)?;
+                let corners = [edge[0], edge[1], apex?];
+                let slope = slope(&knots, edge)?;
+                let gradient = gradient_of_area(edge).map(|part| part * slope);
                 let is_flat = area(corners[0], corners[1], corners[2]) <= 0.0;
                 (!is_flat).then(|| Bend { corners, hessians: self.hessians(element, gradient) })
             })
@@ -72,29 +74,21 @@ impl Basis {
 }
 
 /// The point that is a corner of all triangles.
-fn apex(knots: &[Point2], edges: &[HullEdge]) -> Option<Point2> {
+fn apex(knots: &[Point2], edges: &[[Point2; 2]]) -> Option<Point2> {
     if edges.len() == 3 {
         let mut rest = knots.to_vec();
         for edge in edges {
-            let at = rest.iter().position(|&knot| knot == edge.ends[0])?;
+            let at = rest.iter().position(|&knot| knot == edge[0])?;
             rest.swap_remove(at);
         }
         return rest.first().copied();
     }
-    let [p, q] = edges.first()?.ends;
-    let r = edges.iter().find(|edge| edge.ends[0] == q)?.ends[1];
-    let s = edges.iter().find(|edge| edge.ends[0] == r)?.ends[1];
+    let &[p, q] = edges.first()?;
+    let r = edges.iter().find(|edge| edge[0] == q)?[1];
+    let s = edges.iter().find(|edge| edge[0] == r)?[1];
     let (of_p, of_r) = (area(p, q, s), area(r, s, q));
     let share = of_p / (of_p + of_r);
     Some([0, 1].map(|axis| p[axis] + share * (r[axis] - p[axis])))
-}
-
-/// The gradient of the element next to an edge of its hull: none if the element jumps there.
-fn gradient_on(edge: &HullEdge) -> Option<Point2> {
-    let &[c, d] = &edge.others[..] else { return None };
-    let [a, b] = edge.ends;
-    let product = area(a, b, c) * area(a, b, d);
-    (product != 0.0).then(|| gradient_of_area(edge.ends).map(|part| part / product))
 }
 
 /// The gradient of `area(x, a, b)` by x.
