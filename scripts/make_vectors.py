@@ -17,7 +17,8 @@ UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
          "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7,
-         "configurations": 8}
+         "configurations": 8, "splines": 9}
+FUNCTIONS = ("edge", "vertex", "tent", "crease", "face")
 INF, NAN = float("inf"), float("nan")
 
 
@@ -232,6 +233,22 @@ class Vector:
                     for _, boundaries in groups for b in boundaries]
         return self.block(b"CONF", payload)
 
+    def functions(self, *functions):
+        """Of a name, or a code; knots, and terms of two knots and a factor as text."""
+        payload = []
+        for name, kind, terms in functions:
+            code = FUNCTIONS.index(name) if name in FUNCTIONS else name
+            self.lines.append(" ".join(["function %s" % name] + [str(v + 1) for v in kind]))
+            self.lines += ["term %d %d %s" % (p + 1, q + 1, number(factor)) for p, q, factor in terms]
+            words = (code, len(terms)) + tuple(kind)
+            payload.append((struct.pack("<%dI" % len(words), *words), "%s, number of terms, knots" % name))
+            payload += [(struct.pack("<2Id", p, q, float(factor)), "two knots, factor") for p, q, factor in terms]
+        return self.block(b"FUNC", payload)
+
+    def coefficients(self, *numbers):
+        self.lines += ["coefficient " + number(value) for value in numbers]
+        return self.block(b"COEF", [(struct.pack("<d", float(value)), "coefficient") for value in numbers])
+
     def end(self, points=0, cells=0, vertices=0, simplices=0, merged=0, residual=0, walls=0, **damage):
         totals = dict(points=points, cells=cells, vertices=vertices, simplices=simplices, merged=merged,
                       residual=residual, walls=walls)
@@ -277,6 +294,8 @@ CONFIGURATIONS = dict(kind="configurations", grid=HALF)
 KNOTS = [(0, 0), (8, 0), (0, 8), (2, 2)]
 DEGREE0 = ((), [(0, 1, 3), (1, 2, 3), (0, 3, 2), (1, 0), (2, 1), (0, 2)])
 DEGREE1 = [((0,), [(1, 3), (3, 2)]), ((1,), [(2, 3), (3, 0)]), ((2,), [(0, 3), (3, 1)]), ((3,), [(0, 1, 2)])]
+SPLINES = dict(kind="splines", grid=HALF)
+PAIRS = [("edge", pair, [pair + ("1",)]) for pair in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))]
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
 
 
@@ -386,6 +405,17 @@ def passing():
     yield "configurations-copies", "Knots at one place, with heights; a degree without configurations", Vector(
         "configurations", elevation=1).points(("0", "0", "1"), ("0", "0", "2"), ("1", "0", "0"), ("0", "1", "0")).configurations(
         0, ((), [(0, 1, 2), (0, 3, 1), (0, 2)])).configurations(3).end(4, simplices=3)
+    yield "configurations-functions", "Functions of every kind, in two blocks", Vector(**CONFIGURATIONS).points(
+        *KNOTS).configurations(1, *DEGREE1).functions(("edge", (0, 1), [(0, 1, "1")]), ("edge", (0, 3), [(0, 3, "0.5")]), (
+            "vertex", (2,), [(0, 2, "0.1"), (1, 2, "-1e-7"), (2, 3, "1")])).functions(
+        ("tent", (1, 3), [(1, 3, "1")]), ("crease", (0, 1, 3), [(0, 3, "1"), (1, 3, "1")]),
+        ("face", (0, 1, 3, 2), [(0, 1, "0.5"), (0, 3, "0.5")])).end(4, vertices=6, simplices=7)
+    yield "splines", "A spline of six functions of its own", Vector(**SPLINES).points(*KNOTS).configurations(
+        1, *DEGREE1, standing=1).functions(*PAIRS).coefficients("1", "-2.5", "0", "1e300").coefficients(
+        "0.1", "-5e-324").end(4, vertices=6, simplices=7, residual=6)
+    yield "splines-cubic", "A spline of the B-splines of links, with heights of knots", Vector(
+        "splines", elevation=1).points(("0", "0", "1"), ("8", "0", "2"), ("0", "8", "3"), ("2", "2", "4")).configurations(
+        2, ((1, 2), [(0, 3)])).coefficients("3", "4").end(4, simplices=1, residual=2)
 
 
 def failing_headers():
@@ -764,6 +794,44 @@ def failing_configurations(raw):
     yield "end-configurations-header", "another number of points", Vector(**CONFIGURATIONS, points=5).points(
         *KNOTS).end(4)
     yield "configurations-no-end", "truncated", knots().configurations(0, DEGREE0)
+
+    functions = lambda *all: knots().configurations(1, *DEGREE1).functions(*all).end(4, vertices=len(all), simplices=7)
+    one = lambda *terms: functions(("edge", (0, 1), list(terms)))
+    cut = lambda data: knots().block(b"FUNC", raw(data)).end(4, vertices=1)
+    yield "functions-short", "cut off at the end", cut(bytes(7))
+    yield "functions-cut", "cut off at the end", cut(struct.pack("<5I", 0, 1, 0, 1, 0))
+    yield "functions-terms-huge", "cut off at the end", cut(struct.pack("<4I", 0, 2**32 - 1, 0, 1))
+    yield "functions-kind", "a function of kind 5", functions((5, (), [(0, 1, "1")]))
+    yield "function-unknown", "is not of numbers of 4 knots", functions(("vertex", (4,), [(0, 1, "1")]))
+    yield "function-repeats-knot", "repeats a knot", functions(("edge", (1, 1), [(0, 1, "1")]))
+    yield "functions-not-sorted", "does not follow", functions(("edge", (0, 2), [(0, 1, "1")]), ("edge", (0, 1), [(0, 1, "1")]))
+    yield "functions-kinds-not-sorted", "does not follow", functions(
+        ("tent", (0, 2), [(0, 1, "1")]), ("edge", (0, 3), [(0, 1, "1")]))
+    yield "function-twice", "does not follow", functions(*[("edge", (0, 2), [(0, 1, "1")])] * 2)
+    yield "function-empty", "has no term", one()
+    yield "term-unknown", "increasing numbers of 4 knots", one((0, 4, "1"))
+    yield "term-not-increasing", "increasing numbers of 4 knots", one((1, 0, "1"))
+    yield "term-repeats-knot", "increasing numbers of 4 knots", one((1, 1, "1"))
+    yield "terms-not-sorted", "do not follow each other", one((0, 2, "1"), (0, 1, "1"))
+    yield "terms-twice", "do not follow each other", one((0, 2, "1"), (0, 2, "1"))
+    yield "factor-zero", "has the factor", one((0, 2, "0"))
+    yield "factor-nan", "has the factor", one((0, 2, "nan"))
+    yield "functions-before-configurations", "may stand here", knots().functions(("edge", (0, 1), [(0, 1, "1")])).configurations(
+        1, *DEGREE1).end(4, vertices=1, simplices=7)
+    yield "coefficients-in-configurations", "may stand here", knots().coefficients("1").end(4, residual=1)
+    yield "end-functions", "END states", knots().functions(("edge", (0, 1), [(0, 1, "1")])).end(4)
+    spline = lambda *numbers: Vector(**SPLINES).points(*KNOTS).configurations(1, *DEGREE1).functions(
+        *PAIRS).coefficients(*numbers).end(4, vertices=6, simplices=7, residual=len(numbers))
+    yield "coefficients-few", "5 coefficients of 6 functions", spline(*["1"] * 5)
+    yield "coefficients-many", "7 coefficients of 6 functions", spline(*["1"] * 7)
+    yield "coefficients-none", "0 coefficients of 0 functions", Vector(**SPLINES).points(*KNOTS).end(4)
+    yield "coefficients-infinite", "is not finite", spline(*["1"] * 5 + ["inf"])
+    yield "coefficients-bytes", "no multiple of 8", Vector(**SPLINES).points(*KNOTS).block(
+        b"COEF", raw(bytes(12))).end(4, residual=1)
+    yield "coefficients-end", "END states", Vector(**SPLINES).points(*KNOTS).coefficients("1").end(4, residual=2)
+    yield "splines-two-degrees", "splines have one degree", Vector(**SPLINES).points(*KNOTS).configurations(
+        0, DEGREE0).configurations(1, *DEGREE1).coefficients("1").end(4, simplices=13, residual=1)
+    yield "splines-tree", "stream of splines has no finalization tree", Vector(**SPLINES, tree=QUADTREE).end()
 
 
 def files():

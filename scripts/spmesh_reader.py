@@ -66,8 +66,12 @@ KINDS = {
     5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
     6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
     7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
-    8: ("configurations", (2,), ((b"PNTS",), (b"CONF",))),
+    8: ("configurations", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",))),
+    9: ("splines", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",), (b"COEF",))),
 }
+
+# Kinds of functions of splines: name, number of knots.
+FUNCTIONS = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
 
 
 class Header:
@@ -96,7 +100,8 @@ class Header:
         self.has_elevation = elevation == 1
         self.axes = self.dims + elevation
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
-        self.is_mesh = self.kind not in ("points", "points in 4 dimensions", "configurations")
+        self.has_knots = self.kind in ("configurations", "splines")
+        self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
         (self.points,) = struct.unpack_from("<Q", data, 24)
         self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
         if self.is_integer:
@@ -108,8 +113,8 @@ class Header:
         self.check_region()
         self.chunked = flags & 8 != 0
         require(
-            self.kind != "configurations" or not self.tree,
-            "a stream of configurations has no finalization tree",
+            not self.has_knots or not self.tree,
+            "a stream of %s has no finalization tree" % self.kind,
         )
         require(
             not self.chunked or (self.tree and not self.is_mesh),
@@ -355,7 +360,7 @@ class Stream:
         self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
         self.live = {}
         self.last, self.words, self.neighbour = None, [], -1
-        self.degree = self.group = self.boundary = None
+        self.degree = self.group = self.boundary = self.function = None
         self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
@@ -406,6 +411,8 @@ class Stream:
             b"CEL4": self.cells4,
             b"SIM4": self.simplices4,
             b"CONF": self.configurations,
+            b"FUNC": self.functions,
+            b"COEF": self.coefficients,
             b"END ": self.end,
         }
         require(tag in readers, "unknown block tag")
@@ -599,6 +606,10 @@ class Stream:
             last, known = self.degree
             require(degree >= last, "configurations of degree %d after those of %d" % (degree, last))
             require(
+                degree == last or self.header.kind != "splines",
+                "configurations of degree %d after those of %d: splines have one degree" % (degree, last),
+            )
+            require(
                 degree > last or standing == known,
                 "the configurations of degree %d change their standing" % degree,
             )
@@ -646,6 +657,45 @@ class Stream:
         self.total["simplices"] += 1
         self.text.line(("line" if infinite else "on") + "".join([" %d" % (knot + 1) for knot in ends]))
 
+    def functions(self, payload):
+        at = 0
+        while at < len(payload):
+            at = self.one_function(payload, at)
+
+    def one_function(self, payload, at):
+        cut = "a function is cut off at the end of its block"
+        require(at + 8 <= len(payload), cut)
+        code, count = struct.unpack_from("<2I", payload, at)
+        require(code < len(FUNCTIONS), "a function of kind %d, expected 0 to %d" % (code, len(FUNCTIONS) - 1))
+        name, corners = FUNCTIONS[code]
+        at += 8
+        require(at + 4 * corners + 16 * count <= len(payload), cut)
+        kind = struct.unpack_from("<%dI" % corners, payload, at)
+        at += 4 * corners
+        terms = list(struct.iter_unpack("<2Id", payload[at : at + 16 * count]))
+        what, knots = "function %s %r " % (name, list(kind)), self.total["points"]
+        require(max(kind) < knots, what + "is not of numbers of %d knots" % knots)
+        require(len(set(kind)) == corners, what + "repeats a knot")
+        require(self.function is None or self.function < (code, kind), what + "does not follow %r" % (self.function,))
+        require(terms, what + "has no term")
+        for p, q, factor in terms:
+            require(p < q < knots, what + "has a term of no increasing numbers of %d knots" % knots)
+            require(math.isfinite(factor) and factor != 0, what + "has the factor %r" % factor)
+        require(is_increasing([term[:2] for term in terms]), what + "has terms that do not follow each other")
+        self.function = (code, kind)
+        self.total["vertices"] += 1
+        self.text.line("function " + name + "".join([" %d" % (knot + 1) for knot in kind]))
+        for p, q, factor in terms:
+            self.text.line("term %d %d %s" % (p + 1, q + 1, decimal(factor)))
+        return at + 16 * count
+
+    def coefficients(self, payload):
+        require(len(payload) % 8 == 0, "coefficients in %d bytes, which is no multiple of 8" % len(payload))
+        for (number,) in struct.iter_unpack("<d", payload):
+            require(math.isfinite(number), "the coefficient %r is not finite" % number)
+            self.total["residual"] += 1
+            self.text.line("coefficient " + decimal(number))
+
     def end(self, payload):
         require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))
         stated = dict(zip(self.total, struct.unpack("<7Q", payload)))
@@ -661,6 +711,11 @@ class Stream:
         require(
             self.labels in (0, counted["vertices"]),
             "END: %d labels of %d vertices, expected none, or one for each" % (self.labels, counted["vertices"]),
+        )
+        functions, coefficients = counted["vertices"], counted["residual"]
+        require(
+            self.header.kind != "splines" or coefficients > 0 and functions in (0, coefficients),
+            "END: %d coefficients of %d functions: one each is needed" % (coefficients, functions),
         )
         require(not self.words, "END: the last cell is cut off after %d words" % len(self.words))
         require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))

@@ -27,6 +27,7 @@ pub mod output;
 pub mod predicates;
 mod prefetch;
 mod random;
+pub mod raster;
 pub mod reduce;
 pub mod sink;
 pub mod source;

@@ -2,7 +2,7 @@
 
 use std::ffi::CString;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::io::{self, BufWriter, IsTerminal, Seek, SeekFrom, Write};
 use std::os::fd::{AsFd, AsRawFd};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
@@ -125,6 +125,17 @@ impl Write for Output {
 
     fn flush(&mut self) -> io::Result<()> {
         self.writer().flush().map_err(|e| self.named(e))
+    }
+}
+
+impl Seek for Output {
+    /// Errors: a pipe or a terminal; everything else that is a file can be written at any place.
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let sought = match &mut self.sink {
+            Sink::InPlace(file) | Sink::Unnamed { file, .. } => file.seek(to),
+            Sink::Named { file, .. } => file.seek(to),
+        };
+        sought.map_err(|e| self.named(e))
     }
 }
 

@@ -28,6 +28,13 @@ impl Random {
             }
         }
     }
+
+    /// Puts items in random order, each as likely as the others (Fisher and Yates; Durstenfeld, 1964).
+    pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last as u64 + 1) as usize);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -41,5 +48,18 @@ mod tests {
         (0..6000).for_each(|_| counts[random.below(6) as usize] += 1);
         assert!(counts.iter().all(|count| (850..1150).contains(count)), "{counts:?}");
         assert_eq!(Random::new(1).below(1), 0);
+    }
+
+    #[test]
+    fn every_order_is_about_as_frequent() {
+        let mut random = Random::new(3);
+        let mut counts = std::collections::BTreeMap::new();
+        for _ in 0..6000 {
+            let mut items = [0, 1, 2];
+            random.shuffle(&mut items);
+            *counts.entry(items).or_insert(0) += 1;
+        }
+        assert_eq!(counts.len(), 6);
+        assert!(counts.values().all(|count| (850..1150).contains(count)), "{counts:?}");
     }
 }

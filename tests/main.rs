@@ -22,6 +22,7 @@ mod output;
 mod pipelines;
 mod points4;
 mod programs;
+mod raster;
 mod reduction;
 mod reference;
 mod sources;

@@ -48,6 +48,8 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell))?,
             Event::Simplices4(simplices) => writer.simplices4(simplices)?,
             Event::Configurations(block) => writer.configurations(block)?,
+            Event::Functions(functions) => writer.functions(functions)?,
+            Event::Coefficients(coefficients) => writer.coefficients(coefficients)?,
             Event::End(totals) => return writer.end(totals.points, totals.merged),
         }
     }
@@ -61,6 +63,8 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
         match (result.last_mut(), event) {
             (Some(Event::Points(before)), Event::Points(points)) => before.extend(points),
             (Some(Event::Cells(before)), Event::Cells(cells)) => before.extend(cells),
+            (Some(Event::Functions(before)), Event::Functions(functions)) => before.extend(functions),
+            (Some(Event::Coefficients(before)), Event::Coefficients(numbers)) => before.extend(numbers),
             (Some(Event::Labels(before)), Event::Labels(labels)) => before.extend(labels),
             (Some(Event::ResidualPoints(before)), Event::ResidualPoints(points)) => before.extend(points),
             (Some(Event::Walls(before)), Event::Walls(walls)) => before.extend(walls),

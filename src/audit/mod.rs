@@ -113,7 +113,7 @@ impl Audit {
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
             }
-            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 | Kind::Configurations => {
+            Kind::Points4 | Kind::Cells4 | Kind::Simplices4 | Kind::Configurations | Kind::Splines => {
                 let kind = header.kind.name();
                 let message =
                     format!("streams of kind {kind} have an audit of their own, or nothing to prove");

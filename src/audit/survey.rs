@@ -92,6 +92,8 @@ impl Survey {
             Event::Walls(walls) => self.totals.walls += walls.len() as u64,
             Event::Points4(_) | Event::Cells4(_) | Event::Simplices4(_) => self.four.event(event),
             Event::Configurations(block) => self.configurations.block(block),
+            Event::Functions(functions) => self.totals.vertices += functions.len() as u64,
+            Event::Coefficients(numbers) => self.totals.residual_points += numbers.len() as u64,
             Event::End(totals) => self.totals = *totals,
         }
         Ok(())

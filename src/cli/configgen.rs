@@ -2,16 +2,17 @@
 
 mod report;
 
-use std::path::PathBuf;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
-use crate::configgen::{self, Border, Flips, Made, Options, Places, RuleName};
+use crate::configgen::{self, Border, BoxName, Flips, Made, Options, Places, Purpose, RuleName, Sites};
 use crate::error::{Error, ErrorKind, Result};
 use crate::output::Output;
-use crate::source::read_values;
+use crate::source::{name_of, read_features, read_patches, read_values};
 use crate::system;
 
 const TOOL: &str = "configgen";
@@ -28,6 +29,10 @@ Examples:
     configgen --degree 1 --rule data knots.xyz --centroids -o centroids.spm
   From a triangulation with 100 random flips, by random triangulations of links:
     configgen --degree 3 --flip random:100:7 --rule random --seed 7 knots.txt -o random.spm
+  With a crease along a ridge of knots, and a sharp corner:
+    printf 'crease 4 8 15 16\\ncorner 23\\n' > sharp.txt; configgen --features sharp.txt knots.txt -o sharp.spm
+  Box splines on two grids that meet at an angle; lines are X Y, two steps, and the numbers of cells:
+    printf '0 0  1 0  0 1  8 6\\n8 0  1 1  0 1  8 6\\n' > grids.txt; configgen --patches grids.txt -o boxes.spm
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -41,8 +46,16 @@ give projective configurations; min-weight; ear; fan; random; aligned:ANGLE (edg
 counterclockwise from the x axis); data (edges along which values differ least or, where they are gradients, slopes). Values \
 are elevations, or those of --values.
 
+Special configurations of degree 1 are for quadratic splines. --box zp cuts the links of knots amid four unit squares so that \
+half the sum of the B-splines of the sides of a square is a box spline. --patches does the same on grids, with the knots of \
+the input, if there is one, between them. --features reads lines of a word and ids: corner (splines interpolate there), crease \
+(sharp up to its ends, which are interpolated), smooth-crease (smooth at its ends) or linear (values along it are \
+interpolated linearly). Segments between consecutive ids become edges of the triangulation; they may touch at knots only. \
+--stats counts the functions that splines are made of.
+
 Knots are numbered in the order of the input, from 0. Knots at one place are repeated knots, which lowers the smoothness of \
-splines there; spdelaunay2d makes one of them. Copies that --boundary and --pull-apart add come last.
+splines there; spdelaunay2d makes one of them. Knots that are added come last: copies, then those amid the edges of smooth \
+creases. Knots of --patches come first, row by row.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed or truncated \
 input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
@@ -58,8 +71,8 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    /// Files of points, read as one input, or one triangle mesh; - is stdin
-    #[arg(value_name = "FILE", default_value = "-")]
+    /// Files of points, read as one input, or one triangle mesh; - is stdin [default: -, or none with --patches]
+    #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
     /// Where the configurations go; - is stdout
@@ -92,6 +105,19 @@ pub struct Flags {
     /// other, so that splines of degree 2 interpolate there
     #[arg(long, value_name = "KNOTS")]
     pull_apart: Option<Places>,
+
+    /// Make box splines where knots are on the integer grid, or on --patches: zp, and how squares and links are split: :falling
+    /// for the other diagonal of squares, :upright for that of links
+    #[arg(long = "box", value_name = "zp[:falling][:upright]", conflicts_with = "features")]
+    boxes: Option<BoxName>,
+
+    /// Grids with box splines: lines X Y UX UY VX VY COLUMNS ROWS; - is stdin
+    #[arg(long, value_name = "FILE", conflicts_with = "features")]
+    patches: Option<PathBuf>,
+
+    /// Sharp corners, creases and linear elements: lines of corner, crease, smooth-crease or linear, and ids; - is stdin
+    #[arg(long, value_name = "FILE")]
+    features: Option<PathBuf>,
 
     /// Seed of --rule random, and of flips without one of their own
     #[arg(long, value_name = "SEED", default_value_t = 1)]
@@ -134,7 +160,7 @@ impl Flags {
         // An output that cannot be is better known before the work.
         let mut output = Output::create(&self.output, true)?;
         let mut progress = Progress::new(&self.common, "reading", None);
-        let sites = configgen::read_sites(&self.inputs, |points| progress.set(points))?;
+        let sites = self.sites(|points| progress.set(points))?;
         let read_time = started.elapsed();
         drop(progress);
         sites.notices.iter().for_each(|text| self.notice(text));
@@ -154,14 +180,23 @@ impl Flags {
         if self.values.is_some() && !self.rule.needs_values() {
             return Err(Error::usage("--values is for the rules lifted:heights, lifted:weights and data"));
         }
-        let is_stdin = |path: &PathBuf| path.as_os_str() == "-";
-        if self.values.as_ref().is_some_and(is_stdin) && self.inputs.iter().any(is_stdin) {
-            return Err(Error::usage("knots and values cannot both come from stdin"));
+        let files =
+            [("--values", &self.values), ("--patches", &self.patches), ("--features", &self.features)];
+        let mut of_stdin = files.iter().filter(|(_, path)| path.as_deref().is_some_and(is_stdin));
+        if let Some((flag, _)) = of_stdin.next()
+            && (of_stdin.next().is_some() || self.inputs().iter().any(|path| is_stdin(path)))
+        {
+            return Err(Error::usage(format!(
+                "knots, or another file, and {flag} cannot both come from stdin"
+            )));
         }
-        let values = self.values.as_ref().map(|path| {
-            let (input, name) = open_input(path)?;
-            read_values(input).map_err(|e| e.of_input(name))
-        });
+        let values = read(self.values.as_ref(), read_values)?;
+        let boxes = self.boxes.unwrap_or_default();
+        let purpose = match (read(self.patches.as_ref(), read_patches)?, &self.boxes) {
+            (Some(patches), _) => Some(Purpose::Patches(patches, boxes.0)),
+            (None, Some(_)) => Some(Purpose::Boxes(boxes.0)),
+            (None, None) => read(self.features.as_ref(), read_features)?.map(Purpose::Features),
+        };
         Ok(Options {
             degree: self.degree as usize,
             rule: self.rule,
@@ -173,8 +208,24 @@ impl Flags {
                 Some(BorderFlag::PulledApart) => Border::PulledApart,
             },
             pull_apart: self.pull_apart.clone(),
-            values: values.transpose()?,
+            purpose,
+            values,
         })
+    }
+
+    /// What is read: stdin, if nothing else is said and knots are needed.
+    fn inputs(&self) -> Vec<PathBuf> {
+        match self.inputs.is_empty() && self.patches.is_none() {
+            true => vec!["-".into()],
+            false => self.inputs.clone(),
+        }
+    }
+
+    fn sites(&self, done: impl FnMut(u64)) -> Result<Sites> {
+        match (&self.inputs[..], &self.patches) {
+            ([], Some(patches)) => Ok(Sites::none(name_of(patches))),
+            _ => configgen::read_sites(&self.inputs(), done),
+        }
     }
 
     fn write(&self, made: &Made, output: &mut Output) -> Result<()> {
@@ -187,4 +238,17 @@ impl Flags {
     fn notice(&self, message: &str) {
         notice(TOOL, &self.common, message);
     }
+}
+
+fn is_stdin(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// What `parse` makes of a file, if there is one.
+fn read<T>(path: Option<&PathBuf>, parse: impl FnOnce(Box<dyn Read>) -> Result<T>) -> Result<Option<T>> {
+    let parsed = path.map(|path| {
+        let (input, name) = open_input(path)?;
+        parse(input).map_err(|e| e.of_input(name))
+    });
+    parsed.transpose()
 }

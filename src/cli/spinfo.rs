@@ -158,7 +158,7 @@ impl Proof {
         if header.kind.is_4d() && !flags.count_violations && flags.points.is_empty() {
             return Ok(Proof::Diagram(Box::new(StreamAudit::new(header.kind)?)));
         }
-        if header.kind == Kind::Configurations && !flags.count_violations && flags.points.is_empty() {
+        if header.kind.has_knots() && !flags.count_violations && flags.points.is_empty() {
             return Ok(Proof::Configurations(Box::new(config_audit::StreamAudit::new(header))));
         }
         if !flags.count_violations {

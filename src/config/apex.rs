@@ -1,5 +1,6 @@
 //! The rules at work: each picks the apex of a triangle on an edge, which leaves a polygon on either side of it.
 
+use super::insertion::LARGE;
 use super::polygon::Triangulator;
 use super::rule::Rule;
 use crate::error::Result;
@@ -10,6 +11,9 @@ impl<P: Predicates2> Triangulator<'_, P> {
     /// Triangulates a simple polygon of at least four vertices.
     pub(super) fn by_rule(&mut self) -> Result<()> {
         match self.rule {
+            Rule::Delaunay | Rule::Lifted(_) if self.is_regular && self.polygon.len() >= LARGE => {
+                self.insert_vertices()
+            }
             Rule::Delaunay | Rule::Lifted(_) if self.is_regular => self.split(Self::empty_apex),
             Rule::Delaunay | Rule::Lifted(_) => self.split(Self::constrained_apex),
             Rule::Random(seed) => {
@@ -27,7 +31,10 @@ impl<P: Predicates2> Triangulator<'_, P> {
     }
 
     /// Splits the polygon along the sides of triangles, of which `apex` gives the third corner.
-    fn split(&mut self, mut apex: impl FnMut(&mut Self, usize, usize) -> Option<usize>) -> Result<()> {
+    pub(super) fn split(
+        &mut self,
+        mut apex: impl FnMut(&mut Self, usize, usize) -> Option<usize>,
+    ) -> Result<()> {
         self.stack.clear();
         self.stack.push((0, self.polygon.len() - 1));
         while let Some((i, j)) = self.stack.pop() {
@@ -42,7 +49,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
 
     /// The place whose circle with the edge has no other vertex inside, whatever is in the way: nothing is, where all
     /// triangles are those of the lift.
-    fn empty_apex(&mut self, i: usize, j: usize) -> Option<usize> {
+    pub(super) fn empty_apex(&mut self, i: usize, j: usize) -> Option<usize> {
         self.best_apex(i, j, |_, _| true)
     }
 

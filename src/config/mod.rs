@@ -7,8 +7,8 @@
 //! 2021); [`Rule::Delaunay`] gives the Delaunay configurations. What theory promises of links is asserted in every step.
 //!
 //! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the arrays, `gathering`
-//! the way from configurations to links, `polygon`, `rule` and `apex` that from links to configurations. [`special`] sets up
-//! starts and links for splines of a purpose.
+//! the way from configurations to links, `polygon`, `rule`, `apex` and `insertion` that from links to configurations.
+//! [`special`] sets up starts and links for splines of a purpose.
 
 mod apex;
 mod border;
@@ -16,6 +16,7 @@ mod centroids;
 mod configurations;
 mod copies;
 mod gathering;
+mod insertion;
 mod knots;
 mod lift;
 mod plane;
@@ -51,8 +52,8 @@ use polygon::Triangulator;
 /// [`crate::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from elsewhere); a link with more vertices than the rule
 /// takes.
 ///
-/// Cost: O(c k log c) for c configurations, and what the rule costs: O(m²) per link of m vertices for circles and ears, O(m³)
-/// for others; links have about 6 vertices.
+/// Cost: O(c k log c) for c configurations, and what the rule costs per link of m vertices: O(m) expected decisions for
+/// [`Rule::Delaunay`] and [`Rule::Lifted`] all the way from their starts, O(m³) for others; links have about 6 vertices.
 pub fn link_triangulate(
     knots: &Knots,
     configurations: &Configurations,

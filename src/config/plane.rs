@@ -43,15 +43,23 @@ impl<'a, P: Predicates2> Plane<'a, P> {
     /// Domain: four distinct knots, abc counterclockwise in P(e).
     #[inline]
     pub(super) fn is_inside(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
+        if self.lift.is_none() && !self.knots.has_copies() {
+            let [a, b, c, d] = [a, b, c, d].map(|id| self.knots.at(id));
+            return self.predicates.incircle_perturbed(a, b, c, d) == Sign::Positive;
+        }
+        self.is_beyond([a, b, c], d)
+    }
+
+    /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others on which it is
+    /// below if abc is counterclockwise. If they are clockwise, this is above; and one side of a vertical plane if they lie on a
+    /// line. False for four on a line.
+    pub(super) fn is_beyond(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
+        let ids = [a, b, c, d];
         let sign = match self.lift {
-            Some(lift) => lift.sign(self.knots, [a, b, c, d]),
-            None if !self.knots.has_copies() => {
-                let [a, b, c, d] = [a, b, c, d].map(|id| self.knots.at(id));
-                return self.predicates.incircle_perturbed(a, b, c, d) == Sign::Positive;
-            }
-            None => self.sign_of_circle([a, b, c, d]),
+            Some(lift) => lift.sign(self.knots, ids),
+            None => self.sign_of_circle(ids),
         };
-        let sign = if sign == Sign::Zero { self.tie([a, b, c, d]) } else { sign };
+        let sign = if sign == Sign::Zero { self.tie(ids) } else { sign };
         sign == Sign::Positive
     }
 

@@ -1,5 +1,6 @@
 //! How many configurations and links there are, by kind.
 
+use crate::config::special::{Function, FunctionKind};
 use crate::config::{self, Configurations, Knots};
 use crate::error::Result;
 use crate::predicates::{Predicates2, Sign, TotalPredicates};
@@ -58,5 +59,38 @@ impl DegreeCounts {
             counts.link_vertices_max = counts.link_vertices_max.max(link.polygon.len() as u64);
         }
         Ok(counts)
+    }
+}
+
+/// Counts of the functions that quadratic splines for a purpose are made of, by [`FunctionKind`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FunctionCounts {
+    /// B-splines of edges.
+    pub edges: u64,
+    /// Tents of knots.
+    pub vertices: u64,
+    /// Tents of edges, and what is between a knot that is pulled apart and others.
+    pub tents: u64,
+    /// Those of creases with smooth ends.
+    pub creases: u64,
+    /// Box splines.
+    pub faces: u64,
+}
+
+impl FunctionCounts {
+    /// Counts functions.
+    #[must_use]
+    pub fn of(functions: &[Function]) -> FunctionCounts {
+        let mut counts = FunctionCounts::default();
+        for function in functions {
+            *match function.kind {
+                FunctionKind::Edge(_) => &mut counts.edges,
+                FunctionKind::Vertex(_) => &mut counts.vertices,
+                FunctionKind::Tent(_) => &mut counts.tents,
+                FunctionKind::Crease(_) => &mut counts.creases,
+                FunctionKind::Face(_) => &mut counts.faces,
+            } += 1;
+        }
+        counts
     }
 }

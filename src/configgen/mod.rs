@@ -1,25 +1,30 @@
 //! `configgen`: knots in, configurations of all degrees up to one out.
 //!
 //! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of them, `start` makes
-//! of both what [`crate::config`] needs; `write` and `mesh` write it, and
-//! `read` has it back.
+//! of both what [`crate::config`] needs, `purpose` that what special configurations need; `write` and `mesh` write it, and `read`
+//! has it back.
 
 mod counts;
 mod mesh;
 mod options;
+mod purpose;
 pub mod read;
 mod sites;
 mod start;
 pub mod write;
 
-pub use counts::DegreeCounts;
+pub use counts::{DegreeCounts, FunctionCounts};
 pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
+pub use purpose::{BoxName, Purpose};
 pub use sites::{Frame, Sites, read_sites};
 
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use self::start::{Beginning, Setup};
+use self::write::Content;
+use crate::config::special::{self, Function};
 use crate::config::{self, CentroidMesh, Configurations, Knots};
 use crate::error::Result;
 use crate::stream::Header;
@@ -33,6 +38,9 @@ pub struct Made {
     pub frame: Frame,
     /// Configurations of the degrees from 0 on.
     pub degrees: Vec<Configurations>,
+    /// The functions that quadratic splines are made of, as sums of B-splines; none if all B-splines of links are: without a
+    /// purpose and without copies that were added, and without degree 1, whose links they come from.
+    pub functions: Vec<Function>,
     /// What was done on the way.
     pub report: Report,
 }
@@ -71,19 +79,33 @@ fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
     let setup = start::set_up(sites, options)?;
     let start_time = began.elapsed();
     let began = Instant::now();
-    let degrees = config::generate(&setup.knots, setup.start, &setup.rule, options.degree)?;
-    let report = Report { start_time, degrees_time: began.elapsed(), ..setup.report };
-    Ok(Made { knots: setup.knots, frame: setup.frame, degrees, report })
+    let Setup { knots, frame, beginning, rule, report } = setup;
+    let (degrees, special) = match beginning {
+        Beginning::Start(start) => (config::generate(&knots, start, &rule, options.degree)?, None),
+        Beginning::Special(special) => (special.generate(&rule, options.degree)?, Some(special)),
+    };
+    let has_copies = knots.len() as u64 > report.points;
+    let functions = match (special, degrees.get(1)) {
+        (Some(special), Some(first)) => special.functions(&config::links(&knots, first)?)?,
+        (None, Some(first)) if has_copies => special::functions(&knots, &config::links(&knots, first)?)?,
+        _ => Vec::new(),
+    };
+    let report = Report { start_time, degrees_time: began.elapsed(), ..report };
+    Ok(Made { knots, frame, degrees, functions, report })
 }
 
 impl Made {
     /// Writes the configurations of all degrees, with their knots.
     ///
     /// # Errors
-    /// As [`write::write_configurations_as`].
+    /// As [`write::write_as`].
     pub fn write(&self, output: impl Write) -> Result<()> {
-        let elevations = self.frame.elevations.as_deref();
-        write::write_configurations_as(self.header(), &self.knots, elevations, &self.degrees, output)
+        let content = Content {
+            heights: self.frame.elevations.as_deref(),
+            functions: &self.functions,
+            ..Content::of(&self.knots, &self.degrees)
+        };
+        write::write_as(self.header(), content, output)
     }
 
     fn header(&self) -> Header {

@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use super::purpose::Purpose;
 use crate::source::Values;
 
 /// What is made of knots.
@@ -19,6 +20,8 @@ pub struct Options {
     pub border: Border,
     /// Knots that become two at one place each.
     pub pull_apart: Option<Places>,
+    /// What special configurations are for.
+    pub purpose: Option<Purpose>,
     /// Values of the knots for rules that need some; elevations if there are none.
     pub values: Option<Values>,
 }

@@ -2,10 +2,11 @@
 
 use std::io::Read;
 
+use crate::config::special::Function;
 use crate::config::{Configurations, Knots};
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::stream::{Event, Header, Kind, StreamReader};
+use crate::stream::{Event, Header, StreamReader};
 
 /// Knots and their configurations, as a stream holds them.
 #[derive(Debug, Clone, Default)]
@@ -16,10 +17,14 @@ pub struct ConfigurationSet {
     pub heights: Option<Vec<f64>>,
     /// Configurations, by increasing degree. [`crate::config::links`] makes links of them.
     pub degrees: Vec<Configurations>,
+    /// Functions that quadratic splines are made of, if the stream lists any: otherwise all B-splines of links are.
+    pub functions: Vec<Function>,
+    /// Coefficients of functions, if there is a spline.
+    pub coefficients: Vec<f64>,
 }
 
 impl ConfigurationSet {
-    /// Reads a stream of kind [`Kind::Configurations`] to its end.
+    /// Reads a stream of kind [`crate::stream::Kind::Configurations`] or [`crate::stream::Kind::Splines`] to its end.
     ///
     /// Memory: what the stream holds.
     ///
@@ -28,8 +33,9 @@ impl ConfigurationSet {
     /// [`StreamReader::next_event`].
     pub fn read<R: Read>(reader: &mut StreamReader<R>) -> Result<Self> {
         let kind = reader.header().kind;
-        if kind != Kind::Configurations {
-            let message = format!("this is a stream of kind {}, expected configurations", kind.name());
+        if !kind.has_knots() {
+            let message =
+                format!("this is a stream of kind {}, expected configurations or splines", kind.name());
             return Err(Error::usage(message).of_input(reader.name()));
         }
         let mut collector = Collector::new(reader.header());
@@ -46,6 +52,8 @@ pub(crate) struct Collector {
     points: Vec<Point2>,
     heights: Option<Vec<f64>>,
     degrees: Vec<Configurations>,
+    functions: Vec<Function>,
+    coefficients: Vec<f64>,
 }
 
 impl Collector {
@@ -73,12 +81,15 @@ impl Collector {
                         .try_for_each(|(interior, boundaries)| last.extend(interior, boundaries))?;
                 }
             }
+            Event::Functions(functions) => self.functions.extend_from_slice(functions),
+            Event::Coefficients(coefficients) => self.coefficients.extend_from_slice(coefficients),
             _ => {}
         }
         Ok(())
     }
 
     pub(crate) fn finish(self) -> Result<ConfigurationSet> {
-        Ok(ConfigurationSet { knots: Knots::new(self.points)?, heights: self.heights, degrees: self.degrees })
+        let Collector { points, heights, degrees, functions, coefficients } = self;
+        Ok(ConfigurationSet { knots: Knots::new(points)?, heights, degrees, functions, coefficients })
     }
 }

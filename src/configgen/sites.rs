@@ -6,7 +6,7 @@ use crate::bounds::Point;
 use crate::delaunay2::MAX_POINTS;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::source::{EventSource, Input, Planar, SourceOptions, open_planar};
+use crate::source::{EventSource, Input, Planar, SourceOptions, name_of, open_planar};
 use crate::stream::{Coordinates, Crs, Event, LiveVertices};
 
 /// What stored knots mean.
@@ -43,11 +43,7 @@ pub fn read_sites(paths: &[PathBuf], mut done: impl FnMut(u64)) -> Result<Sites>
     let options = SourceOptions { dims: 2, ..SourceOptions::default() };
     match open_planar(paths, &options)? {
         Planar::Points(input) => read_points(&input, &mut done),
-        Planar::Mesh(mesh) => {
-            let name =
-                if paths[0].as_os_str() == "-" { "stdin".into() } else { paths[0].display().to_string() };
-            read_mesh(mesh, name, &mut done)
-        }
+        Planar::Mesh(mesh) => read_mesh(mesh, name_of(&paths[0]), &mut done),
     }
 }
 
@@ -96,6 +92,13 @@ fn frame(coordinates: Coordinates, crs: Crs, has_elevation: bool) -> Frame {
 }
 
 impl Sites {
+    /// No knots, where others than those of an input are used; messages call it `name`.
+    #[must_use]
+    pub fn none(name: String) -> Sites {
+        let frame = frame(Coordinates::F64, Crs::default(), false);
+        Sites { name, points: Vec::new(), triangles: None, frame, notices: Vec::new() }
+    }
+
     fn push(&mut self, points: &[Point]) -> Result<()> {
         if points.len() > MAX_POINTS - self.points.len() {
             let message = format!("more than {MAX_POINTS} knots, which is all that can be handled");

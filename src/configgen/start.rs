@@ -2,35 +2,65 @@
 
 use super::Report;
 use super::options::{Border, Flips, Options, Places, RuleName};
+use super::purpose::Purpose;
 use super::sites::{Frame, Sites};
+use crate::config::special::Special;
 use crate::config::{self, Configurations, Knots, Lift, Rule, Start};
 use crate::delaunay2::distinct;
 use crate::error::{Error, Result};
 use crate::source::Values;
 use crate::stream::Coordinates;
 
-/// All that [`config::generate`] needs.
+/// All that configurations are made from.
 pub(super) struct Setup {
     pub(super) knots: Knots,
     pub(super) frame: Frame,
-    pub(super) start: Configurations,
+    pub(super) beginning: Beginning,
     pub(super) rule: Rule,
     /// Without the time.
     pub(super) report: Report,
+}
+
+/// What comes before the rule.
+pub(super) enum Beginning {
+    /// Configurations of degree 0.
+    Start(Configurations),
+    /// Links of single knots have something, too.
+    Special(Special),
 }
 
 /// Makes the setup.
 ///
 /// A mesh that is the Delaunay triangulation of its vertices stands for these; any other is the start itself.
 pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
+    let purpose = options.purpose.as_ref();
+    let sites = match purpose {
+        Some(purpose) => {
+            purpose.check(options)?;
+            purpose.place(sites)
+        }
+        None => sites,
+    };
     let Sites { points, triangles, mut frame, .. } = sites;
     let given = Knots::new(points)?;
-    config::check_degree(&given, if options.border == Border::Clamped { 0 } else { options.degree })?;
+    if !purpose.is_some_and(Purpose::has_knots) {
+        config::check_degree(&given, if options.border == Border::Clamped { 0 } else { options.degree })?;
+    }
     let own = match triangles {
         Some(triangles) if !is_delaunay(&given, &triangles)? => Some(triangles),
         _ => None,
     };
-    let knots = with_copies(&given, options)?;
+    let mut knots = with_copies(&given, options)?;
+    let special = purpose.map(|purpose| purpose.set_up(&knots)).transpose()?;
+    if let Some(special) = &special {
+        knots = special.knots.clone();
+    }
+    if own.is_some() && (knots.len() > given.len() || special.is_some()) {
+        let message = "a mesh that is not the Delaunay triangulation of its vertices has no place for copies of knots, \
+                       nor for what --box, --patches and --features make: leave these and --boundary and --pull-apart \
+                       out, or give points";
+        return Err(Error::usage(message));
+    }
     let mut report = Report {
         points: given.len() as u64,
         repeated: (0..given.len() as u32).filter(|&id| given.rank(id) > 0).count() as u64,
@@ -38,22 +68,31 @@ pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
         own_start: own.is_some(),
         ..Report::default()
     };
-    let given = given.len();
-    let firsts = if knots.len() > given { distinct(knots.points()) } else { Vec::new() };
-    let rule = Rules { options, frame: &frame, given, firsts: &firsts }.rule()?;
+    let added = added(&knots, given.len(), special.as_ref());
+    let rule = Rules { options, frame: &frame, given: given.len(), added: &added }.rule()?;
     rule.check(&knots)?;
     if let Some(elevations) = &mut frame.elevations {
-        extend(elevations, &firsts);
+        extend(elevations, &added, f64::midpoint);
     }
-    let start = match own {
-        Some(_) if knots.len() > given => {
-            let message = "a mesh that is not the Delaunay triangulation of its vertices has no place for copies of \
-                           knots: leave out --boundary and --pull-apart, or give points";
-            return Err(Error::usage(message));
-        }
-        own => start(&knots, own, &rule, options, &mut report.flips)?,
+    let beginning = match special {
+        Some(special) => Beginning::Special(special),
+        None => Beginning::Start(start(&knots, own, &rule, options, &mut report.flips)?),
     };
-    Ok(Setup { knots, frame, start, rule, report })
+    Ok(Setup { knots, frame, beginning, rule, report })
+}
+
+/// For each knot that was added the two that it is between: twice the first one at its place, if it is a copy.
+fn added(knots: &Knots, given: usize, special: Option<&Special>) -> Vec<[u32; 2]> {
+    if knots.len() == given {
+        return Vec::new();
+    }
+    let firsts = distinct(knots.points());
+    let ends = |id: u32| special.and_then(|special| special.diagonals.of(&[id]).next());
+    let between = |id: u32| match firsts[id as usize] {
+        first if first < id => [first, first],
+        _ => ends(id).unwrap_or([id, id]),
+    };
+    (given as u32..knots.len() as u32).map(between).collect()
 }
 
 /// Whether triangles are those of the canonical Delaunay triangulation.
@@ -127,8 +166,8 @@ struct Rules<'a> {
     frame: &'a Frame,
     /// Number of knots of the input.
     given: usize,
-    /// For each knot the first one at its place; empty if no copies were added.
-    firsts: &'a [u32],
+    /// As [`added`] has them.
+    added: &'a [[u32; 2]],
 }
 
 impl Rules<'_> {
@@ -143,7 +182,9 @@ impl Rules<'_> {
             RuleName::Random => Rule::Random(self.options.seed),
             RuleName::Aligned(degrees) => Rule::Aligned(degrees),
             RuleName::Data => match &self.options.values {
-                Some(Values::Vectors(vectors)) => Rule::Gradients(self.for_all(vectors)?),
+                Some(Values::Vectors(vectors)) => {
+                    Rule::Gradients(self.for_all(vectors, |[a, b], [c, d]| [a.midpoint(c), b.midpoint(d)])?)
+                }
                 _ => Rule::Data(self.numbers()?),
             },
         })
@@ -152,11 +193,11 @@ impl Rules<'_> {
     /// Values of all knots: what was given, or else elevations, whose unit does not matter.
     fn numbers(&self) -> Result<Vec<f64>> {
         match (&self.options.values, &self.frame.elevations) {
-            (Some(Values::Numbers(numbers)), _) => self.for_all(numbers),
+            (Some(Values::Numbers(numbers)), _) => self.for_all(numbers, f64::midpoint),
             (Some(Values::Vectors(_)), _) => {
                 Err(Error::usage("--values has two numbers for each knot, this rule needs one"))
             }
-            (None, Some(elevations)) => self.for_all(elevations),
+            (None, Some(elevations)) => self.for_all(elevations, f64::midpoint),
             (None, None) => Err(Error::usage(
                 "the rule needs a value for each knot: give points with a third coordinate, or --values FILE",
             )),
@@ -173,8 +214,8 @@ impl Rules<'_> {
         Ok(weights)
     }
 
-    /// With a value for each copy.
-    fn for_all<T: Copy>(&self, values: &[T]) -> Result<Vec<T>> {
+    /// With a value for each knot that was added.
+    fn for_all<T: Copy>(&self, values: &[T], mean: impl Fn(T, T) -> T) -> Result<Vec<T>> {
         if values.len() != self.given {
             let (found, needed) = (values.len(), self.given);
             return Err(Error::usage(format!(
@@ -182,14 +223,15 @@ impl Rules<'_> {
             )));
         }
         let mut all = values.to_vec();
-        extend(&mut all, self.firsts);
+        extend(&mut all, self.added, mean);
         Ok(all)
     }
 }
 
-/// Gives copies the values of the first knot at their place.
-fn extend<T: Copy>(values: &mut Vec<T>, firsts: &[u32]) {
-    for id in values.len()..firsts.len() {
-        values.push(values[firsts[id] as usize]);
+/// Gives knots that were added the mean of the values of those that they are between.
+fn extend<T: Copy>(values: &mut Vec<T>, added: &[[u32; 2]], mean: impl Fn(T, T) -> T) {
+    for ends in added {
+        let [a, b] = ends.map(|end| values[end as usize]);
+        values.push(mean(a, b));
     }
 }

@@ -1,8 +1,9 @@
-//! Writes configurations as a stream.
+//! Writes configurations, and splines over them, as a stream.
 
 use std::io::Write;
 
 use crate::bounds::{Bounds, Point};
+use crate::config::special::Function;
 use crate::config::{Configurations, Knots};
 use crate::error::{Error, Result};
 use crate::limits::CONFIGURATION_DEGREE_MAX;
@@ -11,15 +12,38 @@ use crate::stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamWr
 /// Boundaries that are handed to the writer at a time.
 const BATCH: usize = 1 << 12;
 
+/// What a stream of knots holds, apart from its header.
+#[derive(Debug, Clone, Copy)]
+pub struct Content<'a> {
+    /// The knots, in stored coordinates: whole numbers if the header says so.
+    pub knots: &'a Knots,
+    /// The z of all knots, if the header says that they have an elevation.
+    pub heights: Option<&'a [f64]>,
+    /// Configurations of increasing degrees; of one degree for splines.
+    pub degrees: &'a [Configurations],
+    /// Functions of quadratic splines, if they are not just B-splines of links.
+    pub functions: &'a [Function],
+    /// For splines, a coefficient for each function.
+    pub coefficients: &'a [f64],
+}
+
+impl<'a> Content<'a> {
+    /// Configurations alone.
+    #[must_use]
+    pub fn of(knots: &'a Knots, degrees: &'a [Configurations]) -> Content<'a> {
+        Content { knots, heights: None, degrees, functions: &[], coefficients: &[] }
+    }
+}
+
 /// Writes knots, and configurations of them of increasing degrees, in world coordinates of an unknown system.
 ///
 /// # Errors
-/// As [`write_configurations_as`].
+/// As [`write_as`].
 pub fn write_configurations(knots: &Knots, degrees: &[Configurations], out: impl Write) -> Result<()> {
-    write_configurations_as(header(knots, Coordinates::F64, Crs::Unknown), knots, None, degrees, out)
+    write_as(header(knots, Coordinates::F64, Crs::Unknown), Content::of(knots, degrees), out)
 }
 
-/// The header of a stream of knots in stored coordinates, without heights.
+/// The header of a stream of configurations of knots in stored coordinates, without heights.
 #[must_use]
 pub fn header(knots: &Knots, coordinates: Coordinates, crs: Crs) -> Header {
     let mut header = Header::new(Kind::Configurations, coordinates, 2, false);
@@ -29,19 +53,14 @@ pub fn header(knots: &Knots, coordinates: Coordinates, crs: Crs) -> Header {
     header
 }
 
-/// Writes knots and configurations with a header of [`header`], or one like it; `heights` are the z of all knots, if it
-/// says that they have an elevation. Knots are in stored coordinates: whole numbers if the header says so.
+/// Writes a stream of configurations, or of a spline, with a header of [`header`], or one like it.
 ///
 /// # Errors
 /// Usage, if degrees do not increase, one is too high, or heights do not fit header and knots; malformed, if a coordinate
-/// does not fit the header or configurations name knots that there are not; I/O.
-pub fn write_configurations_as(
-    header: Header,
-    knots: &Knots,
-    heights: Option<&[f64]>,
-    degrees: &[Configurations],
-    out: impl Write,
-) -> Result<()> {
+/// does not fit the header, configurations or functions name knots that there are not, or a spline has not one coefficient for
+/// each function; I/O.
+pub fn write_as(header: Header, content: Content, out: impl Write) -> Result<()> {
+    let Content { knots, heights, degrees, functions, coefficients } = content;
     if heights.map(<[f64]>::len) != header.has_elevation.then_some(knots.len()) {
         return Err(Error::usage(
             "there must be a height for each knot if the header says so, and none otherwise",
@@ -56,6 +75,12 @@ pub fn write_configurations_as(
     let mut writer = StreamWriter::new(out, header)?;
     writer.points(&stored(knots, heights))?;
     degrees.iter().try_for_each(|configurations| write_degree(&mut writer, configurations))?;
+    if !functions.is_empty() {
+        writer.functions(functions)?;
+    }
+    if !coefficients.is_empty() {
+        writer.coefficients(coefficients)?;
+    }
     writer.end(0, 0).map(drop)
 }
 

@@ -16,6 +16,7 @@ mod triangles;
 mod twin;
 mod twin4;
 mod twin_configurations;
+mod twin_functions;
 mod volume;
 mod vtu;
 mod world;

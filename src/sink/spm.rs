@@ -35,6 +35,8 @@ impl<W: Write> EventSink for SpmSink<W> {
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell)),
             Event::Simplices4(simplices) => writer.simplices4(simplices),
             Event::Configurations(block) => writer.configurations(block),
+            Event::Functions(functions) => writer.functions(functions),
+            Event::Coefficients(coefficients) => writer.coefficients(coefficients),
             Event::End(totals) => {
                 let writer = self.writer.take().expect("there is one end");
                 writer.end(totals.points, totals.merged).map(drop)

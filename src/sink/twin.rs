@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::twin_configurations::OpenGroup;
 use super::world::{world_of, write_numbers};
-use super::{EventSink, twin4, write_error};
+use super::{EventSink, twin_functions, twin4, write_error};
 use crate::bounds::Point;
 use crate::error::Result;
 use crate::stream::{Coordinates, Crs, Event, Header, Kind, Patch, Totals};
@@ -83,6 +83,8 @@ impl<W: Write> EventSink for TwinSink<W> {
             Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
             Event::Simplices4(simplices) => twin4::simplices(&mut self.output, simplices),
             Event::Configurations(block) => self.open.write(&mut self.output, block),
+            Event::Functions(functions) => twin_functions::functions(&mut self.output, functions),
+            Event::Coefficients(coefficients) => twin_functions::coefficients(&mut self.output, coefficients),
             Event::End(totals) => self.end(totals),
         }
     }

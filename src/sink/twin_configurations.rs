@@ -39,7 +39,7 @@ impl OpenGroup {
 }
 
 /// A line of numbers counted from 1.
-fn numbers(output: &mut impl Write, word: &str, numbers: &[u32]) -> Result<()> {
+pub(super) fn numbers(output: &mut impl Write, word: &str, numbers: &[u32]) -> Result<()> {
     output.write_all(word.as_bytes()).map_err(write_error)?;
     numbers
         .iter()

@@ -34,6 +34,7 @@ mod sp;
 mod sp_events;
 mod spa;
 mod spb;
+mod special;
 mod statements;
 mod stream;
 pub mod structure;
@@ -41,6 +42,7 @@ mod text;
 mod twin;
 mod twin4;
 mod twin_configurations;
+mod twin_functions;
 mod twin_header;
 mod values;
 
@@ -60,6 +62,7 @@ pub use sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpReader};
 pub use sp_events::SpEvents;
 pub use spa::SpaReader;
 pub use spb::SpbReader;
+pub use special::{read_features, read_patches};
 pub use twin::TwinSource;
 pub use values::{Values, read_values};
 

@@ -8,6 +8,7 @@ use super::statements::{
     Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
 };
 use super::twin_configurations::{self, ConfigurationLine, OpenLines};
+use super::twin_functions::{self, FunctionGroup, FunctionLine};
 use super::twin_header::TwinHeader;
 use super::twin4::{self, Group4, Statement4};
 use crate::bounds::Point;
@@ -34,6 +35,7 @@ enum Statement {
     Wall([u64; 2]),
     Four(Statement4),
     Configuration(ConfigurationLine),
+    Function(FunctionLine),
     End(Totals),
 }
 
@@ -64,6 +66,7 @@ enum Group {
     Walls(Vec<[u32; 2]>),
     Four(Group4),
     Configurations(ConfigurationBlock),
+    Functions(FunctionGroup),
 }
 
 /// Reads a text twin. Memory: one line, and one block's worth of lines.
@@ -148,10 +151,12 @@ impl<R: Read> TwinSource<R> {
     fn push(&mut self, statement: Statement) -> Result<()> {
         let is_mesh = self.header.kind.vertices_per_simplex() > 0;
         let is_points = self.header.kind == Kind::Points
-            || self.header.kind == Kind::Configurations && !self.open.is_begun();
+            || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
         let is_partial = self.header.kind == Kind::PartialTriangleMesh;
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
         let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
+        let kind = self.header.kind.name();
+        let misplaced = || Error::malformed(format!("a {kind} cannot have this line here"));
         match (&mut self.group, statement) {
             (Group::Points(points), Statement::Vertex(point)) => points.push(point),
             (Group::Cells(cells), Statement::Cell(cell)) => cells.push(cell),
@@ -165,6 +170,7 @@ impl<R: Read> TwinSource<R> {
             (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
             (Group::Four(group), Statement::Four(statement)) => group.push(statement)?,
             (Group::Configurations(block), Statement::Configuration(line)) => self.open.push(block, line)?,
+            (Group::Functions(group), Statement::Function(line)) => group.push(line)?,
             (Group::Empty, statement) => {
                 self.group = match statement {
                     Statement::Vertex(_) if is_points => Group::Points(Vec::new()),
@@ -175,7 +181,10 @@ impl<R: Read> TwinSource<R> {
                     Statement::Label(_) if is_tetrahedral => Group::Labels(Vec::new()),
                     Statement::Residual(..) if is_partial && walls == 0 => Group::Residual(Vec::new()),
                     Statement::Wall(_) if is_partial => Group::Walls(Vec::new()),
-                    Statement::Configuration(ref first) => Group::Configurations(
+                    Statement::Function(ref first) => Group::Functions(
+                        FunctionGroup::start(first, self.tally.totals()).ok_or_else(misplaced)?,
+                    ),
+                    Statement::Configuration(ref first) if !self.has_functions() => Group::Configurations(
                         self.open
                             .start(first)?
                             .ok_or_else(|| Error::malformed("a degree starts with a line \"degree\""))?,
@@ -183,10 +192,7 @@ impl<R: Read> TwinSource<R> {
                     Statement::Four(ref first) if Group4::can_start(&self.header, first, simplices > 0) => {
                         Group::Four(Group4::start(&self.header, first))
                     }
-                    _ => {
-                        let kind = self.header.kind.name();
-                        return Err(Error::malformed(format!("a {kind} cannot have this line here")));
-                    }
+                    _ => return Err(misplaced()),
                 };
                 if !matches!(statement, Statement::Patch) {
                     return self.push(statement);
@@ -222,9 +228,16 @@ impl<R: Read> TwinSource<R> {
             Group::Walls(walls) => Event::Walls(walls),
             Group::Four(group) => group.finish()?,
             Group::Configurations(block) => Event::Configurations(block),
+            Group::Functions(group) => group.finish(),
         };
         self.tally.count(&event)?;
         Ok(event)
+    }
+
+    /// Whether functions or coefficients have begun: knots and configurations come before.
+    fn has_functions(&self) -> bool {
+        let Totals { vertices, residual_points, .. } = self.tally.totals();
+        self.header.kind.has_knots() && vertices + residual_points > 0
     }
 
     fn patch_of(&self, first_id: u64, lines: PatchLines) -> Result<Patch> {
@@ -286,6 +299,7 @@ impl Group {
             (Group::Configurations(block), Statement::Configuration(line)) => {
                 twin_configurations::takes(block, line)
             }
+            (Group::Functions(group), Statement::Function(line)) => group.takes(line, BATCH_MAX),
             _ => false,
         }
     }
@@ -311,10 +325,16 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     let per_simplex = header.kind.vertices_per_simplex();
     let statement = match next_field(fields)? {
         word if header.kind.is_4d() && word != b"#" => Statement::Four(twin4::parse(word, fields, header)?),
-        word if header.kind == Kind::Configurations && !matches!(word, b"v" | b"#") => {
-            match twin_configurations::parse(word, fields)? {
-                Some(line) => Statement::Configuration(line),
-                None => return Err(unexpected(word, statements_of(header.kind))),
+        word if header.kind.has_knots() && !matches!(word, b"v" | b"#") => {
+            match (twin_configurations::parse(word, fields)?, header.kind) {
+                (Some(line), _) => Statement::Configuration(line),
+                (None, Kind::Configurations) if word == b"coefficient" => {
+                    return Err(unexpected(word, statements_of(header.kind)));
+                }
+                (None, kind) => match twin_functions::parse(word, fields)? {
+                    Some(line) => Statement::Function(line),
+                    None => return Err(unexpected(word, statements_of(kind))),
+                },
             }
         }
         b"v" => Statement::Vertex(parse_point(fields, header)?),
@@ -348,7 +368,8 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::TriangleMesh => "v, f, x or a comment",
         Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
         Kind::TetrahedralMesh => "v, c, x, label or a comment",
-        Kind::Configurations => "v, degree, in, on, line or a comment",
+        Kind::Configurations => "v, degree, in, on, line, function, term or a comment",
+        Kind::Splines => "v, degree, in, on, line, function, term, coefficient or a comment",
         Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",
     }
 }

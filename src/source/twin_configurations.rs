@@ -48,7 +48,7 @@ pub(super) fn parse<'a>(
     Ok(Some(line))
 }
 
-fn parse_knot(field: &[u8]) -> Result<u32> {
+pub(super) fn parse_knot(field: &[u8]) -> Result<u32> {
     let number = parse_integer(field)?.checked_sub(1).and_then(|number| u32::try_from(number).ok());
     let knot = number.filter(|&number| number != FARAWAY);
     knot.ok_or_else(|| unexpected(field, "a number from 1 to 2^32 - 1"))

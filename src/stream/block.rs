@@ -18,10 +18,12 @@ pub(super) enum Tag {
     Cells4,
     Simplices4,
     Configurations,
+    Functions,
+    Coefficients,
     End,
 }
 
-const NAMES: [(Tag, [u8; 4]); 11] = [
+const NAMES: [(Tag, [u8; 4]); 13] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -32,6 +34,8 @@ const NAMES: [(Tag, [u8; 4]); 11] = [
     (Tag::Cells4, *b"CEL4"),
     (Tag::Simplices4, *b"SIM4"),
     (Tag::Configurations, *b"CONF"),
+    (Tag::Functions, *b"FUNC"),
+    (Tag::Coefficients, *b"COEF"),
     (Tag::End, *b"END "),
 ];
 

@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::configurations::{ConfigurationBlock, check_degree};
+use super::kind::Kind;
 use crate::config::{FARAWAY, Standing};
 use crate::error::{Error, Result};
 
@@ -10,6 +11,8 @@ use crate::error::{Error, Result};
 #[derive(Debug, Default)]
 pub(super) struct ConfigurationRules {
     degree: Option<(u32, Standing)>,
+    /// Whether there may be one degree only.
+    is_alone: bool,
     /// The last group of the degree.
     group: Option<LastGroup>,
 }
@@ -22,6 +25,10 @@ struct LastGroup {
 }
 
 impl ConfigurationRules {
+    pub(super) fn new(kind: Kind) -> Self {
+        ConfigurationRules { is_alone: kind == Kind::Splines, ..ConfigurationRules::default() }
+    }
+
     /// The rules of the next block; `knots` came before.
     pub(super) fn block(&mut self, block: &ConfigurationBlock, knots: u64) -> Result<()> {
         self.degree(block.degree, block.standing)?;
@@ -49,6 +56,11 @@ impl ConfigurationRules {
                 )));
             }
             Some((last, _)) if degree == last => {}
+            Some((last, _)) if self.is_alone => {
+                return Err(Error::malformed(format!(
+                    "configurations of degree {degree} after those of {last}: splines have one degree"
+                )));
+            }
             _ => self.group = None,
         }
         self.degree = Some((degree, standing));

@@ -5,6 +5,7 @@ use super::points4::Points4;
 use crate::bounds::Point;
 use crate::cells::CellCode;
 use crate::cells4::Cells4;
+use crate::config::special::Function;
 use crate::error::{Error, Result};
 
 /// One block of a stream, decoded and checked.
@@ -32,6 +33,10 @@ pub enum Event {
     Simplices4(Vec<[u32; 5]>),
     /// Configurations of one degree.
     Configurations(ConfigurationBlock),
+    /// Functions of splines, as sums of B-splines.
+    Functions(Vec<Function>),
+    /// Coefficients of the next functions of a spline that have none yet.
+    Coefficients(Vec<f64>),
     /// The end: nothing follows.
     End(Totals),
 }
@@ -121,13 +126,13 @@ pub struct Totals {
     pub points: u64,
     /// Cell tags.
     pub cells: u64,
-    /// Vertices.
+    /// Vertices; functions of splines.
     pub vertices: u64,
     /// Simplices; cells of four dimensions; configurations, infinite ones included.
     pub simplices: u64,
     /// Points of the input that coincide with another and are not vertices of their own.
     pub merged: u64,
-    /// Residual points.
+    /// Residual points; coefficients of splines.
     pub residual_points: u64,
     /// Walls.
     pub walls: u64,

@@ -298,8 +298,8 @@ impl Header {
         {
             return Err("the finalization tree has other dimensions than the points".into());
         }
-        if self.kind == Kind::Configurations && self.tree.is_some() {
-            return Err("a stream of configurations has no finalization tree".into());
+        if self.kind.has_knots() && self.tree.is_some() {
+            return Err(format!("a stream of {} has no finalization tree", self.kind.name()));
         }
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());

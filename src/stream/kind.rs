@@ -20,8 +20,11 @@ pub enum Kind {
     Cells4,
     /// Points of four dimensions and the simplices between them.
     Simplices4,
-    /// Knots, and the configurations of one or several degrees (B, I) of them.
+    /// Knots, and the configurations of one or several degrees (B, I) of them; functions of quadratic splines, if links of
+    /// degree 1 make others than B-splines.
     Configurations,
+    /// The same with one degree, and with coefficients for the functions.
+    Splines,
 }
 
 struct Row {
@@ -35,7 +38,7 @@ struct Row {
     is_ordered: bool,
 }
 
-const ROWS: [Row; 8] = [
+const ROWS: [Row; 9] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -105,7 +108,16 @@ const ROWS: [Row; 8] = [
         name: "configurations",
         dims: &[2],
         vertices_per_simplex: 0,
-        blocks: &[Tag::Points, Tag::Configurations],
+        blocks: &[Tag::Points, Tag::Configurations, Tag::Functions],
+        is_ordered: true,
+    },
+    Row {
+        kind: Kind::Splines,
+        code: 9,
+        name: "splines",
+        dims: &[2],
+        vertices_per_simplex: 0,
+        blocks: &[Tag::Points, Tag::Configurations, Tag::Functions, Tag::Coefficients],
         is_ordered: true,
     },
 ];
@@ -154,7 +166,13 @@ impl Kind {
     /// Whether END counts vertices apart from points, and points that were merged. The knots of configurations are points.
     #[must_use]
     pub fn has_vertices(self) -> bool {
-        !matches!(self, Kind::Points | Kind::Points4 | Kind::Configurations)
+        !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()
+    }
+
+    /// Whether its points are knots, and configurations of them follow.
+    #[must_use]
+    pub fn has_knots(self) -> bool {
+        matches!(self, Kind::Configurations | Kind::Splines)
     }
 
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.

@@ -9,6 +9,7 @@ use super::block::{FRAME_LEN, Frame, Tag};
 use super::cell_words::CellWords;
 use super::configurations::ConfigurationBlock;
 use super::event::{Event, Totals};
+use super::functions;
 use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
 use super::kind::Kind;
 use super::payload;
@@ -193,6 +194,8 @@ impl<R: Read> StreamReader<R> {
             Tag::Cells4 => Event::Cells4(self.cell_words.take(totals.vertices, payload)?),
             Tag::Simplices4 => Event::Simplices4(points4::simplices(payload)?),
             Tag::Configurations => Event::Configurations(ConfigurationBlock::decode(payload)?),
+            Tag::Functions => Event::Functions(functions::decode(payload)?),
+            Tag::Coefficients => Event::Coefficients(functions::decode_coefficients(payload)?),
             Tag::End => Event::End(payload::totals(payload)?),
         };
         self.tally.count(&event)?;

@@ -3,7 +3,9 @@
 use super::chunks::ChunkCheck;
 use super::configuration_rules::ConfigurationRules;
 use super::event::{Event, Totals};
+use super::functions::{self, FunctionRules};
 use super::header::Header;
+use super::kind::Kind;
 use super::rules4::Rules4;
 use crate::bounds::Bounds;
 use crate::error::{Error, Result};
@@ -19,6 +21,7 @@ pub(crate) struct Tally {
     has_vertices: bool,
     rules4: Rules4,
     configuration_rules: ConfigurationRules,
+    function_rules: FunctionRules,
     chunks: Option<ChunkCheck>,
 }
 
@@ -35,7 +38,8 @@ impl Tally {
             per_simplex,
             has_vertices: header.kind.has_vertices(),
             rules4: Rules4::new(header.kind),
-            configuration_rules: ConfigurationRules::default(),
+            configuration_rules: ConfigurationRules::new(header.kind),
+            function_rules: FunctionRules::default(),
             chunks,
         }
     }
@@ -49,7 +53,7 @@ impl Tally {
     ///
     /// # Errors
     /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or what is of
-    /// four dimensions, or configurations, break a rule.
+    /// four dimensions, configurations, or functions break a rule.
     pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -80,6 +84,15 @@ impl Tally {
                 self.configuration_rules.block(block, self.totals.points)?;
                 self.totals.simplices += block.boundaries.len() as u64;
             }
+            Event::Functions(functions) => {
+                let knots = self.totals.points;
+                functions.iter().try_for_each(|function| self.function_rules.function(function, knots))?;
+                self.totals.vertices += functions.len() as u64;
+            }
+            Event::Coefficients(coefficients) => {
+                functions::check_coefficients(coefficients)?;
+                self.totals.residual_points += coefficients.len() as u64;
+            }
             Event::End(_) => {}
         }
         Ok(())
@@ -108,7 +121,7 @@ impl Tally {
         Ok(())
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.12). A mesh
+    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.14). A mesh
     /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
     /// residual.
     ///
@@ -140,6 +153,9 @@ impl Tally {
         }
         if header.points.is_some_and(|points| points != stated.points) {
             return Err(Error::malformed("END: the header states another number of points"));
+        }
+        if header.kind == Kind::Splines {
+            functions::check_end(&counted)?;
         }
         self.rules4.check_end(&counted)?;
         self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)

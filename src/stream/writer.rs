@@ -2,13 +2,16 @@
 
 mod configurations;
 mod four;
+mod functions;
 
 use std::io::Write;
 
 use super::block::{Frame, Tag};
 use super::configuration_rules::ConfigurationRules;
 use super::event::{Patch, Totals};
+use super::functions::{FunctionRules, check_end};
 use super::header::{Coordinates, Header};
+use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
 use crate::bounds::Point;
@@ -37,6 +40,7 @@ pub struct StreamWriter<W: Write> {
     labels: u64,
     rules4: Rules4,
     configuration_rules: ConfigurationRules,
+    function_rules: FunctionRules,
     waiting: Option<configurations::Waiting>,
 }
 
@@ -48,6 +52,7 @@ impl<W: Write> StreamWriter<W> {
     pub fn new(mut output: W, header: Header) -> Result<Self> {
         output.write_all(&header.encode()?).map_err(write_error)?;
         let rules4 = Rules4::new(header.kind);
+        let configuration_rules = ConfigurationRules::new(header.kind);
         Ok(StreamWriter {
             output,
             header,
@@ -59,7 +64,8 @@ impl<W: Write> StreamWriter<W> {
             totals: Totals::default(),
             labels: 0,
             rules4,
-            configuration_rules: ConfigurationRules::default(),
+            configuration_rules,
+            function_rules: FunctionRules::default(),
             waiting: None,
         })
     }
@@ -256,6 +262,9 @@ impl<W: Write> StreamWriter<W> {
         self.flush_points()?;
         self.flush_configurations()?;
         self.rules4.check_end(&self.totals)?;
+        if self.header.kind == Kind::Splines {
+            check_end(&self.totals)?;
+        }
         if self.header.kind.has_vertices() {
             self.totals.points = input_points;
             self.totals.merged = merged;

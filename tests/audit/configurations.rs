@@ -25,7 +25,11 @@ fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Con
 }
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
-    check(&ConfigurationSet { knots: knots.clone(), heights: None, degrees: degrees.to_vec() })
+    check(&ConfigurationSet {
+        knots: knots.clone(),
+        degrees: degrees.to_vec(),
+        ..ConfigurationSet::default()
+    })
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {

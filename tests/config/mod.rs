@@ -3,6 +3,7 @@
 mod borders;
 mod centroids;
 mod definition;
+mod hubs;
 mod lifted;
 mod rules;
 mod special_boxes;

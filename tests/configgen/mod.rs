@@ -1,6 +1,7 @@
 //! `configgen`: knots in, centroid triangulations and counts out, against definitions.
 
 mod failures;
+mod special;
 mod streams;
 
 use serde_json::Value;

@@ -102,3 +102,21 @@ fn statistics_are_text_too() {
     assert!(message.contains("links, bounded") && message.contains("without area"), "{message}");
     assert!(message.lines().all(|line| line.len() <= 60), "{message}");
 }
+
+#[test]
+fn the_audit_passes_what_every_rule_makes() {
+    let flat = lines(&scattered(4, 120));
+    let grid: Vec<[i64; 2]> = (0..80).map(|site| [site % 9, site / 9]).collect();
+    let ties = lines(&grid);
+    let rules = ["delaunay", "min-weight", "ear", "fan", "random", "aligned:30"];
+    let borders: [&[&str]; 3] = [&[], &["--boundary", "clamped"], &["--boundary", "pulled-apart"]];
+    for (number, rule) in rules.iter().enumerate() {
+        for input in [&flat, &ties] {
+            let flip: &[&str] = if number % 2 == 1 { &["--flip", "random:20:3"] } else { &[] };
+            let arguments = [&["--degree", "3", "--rule", rule], flip, borders[number % 3]].concat();
+            let audit = run("spinfo", &["--audit", "-"], &output(&arguments, input));
+            let (code, message) = outcome(&audit);
+            assert_eq!(code, Some(0), "{arguments:?}: {message}");
+        }
+    }
+}

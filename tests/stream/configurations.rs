@@ -1,8 +1,9 @@
 //! Streams of configurations.
 
+use spmesh::config::special::{Function, FunctionKind};
 use spmesh::config::{self, Configurations, FARAWAY, Knots, Rule, Standing, Start};
 use spmesh::configgen::read::ConfigurationSet;
-use spmesh::configgen::write::{header, write_configurations, write_configurations_as};
+use spmesh::configgen::write::{Content, header, write_as, write_configurations};
 use spmesh::convert::Format;
 use spmesh::error::ErrorKind;
 use spmesh::stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
@@ -114,13 +115,13 @@ fn grids_heights_and_systems_are_kept() {
     header.bounds = None;
     let heights = [4.0, 3.0, 2.0, 1.0];
     let mut bytes = Vec::new();
-    write_configurations_as(header.clone(), &knots, Some(&heights), &degrees, &mut bytes).unwrap();
+    let content = Content { heights: Some(&heights), ..Content::of(&knots, &degrees) };
+    write_as(header.clone(), content, &mut bytes).unwrap();
     assert_eq!(verify(&bytes).unwrap().0, header);
     let set = read(&bytes);
     assert_eq!((set.heights.as_deref(), &set.degrees), (Some(&heights[..]), &degrees));
     assert!(text_of(&bytes).contains("\nv 1020 0 1.5\n"), "{}", text_of(&bytes));
-    let refused =
-        write_configurations_as(header, &knots, None, &degrees, Vec::new()).expect_err("no heights");
+    let refused = write_as(header, Content::of(&knots, &degrees), Vec::new()).expect_err("no heights");
     assert_eq!(refused.kind(), ErrorKind::Usage);
 }
 
@@ -150,13 +151,114 @@ fn the_writer_refuses_what_no_reader_accepts() {
     assert!(error.to_string().contains("does not follow"), "{error}");
 }
 
+/// Functions over random knots: some of every kind, each with random terms.
+fn random_functions(random: &mut Random, knots: &Knots) -> Vec<Function> {
+    let count = knots.len() as u32;
+    let mut knot = || random.below(count as usize) as u32;
+    let mut functions: Vec<Function> = Vec::new();
+    for _ in 0..60 {
+        let [a, b, c, d] = [knot(), knot(), knot(), knot()];
+        if a == b || b == c || c == a || [a, b, c].contains(&d) {
+            continue;
+        }
+        let kind = match functions.len() % 5 {
+            0 => FunctionKind::Edge([a, b]),
+            1 => FunctionKind::Vertex(a),
+            2 => FunctionKind::Tent([a, b]),
+            3 => FunctionKind::Crease([a, b, c]),
+            _ => FunctionKind::Face([a, b, c, d]),
+        };
+        let mut sets = [[a.min(b), a.max(b)], [c.min(d), c.max(d)]].to_vec();
+        sets.sort_unstable();
+        let terms = sets.into_iter().zip([0.5, -1.0 / 3.0]).collect();
+        functions.push(Function { kind, terms });
+    }
+    functions.sort_by_key(|function| function.kind);
+    functions.dedup_by_key(|function| function.kind);
+    functions
+}
+
+#[test]
+fn splines_come_back_as_they_were_written() {
+    for seed in 0..200 {
+        let mut random = Random(seed);
+        let knots = random_knots(&mut random, 12);
+        let degrees = &random_configurations(&mut random, &knots, 1)[1..];
+        let functions = random_functions(&mut random, &knots);
+        let coefficients: Vec<f64> =
+            functions.iter().map(|_| random.below(1000) as f64 / 7.0 - 50.0).collect();
+        let content =
+            Content { functions: &functions, coefficients: &coefficients, ..Content::of(&knots, degrees) };
+        let mut header = header(&knots, Coordinates::F64, Crs::Unknown);
+        header.kind = Kind::Splines;
+        let mut bytes = Vec::new();
+        write_as(header.clone(), content, &mut bytes).unwrap();
+        let set = read(&bytes);
+        assert_eq!((&set.functions, &set.coefficients), (&functions, &coefficients), "seed {seed}");
+        assert_eq!(set.degrees, degrees);
+        let text = text_of(&bytes);
+        assert!(converted(text.as_bytes(), Format::Text, Format::Spm).unwrap() == bytes, "seed {seed}");
+        if seed < 20 {
+            let twin = run_python("scripts/spmesh_reader.py", &["-"], &bytes);
+            assert!(twin.is_none_or(|twin| twin.stdout == text.as_bytes()), "seed {seed}");
+        }
+        let few = Content { coefficients: &coefficients[1..], ..content };
+        let error = write_as(header, few, Vec::new()).expect_err("a coefficient is missing");
+        assert!(error.to_string().contains("one each is needed"), "{error}");
+    }
+}
+
+#[test]
+fn many_functions_come_in_many_blocks() {
+    let knots = Knots::new((0..400).map(|id| [f64::from(id), f64::from(id * id)]).collect()).unwrap();
+    let pairs = (0..400).flat_map(|p| (p + 1..400).map(move |q| [p, q])).collect::<Vec<[u32; 2]>>();
+    let function = |pair: &[u32; 2]| Function { kind: FunctionKind::Edge(*pair), terms: vec![(*pair, 1.0)] };
+    let functions: Vec<Function> = pairs.iter().map(function).collect();
+    let mut bytes = Vec::new();
+    let content = Content { functions: &functions, ..Content::of(&knots, &[]) };
+    write_as(header(&knots, Coordinates::F64, Crs::Unknown), content, &mut bytes).unwrap();
+    assert_eq!(read(&bytes).functions, functions);
+    let mut reader = StreamReader::new(&bytes[..], "many").unwrap();
+    let mut blocks = 0;
+    while let Some(event) = reader.next_event().unwrap() {
+        blocks += usize::from(matches!(event, spmesh::stream::Event::Functions(_)));
+    }
+    assert!(blocks > 10, "{blocks}");
+}
+
+#[test]
+fn errors_in_twins_of_splines_name_the_line() {
+    let text = load("pass", "txt").into_iter().find(|vector| vector.name == "splines").unwrap().expected;
+    let cases = [
+        ("function edge 1 2", "function side 1 2", "edge, vertex, tent, crease or face"),
+        ("function edge 1 2", "function edge 1", "ends early"),
+        ("function edge 1 2", "function edge 1 2 3", "the end of the line"),
+        ("function edge 1 3", "function edge 1 5", "numbers of 4 knots"),
+        ("function edge 1 3\n", "", "END states"),
+        ("function edge 1 2\n", "", "cannot have this line here"),
+        ("term 1 2 1", "term 1 2", "ends early"),
+        ("term 1 2 1", "term 1 2 inf", "a finite number"),
+        ("term 1 2 1", "term 2 1 1", "increasing numbers"),
+        ("term 1 2 1", "coefficient 3", "has no term"),
+        ("coefficient 0\n", "", "END states"),
+        ("coefficient 0\n", "v 0 0 0\n", "cannot have this line here"),
+        ("coefficient 0\n", "degree 2 any\n", "cannot have this line here"),
+        ("coefficient 0\n", "function vertex 1\n", "cannot have this line here"),
+        ("kind splines", "kind configurations", "term or a comment"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&text, found, replaced, expected);
+    }
+    assert_cut_vectors_are_refused(|name| name.starts_with("splines"));
+}
+
 #[test]
 fn other_kinds_are_refused_by_name() {
     for vector in load("pass", "txt") {
         let mut reader = StreamReader::new(&vector.bytes[..], "whole").unwrap();
         let kind = reader.header().kind;
         let read = ConfigurationSet::read(&mut reader);
-        if kind == Kind::Configurations {
+        if kind.has_knots() {
             assert_eq!(read.unwrap().knots.len() as u64, reader.totals().points, "{}", vector.name);
             continue;
         }

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
+use crate::cli::rows::{Row, entries, lines, seconds};
 use crate::cli::{StatsFormat, peak_memory, say};
-use crate::configgen::{DegreeCounts, Flips, Made, Options, Report, RuleName};
+use crate::configgen::{DegreeCounts, Flips, FunctionCounts, Made, Options, Report, RuleName};
 use crate::error::Result;
 
 /// What the parts of a run took that are not in its report.
@@ -45,12 +46,16 @@ pub(super) fn print(
     let peak = peak_memory();
     let count = |configurations| DegreeCounts::of(&made.knots, configurations);
     let degrees = made.degrees.iter().map(count).collect::<Result<Vec<_>>>()?;
-    let whole = whole_rows(&made.report, output_bytes, peak);
+    let functions = (!made.functions.is_empty()).then(|| FunctionCounts::of(&made.functions));
+    let whole: Vec<Row<u64>> = whole_rows(&made.report, output_bytes, peak)
+        .into_iter()
+        .chain(uses_seed(options).then_some(("seed", "seed", options.seed)))
+        .chain(functions.iter().flat_map(function_rows))
+        .collect();
     let times = time_rows(&made.report, times);
-    let seed = uses_seed(options).then_some(options.seed);
     match format {
-        StatsFormat::Text => say(&text(&times, &whole, seed, &degrees)),
-        StatsFormat::Json => say(&format!("{}\n", json(&times, &whole, seed, &degrees))),
+        StatsFormat::Text => say(&text(&times, &whole, &degrees)),
+        StatsFormat::Json => say(&format!("{}\n", json(&times, &whole, &degrees))),
     }
     Ok(())
 }
@@ -59,18 +64,14 @@ fn uses_seed(options: &Options) -> bool {
     options.rule == RuleName::Random || matches!(options.flips, Some(Flips::Random(_, None)))
 }
 
-/// A label for people, a key for programs, the value.
-type Row<T> = (&'static str, &'static str, T);
-
-fn time_rows(report: &Report, times: &Times) -> [Row<f64>; 5] {
-    [
+fn time_rows(report: &Report, times: &Times) -> Vec<Row<f64>> {
+    seconds([
         ("time (s)", "seconds", times.total),
         ("reading (s)", "seconds_read", times.read),
         ("start triangulation (s)", "seconds_start", report.start_time),
         ("higher degrees (s)", "seconds_degrees", report.degrees_time),
         ("writing (s)", "seconds_write", times.write),
-    ]
-    .map(|(label, key, time)| (label, key, time.as_secs_f64()))
+    ])
 }
 
 fn whole_rows(report: &Report, output_bytes: u64, peak: u64) -> [Row<u64>; 7] {
@@ -99,29 +100,23 @@ fn degree_rows(counts: &DegreeCounts) -> [Row<u64>; 9] {
     ]
 }
 
-fn text(times: &[Row<f64>], whole: &[Row<u64>], seed: Option<u64>, degrees: &[DegreeCounts]) -> String {
-    let mut text = String::new();
-    for (label, _, seconds) in times {
-        text += &format!("{label:<30} {seconds:>15.3}\n");
-    }
-    let seed = seed.map(|seed| ("seed", "seed", seed));
-    let degrees = degrees.iter().flat_map(degree_rows);
-    for (label, _, count) in whole.iter().copied().chain(seed).chain(degrees) {
-        text += &format!("{label:<30} {count:>15}\n");
-    }
-    text
+fn function_rows(counts: &FunctionCounts) -> [Row<u64>; 5] {
+    [
+        ("functions of edges", "functions_edges", counts.edges),
+        ("  tents of knots", "functions_vertices", counts.vertices),
+        ("  tents of edges", "functions_tents", counts.tents),
+        ("  of smooth creases", "functions_creases", counts.creases),
+        ("  box splines", "functions_faces", counts.faces),
+    ]
 }
 
-fn json(times: &[Row<f64>], whole: &[Row<u64>], seed: Option<u64>, degrees: &[DegreeCounts]) -> String {
-    let mut object = serde_json::Map::new();
-    object.extend(times.iter().map(|&(_, key, seconds)| (key.to_string(), seconds.into())));
-    object.extend(whole.iter().map(|&(_, key, count)| (key.to_string(), count.into())));
-    if let Some(seed) = seed {
-        object.insert("seed".into(), seed.into());
-    }
-    let of_degree = |counts: &DegreeCounts| -> serde_json::Value {
-        degree_rows(counts).into_iter().map(|(_, key, count)| (key.to_string(), count)).collect()
-    };
+fn text(times: &[Row<f64>], whole: &[Row<u64>], degrees: &[DegreeCounts]) -> String {
+    lines(times, whole.iter().copied().chain(degrees.iter().flat_map(degree_rows)))
+}
+
+fn json(times: &[Row<f64>], whole: &[Row<u64>], degrees: &[DegreeCounts]) -> String {
+    let mut object = entries(times, whole.iter().copied());
+    let of_degree = |counts: &DegreeCounts| serde_json::Value::Object(entries(&[], degree_rows(counts)));
     object.insert("degrees".into(), degrees.iter().map(of_degree).collect());
     serde_json::Value::Object(object).to_string()
 }

@@ -68,14 +68,18 @@ impl Summary<'_> {
     /// Counts of what was read; figures that the kind does not have are left out.
     fn figures(&self, line: &mut impl FnMut(&str, String)) {
         let totals = self.survey.totals();
+        let [vertices, residual] = match self.header.kind.has_knots() {
+            true => ["functions", "coefficients"],
+            false => ["vertices", "residual"],
+        };
         let counts = [
             ("points", totals.points),
             ("merged", totals.merged),
-            ("vertices", totals.vertices),
+            (vertices, totals.vertices),
             (self.simplices(), totals.simplices),
             ("labels", self.survey.labels()),
             ("cells", totals.cells),
-            ("residual", totals.residual_points),
+            (residual, totals.residual_points),
             ("walls", totals.walls),
         ];
         for (name, count) in counts {
@@ -99,7 +103,7 @@ impl Summary<'_> {
             );
         } else if self.header.kind.is_4d() {
             self.figures4(line);
-        } else if self.header.kind == Kind::Configurations {
+        } else if self.header.kind.has_knots() {
             let degrees = self.survey.configurations().degrees();
             configurations::figures(degrees).for_each(|(name, value)| line(&name, value));
         } else {
@@ -147,7 +151,7 @@ impl Summary<'_> {
     /// The figures of each degree; null for other kinds.
     fn configurations_json(&self) -> Value {
         match self.header.kind {
-            Kind::Configurations => configurations::figures_json(self.survey.configurations().degrees()),
+            kind if kind.has_knots() => configurations::figures_json(self.survey.configurations().degrees()),
             _ => Value::Null,
         }
     }
@@ -158,6 +162,10 @@ impl Summary<'_> {
         let (totals, largest, cells) =
             (self.survey.totals(), self.survey.largest_patch(), self.survey.cell_points());
         let dims = usize::from(header.dims);
+        let [vertices, residual] = match header.kind.has_knots() {
+            true => ["functions", "coefficients"],
+            false => ["vertices", "residual_points"],
+        };
         let object = json!({
             "input": self.name,
             "kind": header.kind.name(),
@@ -179,12 +187,12 @@ impl Summary<'_> {
             "chunked": header.chunked,
             "counts": {
                 "points": totals.points,
-                "vertices": totals.vertices,
+                vertices: totals.vertices,
                 self.simplices(): totals.simplices,
                 "labels": self.survey.labels(),
                 "cells": totals.cells,
                 "merged": totals.merged,
-                "residual_points": totals.residual_points,
+                residual: totals.residual_points,
                 "walls": totals.walls,
             },
             "width": self.survey.width(),
@@ -286,7 +294,7 @@ impl Summary<'_> {
             Kind::TetrahedralMesh => "tetrahedra",
             Kind::Cells4 => "cells4",
             Kind::Simplices4 => "simplices",
-            Kind::Configurations => "configurations",
+            Kind::Configurations | Kind::Splines => "configurations",
             _ => "triangles",
         }
     }

@@ -6,6 +6,7 @@
 use crate::config::knots::{FARAWAY, Knots};
 use crate::config::plane::Plane;
 use crate::config::surface::{Around, Corner, Start};
+use crate::delaunay2::distinct;
 use crate::error::{Error, ErrorKind, Result};
 use crate::predicates::{Sign, TotalPredicates};
 use foldhash::{HashSet, HashSetExt};
@@ -65,10 +66,13 @@ impl<'a> Constrained<'a> {
     }
 
     /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment goes through.
+    /// Of knots at one place it names the first: others may be copies that nobody knows of.
     #[cold]
-    fn crossing(&self, ends: [u32; 2], [c, d]: [u32; 2]) -> Error {
+    fn crossing(&self, ends: [u32; 2], edge: [u32; 2]) -> Error {
+        let firsts = distinct(self.plane.knots.points());
+        let [c, d] = edge.map(|id| firsts[id as usize]);
         let (c, d) = (c.min(d), c.max(d));
-        if self.plane.knots.at(c) == self.plane.knots.at(d) {
+        if c == d {
             return through(ends, c);
         }
         let what = format!("it crosses the one from knot {c} to knot {d}");

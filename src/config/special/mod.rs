@@ -35,6 +35,13 @@ pub struct Special {
     collection: Collection,
 }
 
+/// The functions that quadratic splines are made of, if nothing is special but knots at one place: as [`Special::functions`].
+///
+/// Errors: links of another size.
+pub fn functions(knots: &Knots, links: &Links) -> Result<Vec<Function>> {
+    Collection::default().functions(knots, links)
+}
+
 impl Special {
     /// All degrees from 0 to `degree`, in order: `rule` triangulates what is not determined.
     ///
