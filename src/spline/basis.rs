@@ -247,7 +247,7 @@ impl Basis {
     #[must_use]
     pub fn is_in_domain(&self, x: Point2) -> bool {
         let is_right = |&line: &u32| super::domain::is_right_or_on(self.domain.lines[line as usize], x);
-        self.tree.lists(x).is_some_and(|lists| !lists.is_outside && lists.lines.iter().all(is_right))
+        self.tree.lines(x).is_some_and(|lines| lines.iter().all(is_right))
     }
 
     /// From where functions look at a point.
@@ -261,13 +261,12 @@ impl Basis {
     /// Alive are all whose elements have the point inside, as it is approached: a value may still be zero.
     pub fn at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, f64)] {
         scratch.values.clear();
-        if let Some(lists) = self.tree.lists(x) {
-            lists.elements.iter().for_each(|&element| self.prefetch(element as usize));
-            for &element in lists.elements {
-                self.add_values(element as usize, x, scratch);
-            }
-            scratch.values.sort_unstable_by_key(|&(function, _)| function);
+        let elements = self.tree.elements(x);
+        elements.iter().for_each(|&element| self.prefetch(element as usize));
+        for &element in elements {
+            self.add_values(element as usize, x, scratch);
         }
+        scratch.values.sort_unstable_by_key(|&(function, _)| function);
         &scratch.values
     }
 
@@ -277,12 +276,10 @@ impl Basis {
     /// These are the functions of [`Basis::at`].
     pub fn jets_at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, Jet)] {
         scratch.jets.clear();
-        if let Some(lists) = self.tree.lists(x) {
-            for &element in lists.elements {
-                self.add_jets(element as usize, x, scratch);
-            }
-            scratch.jets.sort_unstable_by_key(|&(function, _)| function);
+        for &element in self.tree.elements(x) {
+            self.add_jets(element as usize, x, scratch);
         }
+        scratch.jets.sort_unstable_by_key(|&(function, _)| function);
         &scratch.jets
     }
 
@@ -319,6 +316,10 @@ impl Basis {
     #[inline(always)]
     fn prefetch(&self, element: usize) {
         prefetch(&self.tents, element);
+        if let Some(&start) = self.factors.offsets.get(element) {
+            prefetch(&self.factors.all, start as usize);
+            prefetch(&self.factors.all, start as usize + 2);
+        }
     }
 
     /// What an element adds to values at a point.

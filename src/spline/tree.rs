@@ -35,17 +35,31 @@ pub(super) struct Hull {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// Where the cell is cut: the first child is below.
-    cut: f64,
+    /// Where the cell is cut, the first child below, as bits; of a leaf, start and end of its list of elements.
+    data: u64,
     axis: u32,
     /// The first of two children, or the number of the leaf.
     next: u32,
 }
 
-/// What a leaf lists.
+impl Node {
+    /// A node that is given with [`Tree::close`], or replaced.
+    const OPEN: Node = Node { data: 0, axis: LEAF, next: 0 };
+
+    #[inline(always)]
+    fn cut(&self) -> f64 {
+        f64::from_bits(self.data)
+    }
+
+    #[inline(always)]
+    fn elements(&self) -> std::ops::Range<usize> {
+        (self.data >> 32) as usize..self.data as u32 as usize
+    }
+}
+
+/// What a leaf lists but for elements.
 #[derive(Debug, Clone, Copy, Default)]
 struct Leaf {
-    elements: [u32; 2],
     lines: [u32; 2],
     is_outside: bool,
 }
@@ -90,19 +104,11 @@ struct Ground<'a> {
     domain: &'a Domain,
 }
 
-/// The lists for a point.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Lists<'a> {
-    pub(super) elements: &'a [u32],
-    pub(super) lines: &'a [u32],
-    pub(super) is_outside: bool,
-}
-
 impl Tree {
     /// A tree over the box from `lower` to `upper`.
     pub(super) fn new(hulls: &[Hull], domain: &Domain, lower: Point2, upper: Point2) -> Tree {
         let mut tree = Tree::empty(lower, upper);
-        tree.nodes.push(Node { cut: 0.0, axis: LEAF, next: 0 });
+        tree.nodes.push(Node::OPEN);
         let (elements, lines) = ((0..hulls.len() as u32).collect(), (0..domain.lines.len() as u32).collect());
         let mut root = Cell { node: 0, lower, upper, elements, lines, is_outside: domain.is_empty };
         root.keep_lines(domain);
@@ -136,18 +142,31 @@ impl Tree {
         let ranges = [range(0), range(1)];
         let mut at = 0;
         loop {
-            let Node { cut, axis, next } = self.nodes[at];
-            match ranges.get(axis as usize) {
-                Some(&[_, end]) if end < cut => at = next as usize,
-                Some(&[from, _]) if from >= cut => at = next as usize + 1,
+            let node = self.nodes[at];
+            match ranges.get(node.axis as usize) {
+                Some(&[_, end]) if end < node.cut() => at = node.next as usize,
+                Some(&[from, _]) if from >= node.cut() => at = node.next as usize + 1,
                 _ => return at as u32,
             }
         }
     }
 
-    /// What is listed for a point; nothing if it is outside of the box.
+    /// The elements that may have a point inside: none if it is outside of the box.
     #[inline]
-    pub(super) fn lists(&self, x: Point2) -> Option<Lists<'_>> {
+    pub(super) fn elements(&self, x: Point2) -> &[u32] {
+        self.leaf(x).map_or(&[], |leaf| &self.elements[leaf.elements()])
+    }
+
+    /// The lines of the domain that a point may be left of; nothing if it is outside anyway.
+    #[inline]
+    pub(super) fn lines(&self, x: Point2) -> Option<&[u32]> {
+        let leaf = self.leaves[self.leaf(x)?.next as usize];
+        let [start, end] = leaf.lines.map(|at| at as usize);
+        (!leaf.is_outside).then(|| &self.lines[start..end])
+    }
+
+    #[inline(always)]
+    fn leaf(&self, x: Point2) -> Option<Node> {
         if !(0..2).all(|axis| self.lower[axis] <= x[axis] && x[axis] <= self.upper[axis]) {
             return None;
         }
@@ -158,15 +177,10 @@ impl Tree {
         let start = self.starts[place(1) * self.side + place(0)];
         let mut node = self.nodes[start as usize];
         while node.axis != LEAF {
-            let is_upper = x[node.axis as usize] >= node.cut;
+            let is_upper = x[node.axis as usize] >= node.cut();
             node = self.nodes[node.next as usize + usize::from(is_upper)];
         }
-        let leaf = &self.leaves[node.next as usize];
-        Some(Lists {
-            elements: &self.elements[leaf.elements[0] as usize..leaf.elements[1] as usize],
-            lines: &self.lines[leaf.lines[0] as usize..leaf.lines[1] as usize],
-            is_outside: leaf.is_outside,
-        })
+        Some(node)
     }
 
     /// Bytes held.
@@ -184,8 +198,8 @@ impl Tree {
             return self.close(cell);
         }
         let next = self.nodes.len();
-        self.nodes[cell.node] = Node { cut, axis: axis as u32, next: next as u32 };
-        self.nodes.extend([Node { cut: 0.0, axis: LEAF, next: 0 }; 2]);
+        self.nodes[cell.node] = Node { data: cut.to_bits(), axis: axis as u32, next: next as u32 };
+        self.nodes.extend([Node::OPEN; 2]);
         let parts = elements.into_iter().enumerate().map(|(half, elements)| {
             let (mut lower, mut upper) = (cell.lower, cell.upper);
             if half == 0 {
@@ -209,12 +223,10 @@ impl Tree {
         let [elements, lines] = [self.elements.len(), self.lines.len()];
         self.elements.extend_from_slice(&cell.elements);
         self.lines.extend_from_slice(&cell.lines);
-        self.nodes[cell.node] = Node { cut: 0.0, axis: LEAF, next: self.leaves.len() as u32 };
-        self.leaves.push(Leaf {
-            elements: [elements as u32, self.elements.len() as u32],
-            lines: [lines as u32, self.lines.len() as u32],
-            is_outside: cell.is_outside,
-        });
+        let data = (elements as u64) << 32 | self.elements.len() as u64;
+        self.nodes[cell.node] = Node { data, axis: LEAF, next: self.leaves.len() as u32 };
+        let lines = [lines as u32, self.lines.len() as u32];
+        self.leaves.push(Leaf { lines, is_outside: cell.is_outside });
     }
 }
 

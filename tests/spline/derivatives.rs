@@ -39,8 +39,7 @@ fn compare(case: &Case, function: u32, x: [f64; 2]) -> Option<()> {
     if all.iter().any(is_bent) {
         return None;
     }
-    for axis in 0..2 {
-        let [less, more] = around[axis];
+    for (axis, [less, more]) in around.into_iter().enumerate() {
         let slope = (more.value - less.value) / (2.0 * STEP);
         let error = (slope - here.gradient[axis]).abs();
         assert!(error < 1e-7 * scale, "{}: function {function} at {x:?}: slope {slope} {here:?}", case.name);
