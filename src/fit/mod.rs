@@ -1,0 +1,45 @@
+//! Fitting of splines to observations.
+//!
+//! [`interpolate`] passes through values at Greville sites; everything else is least squares of scattered
+//! [`Observations`], which are read as often as needed and never held: [`Normal`] equations have the size of the basis.
+//! [`Equations`] solves them, smoothed by the energy of a thin plate ([`thin_plate`]); `choice` finds out how much.
+//!
+//! [`robust`] weighs observations by their residuals, so that gross errors do not count, and [`refine`] finds the knots, too.
+//!
+//! `observations` and `elevations` are what is fitted, `blocks` reads it in parallel, `rows` and `symmetric` are matrices, `factor` is
+//! where they are factored, `polygon` and `overlaps` serve `energy`, `spread` has medians, `mesh` and `cover` are knots with what is
+//! over them.
+
+mod blocks;
+mod choice;
+mod cover;
+mod elevations;
+mod energy;
+mod factor;
+mod mesh;
+mod normal;
+mod observations;
+mod overlaps;
+mod polygon;
+mod refine;
+mod residuals;
+mod robust;
+mod rows;
+mod sites;
+mod solve;
+mod spread;
+mod symmetric;
+
+pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
+pub use cover::Cover;
+pub use elevations::Elevations;
+pub use energy::thin_plate;
+pub use mesh::Mesh;
+pub use normal::Normal;
+pub use observations::{Observation, ObservationReader, Observations};
+pub use refine::{Goal, KNOTS_MIN, Refined, Round, refine};
+pub use residuals::{Residual, Summary, for_each_residual, summarise};
+pub use robust::{Loss, RobustFit, robust};
+pub use sites::{Interpolation, interpolate};
+pub use solve::{Equations, Undetermined, least_squares};
+pub use symmetric::Symmetric;

@@ -1,0 +1,26 @@
+//! Bivariate splines over configurations (thesis 6.2 and chapter 8).
+//!
+//! [`simplex_spline`] evaluates single simplex splines of any degree, [`Basis`] all functions at a point that
+//! [`crate::config`] makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
+//!
+//! `area` has accurate areas, `approach` the sides of lines that points lie on, `simplex` the recurrence, `tent` closed
+//! forms of degrees 0 and 1, `elements` the way from configurations to simplex splines, `domain` where functions sum to one,
+//! and `tree` finds what is alive.
+
+mod approach;
+mod area;
+mod basis;
+mod domain;
+mod elements;
+mod jet;
+mod raster;
+mod simplex;
+mod tent;
+mod tree;
+
+pub use approach::Approach;
+pub use area::area;
+pub use basis::{Basis, Scratch};
+pub use jet::Jet;
+pub use raster::{Raster, Row};
+pub use simplex::{MAX_DEGREE, simplex_spline, simplex_spline_jet};

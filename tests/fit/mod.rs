@@ -1,0 +1,13 @@
+//! Fits of splines against their theory, and against equations that are set up in another way.
+
+mod bases;
+mod choices;
+mod elevations;
+mod energies;
+mod failures;
+mod figure;
+mod interpolation;
+mod normal_equations;
+mod refinement;
+mod robustness;
+mod smoothing;
