@@ -4,7 +4,7 @@
 //! [`Observations`], which are read as often as needed and never held: [`Normal`] equations have the size of the basis.
 //! [`Equations`] solves them, smoothed by the energy of a thin plate ([`thin_plate`]); `choice` finds out how much.
 //!
-//! [`robust`] weighs observations by their residuals, so that gross errors do not count, and [`refine`] finds the knots, too.
+//! [`robust()`] weighs observations by their residuals, so that gross errors do not count, and [`refine()`] finds the knots, too.
 //!
 //! `observations` and `elevations` are what is fitted, `blocks` reads it in parallel, `rows` and `symmetric` are matrices, `factor` is
 //! where they are factored, `polygon` and `overlaps` serve `energy`, `spread` has medians, `mesh` and `cover` are knots with what is

@@ -78,12 +78,11 @@ pub fn solve_dense(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
         let best = best.expect("a row");
         rows.swap(pivot, best);
         right.swap(pivot, best);
-        for row in pivot + 1..count {
-            let factor = rows[row][pivot] / rows[pivot][pivot];
-            for column in pivot..count {
-                rows[row][column] -= factor * rows[pivot][column];
-            }
-            right[row] -= factor * right[pivot];
+        let (above, below) = rows.split_at_mut(pivot + 1);
+        for (row, offset) in below.iter_mut().zip(pivot + 1..) {
+            let factor = row[pivot] / above[pivot][pivot];
+            row.iter_mut().zip(&above[pivot]).for_each(|(entry, of_pivot)| *entry -= factor * of_pivot);
+            right[offset] -= factor * right[pivot];
         }
     }
     for pivot in (0..count).rev() {

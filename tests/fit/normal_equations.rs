@@ -32,8 +32,8 @@ fn sums_are_those_of_dense_matrices() {
     let (matrix, right, square) = by_hand(&basis, &all);
     let normal = Normal::of(&basis, &all, ONE).expect("equations");
     for i in 0..basis.len() {
-        for j in 0..basis.len() {
-            assert!((normal.matrix.at(i, j) - matrix[i][j]).abs() < 1e-11, "{i} {j}");
+        for (j, expected) in matrix[i].iter().enumerate() {
+            assert!((normal.matrix.at(i, j) - expected).abs() < 1e-11, "{i} {j}");
         }
         assert!((normal.right[i] - right[i]).abs() < 1e-11);
     }
