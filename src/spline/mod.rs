@@ -4,14 +4,17 @@
 //! [`crate::config`] makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
 //!
 //! `area` has accurate areas, `approach` the sides of lines that points lie on, `simplex` the recurrence, `tent` closed
-//! forms of degrees 0 and 1, `elements` the way from configurations to simplex splines, `domain` where functions sum to one,
-//! and `tree` finds what is alive.
+//! forms of degrees 0 and 1, and `factors` what they are multiplied by; `elements` is the way from configurations to simplex
+//! splines, `build` that to bases; `domain` knows where functions sum to one, and `tree` finds what is alive.
 
 mod approach;
 mod area;
 mod basis;
+mod build;
 mod domain;
 mod elements;
+mod factors;
+mod function_sets;
 mod jet;
 mod raster;
 mod simplex;

@@ -6,7 +6,7 @@
 //! in a loop without branches. Columns too near to an edge are evaluated like single points.
 
 use super::basis::{Basis, Scratch};
-use super::tent::{Line, Tent, lesser, value};
+use super::tent::{Line, Tent, lesser, scaled, value};
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
 use std::ops::Range;
@@ -258,5 +258,44 @@ impl Tent {
             narrow(&mut inside, [constant - 2.0 * self.error(), slope], self.origin[0]);
         }
         [around, inside]
+    }
+}
+
+impl Basis {
+    pub(super) fn element_count(&self) -> usize {
+        self.elements.len()
+    }
+
+    pub(super) fn tents(&self) -> &[Tent] {
+        &self.tents
+    }
+
+    pub(super) fn domain_lines(&self) -> &[[Point2; 2]] {
+        &self.domain.lines
+    }
+
+    /// Least and greatest ordinate of an element.
+    pub(super) fn rows_of(&self, element: usize) -> [f64; 2] {
+        self.range_of(element, 1)
+    }
+
+    /// Least and greatest abscissa of an element.
+    pub(super) fn columns_of(&self, element: usize) -> [f64; 2] {
+        self.range_of(element, 0)
+    }
+
+    fn range_of(&self, element: usize, axis: usize) -> [f64; 2] {
+        let coordinates = self.elements.knots(element).iter().map(|&id| self.points[id as usize][axis]);
+        coordinates
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], c| [least.min(c), greatest.max(c)])
+    }
+
+    /// The factor of an element with a tent in a spline.
+    pub(super) fn factor_of_spline(&self, element: usize, coefficients: &[f64]) -> Line {
+        let factors = self.factors.of_element(element);
+        factors.iter().fold([0.0; 3], |sum, (function, line)| {
+            let added = scaled(*line, coefficients[*function as usize]);
+            [0, 1, 2].map(|place| sum[place] + added[place])
+        })
     }
 }

@@ -40,7 +40,7 @@ fn greatest_error(case: &Case, points: &[[f64; 2]]) -> (f64, String) {
             let found: f64 = values.iter().map(|&(function, value)| value * coefficient(function)).sum();
             let scale = (1.0 + x[0].abs()).powi(i as i32) * (1.0 + x[1].abs()).powi(j as i32);
             let error = (found - x[0].powi(i as i32) * x[1].powi(j as i32)).abs() / scale;
-            if !(error <= greatest.0) {
+            if error > greatest.0 || error.is_nan() {
                 greatest = (error, format!("x^{i} y^{j} at {x:?}"));
             }
         }
