@@ -33,6 +33,7 @@ pub mod sink;
 pub mod source;
 pub mod spacetime;
 pub mod spline;
+pub mod splinefit;
 pub mod stream;
 pub mod system;
 pub mod tess3;

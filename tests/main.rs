@@ -28,6 +28,7 @@ mod reference;
 mod sources;
 mod spacetime;
 mod spline;
+mod splinefit;
 mod stream;
 mod system;
 mod tess3;

@@ -8,6 +8,7 @@ pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spfinalize;
 pub mod spinfo;
+pub mod splinefit;
 pub mod tess3;
 
 use std::ffi::OsString;
@@ -117,6 +118,17 @@ pub fn parse_size(text: &str) -> Result<u64, String> {
     let number: f64 = digits.parse().map_err(|_| format!("{text:?} is not a size like 512M"))?;
     let bytes = number * unit as f64;
     if (1.0..9e18).contains(&bytes) { Ok(bytes as u64) } else { Err(format!("{text:?} is out of range")) }
+}
+
+/// `N` numbers between commas.
+///
+/// # Errors
+/// If there are others, or something else.
+pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
+    let found = numbers.len();
+    numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
 }
 
 /// Peak resident memory of this process in bytes; 0 where the system does not tell.

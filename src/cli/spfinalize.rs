@@ -7,7 +7,7 @@ use anyhow::Context;
 use clap::Parser;
 
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, parse_size, peak_memory};
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
 use crate::error::Error;
 use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use crate::output::Output;
@@ -227,14 +227,6 @@ fn read_list(list: &Path) -> anyhow::Result<Vec<PathBuf>> {
             .context("nothing to read");
     }
     Ok(paths)
-}
-
-/// `N` numbers between commas.
-fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
-    let found = numbers.len();
-    numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
 }
 
 /// Shows progress and notices on stderr.

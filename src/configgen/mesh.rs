@@ -6,14 +6,7 @@ use super::sites::Frame;
 use crate::bounds::Point;
 use crate::config::{CentroidMesh, Knots};
 use crate::error::Result;
-use crate::stream::{Coordinates, Header, Kind, Patch, StreamWriter};
-
-/// Triangles per patch. With three vertices of its own each, a triangle takes at most 3 * (4 + 24 + 4) bytes, so a patch
-/// stays below the maximum of a block.
-const PATCH_TRIANGLES: usize = 8000;
-
-/// Id of a vertex that no patch has so far.
-const NONE: u64 = u64::MAX;
+use crate::stream::{Coordinates, Header, Kind, write_triangles};
 
 /// Writes a centroid triangulation, with the mean of elevations where knots have some.
 ///
@@ -25,54 +18,9 @@ const NONE: u64 = u64::MAX;
 pub fn write_centroids(knots: &Knots, frame: &Frame, mesh: &CentroidMesh, output: impl Write) -> Result<()> {
     let placement = Placement::of(knots, frame, mesh.order());
     let points = Some(mesh.vertices.len() as u64);
-    let mut writer = StreamWriter::new(output, Header { points, ..placement.header.clone() })?;
-    let mut last_patches = vec![0u32; mesh.vertices.len()];
-    for (number, triangles) in (0..).zip(mesh.triangles.chunks(PATCH_TRIANGLES)) {
-        triangles.as_flattened().iter().for_each(|&v| last_patches[v as usize] = number);
-    }
-    let mut ids = vec![NONE; mesh.vertices.len()];
-    for (number, triangles) in (0..).zip(mesh.triangles.chunks(PATCH_TRIANGLES)) {
-        let is_last = |v: u32| last_patches[v as usize] == number;
-        let at = |v: u32| placement.centroid(knots, frame, mesh.set(v));
-        writer.patch(&patch(triangles, writer.totals().vertices, &mut ids, is_last, at))?;
-    }
-    writer.end(mesh.vertices.len() as u64, 0).map(drop)
-}
-
-/// The patch of some triangles; `first_id` vertices were written before.
-fn patch(
-    triangles: &[[u32; 3]],
-    first_id: u64,
-    ids: &mut [u64],
-    is_last: impl Fn(u32) -> bool,
-    at: impl Fn(u32) -> Point,
-) -> Patch {
-    let (mut new, mut imported) = (Vec::new(), Vec::new());
-    for &v in triangles.as_flattened() {
-        let id = &mut ids[v as usize];
-        if *id == NONE {
-            *id = first_id + new.len() as u64;
-            new.push(v);
-        } else if *id < first_id {
-            imported.push((*id, v));
-        }
-    }
-    imported.sort_unstable();
-    imported.dedup();
-    let local = |&v: &u32| match ids[v as usize].checked_sub(first_id) {
-        Some(new) => new as u32,
-        None => (new.len() + imported.partition_point(|&(id, _)| id < ids[v as usize])) as u32,
-    };
-    let simplices = triangles.as_flattened().iter().map(local).collect();
-    let vertices = new.iter().copied().chain(imported.iter().map(|&(_, v)| v));
-    let finalized = (0..).zip(vertices).filter(|&(_, v)| is_last(v)).map(|(local, _)| local).collect();
-    Patch {
-        first_id,
-        new: new.into_iter().map(at).collect(),
-        imported: imported.into_iter().map(|(id, _)| id).collect(),
-        simplices,
-        finalized,
-    }
+    let header = Header { points, ..placement.header.clone() };
+    let at = |v: u32| placement.centroid(knots, frame, mesh.set(v));
+    write_triangles(header, &mesh.triangles, mesh.vertices.len(), 0, at, output)
 }
 
 /// How centroids are stored.

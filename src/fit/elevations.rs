@@ -24,12 +24,19 @@ impl<'a> Elevations<'a> {
         }
         Ok(Elevations { input })
     }
+
+    /// A pass that outlives this.
+    ///
+    /// Errors: those of [`Input::read`].
+    pub fn into_reader(self) -> Result<Box<dyn ObservationReader + 'a>> {
+        let coordinates = self.input.description().coordinates;
+        Ok(Box::new(OfInput { reader: self.input.read()?, coordinates, batch: Vec::new() }))
+    }
 }
 
 impl Observations for Elevations<'_> {
     fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
-        let coordinates = self.input.description().coordinates;
-        Ok(Box::new(OfInput { reader: self.input.read()?, coordinates, batch: Vec::new() }))
+        self.into_reader()
     }
 }
 

@@ -42,4 +42,5 @@ pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust};
 pub use sites::{Interpolation, interpolate};
 pub use solve::{Equations, Undetermined, least_squares};
+pub use spread::Spread;
 pub use symmetric::Symmetric;

@@ -1,4 +1,4 @@
-//! The median of magnitudes, from one pass, in a fixed amount of memory.
+//! Medians and other quantiles of magnitudes, from one pass, in a fixed amount of memory.
 
 /// Bits of a number that make its class, besides its sign: 11 of the exponent, 7 of the fraction.
 const CLASS_BITS: u32 = 18;
@@ -7,7 +7,7 @@ const SHIFT: u32 = 63 - CLASS_BITS;
 
 /// How many numbers are in which class. Shape: 2 MB.
 #[derive(Debug, Clone)]
-pub(super) struct Spread {
+pub struct Spread {
     counts: Vec<u64>,
     total: u64,
 }
@@ -20,19 +20,28 @@ impl Default for Spread {
 
 impl Spread {
     /// Counts a finite number by its magnitude.
-    pub(super) fn add(&mut self, number: f64) {
+    pub fn add(&mut self, number: f64) {
         self.counts[(number.abs().to_bits() >> SHIFT) as usize] += 1;
         self.total += 1;
     }
 
-    /// The median of magnitudes, the lower one of two: the middle of its class, which is half a percent off at most.
-    /// Nothing of no numbers.
-    pub(super) fn median(&self) -> Option<f64> {
-        let half = self.total.div_ceil(2);
+    /// The median of magnitudes, the lower one of two. Accuracy: as [`Spread::quantile`].
+    #[must_use]
+    pub fn median(&self) -> Option<f64> {
+        self.quantile(0.5)
+    }
+
+    /// The least magnitude that a part of all magnitudes is not above: the middle of its class, which is half a percent off at
+    /// most. Nothing of no numbers.
+    ///
+    /// Domain: parts above zero, and up to one.
+    #[must_use]
+    pub fn quantile(&self, part: f64) -> Option<f64> {
+        let enough = (part * self.total as f64).ceil() as u64;
         let mut below = 0;
         let is_reached = |count: &u64| {
             below += count;
-            below >= half
+            below >= enough
         };
         let class = self.counts.iter().position(is_reached).filter(|_| self.total > 0)? as u64;
         // Zero is the only number of its class in practice, and exact data have no other residual.
@@ -58,6 +67,10 @@ mod tests {
             let expected = all[(count - 1) / 2];
             let found = spread.median().unwrap();
             assert!((found / expected - 1.0).abs() < 0.005, "{count}: {found}, {expected}");
+            for (part, at) in [(0.95, (95 * count).div_ceil(100) - 1), (1.0, count - 1)] {
+                let (expected, found) = (all[at], spread.quantile(part).unwrap());
+                assert!((found / expected - 1.0).abs() < 0.005, "{count} {part}: {found}, {expected}");
+            }
         }
         assert_eq!(Spread::default().median(), None);
         let mut zeros = Spread::default();

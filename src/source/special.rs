@@ -56,7 +56,7 @@ pub fn read_patches(input: impl Read) -> Result<Vec<Patch>> {
 }
 
 /// Hands over the words of each line that has some; their number.
-fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
+pub(super) fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
     let mut lines = LineReader::new(std::io::BufReader::new(input));
     let mut count = 0;
     while let Some(line) = lines.next_line()? {
@@ -84,7 +84,7 @@ fn parsed(word: &[u8], what: &str) -> Result<u32> {
     number.ok_or_else(|| Error::malformed(format!("found {}, expected {what}", quote(word))))
 }
 
-fn finite(word: &[u8]) -> Result<f64> {
+pub(super) fn finite(word: &[u8]) -> Result<f64> {
     let finite = number(word).filter(|number| number.is_finite());
     finite.ok_or_else(|| Error::malformed(format!("found {}, expected a finite number", quote(word))))
 }

@@ -21,6 +21,7 @@ mod points4;
 mod reader;
 mod rules4;
 mod tally;
+mod triangles;
 mod writer;
 
 pub use configurations::ConfigurationBlock;
@@ -39,5 +40,6 @@ pub use points4::Points4;
 pub(crate) use points4::check_value;
 pub use reader::StreamReader;
 pub(crate) use tally::Tally;
+pub use triangles::write_triangles;
 pub use writer::StreamWriter;
 pub(crate) use writer::encode_points;

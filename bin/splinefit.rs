@@ -1,0 +1,5 @@
+//! Bivariate splines fitted to scattered points.
+
+fn main() -> std::process::ExitCode {
+    spmesh::cli::main(spmesh::cli::splinefit::run)
+}

@@ -1,0 +1,126 @@
+//! `splinefit`: subcommands.
+
+mod eval;
+mod fit;
+mod info;
+mod mesh;
+mod report;
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use clap::{Args, Parser, Subcommand};
+
+use super::{Common, notice};
+use crate::error::{Error, ErrorKind, Result};
+use crate::system;
+
+const TOOL: &str = "splinefit";
+
+/// Functions are evaluated on every thread.
+const THREADS_DEFAULT_MAX: usize = 8;
+
+const EXAMPLES: &str = "\
+Examples:
+  A spline for a LIDAR tile; its knots are looked for:
+    splinefit fit --keep-class 2 tile.laz -o tile.spline.spm
+  As near to all points as 0.1, with 20,000 knots at most, and how that went:
+    splinefit fit --tol 0.1 --max-knots 20000 --stats points.txt -o fine.spline.spm
+  Over knots of one's own, smoothed by generalised cross-validation:
+    configgen --boundary pulled-apart knots.txt | splinefit fit --knots - --lambda gcv points.txt -o smooth.spline.spm
+  Without gross errors, which go to a list:
+    splinefit fit --robust tukey --rejected errors.txt points.txt -o terrain.spline.spm
+  A raster of elevations, and one of slopes:
+    splinefit eval terrain.spline.spm --step 0.5 -o terrain.tif
+    splinefit eval terrain.spline.spm --step 0.5 --kind slope -o slope.tif
+  Values at sites:
+    splinefit eval terrain.spline.spm --at sites.txt
+  What the spline is like, and how far it is from points:
+    splinefit info terrain.spline.spm points.txt
+  Its control mesh for other programs:
+    splinefit mesh terrain.spline.spm | spconvert --to ply -o control.ply
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+A spline is a sum of functions over configurations of knots. Where all functions sum to one, which with a border that is pulled \
+apart is the convex hull of the knots, splines of degree k reproduce polynomials of that degree. Elsewhere nothing is \
+evaluated: sites get nan, cells no data.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 malformed or truncated \
+input, 5 not enough memory, 141 output closed by its reader.";
+
+/// What is said after the number of bytes that could not be had.
+const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";
+
+/// Bivariate splines fitted to scattered points.
+///
+/// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and coefficients. It
+/// evaluates such streams at sites and in cells of rasters.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    #[command(subcommand)]
+    action: Action,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What is done.
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// Fit a spline to points
+    Fit(Box<fit::Flags>),
+    /// Evaluate a spline at sites, or in the cells of a raster
+    Eval(eval::Flags),
+    /// Say what a spline is like: domain, condition, smoothness, residuals
+    Info(info::Flags),
+    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh
+    Mesh(mesh::Flags),
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`crate::splinefit`].
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    Ok(match &flags.action {
+        Action::Fit(action) => action.run(&flags.common),
+        Action::Eval(action) => action.run(&flags.common),
+        Action::Info(action) => action.run(&flags.common),
+        Action::Mesh(action) => action.run(),
+    }?)
+}
+
+/// How many threads evaluate.
+#[derive(Debug, Clone, Args)]
+struct Threads {
+    /// Threads that evaluate functions [default: one per core, at most 8]; results do not depend on them
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Threads {
+    fn get(&self) -> NonZeroUsize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from).min(THREADS_DEFAULT_MAX);
+        let wanted = self.threads.map_or_else(cores, usize::from);
+        NonZeroUsize::new(wanted).unwrap_or(NonZeroUsize::MIN)
+    }
+}
+
+/// Refuses two inputs from stdin; inputs have names for messages.
+fn check_stdin<'a>(inputs: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<()> {
+    let mut of_stdin = inputs.into_iter().filter(|(_, path)| path.as_os_str() == "-");
+    match (of_stdin.next(), of_stdin.next()) {
+        (Some((first, _)), Some((second, _))) => {
+            Err(Error::usage(format!("{first} and {second} cannot both come from stdin")))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn say(common: &Common, message: &str) {
+    notice(TOOL, common, message);
+}

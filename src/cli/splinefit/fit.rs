@@ -1,0 +1,235 @@
+//! `splinefit fit`: flags.
+
+use std::cell::RefCell;
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+
+use super::{Threads, check_stdin, report, say};
+use crate::cli::{Common, StatsFormat, open_input, parse_numbers, progress::Progress};
+use crate::error::{Error, Result};
+use crate::fit::Loss;
+use crate::output::Output;
+use crate::source::{
+    KnotSource, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
+};
+use crate::splinefit::{self, Fitted, Options, Points, Smoothing};
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "\
+Without --knots, they are looked for: a coarse grid over the box of the points gets more, round by round, where residuals are \
+above --tol [default: 1 % of the range of elevations], while there are fewer than --max-knots [default: one for 12 points, at \
+most 5,000]. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
+
+Without --lambda, coefficients are those of least squares, if points determine them all. Otherwise, and where knots are looked \
+for, gaps are bridged by so little smoothing that it can hardly be seen elsewhere. LAMBDA multiplies the thin-plate energy, which \
+is added to the sum of squares of residuals.
+
+--features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear: \
+their vertices become knots, with more between them where segments are long, and other knots near to them are left out. In GeoJSON \
+points are corners, and lines and rings are creases, unless a feature has a property spline with one of the words. Polylines may \
+meet at common vertices only.
+
+--robust weighs points by their residuals, again and again: huber less beyond 1.345 standard deviations, tukey not at all beyond \
+4.685. These are rejected. The deviation is that of the median of magnitudes.";
+
+#[derive(Debug, Clone, Args)]
+#[command(after_help = NOTES)]
+pub(super) struct Flags {
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, point streams); - is stdin
+    #[arg(value_name = "POINTS", default_value = "-")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the spline goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Knots: points, a stream of configurations, or a spline whose knots are used again; - is stdin
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots"])]
+    knots: Option<PathBuf>,
+
+    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are listed, or else one
+    /// more than the highest]
+    #[arg(long, value_name = "K")]
+    degree: Option<usize>,
+
+    /// Greatest residual that needs no further knot, in units of elevations
+    #[arg(long, value_name = "T", value_parser = parse_positive)]
+    tol: Option<f64>,
+
+    /// Most places of knots
+    #[arg(long, value_name = "N")]
+    max_knots: Option<usize>,
+
+    /// How much to smooth: a number, gcv (generalised cross-validation), or cv or cv:FOLDS (cross-validation)
+    #[arg(long, value_name = "LAMBDA|gcv|cv[:FOLDS]")]
+    lambda: Option<Smoothing>,
+
+    /// Weigh points by their residuals, so that gross errors count little, or not at all
+    #[arg(long, value_enum, value_name = "huber|tukey", hide_possible_values = true)]
+    robust: Option<LossFlag>,
+
+    /// Pass through the values that triangulated points have at Greville sites, instead of least squares
+    #[arg(long)]
+    interpolate: bool,
+
+    /// Weights of points: a number on each line, in the order of the points; - is stdin
+    #[arg(long, value_name = "FILE")]
+    weights: Option<PathBuf>,
+
+    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or linear and X Y X Y ...,
+    /// or GeoJSON; - is stdin
+    #[arg(long, value_name = "FILE")]
+    features: Option<PathBuf>,
+
+    /// List the points in the domain: lines of x, y, z and elevation less spline
+    #[arg(long, value_name = "FILE")]
+    residuals: Option<PathBuf>,
+
+    /// List the points that --robust rejects, in the same way
+    #[arg(long, value_name = "FILE", requires = "robust")]
+    rejected: Option<PathBuf>,
+
+    /// Keep only points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    keep_class: Vec<u8>,
+
+    /// Drop points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    drop_class: Vec<u8>,
+
+    /// Keep only points whose x and y lie in this closed box
+    #[arg(long, value_name = "MINX,MINY,MAXX,MAXY", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
+    bounds: Option<[f64; 4]>,
+
+    /// Seed of folds, and of estimates for gcv
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+
+    #[command(flatten)]
+    threads: Threads,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+}
+
+/// What `--robust` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum LossFlag {
+    Huber,
+    Tukey,
+}
+
+impl Flags {
+    pub(super) fn run(&self, common: &Common) -> Result<()> {
+        let started = Instant::now();
+        self.check_stdin()?;
+        let options = self.options()?;
+        // Outputs that cannot be are better known before the work.
+        let mut output = Output::create(&self.output, true)?;
+        let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
+        let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
+        let points = self.points(common)?;
+        points.notices().iter().for_each(|text| say(common, text));
+        let knots = self.knots(common)?;
+        let progress = RefCell::new(Progress::new(common, "fitting", None));
+        let fitted = splinefit::fit(&points, knots, &options, &|read| progress.borrow_mut().set(read))?;
+        drop(progress);
+        fitted.spline.write(&mut output)?;
+        let output_bytes = output.bytes_written();
+        list(residuals, |list| splinefit::write_residuals(&fitted.spline, &points, options.threads, list))?;
+        let rejected = list(rejected, |list| fitted.write_rejected(&points, &options, list))?;
+        output.commit()?;
+        self.report(common, &fitted, rejected, started, output_bytes);
+        Ok(())
+    }
+
+    fn report(
+        &self,
+        common: &Common,
+        fitted: &Fitted,
+        rejected: Option<u64>,
+        started: Instant,
+        output_bytes: u64,
+    ) {
+        report::notices(&fitted.report, &fitted.spline, rejected).iter().for_each(|text| say(common, text));
+        report::print(self.stats, fitted, rejected, self.seed, started.elapsed(), output_bytes);
+    }
+
+    fn check_stdin(&self) -> Result<()> {
+        let others = [("--knots", &self.knots), ("--features", &self.features), ("--weights", &self.weights)];
+        let others = others.iter().filter_map(|(flag, path)| Some((*flag, path.as_deref()?)));
+        check_stdin(self.inputs.iter().map(|path| ("points", path.as_path())).chain(others))
+    }
+
+    fn options(&self) -> Result<Options> {
+        Ok(Options {
+            smoothing: self.lambda,
+            loss: self.robust.map(|loss| match loss {
+                LossFlag::Huber => Loss::Huber,
+                LossFlag::Tukey => Loss::Tukey,
+            }),
+            interpolates: self.interpolate,
+            tolerance: self.tol,
+            max_knots: self.max_knots,
+            polylines: self.features.as_ref().map(read_features).transpose()?.unwrap_or_default(),
+            degree: self.degree,
+            seed: self.seed,
+            threads: self.threads.get(),
+        })
+    }
+
+    fn points(&self, common: &Common) -> Result<Points> {
+        let source = SourceOptions {
+            keep_class: self.keep_class.clone(),
+            drop_class: self.drop_class.clone(),
+            bounds: self.bounds,
+            threads: Some(self.threads.get()),
+            ..SourceOptions::default()
+        };
+        let weights = self.weights.as_ref().map(read_weights).transpose()?;
+        let mut progress = Progress::new(common, "reading", None);
+        Points::open(&self.inputs, &source, weights, |count| progress.set(count))
+    }
+
+    fn knots(&self, common: &Common) -> Result<Option<(KnotSource, String)>> {
+        let Some(path) = &self.knots else { return Ok(None) };
+        let source = open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })?;
+        if let KnotSource::Points(input) = &source {
+            input.notices().iter().for_each(|text| say(common, text));
+        }
+        Ok(Some((source, name_of(path))))
+    }
+}
+
+/// Writes a list, if there is to be one.
+fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<Option<T>> {
+    let Some(mut output) = output else { return Ok(None) };
+    let written = write(&mut output)?;
+    output.flush().map_err(|error| Error::io("writing", error))?;
+    output.commit()?;
+    Ok(Some(written))
+}
+
+fn read_features(path: &PathBuf) -> Result<Vec<Polyline>> {
+    let (input, name) = open_input(path)?;
+    read_polylines(input).map_err(|error| error.of_input(name))
+}
+
+fn read_weights(path: &PathBuf) -> Result<Vec<f64>> {
+    let (input, name) = open_input(path)?;
+    match read_values(input).map_err(|error| error.of_input(&name))? {
+        Values::Numbers(numbers) => Ok(numbers),
+        Values::Vectors(_) => {
+            Err(Error::malformed("found two numbers on a line, expected one weight").of_input(name))
+        }
+    }
+}
+
+fn parse_positive(text: &str) -> std::result::Result<f64, String> {
+    let number = text.parse().ok().filter(|&number: &f64| number > 0.0 && number.is_finite());
+    number.ok_or_else(|| format!("{text:?} is no number above zero"))
+}

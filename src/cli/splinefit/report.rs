@@ -1,0 +1,149 @@
+//! What a fit says when it is done.
+
+use std::time::Duration;
+
+use serde_json::{Map, Value, json};
+
+use crate::cli::rows::{Row, entries, lines, seconds};
+use crate::cli::{StatsFormat, peak_memory, say};
+use crate::splinefit::{Fitted, PERCENTILES, Report, Spline, Statistics};
+
+/// What the user should know.
+pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
+    let mut notices = Vec::new();
+    let functions = spline.layout.basis.len();
+    if let Some(search) = &report.search {
+        let (tolerance, most) = (search.goal.tolerance, search.goal.max_knots);
+        let knots = spline.layout.places();
+        let above = search.rounds.last().map_or(0, |round| round.above);
+        notices.push(format!(
+            "{knots} knots (at most {most}), {functions} functions, tolerance {tolerance}: {}",
+            if search.is_reached { "reached".into() } else { format!("{above} points are farther off") }
+        ));
+    }
+    if let Some(chosen) = &report.chosen {
+        if let Some(undetermined @ 1..) = chosen.undetermined {
+            notices.push(format!(
+                "points leave {undetermined} of {functions} functions undetermined: smoothed with lambda {:e}",
+                chosen.lambda
+            ));
+        }
+        if chosen.choice.is_some() {
+            notices.push(format!("smoothed with lambda {:e}", chosen.lambda));
+        }
+    }
+    if let Some((scale, has_settled)) = report.scale {
+        notices.push(format!("standard deviation of points: {scale}"));
+        if !has_settled {
+            notices.push("weights did not settle: the fit is that of the last round".into());
+        }
+    }
+    if let Some(rejected) = rejected {
+        notices.push(format!("{rejected} of {} points rejected", report.points));
+    }
+    if report.residuals.outside > 0 {
+        notices.push(outside(&report.residuals));
+    }
+    notices
+}
+
+/// How many points do not count.
+pub(super) fn outside(residuals: &Statistics) -> String {
+    let all = residuals.count + residuals.outside;
+    format!("{} of {all} points are outside of the domain, and do not count", residuals.outside)
+}
+
+/// Prints what `--stats` asks for.
+pub(super) fn print(
+    format: Option<StatsFormat>,
+    fitted: &Fitted,
+    rejected: Option<u64>,
+    seed: u64,
+    time: Duration,
+    output_bytes: u64,
+) {
+    let Some(format) = format else { return };
+    let times = seconds([("time (s)", "seconds", time)]);
+    let counts = count_rows(fitted, rejected, seed, output_bytes);
+    let numbers = number_rows(fitted);
+    match format {
+        StatsFormat::Text => {
+            let numbers = numbers.iter().map(|(label, _, number)| format!("{label:<30} {number:>15.6e}\n"));
+            say(&format!("{}{}", lines(&times, counts), numbers.collect::<String>()));
+        }
+        StatsFormat::Json => {
+            let mut object = entries(&times, counts);
+            let numbers = numbers.into_iter().map(|(_, key, number)| (key.to_string(), number.into()));
+            object.extend(numbers);
+            object.extend(details(&fitted.report));
+            say(&format!("{}\n", Value::Object(object)));
+        }
+    }
+}
+
+fn count_rows(fitted: &Fitted, rejected: Option<u64>, seed: u64, output_bytes: u64) -> Vec<Row<u64>> {
+    let Fitted { spline, report, .. } = fitted;
+    let mut rows = vec![
+        ("points", "points", report.points),
+        ("points outside of the domain", "outside", report.residuals.outside),
+        ("degree", "degree", spline.layout.basis.degree() as u64),
+        ("knots", "knots", spline.layout.places() as u64),
+        ("functions", "functions", spline.layout.basis.len() as u64),
+    ];
+    if let Some(search) = &report.search {
+        rows.push(("rounds", "rounds_count", search.rounds.len() as u64));
+        rows.push(("tolerance reached", "is_reached", search.is_reached.into()));
+    }
+    rows.extend(rejected.map(|count| ("rejected points", "rejected", count)));
+    rows.push(("seed", "seed", seed));
+    rows.push(("output (bytes)", "output_bytes", output_bytes));
+    rows.push(("peak memory (bytes)", "peak_memory_bytes", peak_memory()));
+    rows
+}
+
+fn number_rows(fitted: &Fitted) -> Vec<Row<f64>> {
+    let report = &fitted.report;
+    let mut rows = Vec::new();
+    rows.extend(report.search.as_ref().map(|search| ("tolerance", "tolerance", search.goal.tolerance)));
+    rows.extend(report.chosen.as_ref().map(|chosen| ("lambda", "lambda", chosen.lambda)));
+    rows.extend(report.scale.map(|(scale, _)| ("standard deviation", "scale", scale)));
+    rows.extend(residual_rows(&report.residuals));
+    rows
+}
+
+/// Residuals in numbers.
+pub(super) fn residual_rows(residuals: &Statistics) -> Vec<Row<f64>> {
+    const LABELS: [(&str, &str); PERCENTILES.len()] = [
+        ("  median of magnitudes", "residual_median"),
+        ("  75 % are below", "residual_75"),
+        ("  90 % are below", "residual_90"),
+        ("  95 % are below", "residual_95"),
+        ("  99 % are below", "residual_99"),
+    ];
+    let whole = [
+        ("residuals: greatest", "residual_max", residuals.greatest),
+        ("  root of mean square", "residual_rms", residuals.root_mean_square),
+        ("  mean", "residual_mean", residuals.mean),
+    ];
+    let parts = LABELS.iter().zip(residuals.percentiles).map(|(&(label, key), number)| (label, key, number));
+    whole.into_iter().chain(parts).collect()
+}
+
+/// What only programs are told: rounds, and what was tried.
+fn details(report: &Report) -> Map<String, Value> {
+    let mut details = Map::new();
+    if let Some(search) = &report.search {
+        let round = |round: &crate::fit::Round| {
+            json!({
+                "knots": round.knots, "functions": round.functions, "residual_max": round.greatest,
+                "residual_rms": round.root_mean_square, "above": round.above,
+            })
+        };
+        details.insert("rounds".into(), search.rounds.iter().map(round).collect());
+    }
+    if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
+        let trial = |trial: &crate::fit::Trial| json!({"lambda": trial.lambda, "score": trial.score});
+        details.insert("trials".into(), choice.trials.iter().map(trial).collect());
+    }
+    details
+}

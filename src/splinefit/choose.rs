@@ -1,0 +1,89 @@
+//! How much is smoothed.
+
+use super::layout::Layout;
+use super::options::{Options, Smoothing};
+use super::points::InFrame;
+use crate::error::Result;
+use crate::fit::{self, Choice, Equations, Folds, Normal, Symmetric};
+use crate::spline::Basis;
+
+/// Where points leave functions undetermined, they are smoothed by so many units of [`Equations::unit`].
+const SMOOTHING_MIN: f64 = 1e-6;
+
+/// How much was smoothed, and why.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chosen {
+    /// The factor of the thin-plate energy, in world coordinates.
+    pub lambda: f64,
+    /// Number of functions that points leave undetermined without smoothing, if that was looked at.
+    pub undetermined: Option<usize>,
+    /// What was tried, by cross-validation; `lambda` in world coordinates.
+    pub choice: Option<Choice>,
+    /// Number of points in the domain that count.
+    pub count: u64,
+}
+
+/// Equations whose `lambda` is known.
+pub(super) struct Problem {
+    pub(super) normal: Normal,
+    pub(super) energy: Option<Symmetric>,
+    /// In stored coordinates.
+    pub(super) lambda: f64,
+    pub(super) chosen: Chosen,
+}
+
+impl Problem {
+    pub(super) fn solve(&self, basis: &Basis) -> Result<Vec<f64>> {
+        Equations::new(basis, &self.normal, self.energy.as_ref())?.solve(self.lambda)
+    }
+}
+
+/// Sets up the equations of points, and chooses.
+///
+/// In stored coordinates, second derivatives are those of the world times a step squared, and areas are smaller by as much: so
+/// the energy is that of the world times a step squared, and lambda is divided by it.
+///
+/// Errors: those of [`Normal::of`], [`fit::thin_plate`] and [`Equations::solve`].
+pub(super) fn choose(
+    layout: &Layout,
+    all: &InFrame,
+    options: &Options,
+    smoothing_min: Option<f64>,
+) -> Result<Problem> {
+    let (basis, threads) = (&layout.basis, options.threads);
+    let normal = Normal::of(basis, all, threads)?;
+    let needs_energy = match options.smoothing {
+        Some(Smoothing::Lambda(lambda)) => lambda > 0.0,
+        Some(_) => true,
+        None => basis.degree() >= 2,
+    };
+    let energy = if needs_energy { Some(fit::thin_plate(basis)?) } else { None };
+    let area = layout.frame.step().powi(2);
+    let (mut undetermined, mut choice) = (None, None);
+    let lambda = match (&energy, options.smoothing) {
+        (None, _) => 0.0,
+        (_, Some(Smoothing::Lambda(lambda))) => lambda / area,
+        (Some(energy), Some(Smoothing::Folds(folds))) => {
+            let folds = Folds::of(basis, all, folds, options.seed, threads)?;
+            choice.insert(folds.choose(basis, energy)?).best.lambda
+        }
+        (energy, smoothing) => {
+            let equations = Equations::new(basis, &normal, energy.as_ref())?;
+            if smoothing == Some(Smoothing::Generalised) {
+                choice.insert(fit::generalised_cross_validation(&equations, options.seed)?).best.lambda
+            } else if let Some(smoothing) = smoothing_min {
+                smoothing * equations.unit()
+            } else {
+                let count = equations.undetermined(0.0)?.len();
+                undetermined = Some(count);
+                if count == 0 { 0.0 } else { SMOOTHING_MIN * equations.unit() }
+            }
+        }
+    };
+    if let Some(choice) = &mut choice {
+        choice.best.lambda *= area;
+        choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
+    }
+    let chosen = Chosen { lambda: lambda * area, undetermined, choice, count: normal.count };
+    Ok(Problem { normal, energy, lambda, chosen })
+}

@@ -1,0 +1,215 @@
+//! Splines in the cells of a grid.
+
+use std::io::{Seek, Write};
+use std::num::NonZeroUsize;
+
+use super::attributes::Attribute;
+use super::layout::Spline;
+use super::values::{line, write_error};
+use crate::error::{Error, Result};
+use crate::predicates::Point2;
+use crate::raster::{self, Grid, RasterFormat, Window};
+use crate::spline::{Raster, Scratch};
+
+/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
+const ROWS_PER_THREAD: usize = 64;
+/// Cells along the longer side of a grid, if nothing is said.
+const CELLS: f64 = 1_000.0;
+
+/// How large cells are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cells {
+    /// Their side, in world coordinates; sides are at its multiples, so that grids of neighbours fit together.
+    Step(f64),
+    /// So many columns.
+    Columns(u32),
+    /// So many rows.
+    Rows(u32),
+    /// A thousand along the longer side.
+    Default,
+}
+
+impl Spline {
+    /// The grid of a window, or else of the domain, in world coordinates.
+    ///
+    /// # Errors
+    /// As [`Grid::covering`]; a domain without an area.
+    pub fn grid(&self, cells: Cells, window: Option<Window>) -> Result<Grid> {
+        let window = match window {
+            Some(window) => window,
+            None => self.layout.domain_window()?,
+        };
+        let [width, height] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
+        // A number of cells divides the window, however that is rounded: half a cell less never makes one more.
+        let exactly = |step: f64, counts: [Option<u32>; 2]| {
+            let inner =
+                [0, 1].map(|axis| window.max[axis] - if counts[axis].is_some() { 0.5 * step } else { 0.0 });
+            Grid::covering(Window { min: window.min, max: inner }, step, window.min)
+        };
+        match cells {
+            Cells::Step(step) => Grid::covering(window, step, [0.0; 2]),
+            Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
+            Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
+            Cells::Default => Grid::covering(window, width.max(height) / CELLS, window.min),
+        }
+    }
+}
+
+/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data. The number of cells
+/// without data.
+///
+/// # Errors
+/// Usage, if there is more than one number per cell; if writing fails.
+pub fn write_raster<W: Write + Seek>(
+    spline: &Spline,
+    attribute: Attribute,
+    grid: &Grid,
+    format: RasterFormat,
+    threads: NonZeroUsize,
+    output: &mut W,
+    mut done: impl FnMut(u64),
+) -> Result<u64> {
+    if !attribute.is_single() {
+        return Err(Error::usage("a raster has one number in a cell: take --format text for gradients"));
+    }
+    let mut bands = Bands { spline, attribute, grid, threads, first: 0, values: Vec::new() };
+    let mut unknown = 0;
+    raster::write_rows(output, format, grid, &spline.layout.frame.crs, |row, values| {
+        for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
+            *value = found as f32;
+            unknown += u64::from(value.is_nan());
+        }
+        done(u64::from(row) + 1);
+        Ok(())
+    })?;
+    Ok(unknown)
+}
+
+/// Writes a line for each cell in the domain: its centre, and what is asked; row by row from the top.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_table(
+    spline: &Spline,
+    attribute: Attribute,
+    grid: &Grid,
+    output: &mut impl Write,
+    mut done: impl FnMut(u64),
+) -> Result<u64> {
+    let (mut scratch, mut text, mut outside) = (Scratch::default(), Vec::new(), 0);
+    for row in 0..grid.rows {
+        text.clear();
+        for column in 0..grid.columns {
+            let at = grid.center(column, row);
+            match spline.jet(at, attribute, &mut scratch) {
+                Some(jet) => line(&mut text, at, attribute, Some(&jet)),
+                None => outside += 1,
+            }
+        }
+        output.write_all(&text).map_err(write_error)?;
+        done(u64::from(row) + 1);
+    }
+    Ok(outside)
+}
+
+/// Rows that are evaluated some at a time, by several threads.
+struct Bands<'a> {
+    spline: &'a Spline,
+    attribute: Attribute,
+    grid: &'a Grid,
+    threads: NonZeroUsize,
+    /// The first row of the band that is there.
+    first: usize,
+    values: Vec<f64>,
+}
+
+impl Bands<'_> {
+    /// A row; rows are asked for in order.
+    fn row(&mut self, row: usize) -> Result<&[f64]> {
+        let columns = self.grid.columns as usize;
+        if row * columns >= self.first * columns + self.values.len() {
+            self.evaluate(row)?;
+        }
+        Ok(&self.values[(row - self.first) * columns..][..columns])
+    }
+
+    fn evaluate(&mut self, first: usize) -> Result<()> {
+        let (columns, rows) = (self.grid.columns as usize, self.grid.rows as usize);
+        let count = (rows - first).min(ROWS_PER_THREAD * self.threads.get());
+        self.first = first;
+        self.values.clear();
+        self.values.resize(count * columns, f64::NAN);
+        let mut all = std::mem::take(&mut self.values);
+        let share = count.div_ceil(self.threads.get());
+        let parts = all.chunks_mut(share * columns).zip((first..).step_by(share));
+        let outcome = std::thread::scope(|scope| {
+            let this = &*self;
+            let workers: Vec<_> =
+                parts.map(|(part, first)| scope.spawn(move || this.evaluate_part(first, part))).collect();
+            workers.into_iter().try_for_each(|worker| match worker.join() {
+                Ok(outcome) => outcome,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+        });
+        self.values = all;
+        outcome
+    }
+
+    /// Rows from a number on.
+    fn evaluate_part(&self, first: usize, values: &mut [f64]) -> Result<()> {
+        let columns = self.grid.columns as usize;
+        let rows = first..first + values.len() / columns;
+        match self.attribute {
+            Attribute::Value => self.sweep(rows.start, values),
+            attribute => {
+                let mut scratch = Scratch::default();
+                for (row, values) in rows.zip(values.chunks_exact_mut(columns)) {
+                    for (column, value) in (0..).zip(values) {
+                        let at = self.grid.center(column, row as u32);
+                        let jet = self.spline.jet(at, attribute, &mut scratch);
+                        *value = jet.map_or(f64::NAN, |jet| attribute.of(&jet));
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn sweep(&self, first: usize, values: &mut [f64]) -> Result<()> {
+        let (grid, columns) = (self.grid, self.grid.columns as usize);
+        let Spline { layout, coefficients } = self.spline;
+        let step = grid.step / layout.frame.step();
+        let raster = Raster {
+            origin: layout.frame.to_stored(grid.center(0, first as u32)),
+            step: [step, -step],
+            columns,
+            rows: values.len() / columns,
+        };
+        layout.basis.raster(coefficients, &raster, |row| {
+            let into = &mut values[row.row * columns..][..columns];
+            into[row.domain.clone()].copy_from_slice(&row.values[row.domain]);
+            Ok(())
+        })
+    }
+}
+
+impl super::Layout {
+    /// The box of the domain, in world coordinates.
+    ///
+    /// # Errors
+    /// Usage, if there is no domain.
+    pub fn domain_window(&self) -> Result<Window> {
+        let corners = self.basis.domain_corners();
+        let corners = corners.iter().map(|&corner| self.frame.to_world(corner));
+        let bounds = corners.fold(None, |bounds: Option<[Point2; 2]>, corner| {
+            let [least, greatest] = bounds.unwrap_or([corner; 2]);
+            Some([[0, 1].map(|i| least[i].min(corner[i])), [0, 1].map(|i| greatest[i].max(corner[i]))])
+        });
+        match bounds {
+            Some([min, max]) if min[0] < max[0] && min[1] < max[1] => Ok(Window { min, max }),
+            _ => Err(Error::usage(
+                "functions sum to one nowhere: use more knots, or pull those of the border apart",
+            )),
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Breaklines and corners.
+
+use super::{knots, output, points, rows};
+use crate::programs::{Folder, outcome, run};
+
+/// A roof: its ridge is at x = 43.
+fn roof(x: f64, y: f64) -> f64 {
+    20.0 - 0.5 * (x - 43.0).abs() + 0.1 * y
+}
+
+/// Greatest deviation from the roof near to its ridge, at places off it, and the step of the slope there.
+fn at_ridge(spline: &[u8]) -> (f64, f64) {
+    let folder = Folder::new();
+    let beside = |by: f64| (1..40).map(move |y| [43.0 + by, 2.0 * f64::from(y)]);
+    let sites: String = beside(-0.05).chain(beside(0.05)).map(|[x, y]| format!("{x} {y}\n")).collect();
+    let sites = folder.write("sites.txt", sites);
+    let values = rows(&output(&["eval", "-", "--at", &sites], spline));
+    let off = values.iter().map(|row| (row[2] - roof(row[0], row[1])).abs()).fold(0.0, f64::max);
+    let slopes = rows(&output(&["eval", "-", "--at", &sites, "--kind", "gradient"], spline));
+    let step = |at: usize| slopes[at][2] - slopes[39 + at][2];
+    (off, (0..39).map(step).fold(f64::INFINITY, f64::min))
+}
+
+#[test]
+fn roofs_have_sharp_ridges() {
+    let folder = Folder::new();
+    let (knots, points) =
+        (folder.write("knots.txt", knots()), folder.write("points.txt", points(6_000, 3, roof)));
+    let smooth = at_ridge(&output(&["fit", "--knots", &knots, &points], &[]));
+    assert!(smooth.0 > 0.3 && smooth.1 < 0.5, "{smooth:?}");
+    let text = folder.write("ridge.txt", "crease 43 0  43 80\n");
+    let json = folder.write(
+        "ridge.json",
+        r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":
+            {"type":"LineString","coordinates":[[43,0],[43,80]]}}]}"#,
+    );
+    for features in [&text, &json] {
+        for knots in [&["--knots", &knots][..], &["--max-knots", "60"]] {
+            let spline = output(&[&["fit", "--features", features, &points], knots].concat(), &[]);
+            let (off, step) = at_ridge(&spline);
+            // Points at random leave gaps at the border of the box, which are bridged.
+            assert!(off < 0.02 && (0.9..1.1).contains(&step), "{features} {knots:?}: {off}, {step}");
+            let audit = run("spinfo", &["--audit", "-"], &spline);
+            assert!(audit.status.success(), "{:?}", outcome(&audit));
+        }
+    }
+}
+
+#[test]
+fn creases_can_end_smoothly_and_corners_stand_alone() {
+    let folder = Folder::new();
+    let (knots, points) =
+        (folder.write("knots.txt", knots()), folder.write("points.txt", points(6_000, 3, roof)));
+    let all = folder.write("all.txt", "smooth-crease 43 20 43 60\ncorner 70 30\nlinear 15 60 30 65\n");
+    let spline = output(&["fit", "--knots", &knots, "--features", &all, &points], &[]);
+    let twin = String::from_utf8(run("spconvert", &["--to", "text"], &spline).stdout).unwrap();
+    let count = |kind: &str| twin.lines().filter(|line| line.starts_with(kind)).count();
+    assert!(count("function crease") > 1);
+    // The border, the corner, and the ends of the parts of the line.
+    assert!(count("function vertex") >= 20 + 1 + 2);
+}
+
+#[test]
+fn features_that_cannot_be_are_refused() {
+    let folder = Folder::new();
+    let knots = folder.write("knots.txt", knots());
+    let points = folder.write("points.txt", points(500, 3, roof));
+    let cases = [
+        ("crease 10 10 90 70\ncrease 10 70 90 10\n", 2, "crosses"),
+        ("crease 10 10\n", 3, "polyline 0: found 1 vertices"),
+        ("ridge 10 10 20 20\n", 3, "line 1: found \"ridge\""),
+        ("{\"type\":\"Point\"}", 3, "feature 0"),
+    ];
+    for (text, code, part) in cases {
+        let features = folder.write("features.txt", text);
+        let found = run("splinefit", &["fit", "--knots", &knots, "--features", &features, &points], &[]);
+        let (found, message) = outcome(&found);
+        assert_eq!(found, Some(code), "{text}: {message}");
+        assert!(message.contains(part) && !message.contains("panicked"), "{text}: {message}");
+    }
+    let features = folder.write("features.txt", "crease 43 20 43 60\n");
+    let set = run("configgen", &[&knots], &[]).stdout;
+    let found = run("splinefit", &["fit", "--knots", "-", "--features", &features, &points], &set);
+    let (code, message) = outcome(&found);
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("configurations have their functions already"), "{message}");
+}
