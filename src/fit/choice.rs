@@ -51,7 +51,7 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
     let normal = equations.normal();
     search(equations.unit(), |lambda| {
         equations.with_factor(lambda, |factor| {
-            equations.check(factor)?;
+            equations.check(factor, lambda)?;
             let coefficients = equations.coefficients(factor);
             let count = normal.count as f64;
             let free = 1.0 - trace(factor, &normal.matrix, seed) / count;
@@ -66,7 +66,7 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
 /// Errors: those of [`Equations::solve`]. Accuracy: exact up to 256 functions, about a percent above.
 pub fn degrees_of_freedom(equations: &Equations, lambda: f64, seed: u64) -> Result<f64> {
     equations.with_factor(lambda, |factor| {
-        equations.check(factor)?;
+        equations.check(factor, lambda)?;
         Ok(trace(factor, &equations.normal().matrix, seed))
     })
 }

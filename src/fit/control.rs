@@ -27,9 +27,10 @@ pub fn bending(basis: &Basis) -> Result<Symmetric> {
     if basis.degree() < 2 { Ok(control) } else { Ok(thin_plate(basis)?.plus(SHARE, &control)) }
 }
 
-/// The matrix of how much the control mesh bends: the sum over inner edges of (d / A)^2 A, where the triangles at the edge have
-/// area A together, and d is by how much the diagonals of their quadrilateral miss each other, so that d / A is like a second
-/// derivative.
+/// The matrix of how much the control mesh bends: the sum over inner edges of d^2 / L^2, where d is by how much the diagonals of the
+/// quadrilateral at the edge miss each other, and L^2 the sum of their squares. With L^2 as an area, that is like the square of a
+/// second derivative times the area; but the quadrilateral itself may be as flat as it likes, which sites along the border often
+/// make it.
 ///
 /// Coefficients of functions with one Greville site are tied to each other.
 ///
@@ -45,8 +46,9 @@ pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
         let [p, q, r, s] = corners.map(|id| sites[id as usize]);
         // The affine dependence of four points: area of the others each, with signs.
         let dependence = [area(q, r, s), -area(p, r, s), area(p, q, s), -area(p, q, r)];
-        let whole = dependence[2].abs() + dependence[3].abs();
-        add_square(&mut rows, corners, dependence.map(|share| share / whole), 1.0 / whole);
+        let half = 0.5 * dependence.iter().map(|share| share.abs()).sum::<f64>();
+        let diagonals = square_of_distance(p, q) + square_of_distance(r, s);
+        add_square(&mut rows, corners, dependence.map(|share| share / half), 1.0 / diagonals);
     });
     let of_function = polygon::area(&basis.domain_corners()).max(f64::MIN_POSITIVE) / basis.len() as f64;
     for &pair in &mesh.duplicates {
@@ -68,6 +70,10 @@ fn for_each_hinge(mesh: &Triangulation, mut visit: impl FnMut([u32; 4])) {
             visit([at(side + 1), at(side + 2), at(side), other]);
         }
     }
+}
+
+fn square_of_distance(p: Point2, q: Point2) -> f64 {
+    (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
 }
 
 /// Adds `factor` times the square of a sum of coefficients with factors of their own.

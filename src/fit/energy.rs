@@ -5,9 +5,10 @@
 //! knots that are pulled apart: one that cuts off a corner of the border lets the corner fold, and then planes are not all that
 //! has no energy.)
 //!
-//! For degree 2 the matrix is exact but for rounding: second derivatives are constants on triangles (`spline::basis::bends`), and what
-//! any two triangles have in common is a polygon with an area. For other degrees it is a quadrature on parts of the triangles of a
-//! Delaunay triangulation of the knots, which is not exact, as functions have other borders than these.
+//! For degree 2 the matrix is exact but for rounding, and for triangles that are almost flat: second derivatives are constants on
+//! triangles (`spline::basis::bends`), and what any two triangles have in common is a polygon with an area. For other degrees it is
+//! a quadrature on parts of the triangles of a Delaunay triangulation of the knots, which is not exact, as functions have other
+//! borders than these.
 
 use super::overlaps::{self, Rectangle};
 use super::polygon::{self, Clipper, Polygon};
@@ -18,6 +19,9 @@ use crate::error::{Error, Result};
 use crate::predicates::Point2;
 use crate::spline::{Basis, Scratch};
 
+/// Triangles whose area is a lesser part of the square of their longest side are left out. Three knots in line, but for rounding
+/// errors, make second derivatives so great on so little an area that nothing is known of their energy; it is that of a fold.
+const AREA_MIN: f64 = 1e-6;
 /// Each triangle of knots is divided into the square of this number of triangles for quadrature.
 const DIVISIONS: usize = 4;
 /// A rule of degree 4 on triangles: barycentric coordinate of two of three points, and weight (Dunavant 1985).
@@ -65,6 +69,7 @@ fn add_exact(basis: &Basis, domain: &[Point2], rows: &mut Rows) {
     let local = |point: Point2| [point[0] - origin[0], point[1] - origin[1]];
     let plateaus: Vec<Plateau> = basis
         .bends()
+        .filter(|bend| !is_flat(&bend.corners))
         .filter_map(|bend| {
             let is_inside = bend.corners.iter().all(|&corner| basis.is_in_domain(corner));
             let whole = if is_inside { &bend.corners } else { clipper.common(&bend.corners, domain) };
@@ -93,6 +98,14 @@ fn add_exact(basis: &Basis, domain: &[Point2], rows: &mut Rows) {
             }
         }
     });
+}
+
+fn is_flat(corners: &[Point2; 3]) -> bool {
+    let square = |i: usize| {
+        let (p, q) = (corners[i], corners[(i + 1) % 3]);
+        (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
+    };
+    polygon::area(corners).abs() < AREA_MIN * square(0).max(square(1)).max(square(2))
 }
 
 /// Adds the energy that two functions have in common where the second derivatives are these.

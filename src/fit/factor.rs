@@ -19,6 +19,10 @@ use faer::{Conj, MatMut, Par, Side};
 
 /// What is added to a diagonal of ones: some hundred times what rounding does to a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
+/// What it is multiplied by, again and again, while a pivot is not positive for all that: knots near to one line make energies so
+/// stiff that rounding errors of theirs are more than what others add.
+const RIDGE_STEP: f64 = 100.0;
+const RIDGE_MAX: f64 = 1e-6;
 /// The least v'Mv / v'v of directions that are determined.
 const CURVATURE_MIN: f64 = 1e-12;
 /// Steps of refinement: each takes the error that the ridge makes times itself, for pivots that are not weak.
@@ -58,26 +62,29 @@ impl Elimination {
         debug_assert_eq!(self.entries, matrix.entries_len());
         let scale: Vec<f64> =
             matrix.diagonal().map(|entry| if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }).collect();
-        let scaled = matrix.scaled(&scale, RIDGE);
         let mut values = vec![0.0; self.symbolic.len_val()];
         let scratch = self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(matrix.len()))?;
-        let factored = self.symbolic.factorize_numeric_llt(
-            &mut values,
-            SparseColMatRef::new(pattern(&scaled), &scaled.values),
-            Side::Lower,
-            Default::default(),
-            Par::Seq,
-            MemStack::new(&mut memory),
-            Default::default(),
-        );
-        match factored {
-            Ok(_) => Ok(Factor { elimination: self, matrix, scale, values }),
-            // The memory is there already, so that only a pivot can be the reason.
-            Err(_) => Err(Error::malformed(
-                "the equations are not positive definite: weights or values are too great for 64 bits",
-            )),
+        let ridges = std::iter::successors(Some(RIDGE), |ridge| Some(RIDGE_STEP * ridge));
+        for ridge in ridges.take_while(|&ridge| ridge <= RIDGE_MAX) {
+            let scaled = matrix.scaled(&scale, ridge);
+            let factored = self.symbolic.factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(pattern(&scaled), &scaled.values),
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                Default::default(),
+            );
+            // The memory is there already, so that only a pivot can be the reason of a failure.
+            if factored.is_ok() {
+                return Ok(Factor { elimination: self, matrix, scale, values });
+            }
         }
+        Err(Error::usage(
+            "the equations are not positive definite: knots are too near to one line, or weights are too great for 64 bits",
+        ))
     }
 }
 

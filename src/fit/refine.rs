@@ -5,6 +5,9 @@
 //! it is above the tolerance, a new knot halfway between the place and the middle of the triangle: near to where it is needed,
 //! and away from knots and edges. Next to the border it is the middle of the border's edge instead.
 //!
+//! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations ask for no knot, unless they are a
+//! good part of what is in a triangle.
+//!
 //! The border is pulled apart, so that along edges from border to border splines could be folded. Such edges get a knot, too.
 
 use super::control::bending;
@@ -13,6 +16,7 @@ use super::mesh::Mesh;
 use super::normal::Normal;
 use super::observations::Observations;
 use super::residuals::{self, Residual};
+use super::robust::{Loss, robust_soon};
 use super::solve::Equations;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
@@ -25,6 +29,8 @@ const CELLS_FIRST: usize = 4;
 const MOVED: f64 = 0.2;
 /// Least number of observations in a triangle that gets a knot: it brings three functions.
 const OBSERVATIONS_MIN: u32 = 6;
+/// The least part of observations of a triangle that is rejected for want of knots, and not for gross errors.
+const REJECTED_MIN: f64 = 0.25;
 /// Least number of knots: those of the first grid, and one for each corner that an edge cuts off.
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
 /// Attempts to place knots so that no edge through the inside joins two knots of the border.
@@ -39,13 +45,15 @@ pub struct Goal {
     pub max_knots: usize,
     /// The factor of the thin-plate energy, in units of [`Equations::unit`]: not zero, so that gaps in the data are bridged.
     pub smoothing: f64,
+    /// What residuals cost, if not their squares.
+    pub loss: Option<Loss>,
 }
 
 impl Goal {
     /// A goal with as little smoothing as bridges gaps.
     #[must_use]
     pub fn new(tolerance: f64, max_knots: usize) -> Goal {
-        Goal { tolerance, max_knots, smoothing: 1e-6 }
+        Goal { tolerance, max_knots, smoothing: 1e-6, loss: None }
     }
 
     fn check(&self) -> Result<()> {
@@ -74,7 +82,7 @@ pub struct Round {
     pub greatest: f64,
     /// Root of the mean square of residuals.
     pub root_mean_square: f64,
-    /// Number of residuals above the tolerance.
+    /// Number of residuals above the tolerance, but for rejected observations.
     pub above: u64,
 }
 
@@ -87,7 +95,8 @@ pub struct Refined {
     pub coefficients: Vec<f64>,
     /// All rounds; the last one is that of the result.
     pub rounds: Vec<Round>,
-    /// Whether all residuals are within the tolerance. If not, knots were used up, or there were too few observations to add more.
+    /// Whether all residuals are within the tolerance, but for rejected observations. If not, knots were used up, or there were too
+    /// few observations to add more.
     pub is_reached: bool,
 }
 
@@ -95,7 +104,7 @@ pub struct Refined {
 ///
 /// Errors: goals that make no sense; observations in no area; those of [`Normal::of`] and [`Equations::solve`].
 ///
-/// Cost: two passes over the observations for each round; there are about ten.
+/// Cost: two passes over the observations for each round, of which there are about ten; with a loss, ten times as many.
 pub fn refine<O: Observations + ?Sized>(
     observations: &O,
     goal: &Goal,
@@ -108,11 +117,8 @@ pub fn refine<O: Observations + ?Sized>(
     let mut rounds = Vec::new();
     loop {
         let cover = Cover::of(places)?;
-        let normal = Normal::of(&cover.basis, observations, threads)?;
-        let energy = bending(&cover.basis)?;
-        let equations = Equations::new(&cover.basis, &normal, Some(&energy))?;
-        let coefficients = equations.solve(goal.smoothing * equations.unit())?;
-        let survey = Survey::of(&cover, &coefficients, observations, goal, threads)?;
+        let Solution { coefficients, limit } = Solution::of(&cover, observations, goal, threads)?;
+        let survey = Survey::of(&cover, &coefficients, limit, observations, goal, threads)?;
         rounds.push(survey.round);
         let is_reached = survey.round.above == 0;
         let wanted = if is_reached { Vec::new() } else { survey.knots(&cover.mesh, goal) };
@@ -123,6 +129,32 @@ pub fn refine<O: Observations + ?Sized>(
         }
         places = cover.mesh.points().to_vec();
         places.extend(added);
+    }
+}
+
+/// A fit over the knots of a round.
+struct Solution {
+    coefficients: Vec<f64>,
+    /// Observations whose residual is greater, for a weight of one, are rejected.
+    limit: f64,
+}
+
+impl Solution {
+    fn of<O: Observations + ?Sized>(
+        cover: &Cover,
+        observations: &O,
+        goal: &Goal,
+        threads: NonZeroUsize,
+    ) -> Result<Solution> {
+        let normal = Normal::of(&cover.basis, observations, threads)?;
+        let energy = bending(&cover.basis)?;
+        let equations = Equations::new(&cover.basis, &normal, Some(&energy))?;
+        let lambda = goal.smoothing * equations.unit();
+        let Some(loss) = goal.loss else {
+            return Ok(Solution { coefficients: equations.solve(lambda)?, limit: f64::INFINITY });
+        };
+        let fit = robust_soon(&cover.basis, observations, loss, &energy, lambda, threads)?;
+        Ok(Solution { limit: fit.limit(), coefficients: fit.coefficients })
     }
 }
 
@@ -166,12 +198,17 @@ fn first_places([lower, upper]: [Point2; 2]) -> Vec<Point2> {
         let step = [i, j];
         let is_inside = (0..2).all(|axis| step[axis] > 0 && step[axis] < cells[axis]);
         places.push([0, 1].map(|axis| {
-            let by = 2.0 * (random.bits() as f64 / u64::MAX as f64) - 1.0;
+            let by = unit(&mut random);
             let place = step[axis] as f64 + if is_inside { MOVED * by } else { 0.0 };
             between(lower[axis], upper[axis], place / cells[axis] as f64)
         }));
     }
     places
+}
+
+/// A number between -1 and 1.
+fn unit(random: &mut Random) -> f64 {
+    2.0 * (random.bits() as f64 / u64::MAX as f64) - 1.0
 }
 
 /// A number at a part of the way; the ends themselves at zero and one.
@@ -182,19 +219,49 @@ fn between(from: f64, to: f64, part: f64) -> f64 {
 /// What a round leaves, triangle by triangle.
 struct Survey {
     round: Round,
-    /// For each triangle the number of observations, and the greatest residual.
-    triangles: Vec<(u32, Option<Residual>)>,
+    triangles: Vec<Inside>,
+}
+
+/// What is in a triangle.
+#[derive(Debug, Clone, Copy, Default)]
+struct Inside {
+    observations: u32,
+    rejected: u32,
+    /// The greatest residual above the tolerance, if any is: of observations that are not rejected, and of those that are.
+    worst: [Option<Residual>; 2],
+}
+
+impl Inside {
+    fn add(&mut self, found: Residual, is_above: bool, is_rejected: bool) {
+        self.observations = self.observations.saturating_add(1);
+        self.rejected = self.rejected.saturating_add(u32::from(is_rejected));
+        let worst = &mut self.worst[usize::from(is_rejected)];
+        if is_above && worst.is_none_or(|worst| found.residual.abs() > worst.residual.abs()) {
+            *worst = Some(found);
+        }
+    }
+
+    /// The observation that asks for a knot. Rejected ones do if there are many: then they are no gross errors.
+    fn asks(&self) -> Option<Residual> {
+        if self.observations < OBSERVATIONS_MIN {
+            return None;
+        }
+        let [worst, rejected] = self.worst;
+        let are_many = f64::from(self.rejected) >= REJECTED_MIN * f64::from(self.observations);
+        worst.or(rejected.filter(|_| are_many))
+    }
 }
 
 impl Survey {
     fn of<O: Observations + ?Sized>(
         cover: &Cover,
         coefficients: &[f64],
+        limit: f64,
         observations: &O,
         goal: &Goal,
         threads: NonZeroUsize,
     ) -> Result<Survey> {
-        let mut triangles = vec![(0u32, None::<Residual>); cover.mesh.triangles_len()];
+        let mut triangles = vec![Inside::default(); cover.mesh.triangles_len()];
         let (mut near, mut above, mut count, mut square, mut greatest) = (0, 0, 0u64, 0.0, 0f64);
         residuals::for_each_residual(&cover.basis, coefficients, observations, threads, |found| {
             if found.weight == 0.0 {
@@ -203,13 +270,11 @@ impl Survey {
             count += 1;
             square += found.residual * found.residual;
             greatest = greatest.max(found.residual.abs());
-            above += u64::from(found.residual.abs() > goal.tolerance);
+            let is_above = found.residual.abs() > goal.tolerance;
+            let is_rejected = found.residual.abs() * found.weight.sqrt() > limit;
+            above += u64::from(is_above && !is_rejected);
             if let Some(triangle) = cover.mesh.locate(found.point, &mut near) {
-                let (inside, worst) = &mut triangles[triangle as usize];
-                *inside = inside.saturating_add(1);
-                if worst.is_none_or(|worst| found.residual.abs() > worst.residual.abs()) {
-                    *worst = Some(found);
-                }
+                triangles[triangle as usize].add(found, is_above, is_rejected);
             }
         })?;
         let round = Round {
@@ -224,20 +289,19 @@ impl Survey {
 
     /// The next knots, those of greatest residuals first: no more than there are already.
     fn knots(&self, mesh: &Mesh, goal: &Goal) -> Vec<Point2> {
-        let candidates = (0u32..).zip(&self.triangles).filter_map(|(triangle, &(count, worst))| {
-            let worst = worst.filter(|worst| worst.residual.abs() > goal.tolerance)?;
-            (count >= OBSERVATIONS_MIN).then_some((triangle, worst))
-        });
+        let candidates =
+            (0u32..).zip(&self.triangles).filter_map(|(triangle, inside)| Some((triangle, inside.asks()?)));
         let mut candidates: Vec<(u32, Residual)> = candidates.collect();
         candidates.sort_by(|a, b| b.1.residual.abs().total_cmp(&a.1.residual.abs()).then(a.0.cmp(&b.0)));
         let known = mesh.points().len();
         let room = goal.max_knots.saturating_sub(known).min(known);
         let mut added: Vec<Point2> = Vec::new();
+        let mut random = Random::new(known as u64);
         for (triangle, worst) in candidates {
             if added.len() >= room {
                 break;
             }
-            let knot = knot_in(mesh, triangle, worst.point);
+            let knot = knot_in(mesh, triangle, worst.point, &mut random);
             if !mesh.corners(triangle).contains(&knot) {
                 added.push(knot);
             }
@@ -293,10 +357,16 @@ fn creases(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     found
 }
 
-/// The knot for a residual in a triangle.
-fn knot_in(mesh: &Mesh, triangle: u32, worst: Point2) -> Point2 {
-    let [a, b, c] = mesh.corners(triangle);
-    let knot = [0, 1].map(|axis| worst[axis].midpoint((a[axis] + b[axis] + c[axis]) / 3.0));
+/// The knot for a residual in a triangle: about halfway between its place and the middle. Exactly there, knots of several rounds
+/// for one residual would be on a line with a corner.
+fn knot_in(mesh: &Mesh, triangle: u32, worst: Point2, random: &mut Random) -> Point2 {
+    let corners = mesh.corners(triangle);
+    let mut share = || 1.0 + MOVED * unit(random);
+    let shares = [share(), share(), share(), 3.0 * share()];
+    let whole: f64 = shares.iter().sum();
+    let places = corners.into_iter().chain([worst]).zip(shares);
+    let knot = places
+        .fold([0.0; 2], |sum, (place, share)| [0, 1].map(|axis| sum[axis] + share / whole * place[axis]));
     // In the circle over an edge of the border, a knot would make a flat triangle (Ruppert 1995).
     let is_near = |&[p, q]: &[Point2; 2]| {
         (p[0] - knot[0]) * (q[0] - knot[0]) + (p[1] - knot[1]) * (q[1] - knot[1]) <= 0.0

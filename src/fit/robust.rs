@@ -20,8 +20,10 @@ const DEVIATIONS: f64 = 1.482_602_218_505_602;
 const SCALE_MIN: f64 = 1e-12;
 /// Change of coefficients, in scales, that ends the rounds.
 const CHANGE_MAX: f64 = 1e-3;
-/// Rounds for one loss, at most.
+/// Rounds for one loss, at most...
 const ROUNDS_MAX: usize = 50;
+/// ...and where knots are added after it.
+const ROUNDS_FEW: usize = 6;
 
 /// What residuals cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,20 +73,29 @@ pub fn robust<O: Observations + ?Sized>(
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
-    let fit = Rounds { basis, observations, energy, lambda, threads };
-    let plain = Normal::of(basis, observations, threads)?;
-    let coefficients = fit.solve(&plain)?;
-    let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
-    let scale = fit.scale(&coefficients, scale_min)?;
-    let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
-    fit.improve(&mut found, Loss::Huber, scale_min)?;
-    if loss == Loss::Tukey {
-        fit.improve(&mut found, Loss::Tukey, scale_min)?;
-    }
-    Ok(found)
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss)
+}
+
+/// The same with so few rounds that coefficients may still change: enough to tell gross errors from others.
+pub(super) fn robust_soon<O: Observations + ?Sized>(
+    basis: &Basis,
+    observations: &O,
+    loss: Loss,
+    energy: &Symmetric,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<RobustFit> {
+    let energy = Some(energy);
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_FEW }.fit(loss)
 }
 
 impl RobustFit {
+    /// Observations of weight one whose residual is greater are *rejected*.
+    #[must_use]
+    pub fn limit(&self) -> f64 {
+        TUKEY * self.scale
+    }
+
     /// Calls `visit` with all rejected observations, in order: those whose residual, multiplied by the root of the weight, is
     /// greater than 4.685 scales. One pass; the number of rejected ones.
     ///
@@ -98,7 +109,7 @@ impl RobustFit {
     ) -> Result<u64> {
         let mut count = 0;
         residuals::for_each_residual(basis, &self.coefficients, observations, threads, |found| {
-            if found.residual.abs() * found.weight.sqrt() > TUKEY * self.scale {
+            if found.residual.abs() * found.weight.sqrt() > self.limit() {
                 count += 1;
                 visit(found);
             }
@@ -114,13 +125,27 @@ struct Rounds<'a, O: ?Sized> {
     energy: Option<&'a Symmetric>,
     lambda: f64,
     threads: NonZeroUsize,
+    most: usize,
 }
 
 impl<O: Observations + ?Sized> Rounds<'_, O> {
+    fn fit(&self, loss: Loss) -> Result<RobustFit> {
+        let plain = Normal::of(self.basis, self.observations, self.threads)?;
+        let coefficients = self.solve(&plain)?;
+        let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
+        let scale = self.scale(&coefficients, scale_min)?;
+        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
+        self.improve(&mut found, Loss::Huber, scale_min)?;
+        if loss == Loss::Tukey {
+            self.improve(&mut found, Loss::Tukey, scale_min)?;
+        }
+        Ok(found)
+    }
+
     /// Rounds with one loss. A round weighs with the scale that the round before has seen, and measures the next one.
     fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
         fit.has_converged = false;
-        for _ in 0..ROUNDS_MAX {
+        for _ in 0..self.most {
             let (normal, scale) = self.weighted(fit, loss)?;
             let coefficients = self.solve(&normal)?;
             let change = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b).abs());

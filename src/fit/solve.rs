@@ -74,7 +74,7 @@ impl<'a> Equations<'a> {
     /// not finite, or not zero without an energy.
     pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
         self.with_factor(lambda, |factor| {
-            self.refuse(&self.named(factor))?;
+            self.check(factor, lambda)?;
             let coefficients = self.coefficients(factor);
             if coefficients.iter().all(|c| c.is_finite()) {
                 return Ok(coefficients);
@@ -126,8 +126,8 @@ impl<'a> Equations<'a> {
     }
 
     /// Refuses factors that leave functions undetermined.
-    pub(super) fn check(&self, factor: &Factor) -> Result<()> {
-        self.refuse(&self.named(factor))
+    pub(super) fn check(&self, factor: &Factor, lambda: f64) -> Result<()> {
+        self.refuse(&self.named(factor), lambda)
     }
 
     fn named(&self, factor: &Factor) -> Vec<Undetermined> {
@@ -138,10 +138,12 @@ impl<'a> Equations<'a> {
         factor.weak().into_iter().map(named).collect()
     }
 
-    fn refuse(&self, undetermined: &[Undetermined]) -> Result<()> {
+    fn refuse(&self, undetermined: &[Undetermined], lambda: f64) -> Result<()> {
         let Some(first) = undetermined.first() else { return Ok(()) };
         let empty = undetermined.iter().filter(|weak| self.is_empty_at(weak.function)).count();
-        let remedy = if self.energy.is_some() {
+        let remedy = if self.energy.is_some() && lambda > self.unit() {
+            "smooth with a lesser lambda, which leaves observations some weight"
+        } else if self.energy.is_some() {
             "smooth with a greater lambda, or give more observations"
         } else {
             "smooth with a lambda above zero, or use fewer knots there"

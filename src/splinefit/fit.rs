@@ -15,6 +15,8 @@ use crate::source::KnotSource;
 
 /// Without a tolerance, this part of the range of elevations is one.
 const TOLERANCE_PART: f64 = 0.01;
+/// Residuals below this part of the greatest elevation are rounding errors.
+const ROUNDING: f64 = 1e-9;
 /// Without a number of knots, there are at most so many...
 const KNOTS_MAX: usize = 5_000;
 /// ...and one for so many points: three functions belong to a knot.
@@ -118,11 +120,16 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     }
     let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
     // A plane at one height has residuals that are rounding errors of it.
-    let own_tolerance = (TOLERANCE_PART * points.range()).max(f64::MIN_POSITIVE);
-    let goal = Goal::new(
-        options.tolerance.unwrap_or(own_tolerance),
-        options.max_knots.unwrap_or(own_max.max(KNOTS_MIN)),
-    );
+    let [low, high] = points.range();
+    let rounding = ROUNDING * low.abs().max(high.abs());
+    let own_tolerance = (TOLERANCE_PART * (high - low)).max(rounding).max(f64::MIN_POSITIVE);
+    let goal = Goal {
+        loss: options.loss,
+        ..Goal::new(
+            options.tolerance.unwrap_or(own_tolerance),
+            options.max_knots.unwrap_or(own_max.max(KNOTS_MIN)),
+        )
+    };
     let frame = Frame::world(points.crs().clone());
     let all = points.in_frame(&frame, done);
     let refined = fit::refine(&all, &goal, options.threads).map_err(|e| e.of_input(points.name()))?;

@@ -12,6 +12,10 @@ use crate::stream::Crs;
 
 /// Up to this number, points are held: 32 bytes each. A fit reads them again and again, and most sources take longer to decode.
 const HELD_MAX: usize = 1 << 23;
+/// Elevations in a sample, at least, if there are as many.
+const SAMPLE: usize = 1 << 12;
+/// The part of elevations beyond each end of their range.
+const OUTSIDE: f64 = 0.02;
 /// Points in a batch that are held.
 const BATCH: usize = 1 << 14;
 
@@ -21,8 +25,8 @@ pub struct Points {
     input: Input,
     weights: Option<Vec<f64>>,
     held: Option<Vec<Observation>>,
-    /// Least and greatest coordinates, elevations last; nothing of no points.
-    bounds: Option<[[f64; 3]; 2]>,
+    /// Some elevations, in order.
+    sample: Vec<f64>,
     count: u64,
 }
 
@@ -40,10 +44,10 @@ impl Points {
         mut done: impl FnMut(u64),
     ) -> Result<Points> {
         let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
-        let mut points = Points { input, weights, held: None, bounds: None, count: 0 };
+        let mut points = Points { input, weights, held: None, sample: Vec::new(), count: 0 };
         let mut held = Some(Vec::new());
         let (mut reader, mut batch) = (points.read_world()?, Vec::new());
-        let (mut count, mut bounds) = (0, None);
+        let (mut count, mut sample) = (0, Sample::default());
         loop {
             batch.clear();
             reader.append(&mut batch)?;
@@ -51,7 +55,7 @@ impl Points {
                 break;
             }
             count += batch.len() as u64;
-            batch.iter().for_each(|one| extend(&mut bounds, one));
+            batch.iter().for_each(|one| sample.add(one.value));
             match &mut held {
                 Some(all) if all.len() + batch.len() <= HELD_MAX => all.extend_from_slice(&batch),
                 _ => held = None,
@@ -60,7 +64,7 @@ impl Points {
         }
         drop(reader);
         points.check_weights(count)?;
-        (points.held, points.bounds, points.count) = (held, bounds, count);
+        (points.held, points.sample, points.count) = (held, sample.in_order(), count);
         Ok(points)
     }
 
@@ -98,10 +102,12 @@ impl Points {
         self.count
     }
 
-    /// Greatest elevation less the least one.
+    /// An elevation that most are above, and one that most are below: of a sample, so that a few gross errors change little.
     #[must_use]
-    pub fn range(&self) -> f64 {
-        self.bounds.map_or(0.0, |[least, greatest]| greatest[2] - least[2])
+    pub fn range(&self) -> [f64; 2] {
+        let ends = [OUTSIDE, 1.0 - OUTSIDE];
+        let place = |part: f64| (part * self.sample.len().saturating_sub(1) as f64).round() as usize;
+        ends.map(|part| self.sample.get(place(part)).copied().unwrap_or(0.0))
     }
 
     /// The points in a frame; `done` is told how many were read in all passes together.
@@ -120,12 +126,36 @@ impl Points {
     }
 }
 
-fn extend(bounds: &mut Option<[[f64; 3]; 2]>, one: &Observation) {
-    let place = [one.point[0], one.point[1], one.value];
-    let [least, greatest] = bounds.get_or_insert([place; 2]);
-    for axis in 0..3 {
-        least[axis] = least[axis].min(place[axis]);
-        greatest[axis] = greatest[axis].max(place[axis]);
+/// Every so many elevations, of any number of them.
+#[derive(Default)]
+struct Sample {
+    taken: Vec<f64>,
+    /// Elevations to pass over before the next one that is taken, and after each one.
+    left: u64,
+    stride: u64,
+}
+
+impl Sample {
+    fn add(&mut self, elevation: f64) {
+        if self.left > 0 {
+            self.left -= 1;
+            return;
+        }
+        self.taken.push(elevation);
+        if self.taken.len() == 2 * SAMPLE {
+            let mut is_kept = false;
+            self.taken.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+            self.stride = 2 * self.stride + 1;
+        }
+        self.left = self.stride;
+    }
+
+    fn in_order(mut self) -> Vec<f64> {
+        self.taken.sort_by(f64::total_cmp);
+        self.taken
     }
 }
 

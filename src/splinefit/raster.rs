@@ -78,6 +78,11 @@ pub fn write_raster<W: Write + Seek>(
         for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
             *value = found as f32;
             unknown += u64::from(value.is_nan());
+            if value.is_infinite() {
+                let what =
+                    format!("value {found:e} is too great for a raster, which has 32 bits: scale elevations");
+                return Err(Error::usage(what));
+            }
         }
         done(u64::from(row) + 1);
         Ok(())

@@ -3,7 +3,7 @@
 use super::bases::{cubic, grid, pulled_apart};
 use crate::reference::sets::Random;
 use spmesh::config::{self, Knots, Rule};
-use spmesh::fit::{bending, interpolate, thin_plate};
+use spmesh::fit::{bending, control_bending, interpolate, thin_plate};
 use spmesh::spline::{Basis, Scratch};
 
 /// The energy of a spline on the unit square, by the midpoints of many squares.
@@ -103,4 +103,30 @@ fn control_meshes_bend_for_all_but_planes() {
             assert!(energy.form(&one) > 1e-4, "{function}");
         }
     }
+}
+
+#[test]
+fn control_meshes_of_flat_triangles_are_not_stiff() {
+    // Sites almost on a line: triangles between them have no more area than rounding errors.
+    let places = [[0.0, 1e-16], [1.0, 0.0], [2.0, 0.0], [3.0, 1e-16], [1.5, 2.0]];
+    let knots = Knots::new(places.to_vec()).expect("finite points");
+    let linear = Basis::new(&knots, &config::delaunay(&knots).expect("triangles")).expect("a basis");
+    let energy = control_bending(&linear).expect("an energy");
+    assert!(energy.diagonal().all(|entry| entry > 0.0 && entry < 10.0), "{:?}", energy);
+    assert!(energy.form(&[1.0, 2.0, 3.0, 4.0, 2.5]) < 1e-9);
+    assert!(energy.form(&[0.0, 0.0, 0.0, 0.0, 1.0]) > 0.01);
+}
+
+#[test]
+fn knots_in_line_but_for_rounding_are_not_stiff() {
+    // A grid that is turned: its lines are none to the last digit.
+    let turned = |[x, y]: [f64; 2]| [0.8 * x - 0.6 * y + 100.0, 0.6 * x + 0.8 * y + 300.0];
+    let basis = pulled_apart(&grid(6, 0.0).into_iter().map(turned).collect::<Vec<_>>());
+    let energy = bending(&basis).expect("an energy");
+    let greatest = energy.diagonal().fold(0.0, f64::max);
+    let least = energy.diagonal().fold(f64::INFINITY, f64::min);
+    assert!(least > 0.0 && greatest < 1e6 * least, "{least}, {greatest}");
+    let places = (0..basis.len()).map(|function| basis.greville(function));
+    let plane: Vec<f64> = places.map(|[x, y]| 2.0 * x - y).collect();
+    assert!(energy.form(&plane).abs() < 1e-6 * greatest);
 }

@@ -1,6 +1,6 @@
 //! Gross errors, and lists of points.
 
-use super::{deviation, knots, output, plane, points, rows};
+use super::{deviation, knots, output, plane, points, rows, stats};
 use crate::programs::{Folder, outcome, run};
 
 /// Points of a plane, of which every twentieth is far above.
@@ -60,4 +60,28 @@ fn residuals_are_listed_in_order() {
         assert_eq!(format!("{} {} {}", row[0], row[1], row[2]), line);
         assert!((row[2] - value[2] - row[3]).abs() < 1e-9);
     }
+}
+
+#[test]
+fn gross_errors_attract_no_knots() {
+    let wave = |x: f64, y: f64| (0.1 * x).sin() * (0.08 * y).cos();
+    let line = |(i, line): (usize, &str)| {
+        let mut words: Vec<f64> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+        words[2] += if i % 100 == 7 { [20.0, -35.0, 50.0][i % 3] } else { 1e-3 * ((i % 7) as f64 - 3.0) };
+        format!("{} {} {}\n", words[0], words[1], words[2])
+    };
+    let text: String = points(20_000, 12, wave).lines().enumerate().map(line).collect();
+    let flags = ["--tol", "0.02", "--max-knots", "1000"];
+    let run_with = |more: &[&str]| stats(&[&flags, more].concat(), text.as_bytes());
+    let (plain, robust) = (run_with(&[]), run_with(&["--robust", "tukey"]));
+    let knots = |counted: &serde_json::Value| counted["knots"].as_u64().unwrap();
+    assert!(knots(&plain) > 900, "{plain}");
+    assert!(knots(&robust) < 300 && robust["is_reached"] == 1, "{robust}");
+    let spline = output(&[&["fit", "--robust", "tukey"], &flags[..]].concat(), text.as_bytes());
+    let folder = Folder::new();
+    let sites = folder.write("sites.txt", points(500, 31, wave));
+    let found = rows(&output(&["eval", "-", "--at", &sites], &spline));
+    let inside: Vec<_> = found.iter().filter(|row| !row[2].is_nan()).collect();
+    assert!(inside.len() > 480);
+    assert!(inside.iter().all(|row| (row[2] - wave(row[0], row[1])).abs() < 0.03));
 }

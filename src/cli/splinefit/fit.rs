@@ -20,7 +20,7 @@ use crate::splinefit::{self, Fitted, Options, Points, Smoothing};
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
 Without --knots, they are looked for: a coarse grid over the box of the points gets more, round by round, where residuals are \
-above --tol [default: 1 % of the range of elevations], while there are fewer than --max-knots [default: one for 12 points, at \
+above --tol [default: 1 % of the range of most elevations], while there are fewer than --max-knots [default: one for 12 points, at \
 most 5,000]. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
 
 Without --lambda, coefficients are those of least squares, if points determine them all. Otherwise, and where knots are looked \
@@ -72,7 +72,7 @@ pub(super) struct Flags {
     robust: Option<LossFlag>,
 
     /// Pass through the values that triangulated points have at Greville sites, instead of least squares
-    #[arg(long)]
+    #[arg(long, requires = "knots")]
     interpolate: bool,
 
     /// Weights of points: a number on each line, in the order of the points; - is stdin

@@ -17,23 +17,24 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         let knots = spline.layout.places();
         let above = search.rounds.last().map_or(0, |round| round.above);
         notices.push(format!(
-            "{knots} knots (at most {most}), {functions} functions, tolerance {tolerance}: {}",
+            "{knots} knots (at most {most}), {functions} functions, tolerance {}: {}",
+            short(tolerance),
             if search.is_reached { "reached".into() } else { format!("{above} points are farther off") }
         ));
     }
     if let Some(chosen) = &report.chosen {
         if let Some(undetermined @ 1..) = chosen.undetermined {
             notices.push(format!(
-                "points leave {undetermined} of {functions} functions undetermined: smoothed with lambda {:e}",
-                chosen.lambda
+                "points leave {undetermined} of {functions} functions undetermined: smoothed with lambda {}",
+                short(chosen.lambda)
             ));
         }
         if chosen.choice.is_some() {
-            notices.push(format!("smoothed with lambda {:e}", chosen.lambda));
+            notices.push(format!("smoothed with lambda {}", short(chosen.lambda)));
         }
     }
     if let Some((scale, has_settled)) = report.scale {
-        notices.push(format!("standard deviation of points: {scale}"));
+        notices.push(format!("standard deviation of points: {}", short(scale)));
         if !has_settled {
             notices.push("weights did not settle: the fit is that of the last round".into());
         }
@@ -45,6 +46,16 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
         notices.push(outside(&report.residuals));
     }
     notices
+}
+
+/// A number with four digits.
+fn short(number: f64) -> String {
+    let rounded = format!("{number:.3e}");
+    match number.abs() {
+        // Without the zeros that digits after the point would end with.
+        1e-4..1e6 => rounded.parse().map_or(rounded, |number: f64| number.to_string()),
+        _ => rounded,
+    }
 }
 
 /// How many points do not count.
