@@ -39,6 +39,7 @@ Examples:
     splinefit info terrain.spline.spm points.txt
   Its control mesh for other programs:
     splinefit mesh terrain.spline.spm | spconvert --to ply -o control.ply
+    splinefit mesh terrain.spline.spm -o control.svg
 ";
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
@@ -76,7 +77,7 @@ enum Action {
     Eval(eval::Flags),
     /// Say what a spline is like: domain, condition, smoothness, residuals
     Info(info::Flags),
-    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh
+    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh or a picture
     Mesh(mesh::Flags),
 }
 

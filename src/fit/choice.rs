@@ -52,7 +52,7 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
     search(equations.unit(), |lambda| {
         equations.with_factor(lambda, |factor| {
             equations.check(factor)?;
-            let coefficients = factor.solve(&normal.right);
+            let coefficients = equations.coefficients(factor);
             let count = normal.count as f64;
             let free = 1.0 - trace(factor, &normal.matrix, seed) / count;
             let score = normal.residual_square(&coefficients) / count / (free * free);

@@ -2,7 +2,7 @@
 //!
 //! [`interpolate`] passes through values at Greville sites; everything else is least squares of scattered
 //! [`Observations`], which are read as often as needed and never held: [`Normal`] equations have the size of the basis.
-//! [`Equations`] solves them, smoothed by the energy of a thin plate ([`thin_plate`]); `choice` finds out how much.
+//! [`Equations`] solves them, smoothed by an energy ([`bending`]) that is that of a thin plate for the most part; `choice` finds out how much.
 //!
 //! [`robust()`] weighs observations by their residuals, so that gross errors do not count, and [`refine()`] finds the knots, too.
 //!
@@ -12,6 +12,7 @@
 
 mod blocks;
 mod choice;
+mod control;
 mod cover;
 mod elevations;
 mod energy;
@@ -29,8 +30,10 @@ mod sites;
 mod solve;
 mod spread;
 mod symmetric;
+mod trend;
 
 pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
+pub use control::{bending, control_bending};
 pub use cover::Cover;
 pub use elevations::Elevations;
 pub use energy::thin_plate;

@@ -7,8 +7,8 @@
 //!
 //! The border is pulled apart, so that along edges from border to border splines could be folded. Such edges get a knot, too.
 
+use super::control::bending;
 use super::cover::Cover;
-use super::energy::thin_plate;
 use super::mesh::Mesh;
 use super::normal::Normal;
 use super::observations::Observations;
@@ -109,7 +109,7 @@ pub fn refine<O: Observations + ?Sized>(
     loop {
         let cover = Cover::of(places)?;
         let normal = Normal::of(&cover.basis, observations, threads)?;
-        let energy = thin_plate(&cover.basis)?;
+        let energy = bending(&cover.basis)?;
         let equations = Equations::new(&cover.basis, &normal, Some(&energy))?;
         let coefficients = equations.solve(goal.smoothing * equations.unit())?;
         let survey = Survey::of(&cover, &coefficients, observations, goal, threads)?;

@@ -1,10 +1,11 @@
 //! Coefficients from normal equations, smoothed or not.
 
-use super::energy;
+use super::control::bending;
 use super::factor::{Elimination, Factor};
 use super::normal::Normal;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
+use super::trend::trend;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
 use crate::spline::Basis;
@@ -32,6 +33,10 @@ pub struct Equations<'a> {
     normal: &'a Normal,
     energy: Option<&'a Symmetric>,
     elimination: Elimination,
+    /// Coefficients of the linear function that is nearest to the observations.
+    trend: Vec<f64>,
+    /// The right side of the equations for the rest.
+    right: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
@@ -51,7 +56,10 @@ impl<'a> Equations<'a> {
             Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
             None => Elimination::of(&normal.matrix)?,
         };
-        Ok(Equations { basis, normal, energy, elimination })
+        let trend = trend(basis, normal);
+        let done = normal.matrix.times(&trend);
+        let right = normal.right.iter().zip(done).map(|(right, done)| right - done).collect();
+        Ok(Equations { basis, normal, energy, elimination, trend, right })
     }
 
     /// The normal equations.
@@ -67,7 +75,7 @@ impl<'a> Equations<'a> {
     pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
         self.with_factor(lambda, |factor| {
             self.refuse(&self.named(factor))?;
-            let coefficients = factor.solve(&self.normal.right);
+            let coefficients = self.coefficients(factor);
             if coefficients.iter().all(|c| c.is_finite()) {
                 return Ok(coefficients);
             }
@@ -111,6 +119,12 @@ impl<'a> Equations<'a> {
         }
     }
 
+    /// The coefficients for factors.
+    pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
+        let rest = factor.solve(&self.right);
+        self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
+    }
+
     /// Refuses factors that leave functions undetermined.
     pub(super) fn check(&self, factor: &Factor) -> Result<()> {
         self.refuse(&self.named(factor))
@@ -150,7 +164,7 @@ impl<'a> Equations<'a> {
 
 /// Coefficients of the spline that is nearest to observations, for a given `lambda`: one pass.
 ///
-/// Errors: those of [`Normal::of`], [`energy::thin_plate`] and [`Equations::solve`].
+/// Errors: those of [`Normal::of`], [`bending`] and [`Equations::solve`].
 pub fn least_squares<O: Observations + ?Sized>(
     basis: &Basis,
     observations: &O,
@@ -158,6 +172,6 @@ pub fn least_squares<O: Observations + ?Sized>(
     threads: NonZeroUsize,
 ) -> Result<Vec<f64>> {
     let normal = Normal::of(basis, observations, threads)?;
-    let energy = if lambda > 0.0 { Some(energy::thin_plate(basis)?) } else { None };
+    let energy = if lambda > 0.0 { Some(bending(basis)?) } else { None };
     Equations::new(basis, &normal, energy.as_ref())?.solve(lambda)
 }

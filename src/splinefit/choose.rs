@@ -8,7 +8,7 @@ use crate::fit::{self, Choice, Equations, Folds, Normal, Symmetric};
 use crate::spline::Basis;
 
 /// Where points leave functions undetermined, they are smoothed by so many units of [`Equations::unit`].
-const SMOOTHING_MIN: f64 = 1e-6;
+const SMOOTHING_MIN: f64 = 1e-9;
 
 /// How much was smoothed, and why.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ impl Problem {
 /// In stored coordinates, second derivatives are those of the world times a step squared, and areas are smaller by as much: so
 /// the energy is that of the world times a step squared, and lambda is divided by it.
 ///
-/// Errors: those of [`Normal::of`], [`fit::thin_plate`] and [`Equations::solve`].
+/// Errors: those of [`Normal::of`], [`fit::bending`] and [`Equations::solve`].
 pub(super) fn choose(
     layout: &Layout,
     all: &InFrame,
@@ -52,14 +52,13 @@ pub(super) fn choose(
 ) -> Result<Problem> {
     let (basis, threads) = (&layout.basis, options.threads);
     let normal = Normal::of(basis, all, threads)?;
-    let needs_energy = match options.smoothing {
-        Some(Smoothing::Lambda(lambda)) => lambda > 0.0,
-        Some(_) => true,
-        None => basis.degree() >= 2,
-    };
-    let energy = if needs_energy { Some(fit::thin_plate(basis)?) } else { None };
-    let area = layout.frame.step().powi(2);
     let (mut undetermined, mut choice) = (None, None);
+    if options.smoothing.is_none() && smoothing_min.is_none() {
+        undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
+    }
+    let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || undetermined == Some(0);
+    let energy = if needs_none { None } else { Some(fit::bending(basis)?) };
+    let area = layout.frame.step().powi(2);
     let lambda = match (&energy, options.smoothing) {
         (None, _) => 0.0,
         (_, Some(Smoothing::Lambda(lambda))) => lambda / area,
@@ -67,17 +66,13 @@ pub(super) fn choose(
             let folds = Folds::of(basis, all, folds, options.seed, threads)?;
             choice.insert(folds.choose(basis, energy)?).best.lambda
         }
-        (energy, smoothing) => {
+        (energy, Some(Smoothing::Generalised)) => {
             let equations = Equations::new(basis, &normal, energy.as_ref())?;
-            if smoothing == Some(Smoothing::Generalised) {
-                choice.insert(fit::generalised_cross_validation(&equations, options.seed)?).best.lambda
-            } else if let Some(smoothing) = smoothing_min {
-                smoothing * equations.unit()
-            } else {
-                let count = equations.undetermined(0.0)?.len();
-                undetermined = Some(count);
-                if count == 0 { 0.0 } else { SMOOTHING_MIN * equations.unit() }
-            }
+            choice.insert(fit::generalised_cross_validation(&equations, options.seed)?).best.lambda
+        }
+        (energy, None) => {
+            let unit = Equations::new(basis, &normal, energy.as_ref())?.unit();
+            smoothing_min.unwrap_or(SMOOTHING_MIN) * unit
         }
     };
     if let Some(choice) = &mut choice {

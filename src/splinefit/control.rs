@@ -2,38 +2,70 @@
 
 use std::io::Write;
 
+use super::drawing;
 use super::layout::Spline;
+use crate::bounds::Point;
 use crate::delaunay2;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::stream::{Coordinates, Header, Kind, write_triangles};
+use crate::stream::{Coordinates, Crs, Header, Kind, write_triangles};
 
-/// Writes the control mesh of a spline as a triangle mesh stream, in world coordinates; the number of triangles.
+/// The control mesh of a spline, in world coordinates.
 ///
-/// Of several functions with one Greville site, the mesh has the first.
-///
-/// # Errors
-/// Usage, if all sites are on one line; if writing fails.
-pub fn write_control_mesh(spline: &Spline, output: impl Write) -> Result<u64> {
-    let Spline { layout, coefficients } = spline;
-    let site = |function: usize| layout.frame.to_world(layout.basis.greville(function));
-    let sites: Vec<Point2> = (0..layout.basis.len()).map(site).collect();
-    let mesh = delaunay2::triangulate(&sites)?;
-    if mesh.triangles().is_empty() {
-        let what = format!("all {} Greville sites are on one line: there is no control mesh", sites.len());
-        return Err(Error::usage(what));
+/// It is the Delaunay triangulation of Greville sites, where the thesis has the triangulation of centroids: these are the same
+/// vertices, and functions that were collected have no other.
+#[derive(Debug)]
+pub struct ControlMesh {
+    /// For each function its Greville site and its coefficient.
+    pub points: Vec<Point>,
+    /// Counterclockwise triangles of functions; of several with one site, the first is a vertex.
+    pub triangles: Vec<[u32; 3]>,
+    merged: u64,
+    crs: Crs,
+}
+
+impl ControlMesh {
+    /// Of a spline.
+    ///
+    /// # Errors
+    /// Usage, if all sites are on one line.
+    pub fn of(spline: &Spline) -> Result<ControlMesh> {
+        let Spline { layout, coefficients } = spline;
+        let site = |function: usize| layout.frame.to_world(layout.basis.greville(function));
+        let sites: Vec<Point2> = (0..layout.basis.len()).map(site).collect();
+        let mesh = delaunay2::triangulate(&sites)?;
+        if mesh.triangles().is_empty() {
+            let what =
+                format!("all {} Greville sites are on one line: there is no control mesh", sites.len());
+            return Err(Error::usage(what));
+        }
+        Ok(ControlMesh {
+            points: sites.iter().zip(coefficients).map(|(&[x, y], &z)| [x, y, z]).collect(),
+            triangles: mesh.triangles().iter().map(|triangle| triangle.vertices).collect(),
+            merged: mesh.duplicates.len() as u64,
+            crs: layout.frame.crs.clone(),
+        })
     }
-    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|triangle| triangle.vertices).collect();
-    let header = Header {
-        crs: layout.frame.crs.clone(),
-        producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
-        ..Header::new(Kind::TriangleMesh, Coordinates::F64, 2, true)
-    };
-    let at = |id: u32| {
-        let [x, y] = sites[id as usize];
-        [x, y, coefficients[id as usize]]
-    };
-    let merged = mesh.duplicates.len() as u64;
-    write_triangles(header, &triangles, sites.len(), merged, at, output)?;
-    Ok(triangles.len() as u64)
+
+    /// Writes it as a triangle mesh stream.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn write(&self, output: impl Write) -> Result<()> {
+        let header = Header {
+            crs: self.crs.clone(),
+            producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
+            ..Header::new(Kind::TriangleMesh, Coordinates::F64, 2, true)
+        };
+        let at = |id: u32| self.points[id as usize];
+        write_triangles(header, &self.triangles, self.points.len(), self.merged, at, output)
+    }
+
+    /// Draws it as SVG, seen from above one side.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn draw(&self, output: &mut impl Write) -> Result<()> {
+        drawing::draw(self, output)
+    }
 }

@@ -1,15 +1,15 @@
 //! `splinefit`: points in, splines out; splines in, values out.
 //!
 //! `frame` says what coordinates mean, `layout` what splines are made over, with streams of both. `points` are observations of
-//! their elevations, `given` knots of files, `sharp` breaklines among them, `options`
-//! what is wanted; `choose` finds how much is smoothed, `fit` the coefficients,
-//! `statistics` and `lists` what is left of points. `attributes` are what can be asked of a spline, `values` answers at sites,
-//! `raster` in cells. `summary` says what functions are like, `smoothness` where they are less smooth than others, and `control` has
-//! control meshes.
+//! their elevations, `given` knots of files, `sharp` breaklines among them, `options` what is wanted; `choose` finds how much is
+//! smoothed, `fit` the coefficients, `statistics` and `lists` what is left of points. `attributes` are what can be asked of a
+//! spline, `values` answers at sites, `raster` in cells. `summary` says what functions are like, `smoothness` where they are less
+//! smooth than others, and `control` has control meshes, of which `drawing` makes pictures.
 
 mod attributes;
 mod choose;
 mod control;
+mod drawing;
 mod fit;
 mod frame;
 mod given;
@@ -26,7 +26,7 @@ mod values;
 
 pub use attributes::Attribute;
 pub use choose::Chosen;
-pub use control::write_control_mesh;
+pub use control::ControlMesh;
 pub use fit::{Fitted, Report, Search, fit};
 pub use frame::Frame;
 pub use layout::{Layout, Spline};

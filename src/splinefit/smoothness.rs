@@ -121,29 +121,42 @@ fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bo
         if ![-2.0 * BESIDE, 2.0 * BESIDE].iter().all(|&beside| basis.is_in_domain(at(beside))) {
             return false;
         }
-        let mut limits = |side: f64| {
-            let near = basis.jets_at(at(side * BESIDE), scratch).to_vec();
-            let far = basis.jets_at(at(2.0 * side * BESIDE), scratch).to_vec();
-            (near, far)
+        let mut side = |side: f64| Side {
+            near: basis.jets_at(at(side * BESIDE), scratch).to_vec(),
+            far: basis.jets_at(at(2.0 * side * BESIDE), scratch).to_vec(),
         };
-        let (left, right) = (limits(1.0), limits(-1.0));
-        let of = |jets: &[(u32, Jet)], function: u32| {
-            jets.iter().find(|jet| jet.0 == function).map_or(Jet::default(), |jet| jet.1)
-        };
-        let gradient = |(near, far): &(Vec<(u32, Jet)>, Vec<(u32, Jet)>), function: u32| {
-            let (near, far) = (of(near, function).gradient, of(far, function).gradient);
-            [0, 1].map(|axis| 2.0 * near[axis] - far[axis])
-        };
-        let functions = left.0.iter().chain(&right.0).map(|jet| jet.0);
-        let mut functions: Vec<u32> = functions.collect();
+        let (left, right) = (side(1.0), side(-1.0));
+        let mut functions: Vec<u32> = left.near.iter().chain(&right.near).map(|jet| jet.0).collect();
         functions.sort_unstable();
         functions.dedup();
         functions.iter().any(|&function| {
-            let (a, b) = (gradient(&left, function), gradient(&right, function));
+            let (a, b) = (left.gradient(function), right.gradient(function));
             // Functions are at most about one, so that a gradient of one over the length is a great one.
             let change = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt() * length;
-            let step = (of(&left.0, function).value - of(&right.0, function).value).abs();
+            let step = (left.value(function) - right.value(function)).abs();
             change > CHANGE_MIN || step > CHANGE_MIN
         })
     })
+}
+
+/// The functions alive at two places on one side of a segment, one twice as far from it as the other.
+struct Side {
+    near: Vec<(u32, Jet)>,
+    far: Vec<(u32, Jet)>,
+}
+
+impl Side {
+    fn value(&self, function: u32) -> f64 {
+        jet_of(&self.near, function).value
+    }
+
+    /// The limit at the segment.
+    fn gradient(&self, function: u32) -> [f64; 2] {
+        let (near, far) = (jet_of(&self.near, function).gradient, jet_of(&self.far, function).gradient);
+        [0, 1].map(|axis| 2.0 * near[axis] - far[axis])
+    }
+}
+
+fn jet_of(jets: &[(u32, Jet)], function: u32) -> Jet {
+    jets.iter().find(|jet| jet.0 == function).map_or(Jet::default(), |jet| jet.1)
 }

@@ -3,7 +3,7 @@
 use super::bases::{cubic, grid, pulled_apart};
 use crate::reference::sets::Random;
 use spmesh::config::{self, Knots, Rule};
-use spmesh::fit::{interpolate, thin_plate};
+use spmesh::fit::{bending, interpolate, thin_plate};
 use spmesh::spline::{Basis, Scratch};
 
 /// The energy of a spline on the unit square, by the midpoints of many squares.
@@ -81,4 +81,26 @@ fn only_the_domain_counts() {
     let plane: Vec<f64> = (0..basis.len()).map(|i| basis.greville(i)).map(|[x, y]| 5.0 * x - y).collect();
     assert!(energy.form(&plane).abs() < 1e-9, "{}", energy.form(&plane));
     assert!(energy.trace() > 1.0);
+}
+
+#[test]
+fn control_meshes_bend_for_all_but_planes() {
+    let knots = Knots::new(grid(3, 0.2)).expect("finite points");
+    let linear = Basis::new(&knots, &config::delaunay(&knots).expect("triangles")).expect("a basis");
+    let quadratic = pulled_apart(&sunflower(30));
+    for basis in [&linear, &quadratic, &cubic(&grid(2, 0.2))] {
+        let energy = bending(basis).expect("an energy");
+        let of = |f: &dyn Fn([f64; 2]) -> f64| {
+            let coefficients: Vec<f64> =
+                (0..basis.len()).map(|function| f(basis.greville(function))).collect();
+            energy.form(&coefficients)
+        };
+        assert!(of(&|[x, y]| 5.0 + 3.0 * x - 2.0 * y) < 1e-9);
+        // Each coefficient alone makes a bend that is no rounding error.
+        for function in 0..basis.len() {
+            let mut one = vec![0.0; basis.len()];
+            one[function] = 1.0;
+            assert!(energy.form(&one) > 1e-4, "{function}");
+        }
+    }
 }

@@ -100,3 +100,21 @@ fn control_meshes_of_planes_are_planes() {
     assert!(vertices.len() > 90);
     assert!(vertices.iter().all(|row| (row[2] - plane(row[0], row[1])).abs() < 1e-7));
 }
+
+#[test]
+fn control_meshes_are_drawn() {
+    let folder = Folder::new();
+    let spline = output(&["fit"], points(3_000, 2, plane).as_bytes());
+    let path = folder.path("control.svg");
+    output(&["mesh", "-", "-o", &path], &spline);
+    let picture = std::fs::read_to_string(&path).unwrap();
+    let triangles = output(&["mesh"], &spline);
+    let twin = String::from_utf8(run("spconvert", &["--to", "text"], &triangles).stdout).unwrap();
+    let expected = twin.lines().filter(|line| line.starts_with("f ")).count();
+    assert!(expected > 50);
+    assert_eq!(picture.matches("<path ").count(), expected);
+    assert!(picture.starts_with("<svg ") && picture.ends_with("</svg>\n") && !picture.contains("NaN"));
+    // The least elevation and the greatest have the ends of the ramp.
+    assert!(picture.contains("#440154") && picture.contains("#fde725"));
+    assert_eq!(output(&["mesh", "-", "--svg"], &spline), picture.as_bytes());
+}

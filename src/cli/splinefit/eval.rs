@@ -1,6 +1,6 @@
 //! `splinefit eval`: flags.
 
-use std::io::{Seek, SeekFrom};
+use std::io::Seek;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -39,7 +39,7 @@ pub(super) struct Flags {
     at: Option<PathBuf>,
 
     /// Sides of cells, which are at multiples of it [default: a thousand cells along the longer side]
-    #[arg(long, value_name = "S", conflicts_with_all = ["columns", "rows"])]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, conflicts_with_all = ["columns", "rows"])]
     step: Option<f64>,
 
     /// Number of columns
@@ -153,7 +153,7 @@ impl Flags {
             return Err(Error::usage("a gradient is two numbers, and a cell has one: take --format text"));
         }
         let mut output = Output::create(&self.output, format == FormatFlag::Tif)?;
-        if format == FormatFlag::Tif && output.seek(SeekFrom::Current(0)).is_err() {
+        if format == FormatFlag::Tif && output.stream_position().is_err() {
             let what = "GeoTIFF is not written in order, and a pipe takes nothing else: use -o FILE, or --format asc";
             return Err(Error::usage(what));
         }

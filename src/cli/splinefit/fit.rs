@@ -24,8 +24,8 @@ above --tol [default: 1 % of the range of elevations], while there are fewer tha
 most 5,000]. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
 
 Without --lambda, coefficients are those of least squares, if points determine them all. Otherwise, and where knots are looked \
-for, gaps are bridged by so little smoothing that it can hardly be seen elsewhere. LAMBDA multiplies the thin-plate energy, which \
-is added to the sum of squares of residuals.
+for, gaps are bridged by so little smoothing that it can hardly be seen elsewhere. LAMBDA multiplies the thin-plate energy (with \
+a thousandth of how much the control mesh bends), which is added to the sum of squares of residuals.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear: \
 their vertices become knots, with more between them where segments are long, and other knots near to them are left out. In GeoJSON \
@@ -56,7 +56,7 @@ pub(super) struct Flags {
     degree: Option<usize>,
 
     /// Greatest residual that needs no further knot, in units of elevations
-    #[arg(long, value_name = "T", value_parser = parse_positive)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_positive)]
     tol: Option<f64>,
 
     /// Most places of knots
@@ -64,7 +64,7 @@ pub(super) struct Flags {
     max_knots: Option<usize>,
 
     /// How much to smooth: a number, gcv (generalised cross-validation), or cv or cv:FOLDS (cross-validation)
-    #[arg(long, value_name = "LAMBDA|gcv|cv[:FOLDS]")]
+    #[arg(long, value_name = "LAMBDA|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
     lambda: Option<Smoothing>,
 
     /// Weigh points by their residuals, so that gross errors count little, or not at all
