@@ -1,6 +1,7 @@
 """Time and memory of a fit to many points and of its raster, ours and those of peers.
 
-Points are in a file of LAS for us, of numpy for scipy, and in the database of GRASS before it starts; rasters are written to a file.
+Points are in a file of LAS for us, of numpy for scipy, and in the database of GRASS before it starts; rasters are written to
+files.
 """
 
 import sys
@@ -20,7 +21,7 @@ KNOT_CELLS, RASTER_CELLS = 97, 2_000
 QUICK_KNOT_CELLS = 15
 LIMIT_S = 600.0
 SQUARE = 1_000.0
-HEAD = ("points", "program", "unknowns", "seconds", "range", "times ours", "peak MB")
+HEAD = ("points", "program", "unknowns", "seconds", "range", "times ours", "CPU s", "peak MB")
 
 
 def run(work, flags):
@@ -53,7 +54,7 @@ def ours(work, files, knots):
     box = f"0,0,{SQUARE:g},{SQUARE:g}"
     out = work.folder / "ours.tif"
     evaluation = [splinefit, "eval", "--quiet", "-", "--columns", str(RASTER_CELLS), "--bounds", box, "-o", out]
-    return measure.Contestant("splinefit fit | splinefit eval", [fit, evaluation], str(out))
+    return measure.Contestant("splinefit fit, splinefit eval", [fit, evaluation], str(out))
 
 
 def peers(work, files, unknowns):
@@ -69,9 +70,11 @@ def peers(work, files, unknowns):
 
 def row(count, contestant, ours, unknowns):
     if not contestant.runs:
-        return [count, contestant.name, f"missing: {contestant.failure}"]
+        return [count, contestant.name, f"none: {contestant.failure}"]
     walls = [run.wall for run in contestant.runs]
     span = f"{min(walls):.2f}-{max(walls):.2f}"
     peaks = " + ".join(f"{peak / 1e6:.0f}" for peak in contestant.peaks)
     progress(f"speed: {contestant.name}: {contestant.wall:.2f} s")
-    return [count, contestant.name, unknowns, f"{contestant.wall:.2f}", span, f"{contestant.wall / ours.wall:.2f}", peaks]
+    cpu = contestant.median(lambda run: run.cpu)
+    times = [f"{contestant.wall:.2f}", span, f"{contestant.wall / ours.wall:.2f}", f"{cpu:.2f}", peaks]
+    return [count, contestant.name, unknowns, *times]
