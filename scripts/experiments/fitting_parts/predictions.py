@@ -11,7 +11,7 @@ import numpy as np
 from work import Failed
 
 HERE = pathlib.Path(__file__).resolve().parent
-LIMIT_S = 900.0
+LIMIT_S = 300.0
 
 
 @dataclass
