@@ -1,0 +1,28 @@
+"""Knots for scattered points."""
+
+import numpy as np
+
+# How far knots inside are moved, in cells: no three are on a line then.
+MOVED = 0.2
+SEED = 1
+
+
+def grid(cells):
+    """Makes knots on a grid of about square cells over the box of points, so many along the longer side, those inside moved."""
+
+    def make(work, points):
+        low, high = points[:, :2].min(0), points[:, :2].max(0)
+        counts = np.maximum(np.round(cells * (high - low) / (high - low).max()), 2).astype(int)
+        columns, rows = np.meshgrid(*(np.arange(count + 1) for count in counts))
+        places = np.column_stack([columns.ravel(), rows.ravel()]).astype(float)
+        inside = ((places > 0) & (places < counts)).all(1)
+        random = np.random.default_rng(SEED)
+        moves = random.uniform(-1, 1, places.shape)
+        # An edge that cut off a corner would let it fold; towards the corner, knots have an edge to it.
+        next_to_corner = ((places == 1) | (places == counts - 1)).all(1)
+        moves[next_to_corner] = np.where(places == 1, -1.0, 1.0)[next_to_corner]
+        places[inside] += MOVED * moves[inside]
+        knots = np.where(places == counts, high, low + places / counts * (high - low))
+        return work.table("knots.xy", knots)
+
+    return make

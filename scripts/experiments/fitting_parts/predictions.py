@@ -1,0 +1,121 @@
+"""Values at sites from points, by our program and by peers, with what that took."""
+
+import importlib.util
+import pathlib
+import sys
+from dataclasses import dataclass
+
+import inputs
+import measure
+import numpy as np
+from work import Failed
+
+HERE = pathlib.Path(__file__).resolve().parent
+LIMIT_S = 300.0
+
+
+@dataclass
+class Prediction:
+    """What a way said at sites, and what it took; without values, for a reason."""
+
+    values: object = None
+    seconds: float = 0.0
+    peak_bytes: int = 0
+    # Coefficients of a spline.
+    unknowns: object = ""
+    reason: str = ""
+
+
+@dataclass
+class Ours:
+    """splinefit with flags; `knots`, if there are some, makes a file of knots of points."""
+
+    name: str
+    flags: tuple = ()
+    knots: object = None
+
+    def predict(self, work, points, sites, _):
+        """By two processes, one that fits and one that evaluates."""
+        try:
+            flags = [*self.flags, *(("--knots", self.knots(work, points)) if self.knots else ())]
+            table, at = work.table("points.xyz", points), work.table("at.xy", sites)
+            fit = run([inputs.program("splinefit"), "fit", "--quiet", "--stats=json", *flags, table, "-o", work.spline])
+            out = work.folder / "values.txt"
+            evaluation = run([inputs.program("splinefit"), "eval", "--quiet", work.spline, "--at", at, "-o", out])
+        except Failed as failure:
+            return Prediction(reason=str(failure))
+        peak = max(fit.peaks + evaluation.peaks)
+        return Prediction(np.loadtxt(out)[:, 2], fit.wall + evaluation.wall, peak, fit.said["functions"])
+
+
+@dataclass
+class Scipy:
+    """A method of peer_program.py; it may be told how many unknowns it should have."""
+
+    name: str
+    method: str
+    has_unknowns: bool = False
+
+    def predict(self, work, points, sites, unknowns):
+        if not has_scipy():
+            return Prediction(reason="scipy is not installed")
+        files = [work.folder / f"{name}.npy" for name in ("points", "sites", "values")]
+        np.save(files[0], points)
+        np.save(files[1], sites)
+        words = [unknowns] if self.has_unknowns else []
+        try:
+            taken = run([sys.executable, HERE / "peer_program.py", self.method, *files, *words])
+        except Failed as failure:
+            return Prediction(reason=str(failure))
+        return Prediction(np.load(files[2]), taken.wall, max(taken.peaks), *words)
+
+
+PEERS = [
+    Scipy("linear, Delaunay triangulation (scipy)", "linear"),
+    Scipy("Clough-Tocher (scipy)", "clough-tocher"),
+    Scipy("thin plates, 50 neighbours (scipy)", "thin-plates"),
+    Scipy("bicubic, least squares (scipy)", "bicubic", has_unknowns=True),
+]
+
+
+def has_scipy():
+    return importlib.util.find_spec("scipy") is not None
+
+
+def run(command):
+    result = measure.run([command], LIMIT_S)
+    if result.failure:
+        # What the program says, without the paths of files.
+        raise Failed(result.failure.split(": ", 2)[-1].rsplit(".xyz: ", 1)[-1])
+    return result
+
+
+def compare(work, ways, points, sites, truth):
+    """A row for each way: unknowns, root of the mean square of errors, median and greatest error, seconds, and peak memory.
+
+    Bicubic splines have as many unknowns as our spline with the most of them.
+    """
+    unknowns, rows = 0, []
+    for way in ways:
+        found = way.predict(work, points, sites, unknowns)
+        if isinstance(way, Ours) and found.unknowns:
+            unknowns = max(unknowns, found.unknowns)
+        rows.append([way.name, *cells(found, truth)])
+        print(f"  {rows[-1]}", file=sys.stderr, flush=True)
+    return rows
+
+
+HEAD = ("unknowns", "RMSE", "median", "99 % below", "greatest", "sites without value", "seconds", "peak MB")
+
+
+def cells(found, truth):
+    if found.values is None:
+        return [f"none: {found.reason}"]
+    errors = np.abs(found.values - truth)
+    known = errors[~np.isnan(errors)]
+    numbers = [np.sqrt(np.mean(known**2)), np.median(known), np.percentile(known, 99), known.max()]
+    # Below the floor, a peak is not the program's.
+    megabytes = f"{max(found.peak_bytes, measure.floor_bytes()) / 1e6:.0f}"
+    at_most = "" if found.peak_bytes > measure.floor_bytes() else "at most "
+    unknown = len(errors) - len(known)
+    return [found.unknowns, *(f"{number:.3g}" for number in numbers), unknown, f"{found.seconds:.2f}", at_most + megabytes]

@@ -1,0 +1,123 @@
+"""A LIDAR tile: a part of its ground points is held back, and predicted from the others; the same with gross errors.
+
+Only held points inside of the convex hull of the others count.
+"""
+
+import subprocess
+
+import inputs
+import layouts
+import numpy as np
+from predictions import HEAD, PEERS, Ours, compare
+from tsv import write_tables
+from work import progress
+
+SEED = 1
+GROUND = "2"
+HELD_SHARE, GROSS_SHARE = 0.1, 0.01
+GROSS_M = (10.0, 100.0)
+QUICK_POINTS = 5_000
+
+
+def run(work, flags):
+    if not flags.terrain:
+        progress("terrain: left out, as it needs --terrain FILE")
+        return
+    for path in flags.terrain:
+        points = ground(work, path)
+        if flags.quick:
+            points = points[:QUICK_POINTS]
+        fitted, held = held_back(points)
+        progress(f"terrain: {path.name}: {len(points)} points, {len(held)} held back in the hull")
+        rows = [["", *row] for row in compare(work, ways(), fitted, held[:, :2], held[:, 2])]
+        spoilt = with_gross_errors(fitted)
+        rows += [["1 %", *row] for row in compare(work, robust_ways(), spoilt, held[:, :2], held[:, 2])]
+        write_tables(flags.out / f"terrain-{path.stem}", ("gross errors", "way", *HEAD), rows)
+
+
+def ways():
+    return [
+        Ours("splinefit"),
+        Ours("splinefit --tol 0.1 --max-knots 20000", ("--tol", "0.1", "--max-knots", "20000")),
+        Ours("splinefit --knots GRID --lambda gcv", ("--lambda", "gcv"), cells_of(3)),
+        Ours("splinefit --knots GRID --lambda 0.03", ("--lambda", "0.03"), cells_of(3)),
+        Ours("splinefit --knots DENSE --lambda 0.03", ("--lambda", "0.03"), cells_of(1)),
+        *PEERS,
+    ]
+
+
+def robust_ways():
+    losses = [("--lambda", "0.03"), *(("--lambda", "0.03", "--robust", loss) for loss in ("huber", "tukey"))]
+    return [
+        Ours("splinefit --robust tukey", ("--robust", "tukey")),
+        *(Ours(f"splinefit --knots GRID {' '.join(loss)}", loss, cells_of(3)) for loss in losses),
+        *PEERS,
+    ]
+
+
+def cells_of(points_per_cell):
+    """Knots on a grid with a cell for so many points."""
+
+    def make(work, points):
+        width, height = np.ptp(points[:, :2], axis=0)
+        cells = (len(points) / points_per_cell * max(width, height) / min(width, height)) ** 0.5
+        return layouts.grid(round(cells))(work, points)
+
+    return make
+
+
+def ground(work, path):
+    """Ground points in the order of the file, the first at each place."""
+    stream = work.folder / "ground.spa"
+    finalize = [inputs.program("spfinalize"), "--quiet", "--keep-class", GROUND, path]
+    convert = [inputs.program("spconvert"), "--quiet", "--to", "spa", "-o", stream]
+    with subprocess.Popen(finalize, stdout=subprocess.PIPE) as source:
+        subprocess.run(convert, stdin=source.stdout, check=True)
+    lines = (line.split() for line in stream.read_text().splitlines() if line.startswith("v "))
+    points = np.array([[float(word) for word in words[1:4]] for words in lines])
+    _, firsts = np.unique(points[:, :2], axis=0, return_index=True)
+    return points[np.sort(firsts)]
+
+
+def held_back(points):
+    """Points that are fitted, and those of the others that are inside of their hull."""
+    order = np.random.default_rng(SEED).permutation(len(points))
+    count = round(HELD_SHARE * len(points))
+    fitted, held = points[order[count:]], points[order[:count]]
+    return fitted, held[inside(fitted[:, :2], held[:, :2])]
+
+
+def inside(places, sites):
+    """Which sites are left of all edges of the convex hull of places."""
+    hull = convex(places)
+    edges = np.roll(hull, -1, axis=0) - hull
+    sides = edges[:, 0] * (sites[:, None, 1] - hull[:, 1]) - edges[:, 1] * (sites[:, None, 0] - hull[:, 0])
+    return (sides > 0).all(1)
+
+
+def convex(places):
+    """The convex hull, counterclockwise (Andrew 1979); exact, as digits after the point are few."""
+    ordered = sorted(map(tuple, places))
+    return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def chain(ordered):
+    kept = []
+    for place in ordered:
+        while len(kept) > 1 and turn(*kept[-2:], place) <= 0:
+            kept.pop()
+        kept.append(place)
+    return kept[:-1]
+
+
+def turn(p, q, r):
+    return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+
+
+def with_gross_errors(points):
+    """Some points far above the ground or below it."""
+    random = np.random.default_rng(SEED)
+    spoilt = points.copy()
+    chosen = random.choice(len(points), round(GROSS_SHARE * len(points)), replace=False)
+    spoilt[chosen, 2] += random.choice([-1.0, 1.0], len(chosen)) * random.uniform(*GROSS_M, len(chosen))
+    return spoilt

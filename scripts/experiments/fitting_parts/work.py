@@ -1,0 +1,81 @@
+"""Our programs as functions, and the files between them."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import inputs
+import numpy as np
+
+SAID_LENGTH = 300
+
+
+class Failed(Exception):
+    """What a program says that did not do what it was asked."""
+
+
+class Workplace:
+    """A temporary folder for the files of one fit at a time."""
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        self.spline = self.folder / "spline.spm"
+        return self
+
+    def __exit__(self, *_):
+        self.temporary.cleanup()
+
+    def table(self, name, rows):
+        """A file of lines of numbers, with all digits."""
+        path = self.folder / name
+        path.write_text("".join(" ".join(map(repr, row)) + "\n" for row in np.asarray(rows, float).tolist()))
+        return path
+
+    def fit(self, points, *flags):
+        """Fits the spline, and what the program counted."""
+        said = ours("splinefit", "fit", "--quiet", "--stats=json", *flags, points, "-o", self.spline).stderr
+        return json.loads(next(line for line in said.splitlines() if line.startswith("{")))
+
+    def interpolate(self, knots, function):
+        """Makes the spline over knots that has the values of a function at Greville sites.
+
+        Points that are triangulated have their own values at their own places: so if these are the Greville sites, which the
+        control mesh of any spline over the knots lists, no other value counts.
+        """
+        x0, y0, x1, y1 = self.summary(knots)["domain"]
+        corners = [[x, y, 0.0] for x in (x0, x1) for y in (y0, y1)]
+        self.fit(self.table("corners.xyz", corners), "--knots", knots, "--interpolate")
+        sites = self.control_sites()
+        values = function(*sites.T)
+        self.fit(self.table("sites.xyz", np.column_stack([sites, values])), "--knots", knots, "--interpolate")
+
+    def control_sites(self):
+        mesh = self.folder / "control.spm"
+        ours("splinefit", "mesh", self.spline, "-o", mesh)
+        lines = ours("spconvert", "--quiet", "--to", "text", mesh).stdout.splitlines()
+        return np.array([[float(word) for word in line.split()[1:3]] for line in lines if line.startswith("v ")])
+
+    def summary(self, stream):
+        """What splinefit info says of a spline, or of configurations."""
+        return json.loads(ours("splinefit", "info", "--json", stream).stdout)
+
+    def values(self, sites):
+        """The spline at sites; not a number outside of its domain."""
+        lines = ours("splinefit", "eval", "--quiet", self.spline, "--at", self.table("at.xy", sites)).stdout
+        return np.array([float(line.split()[2]) for line in lines.splitlines()])
+
+
+def ours(name, *words):
+    """Runs one of our programs to its end."""
+    command = [str(word) for word in (inputs.program(name), *words)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise Failed(f"{name} {words[0]}: {done.stderr.strip()[-SAID_LENGTH:]}")
+    return done
+
+
+def progress(text):
+    print(text, file=sys.stderr, flush=True)
