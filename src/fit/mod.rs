@@ -40,7 +40,7 @@ pub use energy::thin_plate;
 pub use mesh::Mesh;
 pub use normal::Normal;
 pub use observations::{Observation, ObservationReader, Observations};
-pub use refine::{Goal, KNOTS_MIN, Refined, Round, refine};
+pub use refine::{Goal, KNOTS_MIN, Refined, Round, even_places, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust};
 pub use sites::{Interpolation, interpolate};

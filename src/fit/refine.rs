@@ -27,12 +27,14 @@ use std::num::NonZeroUsize;
 const CELLS_FIRST: usize = 4;
 /// How far knots are moved, in cells.
 const MOVED: f64 = 0.2;
-/// Least number of observations in a triangle that gets a knot: it brings three functions.
-const OBSERVATIONS_MIN: u32 = 6;
+/// Least number of observations in a triangle that gets a knot, which brings two or three functions.
+const OBSERVATIONS_MIN: u32 = 3;
 /// The least part of observations of a triangle that is rejected for want of knots, and not for gross errors.
 const REJECTED_MIN: f64 = 0.25;
 /// Least number of knots: those of the first grid, and one for each corner that an edge cuts off.
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
+/// Most cells of a grid.
+const EVEN_MAX: f64 = 5e7;
 /// Attempts to place knots so that no edge through the inside joins two knots of the border.
 const ATTEMPTS: usize = 4;
 
@@ -43,17 +45,17 @@ pub struct Goal {
     pub tolerance: f64,
     /// Most places of knots: copies on the border do not count.
     pub max_knots: usize,
-    /// The factor of the thin-plate energy, in units of [`Equations::unit`]: not zero, so that gaps in the data are bridged.
+    /// The factor of the energy, in units of [`Equations::halving`]: not zero, so that gaps in the data are bridged.
     pub smoothing: f64,
     /// What residuals cost, if not their squares.
     pub loss: Option<Loss>,
 }
 
 impl Goal {
-    /// A goal with as little smoothing as bridges gaps.
+    /// A goal with as much smoothing as observations can bear.
     #[must_use]
     pub fn new(tolerance: f64, max_knots: usize) -> Goal {
-        Goal { tolerance, max_knots, smoothing: 1e-6, loss: None }
+        Goal { tolerance, max_knots, smoothing: 1.0, loss: None }
     }
 
     fn check(&self) -> Result<()> {
@@ -132,6 +134,24 @@ pub fn refine<O: Observations + ?Sized>(
     }
 }
 
+/// Knots on a grid over the box of all observations, with cells of about this side; those inside are moved a little.
+///
+/// Errors: a side that is not above zero, or makes more than 50 million knots; observations in no area; those of the source.
+pub fn even_places<O: Observations + ?Sized>(observations: &O, side: f64) -> Result<Vec<Point2>> {
+    if side.is_nan() || side <= 0.0 {
+        return Err(Error::usage(format!("cells of {side}: expected a number above zero")));
+    }
+    let [lower, upper] = bounds(observations)?;
+    let cells = [0, 1].map(|axis| ((upper[axis] - lower[axis]) / side).round().max(2.0));
+    if cells[0] * cells[1] > EVEN_MAX {
+        let what = format!("cells of {side} are {:.0} by {:.0}: take larger ones", cells[0], cells[1]);
+        return Err(Error::usage(what));
+    }
+    let places = grid([lower, upper], cells.map(|count| count as usize));
+    let middles = settled(&places, Vec::new(), usize::MAX)?;
+    Ok([places, middles].concat())
+}
+
 /// A fit over the knots of a round.
 struct Solution {
     coefficients: Vec<f64>,
@@ -149,7 +169,7 @@ impl Solution {
         let normal = Normal::of(&cover.basis, observations, threads)?;
         let energy = bending(&cover.basis)?;
         let equations = Equations::new(&cover.basis, &normal, Some(&energy))?;
-        let lambda = goal.smoothing * equations.unit();
+        let lambda = goal.smoothing * equations.halving();
         let Some(loss) = goal.loss else {
             return Ok(Solution { coefficients: equations.solve(lambda)?, limit: f64::INFINITY });
         };
@@ -187,11 +207,15 @@ fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]> {
     Ok([lower, upper])
 }
 
-/// A grid of cells that are about square: the corners of the box and knots along its sides, exactly, and moved ones inside.
+/// The grid of the first round: its cells are about square.
 fn first_places([lower, upper]: [Point2; 2]) -> Vec<Point2> {
     let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
     let longest = sides[0].max(sides[1]);
-    let cells = sides.map(|side| ((side / longest * CELLS_FIRST as f64).round() as usize).max(2));
+    grid([lower, upper], sides.map(|side| ((side / longest * CELLS_FIRST as f64).round() as usize).max(2)))
+}
+
+/// The corners of the box and knots along its sides, exactly, and moved ones inside.
+fn grid([lower, upper]: [Point2; 2], cells: [usize; 2]) -> Vec<Point2> {
     let mut random = Random::new(1);
     let mut places = Vec::with_capacity((cells[0] + 1) * (cells[1] + 1));
     for (i, j) in (0..=cells[1]).flat_map(|j| (0..=cells[0]).map(move |i| (i, j))) {

@@ -19,9 +19,9 @@ const DEVIATIONS: f64 = 1.482_602_218_505_602;
 /// Least scale, relative to the root of the mean square of values: that of rounding.
 const SCALE_MIN: f64 = 1e-12;
 /// Change of coefficients, in scales, that ends the rounds.
-const CHANGE_MAX: f64 = 1e-3;
+const CHANGE_MAX: f64 = 1e-2;
 /// Rounds for one loss, at most...
-const ROUNDS_MAX: usize = 50;
+const ROUNDS_MAX: usize = 25;
 /// ...and where knots are added after it.
 const ROUNDS_FEW: usize = 6;
 

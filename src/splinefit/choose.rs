@@ -7,9 +7,6 @@ use crate::error::Result;
 use crate::fit::{self, Choice, Equations, Folds, Normal, Symmetric};
 use crate::spline::Basis;
 
-/// Where points leave functions undetermined, they are smoothed by so many units of [`Equations::unit`].
-const SMOOTHING_MIN: f64 = 1e-9;
-
 /// How much was smoothed, and why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chosen {
@@ -38,22 +35,17 @@ impl Problem {
     }
 }
 
-/// Sets up the equations of points, and chooses.
+/// Sets up the equations of points, and chooses. Given knots are smoothed if points do not determine all functions, others always.
 ///
 /// In stored coordinates, second derivatives are those of the world times a step squared, and areas are smaller by as much: so
 /// the energy is that of the world times a step squared, and lambda is divided by it.
 ///
 /// Errors: those of [`Normal::of`], [`fit::bending`] and [`Equations::solve`].
-pub(super) fn choose(
-    layout: &Layout,
-    all: &InFrame,
-    options: &Options,
-    smoothing_min: Option<f64>,
-) -> Result<Problem> {
+pub(super) fn choose(layout: &Layout, all: &InFrame, options: &Options, are_given: bool) -> Result<Problem> {
     let (basis, threads) = (&layout.basis, options.threads);
     let normal = Normal::of(basis, all, threads)?;
     let (mut undetermined, mut choice) = (None, None);
-    if options.smoothing.is_none() && smoothing_min.is_none() {
+    if options.smoothing.is_none() && are_given {
         undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
     }
     let needs_none = options.smoothing == Some(Smoothing::Lambda(0.0)) || undetermined == Some(0);
@@ -70,10 +62,7 @@ pub(super) fn choose(
             let equations = Equations::new(basis, &normal, energy.as_ref())?;
             choice.insert(fit::generalised_cross_validation(&equations, options.seed)?).best.lambda
         }
-        (energy, None) => {
-            let unit = Equations::new(basis, &normal, energy.as_ref())?.unit();
-            smoothing_min.unwrap_or(SMOOTHING_MIN) * unit
-        }
+        (energy, None) => Equations::new(basis, &normal, energy.as_ref())?.halving(),
     };
     if let Some(choice) = &mut choice {
         choice.best.lambda *= area;

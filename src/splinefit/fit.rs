@@ -10,17 +10,19 @@ use super::points::{InFrame, Points};
 use super::statistics::Statistics;
 use super::{given, lists, sharp};
 use crate::error::{Error, Result};
-use crate::fit::{self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round};
+use crate::fit::{
+    self, Cover, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round,
+};
 use crate::source::KnotSource;
 
 /// Without a tolerance, this part of the range of elevations is one.
-const TOLERANCE_PART: f64 = 0.01;
+const TOLERANCE_PART: f64 = 0.0025;
 /// Residuals below this part of the greatest elevation are rounding errors.
 const ROUNDING: f64 = 1e-9;
 /// Without a number of knots, there are at most so many...
-const KNOTS_MAX: usize = 5_000;
-/// ...and one for so many points: three functions belong to a knot.
-const POINTS_PER_KNOT: u64 = 12;
+const KNOTS_MAX: usize = 20_000;
+/// ...and one for so many points: two or three functions belong to a knot.
+const POINTS_PER_KNOT: u64 = 4;
 
 /// A spline that was fitted.
 #[derive(Debug)]
@@ -78,16 +80,17 @@ pub fn fit(
     }
     let (mut layout, found) = match knots {
         Some((source, name)) => (given::layout(source, &name, options.degree, &options.polylines)?, None),
+        None if options.step.is_some() => (even(points, options, done)?, None),
         None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
     layout.frame.join(points.crs())?;
     let frame = layout.frame.clone();
     let all = points.in_frame(&frame, done);
-    let smoothing_min = found.as_ref().map(|search| search.goal.smoothing);
+    let are_given = found.is_none() && options.step.is_none();
     let (coefficients, chosen, robust) = match options.interpolates {
         true => (interpolate(&layout, &all)?, None, None),
         false => {
-            let fitted = approximate(&layout, &all, options, smoothing_min);
+            let fitted = approximate(&layout, &all, options, are_given);
             let (coefficients, chosen, robust) = fitted.map_err(|error| error.of_input(points.name()))?;
             (coefficients, Some(chosen), robust)
         }
@@ -113,11 +116,7 @@ impl Fitted {
 
 /// Knots where they are needed.
 fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
-    if let Some(degree) = options.degree.filter(|&degree| degree != 2) {
-        let what =
-            format!("knots for splines of degree {degree} must be given as configurations: use configgen");
-        return Err(Error::usage(what));
-    }
+    check_degree(options)?;
     let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
     // A plane at one height has residuals that are rounding errors of it.
     let [low, high] = points.range();
@@ -141,14 +140,37 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     Ok((Layout::of_cover(cover, frame), search))
 }
 
+/// Knots on a grid.
+fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout> {
+    check_degree(options)?;
+    let frame = Frame::world(points.crs().clone());
+    let all = points.in_frame(&frame, done);
+    let side = options.step.unwrap_or_default();
+    let places = fit::even_places(&all, side).map_err(|error| error.of_input(points.name()))?;
+    let cover = match options.polylines.is_empty() {
+        true => Cover::of(places)?,
+        false => sharp::cover(&places, &options.polylines)?,
+    };
+    Ok(Layout::of_cover(cover, frame))
+}
+
+fn check_degree(options: &Options) -> Result<()> {
+    match options.degree.filter(|&degree| degree != 2) {
+        Some(degree) => Err(Error::usage(format!(
+            "knots for splines of degree {degree} must be given as configurations: use configgen"
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// Coefficients of least squares, smoothed or weighed.
 fn approximate(
     layout: &Layout,
     all: &InFrame,
     options: &Options,
-    smoothing_min: Option<f64>,
+    are_given: bool,
 ) -> Result<(Vec<f64>, Chosen, Option<RobustFit>)> {
-    let problem = choose(layout, all, options, smoothing_min)?;
+    let problem = choose(layout, all, options, are_given)?;
     let Some(loss) = options.loss else {
         return Ok((problem.solve(&layout.basis)?, problem.chosen, None));
     };

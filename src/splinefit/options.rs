@@ -19,6 +19,8 @@ pub struct Options {
     pub tolerance: Option<f64>,
     /// Most places of knots, where knots are not given.
     pub max_knots: Option<usize>,
+    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of the world.
+    pub step: Option<f64>,
     /// Along which splines are not smooth, where knots come without configurations.
     pub polylines: Vec<Polyline>,
     /// Degree of splines, where knots come with configurations of several degrees.
@@ -37,6 +39,7 @@ impl Default for Options {
             interpolates: false,
             tolerance: None,
             max_knots: None,
+            step: None,
             polylines: Vec::new(),
             degree: None,
             seed: 1,

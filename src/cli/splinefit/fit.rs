@@ -20,11 +20,11 @@ use crate::splinefit::{self, Fitted, Options, Points, Smoothing};
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
 Without --knots, they are looked for: a coarse grid over the box of the points gets more, round by round, where residuals are \
-above --tol [default: 1 % of the range of most elevations], while there are fewer than --max-knots [default: one for 12 points, at \
-most 5,000]. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
+above --tol [default: 0.25 % of the range of most elevations], while there are fewer than --max-knots [default: one for 4 points, at \
+most 20,000]. With --step, they are on a grid: one knot for each point predicts terrain best, and takes most time. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
 
-Without --lambda, coefficients are those of least squares, if points determine them all. Otherwise, and where knots are looked \
-for, gaps are bridged by so little smoothing that it can hardly be seen elsewhere. LAMBDA multiplies the thin-plate energy (with \
+Without --lambda, knots that are given have the coefficients of least squares, if points determine them all. Otherwise waves as \
+short as two distances of points are halved, which bridges gaps, and predicts terrain best. LAMBDA multiplies the thin-plate energy (with \
 a thousandth of how much the control mesh bends), which is added to the sum of squares of residuals.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear: \
@@ -47,7 +47,7 @@ pub(super) struct Flags {
     output: PathBuf,
 
     /// Knots: points, a stream of configurations, or a spline whose knots are used again; - is stdin
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots", "step"])]
     knots: Option<PathBuf>,
 
     /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are listed, or else one
@@ -62,6 +62,10 @@ pub(super) struct Flags {
     /// Most places of knots
     #[arg(long, value_name = "N")]
     max_knots: Option<usize>,
+
+    /// Knots on a grid of cells with this side, instead of looking for them: those inside are moved a little
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive, conflicts_with_all = ["tol", "max_knots"])]
+    step: Option<f64>,
 
     /// How much to smooth: a number, gcv (generalised cross-validation), or cv or cv:FOLDS (cross-validation)
     #[arg(long, value_name = "LAMBDA|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
@@ -175,6 +179,7 @@ impl Flags {
             interpolates: self.interpolate,
             tolerance: self.tol,
             max_knots: self.max_knots,
+            step: self.step,
             polylines: self.features.as_ref().map(read_features).transpose()?.unwrap_or_default(),
             degree: self.degree,
             seed: self.seed,

@@ -1,6 +1,7 @@
 //! How B-splines of degree 2 are collected (thesis 8.2.5 and 8.3.1).
 
-use crate::config::configurations::Links;
+use crate::config::FARAWAY;
+use crate::config::configurations::{Link, Links};
 use crate::config::knots::Knots;
 use crate::delaunay2::distinct;
 use crate::error::{Error, Result};
@@ -69,6 +70,20 @@ impl Places {
         let is_tent = self.is_apart[p as usize] || self.is_apart[q as usize];
         is_tent.then_some(FunctionKind::Tent([p.min(q), p.max(q)]))
     }
+
+    /// Whether the edges of a link go back and forth between places, such as those of copies: its B-spline is zero then.
+    fn encloses_nothing(&self, link: &Link) -> bool {
+        let at_places =
+            link.edges().map(|edge| edge.map(|id| (id != FARAWAY).then(|| self.firsts[id as usize])));
+        let mut edges: Vec<[Option<u32>; 2]> = at_places.filter(|[a, b]| a != b).collect();
+        while let Some([a, b]) = edges.pop() {
+            match edges.iter().position(|&edge| edge == [b, a]) {
+                Some(back) => drop(edges.swap_remove(back)),
+                None => return false,
+            }
+        }
+        true
+    }
 }
 
 impl Collection {
@@ -80,7 +95,7 @@ impl Collection {
         let places = Places::of(knots);
         let special = self.by_edge();
         let mut terms: BTreeMap<FunctionKind, Vec<([u32; 2], f64)>> = BTreeMap::new();
-        for link in links.iter().filter(|link| !link.is_null()) {
+        for link in links.iter().filter(|link| !places.encloses_nothing(link)) {
             let edge = [link.set[0], link.set[1]];
             let mut add = |kind, share| terms.entry(kind).or_default().push((edge, share));
             if let Some(kind) = places.kind(edge) {
