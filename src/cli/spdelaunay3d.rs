@@ -21,8 +21,8 @@ Examples:
   Fewer and larger cells: less is triangulated twice, with more memory:
     spfinalize --octree --cell-points 200000 cloud.xyz | spdelaunay3d -o cloud.spm
 
-Points that fill space need little memory; of points on surfaces most wait until the end, because the balls around
-their tetrahedra reach far.
+Points that fill space need little memory; of points on surfaces most wait until the end, because
+the balls around their tetrahedra reach far.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 141 output closed by its reader.";
