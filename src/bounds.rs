@@ -54,29 +54,41 @@ impl Bounds {
     }
 }
 
-/// A half-open box `[min, max)` in the plane, so that a point on a common border belongs to one tile only.
-/// Sides may be infinite.
+/// A half-open box `[min, max)` in the plane, or in space with `D = 3`, so that a point on a common border belongs to
+/// one tile only. Sides may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
+pub struct Region<const D: usize = 2> {
     /// Included lower sides.
-    pub min: [f64; 2],
+    pub min: [f64; D],
     /// Excluded upper sides.
-    pub max: [f64; 2],
+    pub max: [f64; D],
 }
 
 impl Region {
     /// The whole plane.
-    pub const PLANE: Region = Region { min: [f64::NEG_INFINITY; 2], max: [f64::INFINITY; 2] };
+    pub const PLANE: Region = Region::EVERYTHING;
+}
 
-    /// Whether the x and y of `point` lie in the half-open box.
+impl<const D: usize> Region<D> {
+    /// The box without sides.
+    pub const EVERYTHING: Region<D> = Region { min: [f64::NEG_INFINITY; D], max: [f64::INFINITY; D] };
+
+    /// The box between two corners, of which the first D coordinates count.
+    #[must_use]
+    pub fn between(min: Point, max: Point) -> Self {
+        Region { min: std::array::from_fn(|axis| min[axis]), max: std::array::from_fn(|axis| max[axis]) }
+    }
+
+    /// Whether the first D coordinates of `point` lie in the half-open box.
+    #[inline]
     #[must_use]
     pub fn contains(&self, point: Point) -> bool {
-        (0..2).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
+        (0..D).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
     }
 
     /// Whether the two half-open boxes have a point in common.
     #[must_use]
-    pub fn overlaps(&self, other: &Region) -> bool {
-        (0..2).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
+    pub fn overlaps(&self, other: &Self) -> bool {
+        (0..D).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
     }
 }

@@ -5,8 +5,17 @@ use std::path::Path;
 
 use crate::programs::{outcome, run, sample};
 
-const TOOLS: [&str; 8] =
-    ["spfinalize", "spdelaunay2d", "tess3", "dd4", "configgen", "splinefit", "spinfo", "spconvert"];
+const TOOLS: [&str; 9] = [
+    "spfinalize",
+    "spdelaunay2d",
+    "spdelaunay3d",
+    "tess3",
+    "dd4",
+    "configgen",
+    "splinefit",
+    "spinfo",
+    "spconvert",
+];
 
 #[test]
 fn every_tool_has_help_with_examples_and_a_version() {

@@ -27,6 +27,7 @@ mod reduction;
 mod reference;
 mod sources;
 mod spacetime;
+mod sphere;
 mod spline;
 mod splinefit;
 mod stream;

@@ -35,6 +35,30 @@ fn a_real_tile_becomes_an_audited_mesh() {
 }
 
 #[test]
+fn points_of_space_become_an_audited_mesh() {
+    let points = run("spfinalize", &["--octree", "--cell-points", "5000", "-"], cloud(20_000).as_bytes());
+    assert!(points.status.success(), "{:?}", outcome(&points));
+    let mesh = |threads: &str| {
+        let output = run("spdelaunay3d", &["--threads", threads, "--stats", "json"], &points.stdout);
+        let (code, report) = outcome(&output);
+        assert_eq!(code, Some(0), "{report}");
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(report["points"], 20_000);
+        assert!(report["tetrahedra"].as_u64() > Some(100_000), "{report}");
+        output.stdout
+    };
+    let one = mesh("1");
+    assert!(one == mesh("3"), "the stream depends on the number of threads");
+    let audit = run("spinfo", &["--audit", "-"], &one);
+    assert!(audit.status.success(), "{:?}", outcome(&audit));
+    let refused = run("spdelaunay2d", &[], &points.stdout);
+    assert_eq!(outcome(&refused).0, Some(2));
+    let flat = run("spfinalize", &["--octree", "-"], b"0 0 1\n5 0 1\n0 5 1\n9 9 1\n");
+    let (code, message) = outcome(&run("spdelaunay3d", &[], &flat.stdout));
+    assert_eq!((code, message.contains("all points in a plane")), (Some(0), true), "{message}");
+}
+
+#[test]
 fn the_python_reader_accepts_what_the_pipeline_writes() {
     let tile = sample("lareunion.laz");
     let points = run("spfinalize", &["--cell-points", "3000", &tile], &[]).stdout;

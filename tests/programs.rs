@@ -11,6 +11,7 @@ pub fn tool(name: &str) -> Command {
         "spfinalize" => env!("CARGO_BIN_EXE_spfinalize"),
         "spdelaunay2d" => env!("CARGO_BIN_EXE_spdelaunay2d"),
         "splinefit" => env!("CARGO_BIN_EXE_splinefit"),
+        "spdelaunay3d" => env!("CARGO_BIN_EXE_spdelaunay3d"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),
         "spconvert" => env!("CARGO_BIN_EXE_spconvert"),
         "configgen" => env!("CARGO_BIN_EXE_configgen"),

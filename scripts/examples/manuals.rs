@@ -5,7 +5,9 @@ use std::path::Path;
 
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
-use spmesh::cli::{configgen, dd4, spconvert, spdelaunay2d, spfinalize, spinfo, splinefit, tess3};
+use spmesh::cli::{
+    configgen, dd4, spconvert, spdelaunay2d, spdelaunay3d, spfinalize, spinfo, splinefit, tess3,
+};
 
 fn main() -> std::io::Result<()> {
     let Some(folder) = std::env::args_os().nth(1) else {
@@ -27,10 +29,11 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 8] {
+fn tools() -> [Command; 9] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
+        spdelaunay3d::Flags::command(),
         tess3::Flags::command(),
         dd4::Flags::command(),
         configgen::Flags::command(),

@@ -3,9 +3,11 @@
 pub mod configgen;
 pub mod dd4;
 pub mod progress;
+mod reduction;
 mod rows;
 pub mod spconvert;
 pub mod spdelaunay2d;
+pub mod spdelaunay3d;
 pub mod spfinalize;
 pub mod spinfo;
 pub mod splinefit;

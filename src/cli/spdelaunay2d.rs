@@ -5,15 +5,13 @@ use std::time::Instant;
 
 use clap::Parser;
 
-use super::{Common, StatsFormat, notice, open_input, peak_memory, progress::Progress, say};
+use super::progress::Progress;
+use super::reduction::{self, Report, open_stream};
+use super::{Common, StatsFormat, notice};
 use crate::bounds::Region;
 use crate::error::Error;
 use crate::output::Output;
 use crate::reduce::{self, Duplicates, Options, Part, Stats};
-use crate::stream::StreamReader;
-
-/// Leaves are triangulated ahead on every thread: more of them cost memory that only `--threads` may ask for.
-const THREADS_DEFAULT_MAX: usize = 8;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -111,8 +109,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let (output, stats) = if flags.merge { merge(&flags, part)? } else { triangulate(&flags, part)? };
     let output_bytes = output.bytes_written();
     output.commit()?;
-    let report = Report { stats, output_bytes, seconds: started.elapsed().as_secs_f64() };
-    if stats.triangles == 0 && part.is_none() {
+    let seconds = started.elapsed().as_secs_f64();
+    if stats.simplices == 0 && part.is_none() {
         let reason =
             if stats.vertices < 3 { "fewer than three different points" } else { "all points on a line" };
         notice("spdelaunay2d", &flags.common, &format!("no triangles: {reason} ({} points)", stats.points));
@@ -122,10 +120,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             format!("{} of {} points lie outside of the region", stats.outside, stats.outside + stats.points);
         notice("spdelaunay2d", &flags.common, &format!("{message}: left to other regions"));
     }
-    match flags.stats {
-        Some(StatsFormat::Text) => say(&text_report(&report)),
-        Some(StatsFormat::Json) => say(&format!("{}\n", json_report(&report))),
-        None => {}
+    if let Some(format) = flags.stats {
+        Report { stats, output_bytes, seconds, simplices: "triangles" }.print(format);
     }
     Ok(())
 }
@@ -150,9 +146,8 @@ fn triangulate(flags: &Flags, part: Option<Part>) -> anyhow::Result<(Output, Sta
     let reader = open_stream(input)?;
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "triangulating", reader.header().points);
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = flags.threads.map_or(cores.min(THREADS_DEFAULT_MAX), usize::from);
-    let options = Options { duplicates: flags.duplicates.into(), threads, part };
+    let threads = reduction::threads(flags.threads);
+    let options = Options { duplicates: flags.duplicates.into(), threads, part, ..Options::default() };
     Ok(reduce::triangulate(reader, output, &options, |points| progress.set(points))?)
 }
 
@@ -164,11 +159,6 @@ fn merge(flags: &Flags, part: Option<Part>) -> anyhow::Result<(Output, Stats)> {
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "merging", None);
     Ok(reduce::merge(readers, output, part, |points| progress.set(points))?)
-}
-
-fn open_stream(path: &PathBuf) -> Result<StreamReader<Box<dyn std::io::Read + Send>>, Error> {
-    let (input, name) = open_input(path)?;
-    StreamReader::new(input, name)
 }
 
 fn parse_region(text: &str) -> Result<Region, String> {
@@ -190,62 +180,4 @@ fn parse_cell(text: &str) -> Result<Part, String> {
         (Ok(level), Ok(column), Ok(row)) => Ok(Part::Cell { level, column, row }),
         _ => Err(expected()),
     }
-}
-
-/// What `--stats` tells.
-struct Report {
-    stats: Stats,
-    output_bytes: u64,
-    seconds: f64,
-}
-
-/// Rows of the report: a label for people, a key for programs, the value. With the time, the first rows are
-/// the columns of thesis table 5.2.
-fn rows(report: &Report) -> [(&'static str, &'static str, u64); 25] {
-    let stats = &report.stats;
-    [
-        ("points", "points", stats.points),
-        ("input (bytes)", "input_bytes", stats.input_bytes),
-        ("levels of the tree", "level", stats.level),
-        ("most triangles active", "active_max", stats.active_max),
-        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
-        ("triangles", "triangles", stats.triangles),
-        ("output (bytes)", "output_bytes", report.output_bytes),
-        ("vertices", "vertices", stats.vertices),
-        ("merged duplicates", "merged", stats.merged),
-        ("outside of the region", "outside", stats.outside),
-        ("cell tags", "cells", stats.cells),
-        ("leaves with points", "leaves", stats.leaves),
-        ("largest leaf (points)", "leaf_max", stats.leaf_max),
-        ("nodes above with points", "inner_nodes", stats.inner_nodes),
-        ("largest node above (points)", "inner_node_max", stats.inner_node_max),
-        ("most points held", "held_max", stats.held_max),
-        ("points never tagged", "untagged", stats.untagged),
-        ("most residual points waiting", "residual_max", stats.residual_max),
-        ("residual written (points)", "residual", stats.residual),
-        ("width (live vertices)", "width", stats.width),
-        ("predicates: filter", "predicates_filter", stats.predicates.filter),
-        ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: expansion", "predicates_expansion", stats.predicates.expansion),
-        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
-        ("predicates: ties broken", "predicates_perturbed", stats.predicates.perturbed),
-    ]
-}
-
-fn text_report(report: &Report) -> String {
-    let mut text = format!("{:<30} {:>15.3}\n", "time (s)", report.seconds);
-    for (label, _, value) in rows(report) {
-        text += &format!("{label:<30} {value:>15}\n");
-    }
-    if report.stats.untagged > 0 {
-        text += "note: points without a final cell were held until the end; spfinalize bounds the memory\n";
-    }
-    text
-}
-
-fn json_report(report: &Report) -> String {
-    let mut object = serde_json::Map::new();
-    object.insert("seconds".into(), report.seconds.into());
-    object.extend(rows(report).into_iter().map(|(_, key, value)| (key.to_string(), value.into())));
-    serde_json::Value::Object(object).to_string()
 }

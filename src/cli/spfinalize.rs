@@ -24,15 +24,15 @@ Examples:
   A grid of 2^6 x 2^6 cells, points in their own order, with the figures of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Points of space from text on stdin:
-      zcat scan.xyz.gz | spfinalize --octree - | spinfo -
+      zcat scan.xyz.gz | spfinalize --octree - | spdelaunay3d -o scan.spm
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
 141 output closed by its reader.";
 
 /// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
 ///
-/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA or SPB, and writes a stream of points in
-/// which tags say which cells no later point lies in. Points of a cell are held back and written together
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, or the vertices of PLY or OBJ, and writes a
+/// stream of points in which tags say which cells no later point lies in. Points of a cell are held back and written together
 /// (chunked), unless --preserve is given. The input is read two times or more: again where headers do not state
 /// its bounding box, and where cells are crowded. What cannot be read again is spooled, and decoded points are
 /// where that is cheaper (--spool).

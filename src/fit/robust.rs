@@ -18,10 +18,10 @@ const TUKEY: f64 = 4.685;
 const DEVIATIONS: f64 = 1.482_602_218_505_602;
 /// Least scale, relative to the root of the mean square of values: that of rounding.
 const SCALE_MIN: f64 = 1e-12;
-/// Change of coefficients, in scales, that ends the rounds.
+/// Root of the mean square of changes of coefficients, in scales, that ends the rounds.
 const CHANGE_MAX: f64 = 1e-2;
 /// Rounds for one loss, at most...
-const ROUNDS_MAX: usize = 25;
+const ROUNDS_MAX: usize = 50;
 /// ...and where knots are added after it.
 const ROUNDS_FEW: usize = 6;
 
@@ -148,8 +148,8 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         for _ in 0..self.most {
             let (normal, scale) = self.weighted(fit, loss)?;
             let coefficients = self.solve(&normal)?;
-            let change = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b).abs());
-            let change = change.fold(0.0, f64::max);
+            let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
+            let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
             // While the scale shrinks, coefficients are on their way, however slowly.
             let is_still = change <= CHANGE_MAX * scale.max(scale_min) && scale >= 0.98 * fit.scale;
             fit.coefficients = coefficients;

@@ -13,6 +13,7 @@ mod extent;
 mod integer;
 mod perturbation;
 pub(crate) mod spatial;
+pub mod sphere;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{ExpansionPredicates, TotalPredicates};

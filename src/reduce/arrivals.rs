@@ -12,12 +12,12 @@ use crate::stream::FinalizedCells;
 ///
 /// In a chunked stream these are the points since the last tag, all in the cell that is tagged next. In any
 /// other stream, points of other cells go to a bucket of their deepest cell and wait there.
-pub(super) struct Arrivals {
+pub(super) struct Arrivals<const D: usize> {
     tree: Option<CellTree>,
     finalized: Option<FinalizedCells>,
     /// Points outside are counted and dropped.
-    region: Region,
-    current: Residual,
+    region: Region<D>,
+    current: Residual<D>,
     /// Bounding box of `current`, or one that is larger.
     bounds: Option<Bounds>,
     buckets: BTreeMap<u64, Vec<Point>>,
@@ -27,8 +27,8 @@ pub(super) struct Arrivals {
     outside: u64,
 }
 
-impl Arrivals {
-    pub(super) fn new(tree: Option<CellTree>, region: Region) -> Self {
+impl<const D: usize> Arrivals<D> {
+    pub(super) fn new(tree: Option<CellTree>, region: Region<D>) -> Self {
         Arrivals {
             tree,
             finalized: tree.map(FinalizedCells::new),
@@ -71,14 +71,14 @@ impl Arrivals {
     ///
     /// # Errors
     /// If the cell is final already.
-    pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual) -> Result<(Residual, bool)> {
+    pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual<D>) -> Result<(Residual<D>, bool)> {
         let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
             return Err(Error::malformed("cell tag in a stream without a finalization tree"));
         };
         let is_whole = finalized.is_open_cell(cell);
         finalized.finalize(cell)?;
         let (min, max) = tree.corners(cell);
-        let inside = Region { min: [min[0], min[1]], max: [max[0], max[1]] };
+        let inside = Region::between(min, max);
         if !self.all_inside(&inside) {
             self.move_to_buckets(&tree);
         }
@@ -87,7 +87,7 @@ impl Arrivals {
     }
 
     /// The points whose cells were never tagged.
-    pub(super) fn rest(&mut self) -> Residual {
+    pub(super) fn rest(&mut self) -> Residual<D> {
         self.take(0..u64::MAX, Residual::default())
     }
 
@@ -106,13 +106,14 @@ impl Arrivals {
         self.held_max
     }
 
-    fn all_inside(&self, cell: &Region) -> bool {
+    fn all_inside(&self, cell: &Region<D>) -> bool {
         let contains = |bounds: Bounds| cell.contains(bounds.min) && cell.contains(bounds.max);
-        self.bounds.is_none_or(contains) || self.current.xy.iter().all(|&[x, y]| cell.contains([x, y, 0.0]))
+        self.bounds.is_none_or(contains)
+            || (0..self.current.len()).all(|i| cell.contains(self.current.point(i)))
     }
 
     /// The points of the buckets in `range`, in its order, and behind them those that are in no bucket.
-    fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual) -> Residual {
+    fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual<D>) -> Residual<D> {
         self.bounds = None;
         let current = std::mem::replace(&mut self.current, fresh);
         self.accepted += current.len() as u64;

@@ -10,6 +10,7 @@ use std::thread::{Builder, Scope, ScopedJoinHandle};
 
 use crossbeam_channel::{Receiver, Sender, bounded, never, select, select_biased, unbounded};
 
+use super::bulk::Bulk;
 use super::intake::{Arrival, Ended, Intake};
 use super::node::{Rules, Solved};
 use super::residual::Residual;
@@ -35,15 +36,16 @@ const ARRIVALS_AHEAD: usize = 3;
 /// Buffers that wait to be used again.
 const SHELF_LEN: usize = 16;
 
-/// Runs `run` with `workers` threads that triangulate.
-pub(super) fn run<R, W>(
-    run: Run,
-    intake: Intake<R>,
+/// Runs `run` with `workers` threads that triangulate, and at last the root, when they have ended, on the calling one.
+pub(super) fn run<B, R, W, const D: usize>(
+    run: Run<D>,
+    intake: Intake<R, D>,
     sequencer: Sequencer<W>,
     workers: usize,
     progress: impl FnMut(u64),
 ) -> Result<(W, Stats)>
 where
+    B: Bulk<D>,
     R: Read + Send + 'static,
     W: Write + Send,
 {
@@ -54,26 +56,30 @@ where
     let read = move || read(intake, &arrivals_in, &raw);
     Builder::new().name("reader".into()).spawn(read).map_err(no_thread)?;
     std::thread::scope(|scope| {
-        let (crew, hands) = Crew::start(scope, sequencer, run.rules, workers, &shelf)?;
-        crew.coordinate(run, hands, &arrivals, workers, progress)
+        let (crew, hands) = Crew::start::<B, D>(scope, sequencer, run.rules, workers, &shelf)?;
+        crew.coordinate::<B, D>(run, hands, &arrivals, workers, progress)
     })
 }
 
 /// Memory to be used again, of raw points and of blocks.
 #[derive(Clone)]
-struct Shelf {
-    raw: (Sender<Residual>, Receiver<Residual>),
+struct Shelf<const D: usize> {
+    raw: (Sender<Residual<D>>, Receiver<Residual<D>>),
     blocks: (Sender<PatchBlocks>, Receiver<PatchBlocks>),
 }
 
-impl Shelf {
+impl<const D: usize> Shelf<D> {
     fn new() -> Self {
         Shelf { raw: bounded(SHELF_LEN), blocks: bounded(SHELF_LEN) }
     }
 }
 
 /// Reads until the end, a failure, or until nobody wants to know.
-fn read<R: Read>(mut intake: Intake<R>, arrivals: &Sender<Result<Arrival>>, shelf: &Shelf) {
+fn read<R: Read, const D: usize>(
+    mut intake: Intake<R, D>,
+    arrivals: &Sender<Result<Arrival<D>>>,
+    shelf: &Shelf<D>,
+) {
     loop {
         let arrival = intake.next(|| shelf.raw.1.try_recv().unwrap_or_default());
         let is_last = matches!(arrival, Ok(Arrival::End(_)) | Err(_));
@@ -84,18 +90,18 @@ fn read<R: Read>(mut intake: Intake<R>, arrivals: &Sender<Result<Arrival>>, shel
 }
 
 /// What a worker has done.
-struct Done {
+struct Done<const D: usize> {
     number: u64,
     cell: CellCode,
-    solved: Result<Solved>,
+    solved: Result<Solved<D>>,
 }
 
 /// Does jobs until there are no more or one fails; those that are not leaves first, because others wait for them.
-fn work(
-    mut solve: impl FnMut(Job) -> Result<Solved>,
-    inner: &Receiver<Job>,
-    leaves: &Receiver<Job>,
-    done: &Sender<Done>,
+fn work<const D: usize>(
+    mut solve: impl FnMut(Job<D>) -> Result<Solved<D>>,
+    inner: &Receiver<Job<D>>,
+    leaves: &Receiver<Job<D>>,
+    done: &Sender<Done<D>>,
 ) {
     loop {
         let job = select_biased! {
@@ -114,11 +120,11 @@ fn work(
 }
 
 /// Writes until there is no more; says of each node that it is written, and gives the output back.
-fn write<W: Write>(
+fn write<W: Write, const D: usize>(
     mut sequencer: Sequencer<W>,
-    outputs: &Receiver<Output>,
+    outputs: &Receiver<Output<D>>,
     written: &Sender<usize>,
-    shelf: &Shelf,
+    shelf: &Shelf<D>,
 ) -> Result<Sequencer<W>> {
     for output in outputs {
         let points = output.points;
@@ -136,22 +142,22 @@ struct Crew<'scope, W: Write> {
 }
 
 /// The coordinator's ends of the channels. Dropping them ends the threads.
-struct Hands {
-    inner: Sender<Job>,
-    leaves: Sender<Job>,
-    done: Receiver<Done>,
-    outputs: Sender<Output>,
+struct Hands<const D: usize> {
+    inner: Sender<Job<D>>,
+    leaves: Sender<Job<D>>,
+    done: Receiver<Done<D>>,
+    outputs: Sender<Output<D>>,
     written: Receiver<usize>,
 }
 
 impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
-    fn start(
+    fn start<B: Bulk<D>, const D: usize>(
         scope: &'scope Scope<'scope, '_>,
         sequencer: Sequencer<W>,
         rules: Rules,
         workers: usize,
-        shelf: &Shelf,
-    ) -> Result<(Self, Hands)> {
+        shelf: &Shelf<D>,
+    ) -> Result<(Self, Hands<D>)> {
         let (inner, inner_out) = unbounded();
         let (leaves, leaves_out) = unbounded();
         let (done_in, done) = unbounded();
@@ -161,13 +167,13 @@ impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
             let (inner, leaves, done) = (inner_out.clone(), leaves_out.clone(), done_in.clone());
             let shelf = shelf.clone();
             let work = move || {
-                let mut worker = Worker::new(rules);
+                let mut worker = Worker::<B, D>::new(rules);
                 let solve = |job| {
                     let blocks = shelf.blocks.1.try_recv().unwrap_or_default();
-                    worker.solve(job, blocks, |raw| drop(shelf.raw.0.try_send(raw)))
+                    worker.solve(job, blocks, |raw| drop(shelf.raw.0.try_send(raw)), &mut |_| Ok(()))
                 };
                 work(solve, &inner, &leaves, &done);
-                *worker.counts()
+                worker.counts()
             };
             Builder::new().name(format!("worker {number}")).spawn_scoped(scope, work).map_err(no_thread)
         };
@@ -179,14 +185,15 @@ impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
     }
 
     /// Runs until all is written, and ends the threads.
-    fn coordinate(
+    fn coordinate<B: Bulk<D>, const D: usize>(
         self,
-        mut run: Run,
-        hands: Hands,
-        arrivals: &Receiver<Result<Arrival>>,
+        mut run: Run<D>,
+        hands: Hands<D>,
+        arrivals: &Receiver<Result<Arrival<D>>>,
         workers: usize,
         progress: impl FnMut(u64),
     ) -> Result<(W, Stats)> {
+        let rules = run.rules;
         let ended = hand_out(&mut run, &hands, arrivals, workers, progress);
         drop(hands);
         let writer = self.writer.join().map_err(|_| thread_gone());
@@ -202,7 +209,7 @@ impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
         for counts in counts {
             all.merge(&counts.map_err(|_| thread_gone())?);
         }
-        run.finish(&ended, sequencer, &all)
+        run.finish(&ended, sequencer, Worker::<B, D>::new(rules), &all)
     }
 }
 
@@ -213,13 +220,13 @@ enum Stop {
 }
 
 /// The coordinator: hands out what can be triangulated and what can be written, until everything is written.
-fn hand_out(
-    run: &mut Run,
-    hands: &Hands,
-    arrivals: &Receiver<Result<Arrival>>,
+fn hand_out<const D: usize>(
+    run: &mut Run<D>,
+    hands: &Hands<D>,
+    arrivals: &Receiver<Result<Arrival<D>>>,
     workers: usize,
     mut progress: impl FnMut(u64),
-) -> std::result::Result<Box<Ended>, Stop> {
+) -> std::result::Result<Box<Ended<D>>, Stop> {
     let nothing = never();
     let (mut jobs, mut nodes, mut points, mut ended) = (0, 0, 0, None);
     loop {
@@ -282,7 +289,7 @@ mod tests {
             jobs.send(Job { number, cell, region, raw: Residual::default(), parts: Vec::new() }).unwrap();
         }
         work(|job| panic!("of the test, at job {}", job.number), &never(), &jobs_out, &done_in);
-        let done: Vec<Done> = done.try_iter().collect();
+        let done: Vec<Done<2>> = done.try_iter().collect();
         assert_eq!(done.len(), 1, "a worker that has failed does nothing more");
         assert_eq!(done[0].number, 0);
         assert_eq!(done[0].solved.as_ref().unwrap_err().kind(), ErrorKind::Io);

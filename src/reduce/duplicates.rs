@@ -23,9 +23,9 @@ pub enum Duplicates {
 impl Duplicates {
     /// Gives each vertex its elevation. `duplicates` are pairs of a point and the vertex that it coincides
     /// with, which is the first of them in the order of the points.
-    pub(super) fn settle(
+    pub(super) fn settle<const D: usize>(
         self,
-        points: &mut Residual,
+        points: &mut Residual<D>,
         duplicates: &mut [[u32; 2]],
         coordinates: &Coordinates,
     ) -> Result<()> {
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     fn settled(policy: Duplicates, elevations: &[f64]) -> Result<f64> {
-        let mut points = Residual::default();
+        let mut points = Residual::<2>::default();
         elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]]));
         let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
         let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };

@@ -12,26 +12,26 @@ use crate::stream::{Event, StreamReader};
 
 /// What the next piece of the stream brought.
 #[derive(Debug)]
-pub(super) enum Arrival {
+pub(super) enum Arrival<const D: usize> {
     /// Nothing yet: so many points were read by now.
     Read(u64),
     /// A cell is final.
     Cell {
         cell: CellCode,
         /// Its points, but for those of parts that were final before.
-        points: Residual,
+        points: Residual<D>,
         /// Whether no part of it was final before.
         is_whole: bool,
     },
     /// The stream has ended as it should.
-    End(Box<Ended>),
+    End(Box<Ended<D>>),
 }
 
 /// What was known at the end of the stream.
 #[derive(Debug)]
-pub(super) struct Ended {
+pub(super) struct Ended<const D: usize> {
     /// The points of the cells that were never tagged.
-    pub(super) rest: Residual,
+    pub(super) rest: Residual<D>,
     /// Points handed on, and points that lie outside of the region.
     pub(super) accepted: u64,
     pub(super) outside: u64,
@@ -42,17 +42,17 @@ pub(super) struct Ended {
 }
 
 /// Reads a stream of points, and holds the points of each cell until it is final.
-pub(super) struct Intake<R: Read> {
+pub(super) struct Intake<R: Read, const D: usize> {
     reader: StreamReader<R>,
-    arrivals: Arrivals,
+    arrivals: Arrivals<D>,
     /// Tags that were read and not handed on.
     tags: VecDeque<CellCode>,
     cells: u64,
 }
 
-impl<R: Read> Intake<R> {
+impl<R: Read, const D: usize> Intake<R, D> {
     /// Points outside of `region` are left out.
-    pub(super) fn new(reader: StreamReader<R>, region: Region) -> Self {
+    pub(super) fn new(reader: StreamReader<R>, region: Region<D>) -> Self {
         let arrivals = Arrivals::new(reader.header().tree, region);
         Intake { reader, arrivals, tags: VecDeque::new(), cells: 0 }
     }
@@ -61,7 +61,7 @@ impl<R: Read> Intake<R> {
     ///
     /// # Errors
     /// If the stream is malformed, ends too early, or cannot be read.
-    pub(super) fn next(&mut self, fresh: impl FnOnce() -> Residual) -> Result<Arrival> {
+    pub(super) fn next(&mut self, fresh: impl FnOnce() -> Residual<D>) -> Result<Arrival<D>> {
         loop {
             if let Some(cell) = self.tags.pop_front() {
                 self.cells += 1;
@@ -87,7 +87,7 @@ impl<R: Read> Intake<R> {
         }
     }
 
-    fn ended(&mut self) -> Ended {
+    fn ended(&mut self) -> Ended<D> {
         Ended {
             rest: self.arrivals.rest(),
             accepted: self.arrivals.accepted(),

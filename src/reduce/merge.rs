@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 use super::duplicates::Duplicates;
 use super::node::{Rules, Solver};
 use super::partial::Part;
+use super::plane::Plane;
 use super::residual::{Residual, UNWRITTEN};
 use super::schedule::Output;
 use super::sequencer::Sequencer;
@@ -40,15 +41,15 @@ pub fn merge<R: Read, W: Write>(
     let rules = Rules::new(&header, Duplicates::Error, part.is_some());
     let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
     let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
-    let mut residual = Residual::default();
+    let mut residual = Residual::<2>::default();
     for reader in &mut readers {
         copy_through(reader, &mut sequencer, &mut residual, &mut stats, &mut progress)?;
     }
     let points = residual.len();
     stats.inner_node_max = points as u64;
     sequencer.leave(LEFT, residual.keys.clone(), 0);
-    let mut solver = Solver::new(rules);
-    let mut solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default())?;
+    let mut solver = Solver::<Plane, 2>::new(rules);
+    let mut solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), &mut |_| Ok(()))?;
     residual = std::mem::take(&mut solved.residual);
     let active = residual.active;
     sequencer.write(Output { number: MERGED, points, children: vec![LEFT], active, solved })?;
@@ -128,7 +129,7 @@ fn covers(outer: &Region, inner: &Region) -> bool {
 fn copy_through<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     sequencer: &mut Sequencer<W>,
-    residual: &mut Residual,
+    residual: &mut Residual<2>,
     stats: &mut Stats,
     progress: &mut impl FnMut(u64),
 ) -> Result<()> {
@@ -158,7 +159,7 @@ fn copy_through<R: Read, W: Write>(
         progress(sequencer.vertices());
     }
     stats.input_bytes += reader.bytes_read();
-    residual.append(&part);
+    residual.unite(std::iter::once(&part));
     Ok(())
 }
 
@@ -176,7 +177,7 @@ fn renumbered(mut patch: Patch, id_offset: u64) -> Patch {
 }
 
 fn take_point(
-    part: &mut Residual,
+    part: &mut Residual<2>,
     id: Option<u64>,
     point: Point,
     live: &mut LiveVertices<Point>,

@@ -1,35 +1,38 @@
 //! What a node triangulates, and what it passes up: points that are not done, and walls around the holes.
 
 use crate::bounds::Point;
-use crate::predicates::Point2;
 
 /// Key of a point that is no vertex yet.
 pub(super) const UNWRITTEN: u64 = u64::MAX;
 
-/// Points that a node has to triangulate, with walls around what is final already.
+/// Points of D dimensions that a node has to triangulate, with walls around what is final already.
 ///
 /// The raw points of a leaf are a residual too, one without walls whose points are all unwritten.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Residual {
-    /// x and y of each point.
-    pub(super) xy: Vec<Point2>,
-    /// Elevation of each point; zero where the stream has none.
+pub(super) struct Residual<const D: usize> {
+    /// The D coordinates of each point that are geometry.
+    pub(super) at: Vec<[f64; D]>,
+    /// Elevation of each point of the plane, zero where the stream has none; empty in space.
     pub(super) elevation: Vec<f64>,
-    /// Number of points, first of all, that come right from the stream. Only these may coincide.
+    /// Number of points, first of all, that no node has triangulated yet. Only these may coincide.
     pub(super) raw: usize,
     /// For each point behind the raw ones, a number that orders vertices as the stream does, or [`UNWRITTEN`].
     pub(super) keys: Vec<u64>,
-    /// Directed edges between the points: left of each lies a final triangle, right of it none.
-    pub(super) walls: Vec<[u32; 2]>,
-    /// Triangles that were not final at the node that left this residual.
+    /// Facets of final simplices with none on their other side, as D points each: an edge has its final triangle on its
+    /// left; a triangle is counterclockwise as seen from the last corner of its final tetrahedron.
+    pub(super) walls: Vec<[u32; D]>,
+    /// Simplices that were not final at the node that left this residual.
     pub(super) active: usize,
 }
 
-impl Residual {
+impl<const D: usize> Residual<D> {
+    /// Whether points have an elevation beside their geometry.
+    const HAS_ELEVATION: bool = D == 2;
+
     pub(super) fn with_capacity(points: usize, walls: usize) -> Self {
         Residual {
-            xy: Vec::with_capacity(points),
-            elevation: Vec::with_capacity(points),
+            at: Vec::with_capacity(points),
+            elevation: Vec::with_capacity(if Self::HAS_ELEVATION { points } else { 0 }),
             raw: 0,
             keys: Vec::with_capacity(points),
             walls: Vec::with_capacity(walls),
@@ -38,16 +41,16 @@ impl Residual {
     }
 
     pub(super) fn len(&self) -> usize {
-        self.xy.len()
+        self.at.len()
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.xy.is_empty()
+        self.at.is_empty()
     }
 
     /// Empties all arrays, keeping their memory.
     pub(super) fn clear(&mut self) {
-        self.xy.clear();
+        self.at.clear();
         self.elevation.clear();
         self.raw = 0;
         self.keys.clear();
@@ -57,8 +60,10 @@ impl Residual {
 
     /// Adds a point that a node has left.
     pub(super) fn push(&mut self, point: Point, key: u64) {
-        self.xy.push(plane(&point));
-        self.elevation.push(point[2]);
+        self.at.push(geometry(&point));
+        if Self::HAS_ELEVATION {
+            self.elevation.push(point[2]);
+        }
         self.keys.push(key);
     }
 
@@ -67,18 +72,22 @@ impl Residual {
         debug_assert_eq!(self.raw, self.len());
         // By an eighth, not twofold: so much more memory would lie idle in each leaf under way.
         let growth = points.len().max(self.len() / 8);
-        if self.xy.capacity() - self.len() < points.len() {
-            self.xy.reserve_exact(growth);
-            self.elevation.reserve_exact(growth);
+        if self.at.capacity() - self.len() < points.len() {
+            self.at.reserve_exact(growth);
+            if Self::HAS_ELEVATION {
+                self.elevation.reserve_exact(growth);
+            }
         }
-        self.xy.extend(points.iter().map(plane));
-        self.elevation.extend(points.iter().map(|point| point[2]));
+        self.at.extend(points.iter().map(geometry));
+        if Self::HAS_ELEVATION {
+            self.elevation.extend(points.iter().map(|point| point[2]));
+        }
         self.raw += points.len();
     }
 
     pub(super) fn point(&self, index: usize) -> Point {
-        let [x, y] = self.xy[index];
-        [x, y, self.elevation[index]]
+        let at = &self.at[index];
+        if Self::HAS_ELEVATION { [at[0], at[1], self.elevation[index]] } else { [at[0], at[1], at[2]] }
     }
 
     /// Key of a point; raw ones are unwritten.
@@ -86,35 +95,54 @@ impl Residual {
         index.checked_sub(self.raw).map_or(UNWRITTEN, |index| self.keys[index])
     }
 
-    /// Takes over the raw points of `other`; none may have come in another way before.
-    pub(super) fn append_raw(&mut self, other: &Residual) {
-        debug_assert!(self.raw == self.len() && other.raw == other.len());
-        self.xy.extend_from_slice(&other.xy);
-        self.elevation.extend_from_slice(&other.elevation);
+    /// Takes over the raw points of `other`, if it has any; none may have come in another way before.
+    pub(super) fn append_raw(&mut self, other: &Self) {
+        debug_assert!(other.raw == 0 || self.raw == self.len());
+        self.at.extend_from_slice(&other.at[..other.raw]);
+        if Self::HAS_ELEVATION {
+            self.elevation.extend_from_slice(&other.elevation[..other.raw]);
+        }
         self.raw += other.raw;
     }
 
-    /// Takes over the points and walls of `other`, which a node has left.
-    pub(super) fn append(&mut self, other: &Residual) {
-        debug_assert_eq!(other.raw, 0);
-        let first = self.len() as u32;
-        self.xy.extend_from_slice(&other.xy);
-        self.elevation.extend_from_slice(&other.elevation);
+    /// Takes over the points of `other` that nodes have left, and its walls, when its raw points are here already, the
+    /// first of them at `first_raw`.
+    fn append_left(&mut self, other: &Self, first_raw: usize) {
+        let first = self.len();
+        self.at.extend_from_slice(&other.at[other.raw..]);
+        if Self::HAS_ELEVATION {
+            self.elevation.extend_from_slice(&other.elevation[other.raw..]);
+        }
         self.keys.extend_from_slice(&other.keys);
-        self.walls.extend(other.walls.iter().map(|wall| wall.map(|end| end + first)));
+        let here = |corner: u32| match (corner as usize).checked_sub(other.raw) {
+            Some(left) => (first + left) as u32,
+            None => first_raw as u32 + corner,
+        };
+        self.walls.extend(other.walls.iter().map(|wall| wall.map(here)));
         self.active += other.active;
+    }
+
+    /// Adds all `parts` in their order: first the raw points of all of them, which stay first, then what nodes have
+    /// left. If any of them are raw, all points so far must be.
+    pub(super) fn unite<'p>(&mut self, parts: impl Iterator<Item = &'p Self> + Clone) {
+        let mut first_raw = self.raw;
+        parts.clone().for_each(|part| self.append_raw(part));
+        for part in parts {
+            self.append_left(part, first_raw);
+            first_raw += part.raw;
+        }
     }
 }
 
 /// The union of `parts`, in their order.
-pub(super) fn union(parts: &[Residual]) -> Residual {
+pub(super) fn union<const D: usize>(parts: &[Residual<D>]) -> Residual<D> {
     let points = parts.iter().map(Residual::len).sum();
     let mut all = Residual::with_capacity(points, parts.iter().map(|part| part.walls.len()).sum());
-    parts.iter().for_each(|part| all.append(part));
+    all.unite(parts.iter());
     all
 }
 
-/// x and y. Adding zero makes -0.0 the same point as 0.0 in every bit.
-fn plane(point: &Point) -> Point2 {
-    [point[0] + 0.0, point[1] + 0.0]
+/// The coordinates that are geometry. Adding zero makes -0.0 the same number as 0.0 in every bit.
+fn geometry<const D: usize>(point: &Point) -> [f64; D] {
+    std::array::from_fn(|axis| point[axis] + 0.0)
 }

@@ -3,15 +3,18 @@
 use std::io::{Read, Write};
 
 use super::boxes::Boxes;
+use super::bulk::Bulk;
 use super::crew;
 use super::duplicates::Duplicates;
 use super::intake::{Arrival, Ended, Intake};
 use super::node::Rules;
 use super::partial::Part;
 use super::plan::Plan;
+use super::plane::Plane;
 use super::residual::{Residual, union};
 use super::schedule::Schedule;
 use super::sequencer::Sequencer;
+use super::space::Space;
 use super::stats::Stats;
 use super::worker::Worker;
 use crate::bounds::{Bounds, Region};
@@ -30,6 +33,9 @@ pub struct Options {
     pub threads: usize,
     /// For a partial run, the part of the plane to triangulate.
     pub part: Option<Part>,
+    /// Whether every node is triangulated, also those in space that would leave most of their points to the node above.
+    /// What comes out is the same set.
+    pub every_node: bool,
 }
 
 /// Triangulates a stream of two-dimensional points and writes the mesh to `output`; `progress` is told how
@@ -57,12 +63,61 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    check_input(reader.header()).map_err(|e| e.of_input(reader.name()))?;
+    check_input(reader.header(), 2).map_err(|e| e.of_input(reader.name()))?;
     let part = options.part.map(|part| part.region(reader.header())).transpose()?;
+    let header = mesh_header(reader.header(), part);
+    let outer = part.unwrap_or(Region::PLANE);
+    reduce::<Plane, R, W, 2>(reader, StreamWriter::new(output, header)?, options, outer, progress)
+}
+
+/// Tetrahedralizes a stream of three-dimensional points and writes the mesh to `output`, as [`triangulate`] does it in
+/// the plane. A point that coincides with others is one vertex, or an error if `options.duplicates` is
+/// [`Duplicates::Error`]: there are no elevations to choose from.
+///
+/// # Errors
+/// As [`triangulate`]; if `options` ask for a part, because parts are those of a plane.
+///
+/// Source: thesis 5.4.
+pub fn tetrahedralize<R, W>(
+    reader: StreamReader<R>,
+    output: W,
+    options: &Options,
+    progress: impl FnMut(u64),
+) -> Result<(W, Stats)>
+where
+    R: Read + Send + 'static,
+    W: Write + Send,
+{
+    check_input(reader.header(), 3).map_err(|e| e.of_input(reader.name()))?;
+    if options.part.is_some() {
+        return Err(Error::usage(
+            "partial runs are for points of the plane: tetrahedralize all points at once",
+        ));
+    }
+    let mut header = Header::new(Kind::TetrahedralMesh, reader.header().coordinates, 3, false);
+    header.bounds = reader.header().bounds;
+    header.crs = reader.header().crs.clone();
+    let outer = Region::EVERYTHING;
+    reduce::<Space, R, W, 3>(reader, StreamWriter::new(output, header)?, options, outer, progress)
+}
+
+/// Reduces the points in `outer` to the mesh.
+fn reduce<B, R, W, const D: usize>(
+    reader: StreamReader<R>,
+    stream: StreamWriter<W>,
+    options: &Options,
+    outer: Region<D>,
+    progress: impl FnMut(u64),
+) -> Result<(W, Stats)>
+where
+    B: Bulk<D>,
+    R: Read + Send + 'static,
+    W: Write + Send,
+{
     let header = reader.header();
-    let stream = StreamWriter::new(output, mesh_header(header, part))?;
-    let rules = Rules::new(stream.header(), options.duplicates, part.is_some());
-    let (tree, bounds, outer) = (header.tree, header.bounds, part.unwrap_or(Region::PLANE));
+    let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
+    rules.every_node = options.every_node;
+    let (tree, bounds) = (header.tree, header.bounds);
     let run = Run {
         name: reader.name().to_string(),
         level: tree.map_or(0, |tree| u64::from(tree.depth())),
@@ -71,19 +126,21 @@ where
     };
     let (intake, sequencer) = (Intake::new(reader, outer), Sequencer::new(stream));
     if options.threads <= 1 {
-        run.alone(intake, sequencer, progress)
+        run.alone::<B, R, W>(intake, sequencer, progress)
     } else {
-        crew::run(run, intake, sequencer, options.threads, progress)
+        crew::run::<B, R, W, D>(run, intake, sequencer, options.threads, progress)
     }
 }
 
-fn check_input(header: &Header) -> Result<()> {
+/// That the input is points of `wanted` dimensions.
+fn check_input(header: &Header, wanted: u8) -> Result<()> {
+    let remedy = if wanted == 2 { "without --octree" } else { "with --octree" };
     match (header.kind, header.dims) {
-        (Kind::Points, 2) => Ok(()),
+        (Kind::Points, dims) if dims == wanted => Ok(()),
         (Kind::Points, dims) => Err(Error::usage(format!(
-            "the points have {dims} dimensions: finalize them in 2 (spfinalize without --octree)"
+            "the points have {dims} dimensions: finalize them in {wanted} (spfinalize {remedy})"
         ))),
-        (Kind::PartialTriangleMesh, _) => {
+        (Kind::PartialTriangleMesh, _) if wanted == 2 => {
             Err(Error::usage("this is a partial triangle mesh: use --merge to finish it"))
         }
         (kind, _) => Err(Error::usage(format!("this is a stream of kind {}, expected points", kind.name()))),
@@ -102,24 +159,24 @@ fn mesh_header(points: &Header, part: Option<Region>) -> Header {
 }
 
 /// A run under way, but for its two ends.
-pub(super) struct Run {
+pub(super) struct Run<const D: usize> {
     /// What messages call the input.
     name: String,
     /// Levels of the input's tree.
     level: u64,
     pub(super) rules: Rules,
-    pub(super) schedule: Schedule,
+    pub(super) schedule: Schedule<D>,
 }
 
-impl Run {
+impl<const D: usize> Run<D> {
     /// Does everything on the calling thread.
-    fn alone<R: Read, W: Write>(
+    fn alone<B: Bulk<D>, R: Read, W: Write>(
         mut self,
-        mut intake: Intake<R>,
+        mut intake: Intake<R, D>,
         mut sequencer: Sequencer<W>,
         mut progress: impl FnMut(u64),
     ) -> Result<(W, Stats)> {
-        let mut worker = Worker::new(self.rules);
+        let mut worker = Worker::<B, D>::new(self.rules);
         let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
         let ended = loop {
             let arrival = intake.next(|| std::mem::take(&mut fresh))?;
@@ -130,18 +187,23 @@ impl Run {
                 }
                 let Some(job) = self.schedule.next_job() else { break };
                 let (number, cell) = (job.number, job.cell);
-                let solved = worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points);
+                let solved =
+                    worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
                 self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
             }
             if let Some(ended) = ended {
                 break ended;
             }
         };
-        self.finish(&ended, sequencer, worker.counts())
+        self.finish(&ended, sequencer, worker, &PredicateCounts::default())
     }
 
     /// Takes what arrived; what was known at the end, if that is it.
-    pub(super) fn take(&mut self, arrival: Arrival, mut progress: impl FnMut(u64)) -> Option<Box<Ended>> {
+    pub(super) fn take(
+        &mut self,
+        arrival: Arrival<D>,
+        mut progress: impl FnMut(u64),
+    ) -> Option<Box<Ended<D>>> {
         match arrival {
             Arrival::Read(points) => progress(points),
             Arrival::Cell { cell, points, is_whole } => self.schedule.cell(cell, points, is_whole),
@@ -162,13 +224,36 @@ impl Run {
         }
     }
 
-    /// Writes what is behind the patches, when all of them are written.
-    pub(super) fn finish<W: Write>(
-        self,
-        ended: &Ended,
+    /// Triangulates the root, if it has points, and writes its patches as they come.
+    fn write_root<B: Bulk<D>, W: Write>(
+        &mut self,
+        sequencer: &mut Sequencer<W>,
+        worker: &mut Worker<B, D>,
+    ) -> Result<()> {
+        let Some((job, children)) = self.schedule.take_root() else { return Ok(()) };
+        let (number, cell) = (job.number, job.cell);
+        sequencer.open(&children);
+        let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
+        let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
+        self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
+        if let Some(output) = self.schedule.next_output() {
+            sequencer.close(output)?;
+        }
+        Ok(())
+    }
+
+    /// Writes what is left, when all nodes but the root are written: `worker` triangulates that. The other nodes took the
+    /// decisions `counts`, beside those of `worker`.
+    pub(super) fn finish<B: Bulk<D>, W: Write>(
+        mut self,
+        ended: &Ended<D>,
         mut sequencer: Sequencer<W>,
+        mut worker: Worker<B, D>,
         counts: &PredicateCounts,
     ) -> Result<(W, Stats)> {
+        self.write_root(&mut sequencer, &mut worker)?;
+        let mut predicates = worker.counts();
+        predicates.merge(counts);
         let is_partial = self.rules.is_partial;
         let (numbers, residuals, mut stats) = self.schedule.into_residual();
         if is_partial {
@@ -183,7 +268,7 @@ impl Run {
         stats.held_max = ended.held_max as u64;
         stats.cells = ended.cells;
         stats.input_bytes = ended.input_bytes;
-        stats.predicates = *counts;
+        stats.predicates = predicates;
         let output = sequencer.end(stats.points, stats.merged)?;
         Ok((output, stats))
     }

@@ -12,18 +12,18 @@ use crate::cells::CellCode;
 
 /// A node to be triangulated.
 #[derive(Debug)]
-pub(super) struct Job {
+pub(super) struct Job<const D: usize> {
     pub(super) number: u64,
     pub(super) cell: CellCode,
     /// Outside of it, other points may lie.
-    pub(super) region: Region,
+    pub(super) region: Region<D>,
     /// Points right from the stream.
-    pub(super) raw: Residual,
+    pub(super) raw: Residual<D>,
     /// What the nodes below have left, in Morton order.
-    pub(super) parts: Vec<Residual>,
+    pub(super) parts: Vec<Residual<D>>,
 }
 
-impl Job {
+impl<const D: usize> Job<D> {
     /// Number of points.
     pub(super) fn len(&self) -> usize {
         self.raw.len() + self.parts.iter().map(Residual::len).sum::<usize>()
@@ -37,23 +37,23 @@ impl Job {
 
 /// A node to be written.
 #[derive(Debug)]
-pub(super) struct Output {
+pub(super) struct Output<const D: usize> {
     pub(super) number: u64,
     /// Number of its points.
     pub(super) points: usize,
     /// Numbers of the nodes whose residuals it took, in their order.
     pub(super) children: Vec<u64>,
-    /// Number of its triangles that are not final.
+    /// Number of its simplices that are not final.
     pub(super) active: usize,
-    pub(super) solved: Solved,
+    pub(super) solved: Solved<D>,
 }
 
 /// A node whose residual was not taken yet.
 #[derive(Debug)]
-struct Node {
+struct Node<const D: usize> {
     cell: CellCode,
     is_leaf: bool,
-    raw: Residual,
+    raw: Residual<D>,
     children: Vec<u64>,
     /// How many of the children are not triangulated yet.
     missing: usize,
@@ -61,30 +61,33 @@ struct Node {
     /// Number of its points, when it is released.
     points: usize,
     /// What it has left, when it is triangulated.
-    residual: Option<Residual>,
+    residual: Option<Residual<D>>,
 }
 
 /// The nodes between their tag and the output.
 ///
 /// A node can be triangulated as soon as the nodes below are, whatever was written by then. Nodes come out by
 /// number, so the order of the output does not depend on when each was done.
-pub(super) struct Schedule {
+pub(super) struct Schedule<const D: usize> {
     plan: Plan,
-    boxes: Boxes,
-    nodes: BTreeMap<u64, Node>,
-    jobs: VecDeque<Job>,
-    outputs: BTreeMap<u64, Output>,
+    boxes: Boxes<D>,
+    nodes: BTreeMap<u64, Node<D>>,
+    jobs: VecDeque<Job<D>>,
+    /// The node of everything, the last one.
+    root: Option<Job<D>>,
+    outputs: BTreeMap<u64, Output<D>>,
     next_output: u64,
     stats: Stats,
 }
 
-impl Schedule {
-    pub(super) fn new(plan: Plan, boxes: Boxes) -> Self {
+impl<const D: usize> Schedule<D> {
+    pub(super) fn new(plan: Plan, boxes: Boxes<D>) -> Self {
         Schedule {
             plan,
             boxes,
             nodes: BTreeMap::new(),
             jobs: VecDeque::new(),
+            root: None,
             outputs: BTreeMap::new(),
             next_output: 0,
             stats: Stats::default(),
@@ -93,7 +96,7 @@ impl Schedule {
 
     /// Takes the points of a cell that is final. If they are not all of it, because parts of it were final
     /// before, its node is one above those of the parts.
-    pub(super) fn cell(&mut self, cell: CellCode, points: Residual, is_whole: bool) {
+    pub(super) fn cell(&mut self, cell: CellCode, points: Residual<D>, is_whole: bool) {
         if is_whole {
             self.stats.leaves += u64::from(!points.is_empty());
             self.stats.leaf_max = self.stats.leaf_max.max(points.len() as u64);
@@ -107,7 +110,7 @@ impl Schedule {
     }
 
     /// Takes the points of the cells that were never tagged: with them, everything is final.
-    pub(super) fn rest(&mut self, points: Residual) {
+    pub(super) fn rest(&mut self, points: Residual<D>) {
         self.stats.untagged = points.len() as u64;
         if !points.is_empty() || !self.plan.is_complete() {
             self.add(CellCode::ROOT, points, false);
@@ -115,7 +118,7 @@ impl Schedule {
     }
 
     /// Takes what triangulating node `number` gave.
-    pub(super) fn solved(&mut self, number: u64, mut solved: Solved) {
+    pub(super) fn solved(&mut self, number: u64, mut solved: Solved<D>) {
         let node = self.nodes.get_mut(&number).expect("a node waits until its parent takes its residual");
         let active = solved.residual.active;
         node.residual = Some(std::mem::take(&mut solved.residual));
@@ -131,13 +134,21 @@ impl Schedule {
         }
     }
 
-    /// The next node that can be triangulated.
-    pub(super) fn next_job(&mut self) -> Option<Job> {
+    /// The next node that can be triangulated, but for the root.
+    pub(super) fn next_job(&mut self) -> Option<Job<D>> {
         self.jobs.pop_front()
     }
 
+    /// The node of everything, with the numbers of the nodes below it: to be triangulated when all others are written.
+    /// That waits for nothing and nothing waits for it, so its patches need not wait for each other.
+    pub(super) fn take_root(&mut self) -> Option<(Job<D>, Vec<u64>)> {
+        let root = self.root.take()?;
+        let children = self.nodes.get(&root.number).map(|node| node.children.clone());
+        Some((root, children.unwrap_or_default()))
+    }
+
     /// The next node that can be written.
-    pub(super) fn next_output(&mut self) -> Option<Output> {
+    pub(super) fn next_output(&mut self) -> Option<Output<D>> {
         loop {
             let output = self.outputs.remove(&self.next_output)?;
             self.next_output += 1;
@@ -149,7 +160,7 @@ impl Schedule {
 
     /// What is left when everything is written, with the numbers of the nodes that left it, in their order; and
     /// what was counted.
-    pub(super) fn into_residual(self) -> (Vec<u64>, Vec<Residual>, Stats) {
+    pub(super) fn into_residual(self) -> (Vec<u64>, Vec<Residual<D>>, Stats) {
         debug_assert!(self.jobs.is_empty() && self.outputs.is_empty());
         let left = self.nodes.into_iter().filter_map(|(number, node)| Some((number, node.residual?)));
         let (numbers, residuals) = left.unzip();
@@ -157,7 +168,7 @@ impl Schedule {
     }
 
     /// Adds the node of `cell`, over those inside it, with `raw` points of its own.
-    fn add(&mut self, cell: CellCode, raw: Residual, is_leaf: bool) {
+    fn add(&mut self, cell: CellCode, raw: Residual<D>, is_leaf: bool) {
         let (number, children) = self.plan.node(cell);
         let mut missing = 0;
         for child in &children {
@@ -189,6 +200,8 @@ impl Schedule {
         }
         if points == 0 {
             self.solved(number, Solved::default());
+        } else if cell == CellCode::ROOT {
+            self.root = Some(job);
         } else {
             self.jobs.push_back(job);
         }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 
+use super::node::Solved;
 use super::patches::OWN;
 use super::residual::{Residual, UNWRITTEN};
 use super::schedule::Output;
@@ -19,7 +20,7 @@ const RESIDUAL_CHUNK: usize = 1 << 14;
 struct Left {
     /// Ids of the points of its residual, or [`UNWRITTEN`].
     ids: Vec<u64>,
-    /// Number of its triangles that are not final.
+    /// Number of its simplices that are not final.
     active: usize,
 }
 
@@ -29,6 +30,8 @@ pub(super) struct Sequencer<W: Write> {
     left: BTreeMap<u64, Left>,
     /// Ids of the points that the nodes below the one being written have left.
     ids: Vec<u64>,
+    /// Id of the first vertex of the node that is being written.
+    first: u64,
     merged: u64,
     live: u64,
     live_max: u64,
@@ -44,6 +47,7 @@ impl<W: Write> Sequencer<W> {
             stream,
             left: BTreeMap::new(),
             ids: Vec::new(),
+            first: 0,
             merged: 0,
             live: 0,
             live_max: 0,
@@ -84,33 +88,60 @@ impl<W: Write> Sequencer<W> {
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn write(&mut self, output: Output) -> Result<PatchBlocks> {
-        let mut solved = output.solved;
-        self.merged += solved.merged;
-        self.take_left(&output.children);
-        let first = self.stream.totals().vertices;
-        let ids = &self.ids;
-        let id_of = |reference: u64| match reference {
-            UNWRITTEN => UNWRITTEN,
-            own if own & OWN != 0 => first + (own & !OWN),
-            index => ids[index as usize],
-        };
+    pub(super) fn write<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
+        self.open(&output.children);
+        self.close(output)
+    }
+
+    /// Begins with the next node, over `children`.
+    pub(super) fn open(&mut self, children: &[u64]) {
+        self.take_left(children);
+        self.first = self.stream.totals().vertices;
+    }
+
+    /// Writes patches of the node that is open, and empties `blocks`.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn patches(&mut self, blocks: &mut PatchBlocks) -> Result<()> {
+        let (ids, first) = (&self.ids, self.first);
         let (live, live_max) = (&mut self.live, &mut self.live_max);
-        self.stream.patches(&mut solved.blocks, id_of, |new, finalized| {
-            *live += new;
-            *live_max = (*live_max).max(*live);
-            *live -= finalized;
-        })?;
-        solved.references.iter_mut().for_each(|reference| *reference = id_of(*reference));
-        self.leave(output.number, solved.references, output.active);
-        Ok(solved.blocks)
+        self.stream.patches(
+            blocks,
+            |reference| id_of(reference, first, ids),
+            |new, finalized| {
+                *live += new;
+                *live_max = (*live_max).max(*live);
+                *live -= finalized;
+            },
+        )?;
+        blocks.clear();
+        Ok(())
+    }
+
+    /// Writes what is left of the node that is open; its blocks, to be used again.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn close<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
+        let Solved { mut blocks, mut references, merged, .. } = output.solved;
+        self.merged += merged;
+        self.patches(&mut blocks)?;
+        let (ids, first) = (&self.ids, self.first);
+        references.iter_mut().for_each(|reference| *reference = id_of(*reference, first, ids));
+        self.leave(output.number, references, output.active);
+        Ok(blocks)
     }
 
     /// Writes the residual of a partial run, which the nodes `children` have left.
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn write_residual(&mut self, children: &[u64], residual: &Residual) -> Result<()> {
+    pub(super) fn write_residual<const D: usize>(
+        &mut self,
+        children: &[u64],
+        residual: &Residual<D>,
+    ) -> Result<()> {
         self.take_left(children);
         let mut chunk: Vec<(Option<u64>, Point)> = Vec::with_capacity(RESIDUAL_CHUNK);
         for (number, ids) in self.ids.chunks(RESIDUAL_CHUNK).enumerate() {
@@ -132,7 +163,7 @@ impl<W: Write> Sequencer<W> {
         stats.residual_max = self.points_max as u64;
         stats.active_max = self.active_max as u64;
         stats.vertices = self.stream.totals().vertices;
-        stats.triangles = self.stream.totals().simplices;
+        stats.simplices = self.stream.totals().simplices;
     }
 
     /// Writes END, for `points` of the input, `merged` of which are no vertices.
@@ -152,5 +183,16 @@ impl<W: Write> Sequencer<W> {
                 self.ids.extend(left.ids);
             }
         }
+    }
+}
+
+/// The id that a reference stands for in a node whose first vertex is `first`, over nodes that have left points of the
+/// given ids.
+#[inline]
+fn id_of(reference: u64, first: u64, ids: &[u64]) -> u64 {
+    match reference {
+        UNWRITTEN => UNWRITTEN,
+        own if own & OWN != 0 => first + (own & !OWN),
+        index => ids[index as usize],
     }
 }

@@ -7,14 +7,14 @@ use crate::predicates::PredicateCounts;
 pub struct Stats {
     /// Points triangulated.
     pub points: u64,
-    /// Points that coincide with another one in x and y, and are no vertices.
+    /// Points that coincide with another one, in the plane in x and y, and are no vertices.
     pub merged: u64,
     /// Points left out because they lie outside of the region.
     pub outside: u64,
     /// Vertices written.
     pub vertices: u64,
-    /// Triangles written.
-    pub triangles: u64,
+    /// Triangles or tetrahedra written.
+    pub simplices: u64,
     /// Cell tags read.
     pub cells: u64,
     /// Leaves with points.
@@ -31,7 +31,7 @@ pub struct Stats {
     pub level: u64,
     /// Length of the input streams.
     pub input_bytes: u64,
-    /// Most triangles, at the nodes that waited at once, that were not final.
+    /// Most simplices, at the nodes that waited at once, that were not final.
     pub active_max: u64,
     /// Most residual points that waited at once for their parent.
     pub residual_max: u64,

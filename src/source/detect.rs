@@ -22,13 +22,15 @@ pub(super) enum Format {
     Spa,
     /// Streaming points as bytes, by Isenburg.
     Spb,
+    /// Vertices, and maybe faces, with a header that says how they are written.
+    Ply,
+    /// Vertices and faces as lines of statements.
+    Obj,
     /// Lines of coordinates.
     Text,
 }
 
-const PLY: &str = "a PLY file: convert it first with spconvert";
 const PCD: &str = "a PCD file: convert it first, for example with pdal translate";
-const OBJ: &str = "an OBJ file: give its vertices as lines of x y z, for example with sed -n 's/^v //p'";
 
 const VTK: &str = "a VTK file: convert it first, for example with meshio convert IN.vtk OUT.ply";
 const MEDIT: &str = "a Medit mesh: convert it first, for example with meshio convert IN.mesh OUT.ply";
@@ -38,19 +40,16 @@ const PDB: &str = "a PDB file, which tess3 reads: give points as lines of x y z"
 const MMCIF: &str = "an mmCIF file, which tess3 reads: give points as lines of x y z";
 
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 22] = [
+const MISTAKEN: [(&[u8], &str); 19] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
     (b"BZh", "bzip2 data: decompress it first, for example with bzcat"),
     (b"\xfd7zXZ\x00", "xz data: decompress it first, for example with xzcat"),
     (b"\xff\xfe", "text in UTF-16: convert it first, for example with iconv -f utf-16 -t utf-8"),
-    (b"ply\n", PLY),
-    (b"ply\r", PLY),
     (b"# .PCD", PCD),
     (b"VERSION .7", PCD),
     (b"VERSION 0.7", PCD),
-    (b"# OBJ", OBJ),
     (b"# vtk DataFile", VTK),
     (b"<VTKFile", VTK),
     (b"MeshVersionFormatted", MEDIT),
@@ -86,6 +85,9 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
     if let Some((_, what)) = MISTAKEN.iter().find(|(magic, _)| head.starts_with(magic)) {
         return Err(Error::malformed(format!("is {what}")));
     }
+    if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
+        return Ok(Format::Ply);
+    }
     // Version 7, byte order 0 or 1, then data type (two bits) and finalization method.
     if let [7, 0 | 1, flags, ..] = head[..]
         && flags & 3 < 3
@@ -98,8 +100,8 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
             "zero byte at byte {at}: not text, and neither LAS, LAZ, SPB nor a spmesh stream"
         )));
     }
-    if is_mesh(&head) {
-        return Err(Error::malformed(format!("has statements of a mesh; if it is {OBJ}")));
+    if head.starts_with(b"# OBJ") || is_mesh(&head) {
+        return Ok(Format::Obj);
     }
     Ok(if is_spa(&head) { Format::Spa } else { Format::Text })
 }

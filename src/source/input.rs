@@ -53,6 +53,8 @@ enum Content {
     Twin,
     Spa,
     Spb,
+    Ply,
+    Obj,
     Text(Columns),
 }
 
@@ -120,7 +122,7 @@ impl Input {
     pub fn is_costly(&self) -> bool {
         self.sources.iter().any(|source| match &source.content {
             Content::Las(header) => header.laz.is_some(),
-            Content::Twin | Content::Spa | Content::Text(_) => true,
+            Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
             Content::Stream | Content::Spb => false,
         })
     }
@@ -206,6 +208,8 @@ impl Source {
             Content::Twin => Box::new(stream::pass_of_twin(view, &self.name)?),
             Content::Spa => Box::new(spa::pass(view)?),
             Content::Spb => Box::new(spb::pass(view)?),
+            Content::Ply => Box::new(stream::pass_of_ply(view, &self.name)?),
+            Content::Obj => Box::new(stream::pass_of_obj(view, &self.name)),
             Content::Text(columns) => Box::new(text::TextPass::new(view, columns.clone())),
         })
     }
@@ -230,6 +234,8 @@ impl Content {
             detect::Format::Twin => (Content::Twin, stream::state_of_twin(view, name)?),
             detect::Format::Spa => (Content::Spa, spa::state(view)?),
             detect::Format::Spb => (Content::Spb, spb::state(view)?),
+            detect::Format::Ply => (Content::Ply, stream::state_of_ply(view, name)?),
+            detect::Format::Obj => (Content::Obj, stream::state_of_obj(view, name)?),
             detect::Format::Text => {
                 let (columns, stated) = text::state(view)?;
                 (Content::Text(columns), stated)

@@ -1,5 +1,5 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
-//! twins, SPA and SPB.
+//! twins, SPA and SPB, and the vertices of PLY and OBJ.
 
 mod byte_order;
 mod crs;

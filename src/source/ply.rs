@@ -46,8 +46,20 @@ pub fn open_ply<R: Read + 'static>(
     Ok(Box::new(PlyPoints { rows, header, points: 0, ended: false }))
 }
 
-/// The vertices of a PLY without faces, as points.
-struct PlyPoints<R: Read> {
+/// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call the input.
+///
+/// # Errors
+/// If the header is damaged or states no vertices with x, y and z.
+pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> Result<PlyPoints<R>> {
+    let mut lines = Lines::new(input, name);
+    let rows = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
+    let mut header = Header::new(Kind::Points, Coordinates::F64, 3, false);
+    header.points = Some(rows.rows(Sort::Vertex));
+    Ok(PlyPoints { rows: Rows { lines, header: rows, table: 0, row: 0 }, header, points: 0, ended: false })
+}
+
+/// The vertices of a PLY, as points.
+pub(super) struct PlyPoints<R: Read> {
     rows: Rows<R>,
     header: Header,
     points: u64,

@@ -1,11 +1,14 @@
-//! Points from streams of this project, and from their text twins; what their cell tags promise is ignored.
+//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the vertices of
+//! PLY and OBJ.
 
 use std::io::BufReader;
 
 use super::events::EventSource;
 use super::input::{Pass, Stated};
+use super::obj::{self, ObjPoints};
 use super::origin::FileView;
 use super::placement::Placement;
+use super::ply::{self, PlyPoints};
 use super::twin::TwinSource;
 use crate::bounds::Point;
 use crate::error::{Error, Result};
@@ -19,6 +22,16 @@ pub(super) fn state(file: FileView, name: &str) -> Result<Stated> {
 /// Reads the header of a text twin.
 pub(super) fn state_of_twin(file: FileView, name: &str) -> Result<Stated> {
     state_of(&TwinSource::new(file, name)?)
+}
+
+/// Reads the header of a PLY, whose vertices are the points.
+pub(super) fn state_of_ply(file: FileView, name: &str) -> Result<Stated> {
+    state_of(&ply::open_vertices(file, name)?)
+}
+
+/// What there is to know of an OBJ, whose vertices are the points, before it is read.
+pub(super) fn state_of_obj(file: FileView, name: &str) -> Result<Stated> {
+    state_of(&obj::open_vertices(file, name))
 }
 
 fn state_of(source: &impl EventSource) -> Result<Stated> {
@@ -35,7 +48,7 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
     })
 }
 
-/// One pass over the points of a stream or of a text twin.
+/// One pass over the points of a stream, of a text twin, or of a mesh.
 pub(super) struct EventPass<S>(S);
 
 /// Starts a pass over a stream.
@@ -46,6 +59,16 @@ pub(super) fn pass(file: FileView, name: &str) -> Result<EventPass<StreamReader<
 /// Starts a pass over a text twin.
 pub(super) fn pass_of_twin(file: FileView, name: &str) -> Result<EventPass<TwinSource<FileView>>> {
     TwinSource::new(file, name).map(EventPass)
+}
+
+/// Starts a pass over the vertices of a PLY.
+pub(super) fn pass_of_ply(file: FileView, name: &str) -> Result<EventPass<PlyPoints<FileView>>> {
+    ply::open_vertices(file, name).map(EventPass)
+}
+
+/// Starts a pass over the vertices of an OBJ.
+pub(super) fn pass_of_obj(file: FileView, name: &str) -> EventPass<ObjPoints<FileView>> {
+    EventPass(obj::open_vertices(file, name))
 }
 
 impl<S: EventSource + Send> Pass for EventPass<S> {

@@ -241,8 +241,8 @@ impl<W: Write> StreamWriter<W> {
     ///
     /// # Errors
     /// If writing fails.
-    pub fn walls(&mut self, walls: &[[u32; 2]]) -> Result<()> {
-        for walls in walls.chunks(BLOCK_PAYLOAD_MAX / 8) {
+    pub fn walls<const D: usize>(&mut self, walls: &[[u32; D]]) -> Result<()> {
+        for walls in walls.chunks(BLOCK_PAYLOAD_MAX / (4 * D)) {
             let payload = &mut self.payload;
             payload.clear();
             walls.iter().flatten().for_each(|end| payload.extend_from_slice(&end.to_le_bytes()));

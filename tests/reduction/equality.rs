@@ -190,7 +190,7 @@ fn few_points_and_no_triangles_are_valid_streams() {
     let equal = vec![[4.0, 2.0, 1.0]; 50];
     let input = stream(&equal, GRID, Tagging::Chunked(2), &mut Random::new(2));
     let (bytes, stats) = triangulate(&input, &threads(2)).unwrap();
-    assert_eq!((stats.vertices, stats.merged, stats.triangles), (1, 49, 0));
+    assert_eq!((stats.vertices, stats.merged, stats.simplices), (1, 49, 0));
     assert_eq!(read_mesh(&bytes).vertices, [[4.0, 2.0, 1.0]]);
 }
 

@@ -1,6 +1,7 @@
-//! The reduction gives the same triangles whatever the cells, the order, the threads and the tiles.
+//! The reduction gives the same simplices whatever the cells, the order, the threads and the tiles.
 
 mod equality;
 mod failures;
 mod policies;
+mod space;
 mod streams;

@@ -30,9 +30,20 @@ pub enum Tagging {
     Forgetful(u8),
 }
 
-/// A stream of `points` with the given cells.
+/// A stream of `points` of the plane with the given cells.
 pub fn stream(points: &[Point], coordinates: Coordinates, tagging: Tagging, random: &mut Random) -> Vec<u8> {
-    let mut header = Header::new(Kind::Points, coordinates, 2, true);
+    stream_of(2, points, coordinates, tagging, random)
+}
+
+/// A stream of `points` of two or three dimensions with the given cells.
+pub fn stream_of(
+    dims: u8,
+    points: &[Point],
+    coordinates: Coordinates,
+    tagging: Tagging,
+    random: &mut Random,
+) -> Vec<u8> {
+    let mut header = Header::new(Kind::Points, coordinates, dims, dims == 2);
     header.bounds = Bounds::of_points(points);
     header.points = Some(points.len() as u64);
     let depth = match tagging {
@@ -42,7 +53,7 @@ pub fn stream(points: &[Point], coordinates: Coordinates, tagging: Tagging, rand
         Tagging::Chunked(level) | Tagging::Preserved(level) | Tagging::Forgetful(level) => level,
     };
     let bounds = header.bounds.unwrap_or(Bounds::of_point([0.0; 3]));
-    header.tree = CellTree::covering(&bounds, 2, depth).filter(|_| tagging != Tagging::None);
+    header.tree = CellTree::covering(&bounds, dims, depth).filter(|_| tagging != Tagging::None);
     let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
     match (writer.header().tree, tagging) {
         (None, _) | (_, Tagging::None | Tagging::Never) => writer.points(points).unwrap(),
@@ -63,7 +74,7 @@ pub fn stream(points: &[Point], coordinates: Coordinates, tagging: Tagging, rand
 
 fn inside(tree: &CellTree, cell: CellCode, point: Point) -> bool {
     let (min, max) = tree.corners(cell);
-    (0..2).all(|axis| min[axis] <= point[axis] && point[axis] < max[axis])
+    (0..usize::from(tree.dims())).all(|axis| min[axis] <= point[axis] && point[axis] < max[axis])
 }
 
 fn write_cell(writer: &mut StreamWriter<Vec<u8>>, tree: &CellTree, points: &[Point], cell: CellCode) {

@@ -28,16 +28,20 @@ class Prediction:
 
 @dataclass
 class Ours:
-    """splinefit with flags; `knots`, if there are some, makes a file of knots of points."""
+    """splinefit with flags; `knots`, if there are some, makes a file of knots of points, and `step` is in distances of points."""
 
     name: str
     flags: tuple = ()
     knots: object = None
+    step: float = 0.0
 
     def predict(self, work, points, sites, _):
         """By two processes, one that fits and one that evaluates."""
         try:
             flags = [*self.flags, *(("--knots", self.knots(work, points)) if self.knots else ())]
+            if self.step:
+                distance = np.sqrt(np.prod(np.ptp(points[:, :2], axis=0)) / len(points))
+                flags += ["--step", f"{self.step * distance:.6g}"]
             table, at = work.table("points.xyz", points), work.table("at.xy", sites)
             fit = run([inputs.program("splinefit"), "fit", "--quiet", "--stats=json", *flags, table, "-o", work.spline])
             out = work.folder / "values.txt"
@@ -93,13 +97,13 @@ def run(command):
 def compare(work, ways, points, sites, truth):
     """A row for each way: unknowns, root of the mean square of errors, median and greatest error, seconds, and peak memory.
 
-    Bicubic splines have as many unknowns as our spline with the most of them.
+    Bicubic splines have as many unknowns as our first spline.
     """
     unknowns, rows = 0, []
     for way in ways:
         found = way.predict(work, points, sites, unknowns)
-        if isinstance(way, Ours) and found.unknowns:
-            unknowns = max(unknowns, found.unknowns)
+        if isinstance(way, Ours) and not unknowns:
+            unknowns = found.unknowns or 0
         rows.append([way.name, *cells(found, truth)])
         print(f"  {rows[-1]}", file=sys.stderr, flush=True)
     return rows

@@ -1,12 +1,11 @@
 """A LIDAR tile: a part of its ground points is held back, and predicted from the others; the same with gross errors.
 
-Only held points inside of the convex hull of the others count.
+Only held points inside of the convex hull of the others count. D is the distance of points: the root of the area of each.
 """
 
 import subprocess
 
 import inputs
-import layouts
 import numpy as np
 from predictions import HEAD, PEERS, Ours, compare
 from tsv import write_tables
@@ -38,32 +37,16 @@ def run(work, flags):
 def ways():
     return [
         Ours("splinefit"),
-        Ours("splinefit --tol 0.1 --max-knots 20000", ("--tol", "0.1", "--max-knots", "20000")),
-        Ours("splinefit --knots GRID --lambda gcv", ("--lambda", "gcv"), cells_of(3)),
-        Ours("splinefit --knots GRID --lambda 0.03", ("--lambda", "0.03"), cells_of(3)),
-        Ours("splinefit --knots DENSE --lambda 0.03", ("--lambda", "0.03"), cells_of(1)),
+        Ours("splinefit --step D", step=1.0),
+        Ours("splinefit --step 0.7*D", step=0.7),
         *PEERS,
     ]
 
 
 def robust_ways():
-    losses = [("--lambda", "0.03"), *(("--lambda", "0.03", "--robust", loss) for loss in ("huber", "tukey"))]
-    return [
-        Ours("splinefit --robust tukey", ("--robust", "tukey")),
-        *(Ours(f"splinefit --knots GRID {' '.join(loss)}", loss, cells_of(3)) for loss in losses),
-        *PEERS,
-    ]
-
-
-def cells_of(points_per_cell):
-    """Knots on a grid with a cell for so many points."""
-
-    def make(work, points):
-        width, height = np.ptp(points[:, :2], axis=0)
-        cells = (len(points) / points_per_cell * max(width, height) / min(width, height)) ** 0.5
-        return layouts.grid(round(cells))(work, points)
-
-    return make
+    robust = [Ours(f"splinefit --robust {loss}", ("--robust", loss)) for loss in ("huber", "tukey")]
+    dense = Ours("splinefit --robust huber --step D", ("--robust", "huber"), step=1.0)
+    return [Ours("splinefit"), *robust, dense, *PEERS]
 
 
 def ground(work, path):

@@ -1,7 +1,7 @@
 //! The predicates of space, as [`super::Predicates2`] and [`super::Arithmetic`] are those of the plane.
 //!
 //! A tetrahedron abcd is positively oriented if det(b - a, c - a, d - a) > 0: seen from d, the triangle abc is
-//! clockwise; the thumb of the right hand points to d if the fingers go from a to b to c.
+//! counterclockwise; the thumb of the right hand points to d if the fingers go from a to b to c.
 
 pub(crate) mod filter;
 mod float;

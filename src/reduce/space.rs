@@ -1,0 +1,161 @@
+//! Tetrahedra: the reduction in space.
+
+use std::borrow::Cow;
+
+use super::bulk::{Bulk, Facet};
+use super::residual::Residual;
+use super::walls::WallIndex;
+use crate::bounds::Region;
+use crate::delaunay3::{Corner, Kernel, Tetrahedralization};
+use crate::error::{Error, Result};
+use crate::predicates::PredicateCounts;
+use crate::predicates::sphere::SphereBounds;
+use crate::stream::Coordinates;
+
+/// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
+const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// The kernel of space and its tetrahedralization.
+#[derive(Default)]
+pub(super) struct Space {
+    kernel: Kernel,
+    mesh: Tetrahedralization,
+    /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds leaves them all over.
+    sequence: Vec<u32>,
+    /// For each vertex, where tetrahedra of which it is the last go.
+    places: Vec<u32>,
+    hull: Vec<Facet>,
+    walls: WallIndex,
+}
+
+/// Decides which balls lie in a region.
+pub(super) struct Balls {
+    bounds: SphereBounds,
+    region: Region<3>,
+}
+
+impl Space {
+    /// Puts the tetrahedra in sequence.
+    fn arrange(&mut self) {
+        let tetrahedra = self.mesh.tetrahedra();
+        let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
+        self.places.clear();
+        self.places.resize(self.mesh.vertices().len(), 0);
+        tetrahedra.iter().for_each(|tetrahedron| self.places[last(tetrahedron.vertices)] += 1);
+        let mut next = 0;
+        for place in &mut self.places {
+            next += std::mem::replace(place, next);
+        }
+        self.sequence.resize(tetrahedra.len(), 0);
+        for (t, tetrahedron) in (0..).zip(tetrahedra) {
+            let place = &mut self.places[last(tetrahedron.vertices)];
+            self.sequence[*place as usize] = t;
+            *place += 1;
+        }
+    }
+
+    fn find_hull(&mut self) {
+        self.hull.clear();
+        for (simplex, tetrahedron) in (0..).zip(self.mesh.tetrahedra()) {
+            let open = (0..4).filter(|&corner| tetrahedron.across(corner as usize).is_none());
+            self.hull.extend(open.map(|corner| Facet { simplex, corner }));
+        }
+    }
+}
+
+impl Bulk<3> for Space {
+    type Corners = [u32; 4];
+    type Balls = Balls;
+
+    const MAY_LEAVE_MOST: bool = true;
+
+    fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {
+        self.kernel.triangulate(Cow::Borrowed(&points.at), &mut self.mesh)?;
+        self.arrange();
+        self.find_hull();
+        Ok(())
+    }
+
+    fn duplicates(&mut self) -> &mut Vec<[u32; 2]> {
+        &mut self.mesh.duplicates
+    }
+
+    fn len(&self) -> usize {
+        self.mesh.tetrahedra().len()
+    }
+
+    #[inline]
+    fn nth(&self, k: usize) -> u32 {
+        self.sequence[k]
+    }
+
+    #[inline]
+    fn corners(&self, tetrahedron: u32) -> [u32; 4] {
+        let vertices = self.mesh.vertices();
+        self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].index)
+    }
+
+    #[inline]
+    fn across(&self, Facet { simplex, corner }: Facet) -> Option<Facet> {
+        let beyond = self.mesh.tetrahedra()[simplex as usize].across(corner as usize);
+        beyond.map(|Corner { tetrahedron: simplex, corner }| Facet { simplex, corner })
+    }
+
+    fn hull_vertices(&self) -> impl Iterator<Item = u32> {
+        // Points of a plane are all on the boundary.
+        let flat = if self.mesh.tetrahedra().is_empty() { self.mesh.vertices() } else { &[] };
+        flat.iter().map(|vertex| vertex.index).chain(self.hull.iter().flat_map(|&facet| self.wall(facet)))
+    }
+
+    fn hull_facets(&self) -> impl Iterator<Item = Facet> {
+        self.hull.iter().copied()
+    }
+
+    fn find(&mut self, walls: &[[u32; 3]], mut found: impl FnMut(Facet)) -> Result<()> {
+        if walls.is_empty() {
+            return Ok(());
+        }
+        let mut index = std::mem::take(&mut self.walls);
+        index.fill(walls, self.mesh.vertices().len() + self.mesh.duplicates.len());
+        let mut count = 0;
+        for simplex in 0..self.len() as u32 {
+            let vertices = self.corners(simplex);
+            for (corner, facet) in (0..).zip(FACETS) {
+                if index.contains(facet.map(|i| vertices[i])) {
+                    count += 1;
+                    found(Facet { simplex, corner });
+                }
+            }
+        }
+        self.walls = index;
+        if count == walls.len() {
+            Ok(())
+        } else {
+            Err(Error::malformed("a wall of a residual is no facet of the tetrahedralization"))
+        }
+    }
+
+    fn wall(&self, Facet { simplex, corner }: Facet) -> [u32; 3] {
+        let vertices = self.corners(simplex);
+        FACETS[corner as usize].map(|i| vertices[i])
+    }
+
+    fn balls(coordinates: &Coordinates, region: Region<3>) -> Balls {
+        let bounds = match coordinates {
+            Coordinates::F64 => SphereBounds::FLOAT,
+            Coordinates::I32 { .. } => SphereBounds::INTEGER,
+        };
+        Balls { bounds, region }
+    }
+
+    #[inline]
+    fn is_inside(&self, tetrahedron: u32, _points: &Residual<3>, balls: &Balls) -> bool {
+        let vertices = self.mesh.vertices();
+        let corners = self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].at);
+        balls.bounds.ball_inside(corners, &balls.region)
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        self.kernel.counts()
+    }
+}
