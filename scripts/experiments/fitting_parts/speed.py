@@ -19,7 +19,7 @@ COUNT, QUICK_COUNT, MANY = 1_000_000, 20_000, 10_000_000
 # Along each side of the square: cells of knots, for about 20,000 functions of ours, and cells of rasters.
 KNOT_CELLS, RASTER_CELLS = 97, 2_000
 QUICK_KNOT_CELLS = 15
-LIMIT_S = 300.0
+LIMIT_S = 150.0
 SQUARE = 1_000.0
 HEAD = ("points", "program", "unknowns", "seconds", "range", "times ours", "CPU s", "peak MB")
 
