@@ -10,8 +10,10 @@ use crate::predicates::Point2;
 use crate::source::{Input, SourceOptions};
 use crate::stream::Crs;
 
-/// Up to this number, points are held: 32 bytes each. A fit reads them again and again, and most sources take longer to decode.
-const HELD_MAX: usize = 1 << 23;
+/// Up to this number, points that are read again and again are held: 32 bytes each. Most sources take longer to decode...
+const HELD_OFTEN: usize = 1 << 23;
+/// ...but a few passes more do not matter, so that memory does not depend on the number of points.
+const HELD_SELDOM: usize = 1 << 20;
 /// Elevations in a sample, at least, if there are as many.
 const SAMPLE: usize = 1 << 12;
 /// The part of elevations beyond each end of their range.
@@ -31,9 +33,9 @@ pub struct Points {
 }
 
 impl Points {
-    /// Opens files and reads them once; `weights` are those of points, in their order.
+    /// Opens files and reads them once; `weights` are those of points, in their order; `often` tells whether many passes will follow.
     ///
-    /// Memory: 32 bytes per point up to 8 million points; more are read again for each pass.
+    /// Memory: 32 bytes per point up to 8 million points if so, and up to one million otherwise; more are read again for each pass.
     ///
     /// # Errors
     /// As [`Input::open`]; no elevation; another number of weights.
@@ -41,12 +43,14 @@ impl Points {
         paths: &[PathBuf],
         options: &SourceOptions,
         weights: Option<Vec<f64>>,
+        often: bool,
         mut done: impl FnMut(u64),
     ) -> Result<Points> {
         let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
         let mut points = Points { input, weights, held: None, sample: Vec::new(), count: 0 };
         let mut held = Some(Vec::new());
         let (mut reader, mut batch) = (points.read_world()?, Vec::new());
+        let held_max = if often { HELD_OFTEN } else { HELD_SELDOM };
         let (mut count, mut sample) = (0, Sample::default());
         loop {
             batch.clear();
@@ -57,7 +61,7 @@ impl Points {
             count += batch.len() as u64;
             batch.iter().for_each(|one| sample.add(one.value));
             match &mut held {
-                Some(all) if all.len() + batch.len() <= HELD_MAX => all.extend_from_slice(&batch),
+                Some(all) if all.len() + batch.len() <= held_max => all.extend_from_slice(&batch),
                 _ => held = None,
             }
             done(count);

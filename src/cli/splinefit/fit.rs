@@ -196,8 +196,11 @@ impl Flags {
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(read_weights).transpose()?;
+        // Looking for knots and robust weights take many passes.
+        let is_search = self.knots.is_none() && self.step.is_none();
+        let often = is_search || self.robust.is_some();
         let mut progress = Progress::new(common, "reading", None);
-        Points::open(&self.inputs, &source, weights, |count| progress.set(count))
+        Points::open(&self.inputs, &source, weights, often, |count| progress.set(count))
     }
 
     fn knots(&self, common: &Common) -> Result<Option<(KnotSource, String)>> {

@@ -67,7 +67,7 @@ impl Flags {
             return Ok((Layout::open(&self.spline)?.0, None));
         }
         let spline = Spline::open(&self.spline)?;
-        let points = Points::open(&self.points, &SourceOptions::default(), None, |_| ())?;
+        let points = Points::open(&self.points, &SourceOptions::default(), None, false, |_| ())?;
         let residuals = Statistics::of(&spline, &points, self.threads.get(), &|_| ())?;
         Ok((spline.layout, Some(residuals)))
     }
