@@ -6,7 +6,7 @@ use crate::bounds::Point;
 use crate::delaunay2::MAX_POINTS;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::source::{EventSource, Input, Planar, SourceOptions, name_of, open_planar};
+use crate::source::{EventSource, Input, Opened, SourceOptions, name_of, open_planar};
 use crate::stream::{Coordinates, Crs, Event, LiveVertices};
 
 /// What stored knots mean.
@@ -42,8 +42,8 @@ pub struct Sites {
 pub fn read_sites(paths: &[PathBuf], mut done: impl FnMut(u64)) -> Result<Sites> {
     let options = SourceOptions { dims: 2, ..SourceOptions::default() };
     match open_planar(paths, &options)? {
-        Planar::Points(input) => read_points(&input, &mut done),
-        Planar::Mesh(mesh) => read_mesh(mesh, name_of(&paths[0]), &mut done),
+        Opened::Points(input) => read_points(&input, &mut done),
+        Opened::Events(mesh) => read_mesh(mesh, name_of(&paths[0]), &mut done),
     }
 }
 

@@ -8,12 +8,10 @@ use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
 use super::polygon::fan;
 use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
+use super::vertices::{VertexPoints, Vertices};
 use crate::bounds::Point;
 use crate::error::{Error, Result};
-use crate::stream::{Coordinates, Event, Header, Kind, Totals};
-
-/// Points per event.
-const BATCH_POINTS: usize = 1 << 12;
+use crate::stream::{Coordinates, Header, Kind};
 
 /// Statements of OBJ that say nothing of vertices and triangles.
 const PASSED_OVER: [&[u8]; 17] = [
@@ -46,22 +44,18 @@ pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn
     Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
 }
 
-/// The vertices of an OBJ, as points that have a z.
-pub(super) struct ObjPoints<R> {
-    lines: Lines<R>,
-    header: Header,
-    points: u64,
-    ended: bool,
-}
-
-/// Reads the vertices of OBJ as points; `name` is what messages call the input. Memory: one batch.
-pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> ObjPoints<R> {
+/// Reads the vertices of OBJ as points that have a z; `name` is what messages call the input.
+pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVertices<R>> {
     let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
-    ObjPoints { lines: Lines::new(input, name), header, points: 0, ended: false }
+    VertexPoints::new(ObjVertices { lines: Lines::new(input, name) }, header)
 }
 
-impl<R: Read> ObjPoints<R> {
-    /// The next vertex; lines of other statements are passed over.
+/// The vertices of an OBJ.
+pub(super) struct ObjVertices<R> {
+    lines: Lines<R>,
+}
+
+impl<R: Read> Vertices for ObjVertices<R> {
     fn next_vertex(&mut self) -> Result<Option<Point>> {
         while let Some(line) = self.lines.next_line()? {
             let mut fields = fields(line);
@@ -73,26 +67,6 @@ impl<R: Read> ObjPoints<R> {
             }
         }
         Ok(None)
-    }
-}
-
-impl<R: Read> EventSource for ObjPoints<R> {
-    fn header(&self) -> &Header {
-        &self.header
-    }
-
-    fn next_event(&mut self) -> Result<Option<Event>> {
-        let mut batch: Vec<Point> = Vec::new();
-        while batch.len() < BATCH_POINTS {
-            let Some(point) = self.next_vertex().map_err(|e| self.lines.locate(e))? else { break };
-            batch.push(point);
-        }
-        self.points += batch.len() as u64;
-        if !batch.is_empty() {
-            return Ok(Some(Event::Points(batch)));
-        }
-        let totals = Totals { points: self.points, ..Totals::default() };
-        Ok((!std::mem::replace(&mut self.ended, true)).then_some(Event::End(totals)))
     }
 
     fn locate(&self, error: Error) -> Error {

@@ -11,12 +11,10 @@ use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
 use super::sample_type::SampleType;
 use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
+use super::vertices::{VertexPoints, Vertices};
 use crate::bounds::Point;
 use crate::error::{Error, Result};
-use crate::stream::{Coordinates, Event, Header, Kind, Totals};
-
-/// Points per event.
-const BATCH_POINTS: usize = 1 << 12;
+use crate::stream::{Coordinates, Header, Kind};
 
 /// Longest list of a row: polygons and strips of any use are shorter, and a damaged length ends here.
 const LIST_MAX: u64 = 1 << 16;
@@ -34,58 +32,41 @@ pub fn open_ply<R: Read + 'static>(
     name: impl Into<String>,
     dims: u8,
 ) -> Result<Box<dyn EventSource>> {
-    let mut lines = Lines::new(input, name);
-    let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
-    let has_faces = header.rows(Sort::Face) > 0;
-    let rows = Rows { lines, header, table: 0, row: 0 };
-    if has_faces {
+    let rows = Rows::open(input, name)?;
+    if rows.header.rows(Sort::Face) > 0 {
         return Ok(Box::new(MeshEvents::new(PlyElements { rows, triangles: VecDeque::new() })));
     }
-    let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
-    header.points = Some(rows.header.rows(Sort::Vertex));
-    Ok(Box::new(PlyPoints { rows, header, points: 0, ended: false }))
+    Ok(Box::new(points(rows, dims)))
 }
 
 /// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call the input.
 ///
 /// # Errors
 /// If the header is damaged or states no vertices with x, y and z.
-pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> Result<PlyPoints<R>> {
-    let mut lines = Lines::new(input, name);
-    let rows = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
-    let mut header = Header::new(Kind::Points, Coordinates::F64, 3, false);
-    header.points = Some(rows.rows(Sort::Vertex));
-    Ok(PlyPoints { rows: Rows { lines, header: rows, table: 0, row: 0 }, header, points: 0, ended: false })
+pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> Result<VertexPoints<PlyVertices<R>>> {
+    Ok(points(Rows::open(input, name)?, 3))
 }
 
-/// The vertices of a PLY, as points.
-pub(super) struct PlyPoints<R: Read> {
+fn points<R: Read>(rows: Rows<R>, dims: u8) -> VertexPoints<PlyVertices<R>> {
+    let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
+    header.points = Some(rows.header.rows(Sort::Vertex));
+    VertexPoints::new(PlyVertices { rows }, header)
+}
+
+/// The vertices of a PLY.
+pub(super) struct PlyVertices<R: Read> {
     rows: Rows<R>,
-    header: Header,
-    points: u64,
-    ended: bool,
 }
 
-impl<R: Read> EventSource for PlyPoints<R> {
-    fn header(&self) -> &Header {
-        &self.header
-    }
-
-    fn next_event(&mut self) -> Result<Option<Event>> {
-        let mut batch: Vec<Point> = Vec::new();
-        while batch.len() < BATCH_POINTS {
-            match self.rows.next().map_err(|e| self.rows.locate(e))? {
-                Some(Row::Vertex(point)) => batch.push(point),
+impl<R: Read> Vertices for PlyVertices<R> {
+    fn next_vertex(&mut self) -> Result<Option<Point>> {
+        loop {
+            match self.rows.next()? {
+                Some(Row::Vertex(point)) => return Ok(Some(point)),
                 Some(Row::Face(_)) => {}
-                None => break,
+                None => return Ok(None),
             }
         }
-        self.points += batch.len() as u64;
-        if !batch.is_empty() {
-            return Ok(Some(Event::Points(batch)));
-        }
-        let totals = Totals { points: self.points, ..Totals::default() };
-        Ok((!std::mem::replace(&mut self.ended, true)).then_some(Event::End(totals)))
     }
 
     fn locate(&self, error: Error) -> Error {
@@ -147,6 +128,13 @@ struct Rows<R: Read> {
 }
 
 impl<R: Read> Rows<R> {
+    /// Reads the header.
+    fn open(input: R, name: impl Into<String>) -> Result<Self> {
+        let mut lines = Lines::new(input, name);
+        let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
+        Ok(Rows { lines, header, table: 0, row: 0 })
+    }
+
     /// The next vertex or face; rows of other elements are read over.
     fn next(&mut self) -> Result<Option<Row>> {
         while let Some(table) = self.header.tables.get(self.table) {

@@ -5,11 +5,12 @@ use std::io::BufReader;
 
 use super::events::EventSource;
 use super::input::{Pass, Stated};
-use super::obj::{self, ObjPoints};
+use super::obj::{self, ObjVertices};
 use super::origin::FileView;
 use super::placement::Placement;
-use super::ply::{self, PlyPoints};
+use super::ply::{self, PlyVertices};
 use super::twin::TwinSource;
+use super::vertices::VertexPoints;
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::stream::{Event, Kind, StreamReader};
@@ -62,12 +63,15 @@ pub(super) fn pass_of_twin(file: FileView, name: &str) -> Result<EventPass<TwinS
 }
 
 /// Starts a pass over the vertices of a PLY.
-pub(super) fn pass_of_ply(file: FileView, name: &str) -> Result<EventPass<PlyPoints<FileView>>> {
+pub(super) fn pass_of_ply(
+    file: FileView,
+    name: &str,
+) -> Result<EventPass<VertexPoints<PlyVertices<FileView>>>> {
     ply::open_vertices(file, name).map(EventPass)
 }
 
 /// Starts a pass over the vertices of an OBJ.
-pub(super) fn pass_of_obj(file: FileView, name: &str) -> EventPass<ObjPoints<FileView>> {
+pub(super) fn pass_of_obj(file: FileView, name: &str) -> EventPass<VertexPoints<ObjVertices<FileView>>> {
     EventPass(obj::open_vertices(file, name))
 }
 

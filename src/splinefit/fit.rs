@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::fit::{
     self, Cover, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round,
 };
-use crate::source::KnotSource;
+use crate::source::Opened;
 
 /// Without a tolerance, this part of the range of elevations is one.
 const TOLERANCE_PART: f64 = 0.0025;
@@ -69,7 +69,7 @@ pub struct Search {
 /// Usage, if options do not go together, or points do not determine the spline; those of reading.
 pub fn fit(
     points: &Points,
-    knots: Option<(KnotSource, String)>,
+    knots: Option<(Opened, String)>,
     options: &Options,
     done: &dyn Fn(u64),
 ) -> Result<Fitted> {

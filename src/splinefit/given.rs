@@ -7,26 +7,26 @@ use crate::delaunay2::distinct;
 use crate::error::{Error, Result};
 use crate::fit::Cover;
 use crate::predicates::Point2;
-use crate::source::{Input, KnotSource, Polyline};
+use crate::source::{Input, Opened, Polyline};
 
 /// Functions over given knots.
 ///
 /// # Errors
 /// Knots on one line; a degree that is not there; those of reading.
 pub(super) fn layout(
-    source: KnotSource,
+    source: Opened,
     name: &str,
     degree: Option<usize>,
     polylines: &[Polyline],
 ) -> Result<Layout> {
     match source {
-        KnotSource::Set(_) if !polylines.is_empty() => {
+        Opened::Events(_) if !polylines.is_empty() => {
             let what =
                 "configurations have their functions already: give knots as points, or features to configgen";
             Err(Error::usage(what).of_input(name))
         }
-        KnotSource::Set(source) => Layout::read(source, name, degree).map(|(layout, _)| layout),
-        KnotSource::Points(input) => {
+        Opened::Events(source) => Layout::read(source, name, degree).map(|(layout, _)| layout),
+        Opened::Points(input) => {
             if let Some(degree) = degree.filter(|&degree| degree != 2) {
                 let what = format!(
                     "points as knots are for splines of degree 2: for degree {degree}, make configurations with configgen"

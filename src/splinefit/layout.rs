@@ -10,7 +10,7 @@ use crate::configgen::read::{Collector, ConfigurationSet};
 use crate::configgen::write::{self, Content};
 use crate::error::{Error, Result};
 use crate::fit::Cover;
-use crate::source::{EventSource, KnotSource, SourceOptions, name_of, open_knots};
+use crate::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use crate::spline::Basis;
 use crate::stream::{Header, Kind};
 
@@ -109,8 +109,8 @@ impl Layout {
     pub fn open(path: &Path) -> Result<(Layout, Vec<f64>)> {
         let name = name_of(path);
         match open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })? {
-            KnotSource::Set(source) => Layout::read(source, &name, None),
-            KnotSource::Points(_) => {
+            Opened::Events(source) => Layout::read(source, &name, None),
+            Opened::Points(_) => {
                 Err(Error::usage("these are points, expected a spline: splinefit fit makes one of them")
                     .of_input(name))
             }

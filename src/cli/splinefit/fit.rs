@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::fit::Loss;
 use crate::output::Output;
 use crate::source::{
-    KnotSource, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
+    Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
 };
 use crate::splinefit::{self, Fitted, Options, Points, Smoothing};
 
@@ -203,10 +203,10 @@ impl Flags {
         Points::open(&self.inputs, &source, weights, often, |count| progress.set(count))
     }
 
-    fn knots(&self, common: &Common) -> Result<Option<(KnotSource, String)>> {
+    fn knots(&self, common: &Common) -> Result<Option<(Opened, String)>> {
         let Some(path) = &self.knots else { return Ok(None) };
         let source = open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })?;
-        if let KnotSource::Points(input) = &source {
+        if let Opened::Points(input) = &source {
             input.notices().iter().for_each(|text| say(common, text));
         }
         Ok(Some((source, name_of(path))))
