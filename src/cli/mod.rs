@@ -15,6 +15,7 @@ pub mod tess3;
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -131,6 +132,15 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
     let found = numbers.len();
     numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
+}
+
+/// More threads than these are used if they are asked for only: each costs memory.
+const THREADS_DEFAULT_MAX: usize = 8;
+
+/// The number of threads asked for, or one per core, at most 8.
+fn threads(asked: Option<u16>) -> NonZeroUsize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from).min(THREADS_DEFAULT_MAX);
+    NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)
 }
 
 /// Peak resident memory of this process in bytes; 0 where the system does not tell.

@@ -1,4 +1,4 @@
-//! What the streaming triangulators have in common: threads, inputs, and the figures of `--stats`.
+//! What the streaming triangulators have in common: inputs, and the figures of `--stats`.
 
 use std::io::Read;
 use std::path::PathBuf;
@@ -7,15 +7,6 @@ use super::{StatsFormat, open_input, peak_memory, say};
 use crate::error::Error;
 use crate::reduce::Stats;
 use crate::stream::StreamReader;
-
-/// Leaves are triangulated ahead on every thread: more of them cost memory that only `--threads` may ask for.
-const THREADS_DEFAULT_MAX: usize = 8;
-
-/// The number of threads asked for, or one per core.
-pub(super) fn threads(asked: Option<u16>) -> usize {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    asked.map_or(cores.min(THREADS_DEFAULT_MAX), usize::from)
-}
 
 /// Opens a stream, `-` for stdin.
 pub(super) fn open_stream(path: &PathBuf) -> Result<StreamReader<Box<dyn Read + Send>>, Error> {

@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::progress::Progress;
-use super::reduction::{self, Report, open_stream};
-use super::{Common, StatsFormat, notice};
+use super::reduction::{Report, open_stream};
+use super::{Common, StatsFormat, notice, threads};
 use crate::bounds::Region;
 use crate::error::Error;
 use crate::output::Output;
@@ -146,7 +146,7 @@ fn triangulate(flags: &Flags, part: Option<Part>) -> anyhow::Result<(Output, Sta
     let reader = open_stream(input)?;
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "triangulating", reader.header().points);
-    let threads = reduction::threads(flags.threads);
+    let threads = threads(flags.threads).get();
     let options = Options { duplicates: flags.duplicates.into(), threads, part, ..Options::default() };
     Ok(reduce::triangulate(reader, output, &options, |points| progress.set(points))?)
 }

@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::Parser;
 
 use super::progress::Progress;
-use super::reduction::{self, Report, open_stream};
-use super::{Common, StatsFormat, notice};
+use super::reduction::{Report, open_stream};
+use super::{Common, StatsFormat, notice, threads};
 use crate::output::Output;
 use crate::reduce::{self, Duplicates, Options};
 
@@ -84,7 +84,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let reader = open_stream(&flags.input)?;
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "tetrahedralizing", reader.header().points);
-    let threads = reduction::threads(flags.threads);
+    let threads = threads(flags.threads).get();
     let options = Options { duplicates: flags.duplicates.into(), threads, ..Options::default() };
     let (output, stats) = reduce::tetrahedralize(reader, output, &options, |points| progress.set(points))?;
     drop(progress);

@@ -11,14 +11,11 @@ use std::path::Path;
 
 use clap::{Args, Parser, Subcommand};
 
-use super::{Common, notice};
+use super::{Common, notice, threads};
 use crate::error::{Error, ErrorKind, Result};
 use crate::system;
 
 const TOOL: &str = "splinefit";
-
-/// Functions are evaluated on every thread.
-const THREADS_DEFAULT_MAX: usize = 8;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -105,9 +102,7 @@ struct Threads {
 
 impl Threads {
     fn get(&self) -> NonZeroUsize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from).min(THREADS_DEFAULT_MAX);
-        let wanted = self.threads.map_or_else(cores, usize::from);
-        NonZeroUsize::new(wanted).unwrap_or(NonZeroUsize::MIN)
+        threads(self.threads)
     }
 }
 
