@@ -47,7 +47,7 @@ pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
         // The affine dependence of four points: area of the others each, with signs.
         let dependence = [area(q, r, s), -area(p, r, s), area(p, q, s), -area(p, q, r)];
         let half = 0.5 * dependence.iter().map(|share| share.abs()).sum::<f64>();
-        let diagonals = square_of_distance(p, q) + square_of_distance(r, s);
+        let diagonals = polygon::square_of_side(p, q) + polygon::square_of_side(r, s);
         add_square(&mut rows, corners, dependence.map(|share| share / half), 1.0 / diagonals);
     });
     let of_function = polygon::area(&basis.domain_corners()).max(f64::MIN_POSITIVE) / basis.len() as f64;
@@ -70,10 +70,6 @@ fn for_each_hinge(mesh: &Triangulation, mut visit: impl FnMut([u32; 4])) {
             visit([at(side + 1), at(side + 2), at(side), other]);
         }
     }
-}
-
-fn square_of_distance(p: Point2, q: Point2) -> f64 {
-    (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
 }
 
 /// Adds `factor` times the square of a sum of coefficients with factors of their own.

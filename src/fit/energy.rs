@@ -101,10 +101,7 @@ fn add_exact(basis: &Basis, domain: &[Point2], rows: &mut Rows) {
 }
 
 fn is_flat(corners: &[Point2; 3]) -> bool {
-    let square = |i: usize| {
-        let (p, q) = (corners[i], corners[(i + 1) % 3]);
-        (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
-    };
+    let square = |i: usize| polygon::square_of_side(corners[i], corners[(i + 1) % 3]);
     polygon::area(corners).abs() < AREA_MIN * square(0).max(square(1)).max(square(2))
 }
 

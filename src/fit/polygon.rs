@@ -17,6 +17,12 @@ pub(super) fn area(polygon: &[Point2]) -> f64 {
     0.5 * rest.windows(2).map(|edge| twice_area(first, edge[0], edge[1])).sum::<f64>()
 }
 
+/// The square of the distance of two corners.
+#[inline]
+pub(super) fn square_of_side(p: Point2, q: Point2) -> f64 {
+    (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
+}
+
 /// Buffers for intersections.
 #[derive(Debug, Default)]
 pub(super) struct Clipper {

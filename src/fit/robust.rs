@@ -53,7 +53,7 @@ pub struct RobustFit {
     pub coefficients: Vec<f64>,
     /// Standard deviation of an observation of weight one, from the median of the magnitudes of all residuals.
     pub scale: f64,
-    /// Passes over the observations.
+    /// Passes over the observations, that of the normal equations included.
     pub passes: usize,
     /// Whether coefficients did not change any more.
     pub has_converged: bool,
@@ -73,20 +73,43 @@ pub fn robust<O: Observations + ?Sized>(
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
-    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss)
+    robust_from(
+        &Normal::of(basis, observations, threads)?,
+        basis,
+        observations,
+        loss,
+        energy,
+        lambda,
+        threads,
+    )
+}
+
+/// The same from the normal equations of all observations, where they are known: a pass less.
+///
+/// Errors: those of [`robust()`].
+pub fn robust_from<O: Observations + ?Sized>(
+    plain: &Normal,
+    basis: &Basis,
+    observations: &O,
+    loss: Loss,
+    energy: Option<&Symmetric>,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<RobustFit> {
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss, plain)
 }
 
 /// The same with so few rounds that coefficients may still change: enough to tell gross errors from others.
 pub(super) fn robust_soon<O: Observations + ?Sized>(
+    plain: &Normal,
     basis: &Basis,
     observations: &O,
     loss: Loss,
-    energy: &Symmetric,
+    energy: Option<&Symmetric>,
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
-    let energy = Some(energy);
-    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_FEW }.fit(loss)
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_FEW }.fit(loss, plain)
 }
 
 impl RobustFit {
@@ -129,9 +152,8 @@ struct Rounds<'a, O: ?Sized> {
 }
 
 impl<O: Observations + ?Sized> Rounds<'_, O> {
-    fn fit(&self, loss: Loss) -> Result<RobustFit> {
-        let plain = Normal::of(self.basis, self.observations, self.threads)?;
-        let coefficients = self.solve(&plain)?;
+    fn fit(&self, loss: Loss, plain: &Normal) -> Result<RobustFit> {
+        let coefficients = self.solve(plain)?;
         let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
         let scale = self.scale(&coefficients, scale_min)?;
         let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };

@@ -4,7 +4,6 @@ use super::control::bending;
 use super::factor::{Elimination, Factor};
 use super::normal::Normal;
 use super::observations::Observations;
-use super::polygon;
 use super::symmetric::Symmetric;
 use super::trend::trend;
 use crate::error::{Error, Result};
@@ -103,18 +102,6 @@ impl<'a> Equations<'a> {
         }
         let middle = ratios.len() / 2;
         *ratios.select_nth_unstable_by(middle, f64::total_cmp).1
-    }
-
-    /// The `lambda` that halves waves of two distances of observations: shorter ones these do not tell from longer ones. It does not
-    /// depend on knots. On terrain, points that were held back are predicted best with about as much.
-    ///
-    /// Thin plates of a weight W on an area A keep 1 / (1 + lambda k^4 A / W) of waves with the number k, which is pi over the distance
-    /// here; n observations are at distances of the root of A / n.
-    #[must_use]
-    pub fn halving(&self) -> f64 {
-        let Normal { weight, count, .. } = *self.normal;
-        let area = polygon::area(&self.basis.domain_corners());
-        weight * area / (count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
     /// Does something with the factors for a `lambda`.

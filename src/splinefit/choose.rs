@@ -16,8 +16,6 @@ pub struct Chosen {
     pub undetermined: Option<usize>,
     /// What was tried, by cross-validation; `lambda` in world coordinates.
     pub choice: Option<Choice>,
-    /// Number of points in the domain that count.
-    pub count: u64,
 }
 
 /// Equations whose `lambda` is known.
@@ -62,12 +60,12 @@ pub(super) fn choose(layout: &Layout, all: &InFrame, options: &Options, are_give
             let equations = Equations::new(basis, &normal, energy.as_ref())?;
             choice.insert(fit::generalised_cross_validation(&equations, options.seed)?).best.lambda
         }
-        (energy, None) => Equations::new(basis, &normal, energy.as_ref())?.halving(),
+        (_, None) => normal.halving(basis),
     };
     if let Some(choice) = &mut choice {
         choice.best.lambda *= area;
         choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
     }
-    let chosen = Chosen { lambda: lambda * area, undetermined, choice, count: normal.count };
+    let chosen = Chosen { lambda: lambda * area, undetermined, choice };
     Ok(Problem { normal, energy, lambda, chosen })
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::choose::{Chosen, choose};
+use super::choose::{Chosen, Problem, choose};
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
 use super::options::Options;
@@ -174,9 +174,10 @@ fn approximate(
     let Some(loss) = options.loss else {
         return Ok((problem.solve(&layout.basis)?, problem.chosen, None));
     };
-    let (energy, lambda) = (problem.energy.as_ref(), problem.lambda);
-    let robust = fit::robust(&layout.basis, all, loss, energy, lambda, options.threads)?;
-    Ok((robust.coefficients.clone(), problem.chosen, Some(robust)))
+    let Problem { normal, energy, lambda, chosen } = problem;
+    let (basis, threads) = (&layout.basis, options.threads);
+    let robust = fit::robust_from(&normal, basis, all, loss, energy.as_ref(), lambda, threads)?;
+    Ok((robust.coefficients.clone(), chosen, Some(robust)))
 }
 
 /// Coefficients of the spline that has at Greville sites the values of the triangulated points.
