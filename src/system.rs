@@ -29,6 +29,22 @@ pub fn widen_pipe(file: &impl AsFd) {
 #[cfg(not(target_os = "linux"))]
 pub fn widen_pipe(_file: &impl AsFd) {}
 
+/// Bytes of a block of memory that goes back to the system as soon as it is freed.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+const LARGE_BLOCK: libc::c_int = 1 << 18;
+
+/// From now on, large blocks of memory go back to the system when they are freed. glibc otherwise learns from the first
+/// of them that are freed to keep such blocks, for each thread.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+pub(crate) fn give_back_large_blocks() {
+    // SAFETY: the call takes integers and changes nothing but where later blocks lie.
+    unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE_BLOCK) };
+}
+
+/// From now on, large blocks of memory go back to the system when they are freed, as other systems do it unasked.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+pub(crate) fn give_back_large_blocks() {}
+
 /// What is said, and the exit code, where the process would abort.
 static AT_ABORT: OnceLock<(&str, u8)> = OnceLock::new();
 

@@ -7,9 +7,13 @@ use std::process::Stdio;
 use crate::programs::{assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
 use crate::vectors::run_python;
 
+/// The streaming triangulators, and what spfinalize has to be told for them.
+const TRIANGULATORS: [(&str, &[&str]); 2] = [("spdelaunay2d", &[]), ("spdelaunay3d", &["--octree"])];
+
 /// A chunked stream of a cloud that is much longer than a pipe holds.
-fn long_stream() -> Vec<u8> {
-    let output = run("spfinalize", &["--cell-points", "2000", "-"], cloud(60_000).as_bytes());
+fn long_stream(arguments: &[&str]) -> Vec<u8> {
+    let arguments = [arguments, &["--cell-points", "2000", "-"]].concat();
+    let output = run("spfinalize", &arguments, cloud(60_000).as_bytes());
     assert!(output.status.success(), "{:?}", outcome(&output));
     assert!(output.stdout.len() > 1_000_000);
     output.stdout
@@ -142,57 +146,65 @@ fn tiles_of_a_real_file_merge_to_the_whole() {
 
 #[test]
 fn a_killed_producer_leaves_no_result() {
-    let folder = tempfile::tempdir().unwrap();
-    let source = folder.path().join("cloud.xyz");
-    fs::write(&source, cloud(60_000)).unwrap();
-    let mut finalize =
-        start("spfinalize", &["--cell-points", "2000", source.to_str().unwrap()], Stdio::null());
-    let mut delaunay = tool("spdelaunay2d");
-    let mesh = folder.path().join("mesh.spm");
-    delaunay.args(["-o", mesh.to_str().unwrap()]).stdin(Stdio::piped());
-    let mut delaunay = delaunay.spawn().unwrap();
-    // Forward a part of the stream; the finalizer then waits with the rest until it is killed.
-    let mut part = vec![0; 300_000];
-    finalize.stdout.as_mut().unwrap().read_exact(&mut part).unwrap();
-    std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &part).unwrap();
-    finalize.kill().unwrap();
-    let mut rest = Vec::new();
-    finalize.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
-    std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &rest).unwrap();
-    assert!(!finalize.wait().unwrap().success());
-    let output = delaunay.wait_with_output().unwrap();
-    let (code, message) = outcome(&output);
-    assert_eq!(code, Some(3), "{message}");
-    assert!(message.starts_with("spdelaunay2d: stdin: block "), "{message}");
-    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
-    assert_eq!(left, ["cloud.xyz"]);
+    for (name, arguments) in TRIANGULATORS {
+        let folder = tempfile::tempdir().unwrap();
+        let source = folder.path().join("cloud.xyz");
+        fs::write(&source, cloud(60_000)).unwrap();
+        let arguments = [arguments, &["--cell-points", "2000", source.to_str().unwrap()]].concat();
+        let mut finalize = start("spfinalize", &arguments, Stdio::null());
+        let mut delaunay = tool(name);
+        let mesh = folder.path().join("mesh.spm");
+        delaunay.args(["-o", mesh.to_str().unwrap()]).stdin(Stdio::piped());
+        let mut delaunay = delaunay.spawn().unwrap();
+        // Forward a part of the stream; the finalizer then waits with the rest until it is killed.
+        let mut part = vec![0; 300_000];
+        finalize.stdout.as_mut().unwrap().read_exact(&mut part).unwrap();
+        std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &part).unwrap();
+        finalize.kill().unwrap();
+        let mut rest = Vec::new();
+        finalize.stdout.take().unwrap().read_to_end(&mut rest).unwrap();
+        std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &rest).unwrap();
+        assert!(!finalize.wait().unwrap().success());
+        let output = delaunay.wait_with_output().unwrap();
+        let (code, message) = outcome(&output);
+        assert_eq!(code, Some(3), "{message}");
+        assert!(message.starts_with(&format!("{name}: stdin: block ")), "{message}");
+        let left: Vec<_> =
+            fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        assert_eq!(left, ["cloud.xyz"]);
+    }
 }
 
 #[test]
 fn errors_travel_down_the_pipe() {
-    let points = long_stream();
-    let cut = &points[..points.len() / 2];
-    let mesh = run("spdelaunay2d", &[], cut);
-    assert_eq!(outcome(&mesh).0, Some(3));
-    for (name, arguments) in [("spinfo", &["--audit", "-"][..]), ("spconvert", &["--to", "text"])] {
-        let (code, message) = outcome(&run(name, arguments, &mesh.stdout));
-        assert_eq!(code, Some(3), "{name}: {message}");
+    for (triangulator, arguments) in TRIANGULATORS {
+        let points = long_stream(arguments);
+        let cut = &points[..points.len() / 2];
+        let mesh = run(triangulator, &[], cut);
+        assert_eq!(outcome(&mesh).0, Some(3));
+        for (name, arguments) in [("spinfo", &["--audit", "-"][..]), ("spconvert", &["--to", "text"])] {
+            let (code, message) = outcome(&run(name, arguments, &mesh.stdout));
+            assert_eq!(code, Some(3), "{name}: {message}");
+        }
     }
 }
 
 #[test]
 fn a_closed_pipe_is_silent() {
-    let points = long_stream();
+    let points = long_stream(&[]);
     let mesh = mesh_of(&points, &[]);
     let folder = tempfile::tempdir().unwrap();
-    let files = ["points.spm", "mesh.spm"].map(|name| folder.path().join(name).to_str().unwrap().to_string());
-    fs::write(&files[0], &points).unwrap();
-    fs::write(&files[1], &mesh).unwrap();
+    let names = ["points.spm", "mesh.spm", "space.spm"];
+    let files = names.map(|name| folder.path().join(name).to_str().unwrap().to_string());
+    let contents = [&points, &mesh, &long_stream(&["--octree"])];
+    files.iter().zip(contents).for_each(|(file, content)| fs::write(file, content).unwrap());
     let runs = [
         ("spfinalize", vec![&files[0][..]]),
         ("spdelaunay2d", vec!["--threads", "1", &files[0]]),
         ("spdelaunay2d", vec!["--threads", "2", &files[0]]),
         ("spdelaunay2d", vec!["--threads", "8", &files[0]]),
+        ("spdelaunay3d", vec!["--threads", "1", &files[2]]),
+        ("spdelaunay3d", vec!["--threads", "8", &files[2]]),
         ("spconvert", vec!["--to", "text", &files[1]]),
         ("spconvert", vec!["--to", "ply", &files[1]]),
     ];
@@ -207,13 +219,16 @@ fn a_full_disk_is_an_error_with_its_reason() {
         eprintln!("SKIPPED: there is no /dev/full");
         return;
     }
-    let points = long_stream();
+    let points = long_stream(&[]);
     let mesh = mesh_of(&points, &[]);
+    let space = long_stream(&["--octree"]);
     let runs = [
         ("spfinalize", vec!["-", "-o", "/dev/full"], &points),
         ("spdelaunay2d", vec!["--threads", "1", "-o", "/dev/full"], &points),
         ("spdelaunay2d", vec!["--threads", "2", "-o", "/dev/full"], &points),
         ("spdelaunay2d", vec!["--threads", "8", "-o", "/dev/full"], &points),
+        ("spdelaunay3d", vec!["--threads", "1", "-o", "/dev/full"], &space),
+        ("spdelaunay3d", vec!["--threads", "8", "-o", "/dev/full"], &space),
         ("spconvert", vec!["--to", "text", "-o", "/dev/full"], &mesh),
     ];
     for (name, arguments, input) in runs {

@@ -10,6 +10,7 @@ use super::reduction::{Report, open_stream};
 use super::{Common, StatsFormat, notice, threads};
 use crate::output::Output;
 use crate::reduce::{self, Duplicates, Options};
+use crate::system;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -81,6 +82,7 @@ impl From<DuplicatesFlag> for Duplicates {
 /// As [`reduce::tetrahedralize`], and if the input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
+    system::give_back_large_blocks();
     let reader = open_stream(&flags.input)?;
     let output = Output::create(&flags.output, true)?;
     let mut progress = Progress::new(&flags.common, "tetrahedralizing", reader.header().points);

@@ -26,8 +26,8 @@
 //!   overflows, and a product that underflows errs by 2^-1075 at most: two of them in a minor, which is multiplied by
 //!   2^200 at most, and three more in sums and squares. [`UNDERFLOW`] covers all of it many times over.
 //! * *Centre* `o = m / 2v` relative to `a`. With `E_v < |v^|`,
-//!   `|m/2v - m^/2v^| <= (E_m + 2 |o^| E_v) / 2 (|v^| - E_v)`, and one rounding of the quotient adds `u |o^|`. If
-//!   `|v^| <= 2 E_v` nothing is claimed.
+//!   `|m/2v - m^/2v^| <= (E_m + 2 |o^| E_v) / 2 (|v^| - E_v)`, and the product with a rounded reciprocal adds `2 u |o^|`.
+//!   If `|v^| <= 2 E_v` nothing is claimed.
 //! * *Radius* `|o| <= |o^| + E_x + E_y + E_z`, and the computed `|o^|` is off by less than `4 u |o^|`. An underflow of its
 //!   squares is far below the rest, as the radius is half a side at least.
 //! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of the
@@ -84,15 +84,16 @@ impl SphereBounds {
         if !(is_sound && volume.abs() > 2.0 * e_volume) {
             return false;
         }
-        let margin = volume.abs() - e_volume;
+        let per_volume = 1.0 / (2.0 * volume);
+        let per_margin = 1.0 / (2.0 * (volume.abs() - e_volume));
         let (mut o, mut e) = ([0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let m = p * x[axis] + q * y[axis] + r * z[axis];
             let n = p * n_x[axis] + q * n_y[axis] + r * n_z[axis];
-            o[axis] = m / (2.0 * volume);
+            o[axis] = m * per_volume;
             let e_m = self.numerator * n + UNDERFLOW;
-            let quotient = (e_m + 2.0 * o[axis].abs() * e_volume) / (2.0 * margin);
-            e[axis] = (quotient + U * o[axis].abs()) * SLACK;
+            let quotient = (e_m + 2.0 * o[axis].abs() * e_volume) * per_margin;
+            e[axis] = (quotient + 2.0 * U * o[axis].abs()) * SLACK;
         }
         let radius = square(o).sqrt() * (1.0 + 8.0 * U) + (e[0] + e[1] + e[2]) * SLACK;
         (0..3).all(|axis| {

@@ -41,4 +41,10 @@ impl<const D: usize> Boxes<D> {
         }
         region
     }
+
+    /// Whether the run sees no point outside of the region of a node. That can be one below the root of the tree, whose
+    /// cube is a power of two.
+    pub(super) fn is_everything(&self, region: &Region<D>) -> bool {
+        *region == self.outer
+    }
 }

@@ -36,6 +36,9 @@ const ARRIVALS_AHEAD: usize = 3;
 /// Buffers that wait to be used again.
 const SHELF_LEN: usize = 16;
 
+/// Bytes of blocks that are worth to be kept: after a few large nodes, all of them would be as large.
+const SHELVED_BLOCKS: usize = 4 << 20;
+
 /// Runs `run` with `workers` threads that triangulate, and at last the root, when they have ended, on the calling one.
 pub(super) fn run<B, R, W, const D: usize>(
     run: Run<D>,
@@ -55,8 +58,10 @@ where
     // Not in the scope: after a failure, nobody waits for an input that says nothing.
     let read = move || read(intake, &arrivals_in, &raw);
     Builder::new().name("reader".into()).spawn(read).map_err(no_thread)?;
-    std::thread::scope(|scope| {
+    std::thread::scope(move |scope| {
         let (crew, hands) = Crew::start::<B, D>(scope, sequencer, run.rules, workers, &shelf)?;
+        // What lies on it is freed with the last of the threads, before the root is triangulated.
+        drop(shelf);
         crew.coordinate::<B, D>(run, hands, &arrivals, workers, progress)
     })
 }
@@ -71,6 +76,12 @@ struct Shelf<const D: usize> {
 impl<const D: usize> Shelf<D> {
     fn new() -> Self {
         Shelf { raw: bounded(SHELF_LEN), blocks: bounded(SHELF_LEN) }
+    }
+
+    fn keep_blocks(&self, blocks: PatchBlocks) {
+        if blocks.capacity() <= SHELVED_BLOCKS {
+            drop(self.blocks.0.try_send(blocks));
+        }
     }
 }
 
@@ -128,7 +139,7 @@ fn write<W: Write, const D: usize>(
 ) -> Result<Sequencer<W>> {
     for output in outputs {
         let points = output.points;
-        drop(shelf.blocks.0.try_send(sequencer.write(output)?));
+        shelf.keep_blocks(sequencer.write(output)?);
         // Only a failure elsewhere makes the coordinator stop listening.
         let _ = written.send(points);
     }
@@ -286,7 +297,15 @@ mod tests {
         let (done_in, done) = unbounded();
         for number in 0..2 {
             let (cell, region) = (CellCode::ROOT, Region::PLANE);
-            jobs.send(Job { number, cell, region, raw: Residual::default(), parts: Vec::new() }).unwrap();
+            jobs.send(Job {
+                number,
+                cell,
+                region,
+                is_root: true,
+                raw: Residual::default(),
+                parts: Vec::new(),
+            })
+            .unwrap();
         }
         work(|job| panic!("of the test, at job {}", job.number), &never(), &jobs_out, &done_in);
         let done: Vec<Done<2>> = done.try_iter().collect();

@@ -159,7 +159,7 @@ fn copy_through<R: Read, W: Write>(
         progress(sequencer.vertices());
     }
     stats.input_bytes += reader.bytes_read();
-    residual.unite(std::iter::once(&part));
+    residual.unite(vec![part]);
     Ok(())
 }
 

@@ -88,7 +88,6 @@ pub(super) struct Solver<B, const D: usize> {
     /// Walls of the residual, as facets of simplices that are done.
     walls: Vec<Facet>,
     builder: PatchBuilder<D>,
-    index_above: Vec<u32>,
 }
 
 impl<B: Bulk<D>, const D: usize> Solver<B, D> {
@@ -103,7 +102,6 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             active: Vec::new(),
             walls: Vec::new(),
             builder: PatchBuilder::default(),
-            index_above: Vec::new(),
         }
     }
 
@@ -271,14 +269,14 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         let count = self.marks.iter().filter(|&&mark| mark == Mark::Residual).count();
         let mut residual = Residual::with_capacity(count, self.walls.len());
         let mut references = Vec::with_capacity(count);
-        self.index_above.resize(self.index_above.len().max(points.len()), NONE);
+        let mut index_above = vec![NONE; if count == 0 { 0 } else { points.len() }];
         for (v, _) in (0..).zip(&self.marks).filter(|&(_, &mark)| mark == Mark::Residual) {
             let reference = self.builder.reference(v, points);
-            self.index_above[v as usize] = residual.len() as u32;
+            index_above[v as usize] = residual.len() as u32;
             residual.push(points.point(v as usize), self.builder.key(v, number, points));
             references.push(reference);
         }
-        let above = |v: u32| self.index_above[v as usize];
+        let above = |v: u32| index_above[v as usize];
         residual.walls.extend(self.walls.iter().map(|&facet| self.bulk.wall(facet).map(above)));
         residual.active = self.active.len();
         (residual, references)

@@ -123,22 +123,38 @@ impl<const D: usize> Residual<D> {
     }
 
     /// Adds all `parts` in their order: first the raw points of all of them, which stay first, then what nodes have
-    /// left. If any of them are raw, all points so far must be.
-    pub(super) fn unite<'p>(&mut self, parts: impl Iterator<Item = &'p Self> + Clone) {
-        let mut first_raw = self.raw;
-        parts.clone().for_each(|part| self.append_raw(part));
+    /// left. If any of them are raw, all points so far must be. Each part is freed as soon as it is here.
+    pub(super) fn unite(&mut self, parts: Vec<Self>) {
+        self.reserve(&parts);
+        let mut left = Vec::new();
         for part in parts {
-            self.append_left(part, first_raw);
-            first_raw += part.raw;
+            let first_raw = self.raw;
+            self.append_raw(&part);
+            if part.raw < part.len() {
+                left.push((part, first_raw));
+            }
         }
+        for (part, first_raw) in left {
+            self.append_left(&part, first_raw);
+        }
+    }
+
+    /// Makes room for all `parts`, and for no more: they can be large.
+    fn reserve(&mut self, parts: &[Self]) {
+        let points = parts.iter().map(Residual::len).sum();
+        self.at.reserve_exact(points);
+        if Self::HAS_ELEVATION {
+            self.elevation.reserve_exact(points);
+        }
+        self.keys.reserve_exact(parts.iter().map(|part| part.keys.len()).sum());
+        self.walls.reserve_exact(parts.iter().map(|part| part.walls.len()).sum());
     }
 }
 
 /// The union of `parts`, in their order.
-pub(super) fn union<const D: usize>(parts: &[Residual<D>]) -> Residual<D> {
-    let points = parts.iter().map(Residual::len).sum();
-    let mut all = Residual::with_capacity(points, parts.iter().map(|part| part.walls.len()).sum());
-    all.unite(parts.iter());
+pub(super) fn union<const D: usize>(parts: Vec<Residual<D>>) -> Residual<D> {
+    let mut all = Residual::default();
+    all.unite(parts);
     all
 }
 

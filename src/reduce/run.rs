@@ -230,14 +230,17 @@ impl<const D: usize> Run<D> {
         sequencer: &mut Sequencer<W>,
         worker: &mut Worker<B, D>,
     ) -> Result<()> {
-        let Some((job, children)) = self.schedule.take_root() else { return Ok(()) };
-        let (number, cell) = (job.number, job.cell);
-        sequencer.open(&children);
-        let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-        let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
-        self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
-        if let Some(output) = self.schedule.next_output() {
-            sequencer.close(output)?;
+        // What a partial run leaves goes through all nodes up to the root of the tree.
+        while let Some((job, children)) = self.schedule.take_root() {
+            let (number, cell) = (job.number, job.cell);
+            sequencer.open(&children);
+            let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
+            let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
+            self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
+            // One with points, and behind it the nodes above, which have none.
+            while let Some(output) = self.schedule.next_output() {
+                sequencer.close(output)?;
+            }
         }
         Ok(())
     }
@@ -257,7 +260,7 @@ impl<const D: usize> Run<D> {
         let is_partial = self.rules.is_partial;
         let (numbers, residuals, mut stats) = self.schedule.into_residual();
         if is_partial {
-            let residual = union(&residuals);
+            let residual = union(residuals);
             stats.residual = residual.len() as u64;
             sequencer.write_residual(&numbers, &residual)?;
         }

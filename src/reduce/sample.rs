@@ -15,7 +15,7 @@ use crate::random::Random;
 const SAMPLE_POINTS: usize = 2048;
 
 /// Nodes of fewer points are not triangulated: too many of them are near the sides, and a sample would cost too much.
-const POINTS_MIN: usize = 16_384;
+const POINTS_MIN: usize = 50_000;
 
 /// Part of the sample that may be left where it is worth while. Of so many random points in a cube 59 % are left, of points on a
 /// surface nearly all.

@@ -17,6 +17,8 @@ pub(super) struct Job<const D: usize> {
     pub(super) cell: CellCode,
     /// Outside of it, other points may lie.
     pub(super) region: Region<D>,
+    /// Whether the run sees no point outside of it.
+    pub(super) is_root: bool,
     /// Points right from the stream.
     pub(super) raw: Residual<D>,
     /// What the nodes below have left, in Morton order.
@@ -73,7 +75,7 @@ pub(super) struct Schedule<const D: usize> {
     boxes: Boxes<D>,
     nodes: BTreeMap<u64, Node<D>>,
     jobs: VecDeque<Job<D>>,
-    /// The node of everything, the last one.
+    /// The node of everything, above all others that have points.
     root: Option<Job<D>>,
     outputs: BTreeMap<u64, Output<D>>,
     next_output: u64,
@@ -189,7 +191,9 @@ impl<const D: usize> Schedule<D> {
         let (cell, raw, children) = (node.cell, std::mem::take(&mut node.raw), node.children.clone());
         let is_leaf = node.is_leaf;
         let parts = children.iter().filter_map(|child| self.nodes.remove(child)?.residual).collect();
-        let job = Job { number, cell, region: self.boxes.region(cell), raw, parts };
+        let region = self.boxes.region(cell);
+        let is_root = self.boxes.is_everything(&region);
+        let job = Job { number, cell, region, is_root, raw, parts };
         let points = job.len();
         if let Some(node) = self.nodes.get_mut(&number) {
             node.points = points;
@@ -200,7 +204,8 @@ impl<const D: usize> Schedule<D> {
         }
         if points == 0 {
             self.solved(number, Solved::default());
-        } else if cell == CellCode::ROOT {
+        } else if is_root {
+            self.stats.root_points = points as u64;
             self.root = Some(job);
         } else {
             self.jobs.push_back(job);

@@ -10,10 +10,14 @@ use crate::delaunay3::{Corner, Kernel, Tetrahedralization};
 use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::sphere::SphereBounds;
+use crate::prefetch::prefetch;
 use crate::stream::Coordinates;
 
 /// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
 const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// How many tetrahedra ahead of the one that is looked at are fetched.
+const AHEAD: usize = 12;
 
 /// The kernel of space and its tetrahedralization.
 #[derive(Default)]
@@ -22,8 +26,6 @@ pub(super) struct Space {
     mesh: Tetrahedralization,
     /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds leaves them all over.
     sequence: Vec<u32>,
-    /// For each vertex, where tetrahedra of which it is the last go.
-    places: Vec<u32>,
     hull: Vec<Facet>,
     walls: WallIndex,
 }
@@ -39,16 +41,16 @@ impl Space {
     fn arrange(&mut self) {
         let tetrahedra = self.mesh.tetrahedra();
         let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
-        self.places.clear();
-        self.places.resize(self.mesh.vertices().len(), 0);
-        tetrahedra.iter().for_each(|tetrahedron| self.places[last(tetrahedron.vertices)] += 1);
+        // For each vertex, where tetrahedra of which it is the last go.
+        let mut places = vec![0u32; self.mesh.vertices().len()];
+        tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
         let mut next = 0;
-        for place in &mut self.places {
+        for place in &mut places {
             next += std::mem::replace(place, next);
         }
         self.sequence.resize(tetrahedra.len(), 0);
         for (t, tetrahedron) in (0..).zip(tetrahedra) {
-            let place = &mut self.places[last(tetrahedron.vertices)];
+            let place = &mut places[last(tetrahedron.vertices)];
             self.sequence[*place as usize] = t;
             *place += 1;
         }
@@ -86,6 +88,10 @@ impl Bulk<3> for Space {
 
     #[inline]
     fn nth(&self, k: usize) -> u32 {
+        // Neighbours in sequence are all over the array: without this, half of the time is waiting for them.
+        if let Some(&ahead) = self.sequence.get(k + AHEAD) {
+            prefetch(self.mesh.tetrahedra(), ahead as usize);
+        }
         self.sequence[k]
     }
 

@@ -25,6 +25,8 @@ pub struct Stats {
     pub leaf_max: u64,
     /// Points of the largest node above the leaves.
     pub inner_node_max: u64,
+    /// Points that were left for the root, where everything is final.
+    pub root_points: u64,
     /// Most points held at once because their cell was not final.
     pub held_max: u64,
     /// Levels of the input's finalization tree below its root.

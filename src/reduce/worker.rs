@@ -6,7 +6,6 @@ use super::patches::Flush;
 use super::residual::{Residual, UNWRITTEN};
 use super::sample::Sample;
 use super::schedule::Job;
-use crate::cells::CellCode;
 use crate::error::Result;
 use crate::predicates::PredicateCounts;
 use crate::stream::PatchBlocks;
@@ -35,8 +34,7 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         give_back: impl FnOnce(Residual<D>),
         flush: &mut Flush,
     ) -> Result<Solved<D>> {
-        let Job { number, cell, region, mut raw, parts } = job;
-        let is_root = cell == CellCode::ROOT;
+        let Job { number, region, is_root, mut raw, parts, .. } = job;
         if parts.is_empty() {
             if !is_root && self.sample.leaves_most(&raw, &region)? {
                 return Ok(passed_up(raw, blocks));
@@ -48,10 +46,9 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         }
         self.union.clear();
         self.union.append_raw(&raw);
-        self.union.unite(parts.iter());
-        drop(parts);
+        self.union.unite(parts);
         if !is_root && self.sample.leaves_most(&self.union, &region)? {
-            return Ok(passed_up(self.union.clone(), blocks));
+            return Ok(passed_up(std::mem::take(&mut self.union), blocks));
         }
         self.solver.solve(number, &mut self.union, &region, blocks, flush)
     }

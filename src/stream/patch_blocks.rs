@@ -62,6 +62,11 @@ impl PatchBlocks {
         self.patches.clear();
     }
 
+    /// Bytes that the patches have room for, but for their finalized vertices.
+    pub(crate) fn capacity(&self) -> usize {
+        self.bytes.capacity()
+    }
+
     /// Number of patches.
     pub(crate) fn len(&self) -> usize {
         self.patches.len()
