@@ -24,6 +24,10 @@ mod points;
 mod reference;
 #[path = "audit/solid.rs"]
 mod solid;
+#[path = "audit/streamed.rs"]
+mod streamed;
+#[path = "audit/streamed_damage.rs"]
+mod streamed_damage;
 #[path = "audit/tetrahedra.rs"]
 mod tetrahedra;
 #[path = "audit/tetrahedra_mutations.rs"]
@@ -32,6 +36,8 @@ mod tetrahedra_mutations;
 mod tetrahedra_streams;
 #[path = "audit/tetrahedralized.rs"]
 mod tetrahedralized;
+#[path = "audit/winding.rs"]
+mod winding;
 
 use spmesh::audit::{Audit, PointSet, Report, Standard, Violation};
 use spmesh::bounds::Point;

@@ -1,4 +1,4 @@
-//! The boundary of a whole triangulation: one convex cycle, or vertices on a line.
+//! The boundary of a whole triangulation: one convex cycle.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -6,12 +6,13 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
-use super::edges::{Corner, OpenEdges};
+use super::corner::name_corners;
 use super::exact::plane::{Xy, lexicographic, orientation};
+use super::triangles::{Corner, OpenEdges};
 
 /// Corners of the boundary.
 ///
-/// Memory: the hull, collinear vertices included. Without triangles all vertices lie on it.
+/// Memory: the hull, collinear vertices included.
 #[derive(Debug, Default)]
 pub(super) struct Hull {
     corners: HashMap<u64, Xy, RandomState>,
@@ -19,8 +20,8 @@ pub(super) struct Hull {
 
 impl Hull {
     /// Adds a finalized vertex with one open edge in and one out.
-    pub(super) fn add(&mut self, id: u64, at: Xy) {
-        self.corners.insert(id, at);
+    pub(super) fn add(&mut self, corner: Corner) {
+        self.corners.insert(corner.id, corner.at);
     }
 
     /// Proves that the open edges are one cycle around a convex polygon; all their ends must have been added.
@@ -29,7 +30,7 @@ impl Hull {
     /// So it cannot jump over the lexicographically increasing directions, which are a half-open half circle,
     /// and goes around as often as it changes from increasing to decreasing.
     pub(super) fn check(&self, edges: &OpenEdges, ledger: &mut Ledger) -> Result<(), Violation> {
-        let next: HashMap<u64, u64, RandomState> = edges.iter().map(|[from, to]| (from, to)).collect();
+        let next: HashMap<u64, u64, RandomState> = edges.iter().map(|([from, to], _)| (from, to)).collect();
         let Some(start) = self.first() else {
             return Err(Violation::new(Check::Hull, "the triangles have no boundary"));
         };
@@ -49,7 +50,7 @@ impl Hull {
         }
         if peaks != 1 {
             let message = format!("the boundary goes around {peaks} times, expected once");
-            return Err(name_corner(Violation::new(Check::Hull, message), start));
+            return Err(name_corners(Violation::new(Check::Hull, message), &[start]));
         }
         Ok(())
     }
@@ -72,8 +73,7 @@ impl Hull {
         };
         if let Some(fault) = fault {
             let message = format!("the boundary from {} over {} to {} {fault}", before.id, here.id, after.id);
-            let violation = Violation::new(Check::Hull, message);
-            return Err([before, here, after].into_iter().fold(violation, name_corner));
+            return Err(name_corners(Violation::new(Check::Hull, message), &[before, here, after]));
         }
         Ok(arrives == Ordering::Less && leaves == Ordering::Greater)
     }
@@ -90,14 +90,13 @@ impl Hull {
         while let Some(after) = rest.remove(&at) {
             at = after;
         }
-        let [from, to] =
-            edges.iter().filter(|[from, _]| rest.contains_key(from)).min().expect("the cycle is not all");
+        let others = edges.iter().map(|(ends, _)| ends).filter(|[from, _]| rest.contains_key(from));
+        let [from, to] = others.min().expect("the cycle is not all");
         let message = format!(
             "the boundary is more than one cycle: edge {from} to {to} is open and not on the cycle of {}",
             start.id
         );
-        let violation = Violation::new(Check::Hull, message);
-        [self.corner(from), self.corner(to)].into_iter().fold(violation, name_corner)
+        name_corners(Violation::new(Check::Hull, message), &[self.corner(from), self.corner(to)])
     }
 
     /// The lexicographically smallest corner, of those the one with the smallest id.
@@ -111,33 +110,29 @@ impl Hull {
     }
 }
 
-/// Proves that vertices which no triangle uses need none: they are all distinct and lie on a line.
-pub(super) fn check_line(vertices: &mut [Corner], ledger: &mut Ledger) -> Result<(), Violation> {
-    vertices.sort_by(|p, q| lexicographic(p.at, q.at).then(p.id.cmp(&q.id)));
-    for pair in vertices.windows(2) {
-        ledger.add(Check::Vertices, 1);
-        if pair[0].at == pair[1].at {
-            let message = format!("vertices {} and {} coincide", pair[0].id, pair[1].id);
-            let violation = Violation::new(Check::Vertices, message);
-            return Err(pair.iter().copied().fold(violation, name_corner));
-        }
-    }
-    let [first, between @ .., last] = &vertices[..] else { return Ok(()) };
-    for corner in between {
-        let turn = orientation(first.at, corner.at, last.at);
-        ledger.count(Check::Hull, turn.exactly);
-        if turn.sign != Ordering::Equal {
-            let message = format!(
-                "there are no triangles, but vertices {}, {} and {} do not lie on a line",
-                first.id, corner.id, last.id
-            );
-            let violation = Violation::new(Check::Hull, message);
-            return Err([*first, *corner, *last].into_iter().fold(violation, name_corner));
-        }
-    }
-    Ok(())
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-fn name_corner(violation: Violation, corner: Corner) -> Violation {
-    violation.with(corner.id, corner.point())
+    /// A cycle over the triangle that is walked `times` times.
+    fn walk(times: usize) -> Result<(), Violation> {
+        let triangle = [[10.0, -6.0], [0.0, 11.0], [-10.0, -6.0]];
+        let (mut hull, mut edges) = (Hull::default(), OpenEdges::new());
+        let corners: Vec<Corner> =
+            (0..3 * times).map(|i| Corner { id: i as u64, at: triangle[i % 3] }).collect();
+        for (i, &corner) in corners.iter().enumerate() {
+            hull.add(corner);
+            edges.meet([corner.id, corners[(i + 1) % corners.len()].id], corner);
+        }
+        hull.check(&edges, &mut Ledger::default())
+    }
+
+    #[test]
+    fn a_boundary_goes_around_once() {
+        walk(1).unwrap();
+        for times in 2..5 {
+            let violation = walk(times).unwrap_err();
+            assert!(violation.message.contains(&format!("goes around {times} times")), "{violation:?}");
+        }
+    }
 }

@@ -1,18 +1,19 @@
 //! Audit of a whole triangle mesh.
 
 use super::check::{Check, Ledger, Violation};
-use super::edges::Corner;
 use super::extent::Extent;
-use super::hull::{Hull, check_line};
-use super::triangles::{Standard, Triangles, Vertex};
+use super::hull::Hull;
+use super::totals::check_points;
+use super::triangles::{Corner, Fans, Standard, Triangles};
+use super::unused::Unused;
+use super::vertices::Vertex;
 use crate::stream::{Header, Patch, Totals};
 
 /// State of the audit of a triangle mesh.
 pub(super) struct MeshAudit {
     triangles: Triangles,
     hull: Hull,
-    /// Vertices that were finalized without a triangle: legal while there are no triangles at all.
-    unused: Vec<Corner>,
+    unused: Unused<2>,
     extent: Extent,
 }
 
@@ -34,7 +35,7 @@ impl MeshAudit {
         MeshAudit {
             triangles: Triangles::new(standard),
             hull: Hull::default(),
-            unused: Vec::new(),
+            unused: Unused::default(),
             extent: Extent::new(header),
         }
     }
@@ -43,21 +44,18 @@ impl MeshAudit {
         patch.new.iter().for_each(|&at| self.extent.add(at));
         let (hull, unused) = (&mut self.hull, &mut self.unused);
         self.triangles.patch(patch, ledger, |vertex, ledger| finalize(vertex, hull, unused, ledger))?;
-        self.check_unused()
+        if self.triangles.triangles > 0 { self.unused.check_none("triangle") } else { Ok(()) }
     }
 
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
-        if let Some(vertex) = self.triangles.first_live(|_| true) {
-            let message = format!("vertex {} is never finalized", vertex.id);
-            return Err(Violation::new(Check::Finalization, message).with(vertex.id, vertex.at));
-        }
+        self.triangles.vertices.check_finalized()?;
         if self.triangles.triangles == 0 {
-            check_line(&mut self.unused, ledger)?;
+            self.unused.check_line(ledger)?;
         } else {
             self.hull.check(&self.triangles.edges, ledger)?;
             self.check_euler(ledger)?;
         }
-        self.check_counts(totals, ledger)?;
+        check_points(self.triangles.vertices.seen(), totals, ledger)?;
         self.extent.check_holds(ledger)
     }
 
@@ -65,19 +63,9 @@ impl MeshAudit {
         &self.triangles
     }
 
-    fn check_unused(&self) -> Result<(), Violation> {
-        match self.unused.first() {
-            Some(corner) if self.triangles.triangles > 0 => {
-                let message = format!("no triangle uses vertex {}", corner.id);
-                Err(Violation::new(Check::Vertices, message).with(corner.id, corner.point()))
-            }
-            _ => Ok(()),
-        }
-    }
-
     fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let (vertices, triangles, hull) =
-            (self.triangles.vertices, self.triangles.triangles, self.triangles.edges.len() as u64);
+            (self.triangles.vertices.seen(), self.triangles.triangles, self.triangles.edges.len() as u64);
         ledger.add(Check::Euler, 1);
         if triangles + 2 + hull != 2 * vertices {
             let message = format!("{vertices} vertices and {hull} hull edges, but {triangles} triangles");
@@ -85,39 +73,34 @@ impl MeshAudit {
         }
         Ok(())
     }
-
-    fn check_counts(&self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
-        ledger.add(Check::Counts, 1);
-        if self.triangles.vertices.checked_add(totals.merged) != Some(totals.points) {
-            let message = format!(
-                "{} vertices and {} merged points are not the {} points of the input",
-                self.triangles.vertices, totals.merged, totals.points
-            );
-            return Err(Violation::new(Check::Counts, message));
-        }
-        Ok(())
-    }
 }
 
-/// An inner vertex has no open edge, a vertex of the hull one in and one out.
+/// An inner vertex has no open edge and its triangles go around it once; a vertex of the hull has one open edge in and
+/// one out.
 fn finalize(
-    vertex: &Vertex,
+    vertex: &Vertex<Fans>,
     hull: &mut Hull,
-    unused: &mut Vec<Corner>,
+    unused: &mut Unused<2>,
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
     ledger.add(Check::Vertices, 1);
-    match (vertex.entering, vertex.leaving) {
-        (0, 0) if !vertex.used => unused.push(Corner { id: vertex.id, at: vertex.xy() }),
-        (0, 0) => {}
-        (1, 1) => hull.add(vertex.id, vertex.xy()),
+    let fans = vertex.star;
+    match (fans.entering, fans.leaving) {
+        (0, 0) if !fans.is_used => {
+            unused.add(Corner::of(vertex));
+            Ok(())
+        }
+        (0, 0) => fans.winding.check_once(vertex),
+        (1, 1) => {
+            hull.add(Corner::of(vertex));
+            fans.winding.check_at_most_once(vertex)
+        }
         (entering, leaving) => {
             let message = format!(
                 "vertex {} is finalized with {entering} open edges in and {leaving} out, expected at most one",
                 vertex.id
             );
-            return Err(Violation::new(Check::Vertices, message).with(vertex.id, vertex.at));
+            Err(Violation::new(Check::Vertices, message).with(vertex.id, vertex.at))
         }
     }
-    Ok(())
 }

@@ -22,6 +22,10 @@
 //! of its neighbourhood inside of the polygon. The cycle passes every position of the polygon once. So a second
 //! vertex at the same place, or a triangle around it, would cover something twice.
 //!
+//! *Each vertex closes by itself*: when it is finalized its triangles must go around it once, or from one open edge to
+//! the other ([`winding`]). That follows, too, for a vertex of a mesh that passes; but a mesh that branches at a vertex,
+//! or has a second sheet there, is refused at that vertex instead of at the end.
+//!
 //! *Directed edges are unique*, because two triangles to the left of one edge would overlap. An edge that is
 //! used again while it is open is reported at once, one that is used again later by its consequences.
 //!
@@ -32,10 +36,11 @@
 mod cells;
 mod check;
 pub mod config;
+mod corner;
 pub mod diagram;
-mod edges;
 mod exact;
 mod extent;
+mod facets;
 mod hull;
 mod mesh;
 mod partial;
@@ -45,7 +50,11 @@ mod survey;
 mod survey4;
 mod survey_configurations;
 mod tetrahedra;
+mod totals;
 mod triangles;
+mod unused;
+mod vertices;
+mod winding;
 
 pub(crate) use check::shortest;
 pub use check::{Check, CheckLine, Violation};
@@ -193,8 +202,8 @@ impl Audit {
     fn width(&self) -> (usize, usize) {
         match &self.state {
             State::Points(_) => (0, 0),
-            State::Mesh(audit) => (audit.triangles().live_max(), audit.triangles().edges.len()),
-            State::Partial(audit) => (audit.triangles().live_max(), audit.triangles().edges.len()),
+            State::Mesh(audit) => (audit.triangles().vertices.live_max(), audit.triangles().edges.len()),
+            State::Partial(audit) => (audit.triangles().vertices.live_max(), audit.triangles().edges.len()),
             State::Tetrahedra(audit) => (audit.live_max(), audit.open_facets()),
         }
     }

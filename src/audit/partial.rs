@@ -10,7 +10,8 @@ use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
 use super::exact::plane::lexicographic;
-use super::triangles::{Standard, Triangles, Vertex};
+use super::triangles::{Fans, Standard, Triangles};
+use super::vertices::Vertex;
 use crate::bounds::{Point, Region};
 use crate::stream::{Header, Patch, Totals};
 
@@ -74,10 +75,12 @@ impl PartialAudit {
         self.check_walls(ledger)?;
         let unwritten = self.residual.iter().filter(|(id, _)| id.is_none()).count() as u64;
         ledger.add(Check::Counts, 1);
-        if (self.triangles.vertices + unwritten).checked_add(totals.merged) != Some(totals.points) {
+        if (self.triangles.vertices.seen() + unwritten).checked_add(totals.merged) != Some(totals.points) {
             let message = format!(
                 "{} vertices, {unwritten} residual points that are none and {} merged points are not the {} points",
-                self.triangles.vertices, totals.merged, totals.points
+                self.triangles.vertices.seen(),
+                totals.merged,
+                totals.points
             );
             return Err(Violation::new(Check::Counts, message));
         }
@@ -104,7 +107,7 @@ impl PartialAudit {
         for &(id, at) in &self.residual {
             let Some(id) = id else { continue };
             ledger.add(Check::Residual, 1);
-            let Some(vertex) = self.triangles.live(id) else {
+            let Some(vertex) = self.triangles.vertices.live(id) else {
                 return Err(fail(format!("vertex {id} of the residual was finalized")).with(id, at));
             };
             if vertex.at != at {
@@ -115,7 +118,7 @@ impl PartialAudit {
                 return Err(fail(format!("vertex {id} is in the residual twice")).with(id, at));
             }
         }
-        match self.triangles.first_live(|vertex| !seen.contains(&vertex.id)) {
+        match self.triangles.vertices.first_live(|vertex| !seen.contains(&vertex.id)) {
             None => Ok(()),
             Some(lost) => {
                 let message = format!("vertex {} is neither finalized nor in the residual", lost.id);
@@ -146,7 +149,7 @@ impl PartialAudit {
             ledger.add(Check::Walls, 1);
             let ends = [from, to].map(|end| self.residual[end as usize]);
             let is_open = match ends.map(|(id, _)| id) {
-                [Some(from), Some(to)] => self.triangles.edges.close(from, to),
+                [Some(from), Some(to)] => self.triangles.edges.close([from, to]),
                 _ => false,
             };
             if !is_open {
@@ -157,11 +160,11 @@ impl PartialAudit {
                 return Err(ends.iter().fold(violation, |violation, &(id, at)| violation.with(id, at)));
             }
         }
-        match self.triangles.edges.first() {
+        match self.triangles.edges.iter().map(|(ends, _)| ends).min() {
             None => Ok(()),
             Some(ends) => {
                 let message = format!("the open edge {} to {} has no wall", ends[0], ends[1]);
-                let live = ends.iter().filter_map(|&end| self.triangles.live(end));
+                let live = ends.iter().filter_map(|&end| self.triangles.vertices.live(end));
                 let violation = Violation::new(Check::Walls, message);
                 Err(live.fold(violation, |violation, vertex| violation.with(vertex.id, vertex.at)))
             }
@@ -170,14 +173,15 @@ impl PartialAudit {
 }
 
 /// A final vertex is closed on all sides: an open edge would be a wall, whose ends are in the residual.
-fn finalize(vertex: &Vertex, ledger: &mut Ledger) -> Result<(), Violation> {
+fn finalize(vertex: &Vertex<Fans>, ledger: &mut Ledger) -> Result<(), Violation> {
     ledger.add(Check::Vertices, 1);
-    let fault = if !vertex.used {
+    let fans = vertex.star;
+    let fault = if !fans.is_used {
         "without a triangle"
-    } else if vertex.entering + vertex.leaving > 0 {
+    } else if fans.entering + fans.leaving > 0 {
         "with open edges"
     } else {
-        return Ok(());
+        return fans.winding.check_once(vertex);
     };
     let message = format!("vertex {} is finalized {fault}", vertex.id);
     Err(Violation::new(Check::Vertices, message).with(vertex.id, vertex.at))

@@ -2,15 +2,20 @@
 //! triangle, with the vertices that are live.
 
 use std::cmp::Ordering;
-use std::collections::HashMap;
-
-use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
-use super::edges::{Corner, Meeting, OpenEdges};
-use super::exact::plane::{Xy, in_circle, in_raised_circle, orientation};
-use crate::bounds::Point;
+use super::corner::{self, name_corners};
+use super::exact::plane::{in_circle, in_raised_circle, orientation};
+use super::facets::{Meeting, OpenFacets};
+use super::vertices::{Vertex, Vertices};
+use super::winding::{Winding, corner_of};
 use crate::stream::Patch;
+
+/// A vertex of a triangle.
+pub(super) type Corner = corner::Corner<2>;
+
+/// Directed edges between their triangle and that of their twin, with the third corner of their triangle.
+pub(super) type OpenEdges = OpenFacets<2, Corner>;
 
 /// What is asked of the edges of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,50 +26,28 @@ pub enum Standard {
     Canonical,
 }
 
-/// A vertex between its patch and its finalization.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
-    pub(super) id: u64,
-    pub(super) at: Point,
-    /// Number of open edges that start here, and of those that end here.
+/// The triangles around a vertex.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Fans {
+    /// Number of open edges that start at the vertex, and of those that end there.
     pub(super) leaving: u32,
     pub(super) entering: u32,
-    /// Whether a triangle has it.
-    pub(super) used: bool,
-}
-
-impl Vertex {
-    pub(super) fn xy(&self) -> Xy {
-        [self.at[0], self.at[1]]
-    }
-
-    fn corner(&self) -> Corner {
-        Corner { id: self.id, at: self.xy() }
-    }
+    /// Whether a triangle has the vertex.
+    pub(super) is_used: bool,
+    pub(super) winding: Winding,
 }
 
 /// Live vertices and open edges of the triangles seen so far.
 pub(super) struct Triangles {
     standard: Standard,
-    live: HashMap<u64, Vertex, RandomState>,
+    pub(super) vertices: Vertices<Fans>,
     pub(super) edges: OpenEdges,
     pub(super) triangles: u64,
-    pub(super) vertices: u64,
-    local: Vec<Vertex>,
-    live_max: usize,
 }
 
 impl Triangles {
     pub(super) fn new(standard: Standard) -> Self {
-        Triangles {
-            standard,
-            live: HashMap::default(),
-            edges: OpenEdges::default(),
-            triangles: 0,
-            vertices: 0,
-            local: Vec::new(),
-            live_max: 0,
-        }
+        Triangles { standard, vertices: Vertices::default(), edges: OpenFacets::new(), triangles: 0 }
     }
 
     /// Checks a patch and gives the vertices that it finalizes to `finalize`.
@@ -72,44 +55,17 @@ impl Triangles {
         &mut self,
         patch: &Patch,
         ledger: &mut Ledger,
-        mut finalize: impl FnMut(&Vertex, &mut Ledger) -> Result<(), Violation>,
+        mut finalize: impl FnMut(&Vertex<Fans>, &mut Ledger) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
-        self.enter(patch, ledger)?;
+        self.vertices.enter(patch, ledger)?;
         for triangle in patch.triangles() {
             self.triangle(triangle.map(|local| local as usize), ledger)?;
         }
-        let mut finalized = patch.finalized.iter().map(|&local| local as usize).peekable();
-        for (local, vertex) in self.local.iter().enumerate() {
-            if finalized.next_if_eq(&local).is_some() {
-                finalize(vertex, ledger)?;
-            } else {
-                self.live.insert(vertex.id, *vertex);
-            }
-        }
-        Ok(())
-    }
-
-    /// Puts the vertices of a patch in the order of their local indices.
-    fn enter(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
-        self.local.clear();
-        for (&at, id) in patch.new.iter().zip(patch.first_id..) {
-            self.local.push(Vertex { id, at, leaving: 0, entering: 0, used: false });
-        }
-        for id in &patch.imported {
-            let Some(vertex) = self.live.remove(id) else {
-                let message = format!("vertex {id} is used after it was finalized");
-                return Err(Violation::new(Check::Finalization, message));
-            };
-            self.local.push(vertex);
-        }
-        ledger.add(Check::Finalization, patch.vertices() as u64);
-        self.vertices += patch.new.len() as u64;
-        self.live_max = self.live_max.max(self.live.len() + self.local.len());
-        Ok(())
+        self.vertices.leave(patch, |vertex| finalize(vertex, ledger))
     }
 
     fn triangle(&mut self, locals: [usize; 3], ledger: &mut Ledger) -> Result<(), Violation> {
-        let corners = locals.map(|local| self.local[local].corner());
+        let corners = locals.map(|local| Corner::of(&self.vertices.local[local]));
         let [a, b, c] = corners;
         let turn = orientation(a.at, b.at, c.at);
         ledger.count(Check::Orientation, turn.exactly);
@@ -119,27 +75,37 @@ impl Triangles {
             return Err(name_corners(Violation::new(Check::Orientation, message), &corners));
         }
         self.triangles += 1;
+        self.wind(locals, corners);
         for side in 0..3 {
             self.side([0, 1, 2].map(|i| locals[(side + i) % 3]), ledger)?;
         }
         Ok(())
     }
 
+    /// Counts the triangle for the corner that has it below or above: the middle one from left to right.
+    fn wind(&mut self, locals: [usize; 3], [a, b, c]: [Corner; 3]) {
+        let faces_down = |p: Corner, q: Corner| p.at < q.at;
+        if let Some((corner, place)) = corner_of([faces_down(b, c), faces_down(c, a), faces_down(a, b)]) {
+            self.vertices.local[locals[corner]].star.winding.add(place);
+        }
+    }
+
     /// Meets the edge from the first to the second corner with its twin.
     fn side(&mut self, locals: [usize; 3], ledger: &mut Ledger) -> Result<(), Violation> {
-        let [a, b, c] = locals.map(|local| self.local[local].corner());
+        let local = &mut self.vertices.local;
+        let [a, b, c] = locals.map(|vertex| Corner::of(&local[vertex]));
         let (from, to) = (locals[0], locals[1]);
-        self.local[from].used = true;
+        local[from].star.is_used = true;
         ledger.add(Check::Edges, 1);
-        match self.edges.meet(a.id, b.id, c) {
+        match self.edges.meet([a.id, b.id], c) {
             Meeting::Open => {
-                self.local[from].leaving += 1;
-                self.local[to].entering += 1;
+                local[from].star.leaving += 1;
+                local[to].star.entering += 1;
                 Ok(())
             }
             Meeting::Twin(opposite) => {
-                self.local[from].entering -= 1;
-                self.local[to].leaving -= 1;
+                local[from].star.entering -= 1;
+                local[to].star.leaving -= 1;
                 self.interior_edge(a, b, c, opposite, ledger)
             }
             Meeting::Twice(other) => {
@@ -181,23 +147,4 @@ impl Triangles {
         );
         Err(name_corners(Violation::new(check, message), &[a, b, c, opposite]))
     }
-
-    /// The vertex, if it is live.
-    pub(super) fn live(&self, id: u64) -> Option<&Vertex> {
-        self.live.get(&id)
-    }
-
-    /// Most vertices that were live at once.
-    pub(super) fn live_max(&self) -> usize {
-        self.live_max
-    }
-
-    /// The live vertex with the smallest id that `is_wrong`.
-    pub(super) fn first_live(&self, is_wrong: impl Fn(&Vertex) -> bool) -> Option<&Vertex> {
-        self.live.values().filter(|vertex| is_wrong(vertex)).min_by_key(|vertex| vertex.id)
-    }
-}
-
-fn name_corners(violation: Violation, corners: &[Corner]) -> Violation {
-    corners.iter().fold(violation, |violation, corner| violation.with(corner.id, corner.point()))
 }

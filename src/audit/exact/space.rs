@@ -44,9 +44,20 @@ pub(in crate::audit) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz)
 
 /// Whether `a`, `b` and `c` lie on a line: they do in all three projections.
 pub(in crate::audit) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
-    [[0, 1], [1, 2], [2, 0]].into_iter().all(|axes| {
+    normal_signs(a, b, c).all(|sign| sign == Ordering::Equal)
+}
+
+/// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is counterclockwise seen from,
+/// for any infinitesimal e: whether the first component of its normal that is not zero is positive.
+pub(in crate::audit) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
+    normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
+}
+
+/// The signs of the components of (b - a) x (c - a), which are areas in the three projections.
+fn normal_signs(a: Xyz, b: Xyz, c: Xyz) -> impl Iterator<Item = Ordering> {
+    [[1, 2], [2, 0], [0, 1]].into_iter().map(move |axes| {
         let [a, b, c] = [a, b, c].map(|point| axes.map(|axis: usize| point[axis]));
-        plane::orientation(a, b, c).sign == Ordering::Equal
+        plane::orientation(a, b, c).sign
     })
 }
 
@@ -308,6 +319,20 @@ mod tests {
         assert_eq!(in_raised_sphere(a, b, c, d, f), Ordering::Less);
         assert_eq!(in_raised_sphere(a, b, f, d, c), Ordering::Greater);
         assert_eq!(in_raised_sphere(b, f, c, d, a), Ordering::Less);
+    }
+
+    /// Facets that contain the direction of x, or those of x and y, are told apart by the next axis.
+    #[test]
+    fn facets_face_a_direction_near_the_first_axis() {
+        let [o, x, y, z, _] = CUBE;
+        for (facet, is_ahead) in
+            [([x, y, z], true), ([o, z, y], false), ([o, x, z], false), ([o, y, x], false)]
+        {
+            let [a, b, c] = facet;
+            assert_eq!(faces_ahead(a, b, c), is_ahead, "{facet:?}");
+            assert_eq!(faces_ahead(b, c, a), is_ahead, "{facet:?}");
+            assert_eq!(faces_ahead(b, a, c), !is_ahead, "{facet:?}");
+        }
     }
 
     #[test]

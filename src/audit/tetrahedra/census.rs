@@ -6,33 +6,34 @@
 
 use std::cmp::Ordering;
 
-use super::coplanar::check_plane;
+use super::Corner;
 use super::faces::SeenFaces;
-use super::facets::{Corner, FACETS, Meeting, OpenFacets, increasing};
 use super::hull::Hull;
-use super::live::{EDGES, edge};
-use super::vertices::Vertices;
+use super::live::{EDGES, FACETS, edge};
 use crate::audit::Standard;
 use crate::audit::check::{Ledger, Violation};
 use crate::audit::exact::space::{
     float_in_sphere, float_orientation, in_raised_sphere, in_sphere, orientation,
 };
+use crate::audit::facets::{Meeting, OpenFacets, increasing};
+use crate::audit::unused::Unused;
+use crate::audit::vertices::Vertices;
 use crate::stream::{Event, Patch};
 
 /// Counts the faults of a tetrahedral mesh: give it every event, and ask for the figures.
 ///
 /// Domain: the events of a stream of tetrahedra from a [`crate::stream::StreamReader`], however wrong the mesh is.
 ///
-/// Memory: as for the audit, and 4 bytes per tetrahedron.
+/// Memory: as for the audit, the edges and facets between live vertices, and 4 bytes per tetrahedron.
 pub struct Census {
-    vertices: Vertices,
-    facets: OpenFacets<Beyond>,
+    vertices: Vertices<Use>,
+    facets: OpenFacets<3, Beyond>,
     edges: SeenFaces<2>,
     /// Facets between two tetrahedra.
     closed: SeenFaces<3>,
     tetrahedra: Vec<[Judgement; 2]>,
     hull: Hull,
-    unused: Vec<Corner>,
+    unused: Unused<3>,
     facets_seen: u64,
     figures: Figures,
 }
@@ -94,6 +95,14 @@ impl Figures {
     }
 }
 
+/// How often a vertex is used.
+#[derive(Debug, Clone, Copy, Default)]
+struct Use {
+    tetrahedra: u64,
+    /// Open facets.
+    open: u64,
+}
+
 /// What is known of the tetrahedron at an open facet.
 #[derive(Debug, Clone, Copy)]
 struct Beyond {
@@ -142,7 +151,7 @@ impl Census {
             closed: SeenFaces::default(),
             tetrahedra: Vec::new(),
             hull: Hull::default(),
-            unused: Vec::new(),
+            unused: Unused::default(),
             facets_seen: 0,
             figures: Figures::default(),
         }
@@ -170,26 +179,26 @@ impl Census {
     }
 
     fn patch(&mut self, patch: &Patch) -> Result<(), Violation> {
-        self.vertices.enter(patch)?;
+        self.vertices.enter(patch, &mut Ledger::default())?;
         for tetrahedron in patch.tetrahedra() {
             self.tetrahedron(tetrahedron.map(|local| local as usize));
         }
         let (hull, unused) = (&mut self.hull, &mut self.unused);
         self.vertices.leave(patch, |vertex| {
-            if vertex.open > 0 {
-                hull.add(vertex.corner());
-            } else if vertex.tetrahedra == 0 {
-                unused.push(vertex.corner());
+            if vertex.star.open > 0 {
+                hull.add(Corner::of(vertex));
+            } else if vertex.star.tetrahedra == 0 {
+                unused.add(Corner::of(vertex));
             }
             Ok(())
         })?;
-        self.edges.sweep(|id| self.vertices.is_live(id));
-        self.closed.sweep(|id| self.vertices.is_live(id));
+        self.edges.sweep(|id| self.vertices.live(id).is_some());
+        self.closed.sweep(|id| self.vertices.live(id).is_some());
         Ok(())
     }
 
     fn tetrahedron(&mut self, locals: [usize; 4]) {
-        let corners = locals.map(|local| self.vertices.local[local].corner());
+        let corners = locals.map(|local| Corner::of(&self.vertices.local[local]));
         let [a, b, c, d] = corners.map(|corner| corner.at);
         let orientations = [orientation(a, b, c, d).sign, float_orientation(a, b, c, d)];
         let index = self.tetrahedra.len();
@@ -199,9 +208,9 @@ impl Census {
             self.side(&corners, &locals, side, index);
         }
         for [i, j] in EDGES {
-            self.edges.add(edge(corners[i], corners[j]));
+            self.edges.add(edge(corners[i].id, corners[j].id));
         }
-        locals.iter().for_each(|&local| self.vertices.local[local].tetrahedra += 1);
+        locals.iter().for_each(|&local| self.vertices.local[local].star.tetrahedra += 1);
     }
 
     /// Meets the facet opposite to a corner with its twin.
@@ -210,13 +219,13 @@ impl Census {
         let ids = facet.map(|i| corners[i].id);
         match self.facets.meet(ids, Beyond { apex: corners[side], index }) {
             Meeting::Open => {
-                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open += 1);
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open += 1);
                 let is_crowded = self.closed.contains(increasing(ids).0);
                 self.figures.crowded_facets += u64::from(is_crowded);
                 self.facets_seen += u64::from(!is_crowded);
             }
             Meeting::Twin(beyond) => {
-                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open -= 1);
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open -= 1);
                 self.closed.add(increasing(ids).0);
                 self.figures.interior_facets += 1;
                 self.neighbours(corners, side, index, beyond);
@@ -260,9 +269,9 @@ impl Census {
         figures.euler = vertices - edges + facets - tetrahedra;
         let ledger = &mut Ledger::default();
         figures.is_hull_proved = if self.tetrahedra.is_empty() {
-            check_plane(&mut self.unused, ledger).is_ok()
+            self.unused.check_plane(ledger).is_ok()
         } else {
-            figures.unused = self.unused.len() as u64;
+            figures.unused = self.unused.len();
             self.hull.check(open(), ledger).is_ok()
         };
     }

@@ -19,12 +19,9 @@ pub(super) struct SeenFaces<const N: usize> {
 const SWEEP_LEN_MIN: usize = 1 << 12;
 
 impl<const N: usize> SeenFaces<N> {
-    /// Adds a face; whether it is new.
-    pub(super) fn add(&mut self, face: [u64; N]) -> bool {
+    pub(super) fn add(&mut self, face: [u64; N]) {
         debug_assert!(face.is_sorted(), "increasing ids");
-        let is_new = self.faces.insert(face);
-        self.seen += u64::from(is_new);
-        is_new
+        self.seen += u64::from(self.faces.insert(face));
     }
 
     /// Whether the face was added, and its vertices have been live since.

@@ -26,9 +26,9 @@ use std::convert::Infallible;
 
 use foldhash::fast::RandomState;
 
-use super::facets::{Corner, name_corners};
-use super::live::named;
+use super::Corner;
 use crate::audit::check::{Check, Ledger, Violation};
+use crate::audit::corner::{name_corners, named};
 use crate::audit::exact::plane;
 use crate::audit::exact::space::{Xyz, float_orientation, orientation};
 

@@ -2,23 +2,43 @@
 
 use std::cmp::Ordering;
 
-use super::faces::SeenFaces;
-use super::facets::{Corner, FACETS, Meeting, OpenFacets, name_corners};
-use super::vertices::{Vertex, Vertices};
+use super::Corner;
+use super::edges::OpenEdges;
 use crate::audit::Standard;
 use crate::audit::check::{Check, Ledger, Violation};
-use crate::audit::exact::space::{in_raised_sphere, in_sphere, orientation};
+use crate::audit::corner::{name_corners, named};
+use crate::audit::exact::space::{faces_ahead, in_raised_sphere, in_sphere, orientation};
+use crate::audit::facets::{Meeting, OpenFacets};
+use crate::audit::vertices::{Vertex, Vertices};
+use crate::audit::winding::{Winding, corner_of};
 use crate::stream::Patch;
 
-/// The edges of a tetrahedron.
+/// The corners of each facet of a positive tetrahedron, counterclockwise seen from outside; the facet opposite to
+/// corner 0 first.
+pub(super) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// The edges of a tetrahedron. Those as far from either end of the list are opposite to each other, and the facets at one
+/// are opposite to the corners of the other.
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// Live vertices, open facets and edges of the tetrahedra seen so far.
+/// The tetrahedra around a vertex: the size of its link so far.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Star {
+    /// Tetrahedra that have the vertex.
+    pub(super) tetrahedra: u64,
+    /// Edges that have it.
+    pub(super) edges: u64,
+    /// Open facets that have it.
+    pub(super) open: u64,
+    pub(super) winding: Winding,
+}
+
+/// Live vertices, open facets and their edges of the tetrahedra seen so far.
 pub(super) struct LiveTetrahedra {
     standard: Standard,
-    pub(super) vertices: Vertices,
-    pub(super) facets: OpenFacets<Corner>,
-    edges: SeenFaces<2>,
+    pub(super) vertices: Vertices<Star>,
+    pub(super) facets: OpenFacets<3, Corner>,
+    edges: OpenEdges,
     facets_seen: u64,
     tetrahedra_seen: u64,
 }
@@ -39,7 +59,7 @@ impl LiveTetrahedra {
             standard,
             vertices: Vertices::default(),
             facets: OpenFacets::new(),
-            edges: SeenFaces::default(),
+            edges: OpenEdges::default(),
             facets_seen: 0,
             tetrahedra_seen: 0,
         }
@@ -59,20 +79,17 @@ impl LiveTetrahedra {
         &mut self,
         patch: &Patch,
         ledger: &mut Ledger,
-        mut finalize: impl FnMut(&Vertex, &mut Ledger) -> Result<(), Violation>,
+        mut finalize: impl FnMut(&Vertex<Star>, &mut Ledger) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
-        self.vertices.enter(patch)?;
-        ledger.add(Check::Finalization, patch.vertices() as u64);
+        self.vertices.enter(patch, ledger)?;
         for tetrahedron in patch.tetrahedra() {
             self.tetrahedron(tetrahedron.map(|local| local as usize), ledger)?;
         }
-        self.vertices.leave(patch, |vertex| finalize(vertex, ledger))?;
-        self.edges.sweep(|id| self.vertices.is_live(id));
-        Ok(())
+        self.vertices.leave(patch, |vertex| finalize(vertex, ledger))
     }
 
     fn tetrahedron(&mut self, locals: [usize; 4], ledger: &mut Ledger) -> Result<(), Violation> {
-        let corners = locals.map(|local| self.vertices.local[local].corner());
+        let corners = locals.map(|local| Corner::of(&self.vertices.local[local]));
         let [a, b, c, d] = corners;
         let turn = orientation(a.at, b.at, c.at, d.at);
         ledger.count(Check::Orientation, turn.exactly);
@@ -86,16 +103,39 @@ impl LiveTetrahedra {
         for (side, is_shared) in is_shared.iter_mut().enumerate() {
             *is_shared = self.side(&corners, &locals, side, ledger)?;
         }
-        for [i, j] in EDGES {
-            // The edges of a facet that was open came with the tetrahedron beyond it.
-            let is_old = (0..4).any(|side| is_shared[side] && side != i && side != j);
-            if !is_old && self.edges.add(edge(corners[i], corners[j])) {
-                self.vertices.local[locals[i]].edges += 1;
-                self.vertices.local[locals[j]].edges += 1;
-            }
+        for (ends, sides) in EDGES.into_iter().zip(EDGES.into_iter().rev()) {
+            self.edge(ends.map(|i| (corners[i].id, locals[i])), sides.map(|side| is_shared[side]));
         }
-        locals.iter().for_each(|&local| self.vertices.local[local].tetrahedra += 1);
+        self.wind(&corners, &locals);
+        locals.iter().for_each(|&local| self.vertices.local[local].star.tetrahedra += 1);
         Ok(())
+    }
+
+    /// Takes note of the edge between two vertices, with their ids and local indices; of each of its two facets, whether
+    /// its twin was there. If one was, so was the edge; and if the other was not, it has as many open facets as before.
+    fn edge(&mut self, [p, q]: [(u64, usize); 2], is_shared: [bool; 2]) {
+        let ids = edge(p.0, q.0);
+        match is_shared {
+            [false, false] => {
+                if self.edges.open_two(ids) {
+                    self.vertices.local[p.1].star.edges += 1;
+                    self.vertices.local[q.1].star.edges += 1;
+                }
+            }
+            [true, true] => self.edges.close_two(ids),
+            [false, true] | [true, false] => {}
+        }
+    }
+
+    /// Counts the tetrahedron for the corner that has it ahead or behind, if one has.
+    fn wind(&mut self, corners: &[Corner; 4], locals: &[usize; 4]) {
+        let is_facing = FACETS.map(|facet| {
+            let [a, b, c] = facet.map(|i| corners[i].at);
+            faces_ahead(a, b, c)
+        });
+        if let Some((corner, place)) = corner_of(is_facing) {
+            self.vertices.local[locals[corner]].star.winding.add(place);
+        }
     }
 
     /// Meets the facet opposite to a corner with its twin; whether the twin was there.
@@ -111,11 +151,11 @@ impl LiveTetrahedra {
         match self.facets.meet(facet.map(|i| corners[i].id), corners[side]) {
             Meeting::Open => {
                 self.facets_seen += 1;
-                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open += 1);
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open += 1);
                 Ok(false)
             }
             Meeting::Twin(opposite) => {
-                facet.iter().for_each(|&i| self.vertices.local[locals[i]].open -= 1);
+                facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open -= 1);
                 self.interior_facet(corners, side, opposite, ledger).map(|()| true)
             }
             Meeting::Twice(other) => {
@@ -168,12 +208,6 @@ impl LiveTetrahedra {
 }
 
 /// The ids of an edge in increasing order.
-pub(super) fn edge(p: Corner, q: Corner) -> [u64; 2] {
-    [p.id.min(q.id), p.id.max(q.id)]
-}
-
-/// The ids, as they are written in messages.
-pub(super) fn named(corners: &[Corner]) -> String {
-    let ids: Vec<String> = corners.iter().map(|corner| corner.id.to_string()).collect();
-    format!("({})", ids.join(", "))
+pub(super) fn edge(p: u64, q: u64) -> [u64; 2] {
+    [p.min(q), p.max(q)]
 }

@@ -4,45 +4,35 @@ use std::collections::HashMap;
 
 use foldhash::fast::RandomState;
 
-use super::facets::Corner;
-use crate::audit::check::{Check, Violation};
+use super::check::{Check, Ledger, Violation};
 use crate::bounds::Point;
 use crate::stream::Patch;
 
-/// A vertex with the size of its link so far.
+/// A vertex with what is known of its star, the simplices that have it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Vertex {
+pub(super) struct Vertex<S> {
     pub(super) id: u64,
     pub(super) at: Point,
-    /// Tetrahedra that have it.
-    pub(super) tetrahedra: u64,
-    /// Edges that have it.
-    pub(super) edges: u64,
-    /// Open facets that have it.
-    pub(super) open: u64,
-}
-
-impl Vertex {
-    pub(super) fn corner(&self) -> Corner {
-        Corner { id: self.id, at: self.at }
-    }
+    pub(super) star: S,
 }
 
 /// Live vertices, and those of the patch at hand in the order of their local indices.
+///
+/// Memory: the width of the stream.
 #[derive(Debug, Default)]
-pub(super) struct Vertices {
-    live: HashMap<u64, Vertex, RandomState>,
-    pub(super) local: Vec<Vertex>,
+pub(super) struct Vertices<S> {
+    live: HashMap<u64, Vertex<S>, RandomState>,
+    pub(super) local: Vec<Vertex<S>>,
     seen: u64,
     live_max: usize,
 }
 
-impl Vertices {
+impl<S: Copy + Default> Vertices<S> {
     /// Takes up the vertices of a patch.
-    pub(super) fn enter(&mut self, patch: &Patch) -> Result<(), Violation> {
+    pub(super) fn enter(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
         self.local.clear();
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
-            self.local.push(Vertex { id, at, tetrahedra: 0, edges: 0, open: 0 });
+            self.local.push(Vertex { id, at, star: S::default() });
         }
         for id in &patch.imported {
             let Some(vertex) = self.live.remove(id) else {
@@ -51,6 +41,7 @@ impl Vertices {
             };
             self.local.push(vertex);
         }
+        ledger.add(Check::Finalization, patch.vertices() as u64);
         self.seen += patch.new.len() as u64;
         self.live_max = self.live_max.max(self.live.len() + self.local.len());
         Ok(())
@@ -60,7 +51,7 @@ impl Vertices {
     pub(super) fn leave(
         &mut self,
         patch: &Patch,
-        mut finalize: impl FnMut(&Vertex) -> Result<(), Violation>,
+        mut finalize: impl FnMut(&Vertex<S>) -> Result<(), Violation>,
     ) -> Result<(), Violation> {
         let mut finalized = patch.finalized.iter().map(|&local| local as usize).peekable();
         for (local, vertex) in self.local.iter().enumerate() {
@@ -74,14 +65,21 @@ impl Vertices {
         Ok(())
     }
 
-    /// Whether a vertex is live, between two patches.
-    pub(super) fn is_live(&self, id: u64) -> bool {
-        self.live.contains_key(&id)
+    /// The vertex, if it is live.
+    pub(super) fn live(&self, id: u64) -> Option<&Vertex<S>> {
+        self.live.get(&id)
     }
 
-    /// The live vertex with the smallest id.
-    pub(super) fn first_live(&self) -> Option<&Vertex> {
-        self.live.values().min_by_key(|vertex| vertex.id)
+    /// The live vertex with the smallest id that `is_wrong`.
+    pub(super) fn first_live(&self, is_wrong: impl Fn(&Vertex<S>) -> bool) -> Option<&Vertex<S>> {
+        self.live.values().filter(|vertex| is_wrong(vertex)).min_by_key(|vertex| vertex.id)
+    }
+
+    /// Proves that no vertex is live any more.
+    pub(super) fn check_finalized(&self) -> Result<(), Violation> {
+        let Some(vertex) = self.first_live(|_| true) else { return Ok(()) };
+        let message = format!("vertex {} is never finalized", vertex.id);
+        Err(Violation::new(Check::Finalization, message).with(vertex.id, vertex.at))
     }
 
     /// Number of vertices so far.

@@ -1,0 +1,34 @@
+//! Vertices as the geometry sees them.
+
+use super::check::Violation;
+use super::vertices::Vertex;
+use crate::bounds::Point;
+
+/// A vertex in D dimensions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Corner<const D: usize> {
+    pub(super) id: u64,
+    pub(super) at: [f64; D],
+}
+
+impl<const D: usize> Corner<D> {
+    pub(super) fn of<S>(vertex: &Vertex<S>) -> Self {
+        Corner { id: vertex.id, at: std::array::from_fn(|axis| vertex.at[axis]) }
+    }
+
+    /// The position as a point for messages.
+    fn point(self) -> Point {
+        std::array::from_fn(|axis| self.at.get(axis).copied().unwrap_or(0.0))
+    }
+}
+
+/// Adds the corners to what a violation concerns.
+pub(super) fn name_corners<const D: usize>(violation: Violation, corners: &[Corner<D>]) -> Violation {
+    corners.iter().fold(violation, |violation, corner| violation.with(corner.id, corner.point()))
+}
+
+/// The ids, as they are written in messages.
+pub(super) fn named<const D: usize>(corners: &[Corner<D>]) -> String {
+    let ids: Vec<String> = corners.iter().map(|corner| corner.id.to_string()).collect();
+    format!("({})", ids.join(", "))
+}

@@ -1,0 +1,134 @@
+//! The oriented facets of simplices that wait for their twin: edges of triangles, triangles of tetrahedra.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use foldhash::fast::RandomState;
+
+/// What adding a facet did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Meeting<T> {
+    /// Its twin has not come yet.
+    Open,
+    /// Its twin was open and is not any more; what is known of the twin's simplex.
+    Twin(T),
+    /// Another simplex on the same side has the same facet open.
+    Twice(T),
+}
+
+/// Facets of `N` corners between their simplex and that of their twin, each with what is to be known of its simplex:
+/// the apex at least.
+///
+/// Memory: the boundary of the simplices seen so far, which is the front of the stream and the hull.
+#[derive(Debug)]
+pub(super) struct OpenFacets<const N: usize, T> {
+    open: HashMap<[u64; N], Side<T>, RandomState>,
+}
+
+/// The simplex on one side of a facet.
+#[derive(Debug, Clone, Copy)]
+struct Side<T> {
+    simplex: T,
+    /// Whether the corners in increasing order are in the order that the simplex has them, but for even permutations.
+    is_increasing: bool,
+}
+
+impl<const N: usize, T: Copy> OpenFacets<N, T> {
+    pub(super) fn new() -> Self {
+        OpenFacets { open: HashMap::default() }
+    }
+
+    /// Adds a facet. Its twin has the opposite order: an edge the other direction, a triangle that is counterclockwise
+    /// seen from outside of one tetrahedron the same seen from outside of the other.
+    pub(super) fn meet(&mut self, facet: [u64; N], simplex: T) -> Meeting<T> {
+        let (sorted, is_increasing) = increasing(facet);
+        match self.open.entry(sorted) {
+            Entry::Vacant(place) => {
+                place.insert(Side { simplex, is_increasing });
+                Meeting::Open
+            }
+            Entry::Occupied(twin) if twin.get().is_increasing != is_increasing => {
+                Meeting::Twin(twin.remove().simplex)
+            }
+            Entry::Occupied(other) => Meeting::Twice(other.get().simplex),
+        }
+    }
+
+    /// Takes a facet away; whether it was open.
+    pub(super) fn close(&mut self, facet: [u64; N]) -> bool {
+        let (sorted, is_increasing) = increasing(facet);
+        match self.open.entry(sorted) {
+            Entry::Occupied(side) if side.get().is_increasing == is_increasing => {
+                side.remove();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The open facets in the order that their simplices have them, with what is known of these, in no order.
+    pub(super) fn iter(&self) -> impl Iterator<Item = ([u64; N], T)> + '_ {
+        self.open.iter().map(|(&sorted, side)| {
+            let mut facet = sorted;
+            if !side.is_increasing {
+                facet.swap(N - 2, N - 1);
+            }
+            (facet, side.simplex)
+        })
+    }
+
+    /// Number of open facets.
+    pub(super) fn len(&self) -> usize {
+        self.open.len()
+    }
+}
+
+/// The ids in increasing order, and whether that is an even permutation.
+pub(super) fn increasing<const N: usize>(mut facet: [u64; N]) -> ([u64; N], bool) {
+    let mut is_even = true;
+    for end in (1..N).rev() {
+        for i in 0..end {
+            if facet[i] > facet[i + 1] {
+                facet.swap(i, i + 1);
+                is_even = !is_even;
+            }
+        }
+    }
+    (facet, is_even)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_meet_the_other_orientation_only() {
+        for facet in [[1, 2, 3], [2, 3, 1], [3, 1, 2], [1, 3, 2], [3, 2, 1], [2, 1, 3]] {
+            let [a, b, c] = facet;
+            for other in [[a, b, c], [b, c, a], [c, a, b]] {
+                let mut facets = OpenFacets::new();
+                assert_eq!(facets.meet(facet, 'p'), Meeting::Open);
+                assert_eq!(facets.meet(other, 'q'), Meeting::Twice('p'));
+                let (found, _) = facets.iter().next().unwrap();
+                assert!([[a, b, c], [b, c, a], [c, a, b]].contains(&found));
+                assert_eq!(facets.meet([other[1], other[0], other[2]], 'q'), Meeting::Twin('p'));
+                assert_eq!(facets.len(), 0);
+            }
+        }
+    }
+
+    #[test]
+    fn edges_meet_the_other_direction_only() {
+        for [a, b] in [[1, 2], [2, 1]] {
+            let mut edges = OpenFacets::new();
+            assert_eq!(edges.meet([a, b], 'p'), Meeting::Open);
+            assert_eq!(edges.meet([a, b], 'q'), Meeting::Twice('p'));
+            assert_eq!(edges.iter().collect::<Vec<_>>(), [([a, b], 'p')]);
+            assert!(!edges.close([b, a]));
+            assert_eq!(edges.meet([b, a], 'q'), Meeting::Twin('p'));
+            assert_eq!(edges.meet([b, a], 'q'), Meeting::Open);
+            assert!(edges.close([b, a]));
+            assert_eq!(edges.len(), 0);
+        }
+    }
+}
