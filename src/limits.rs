@@ -46,8 +46,17 @@ pub const NRRD_HEADER_MAX: u64 = 1 << 20;
 /// Most data files of an NRRD file.
 pub const NRRD_FILES_MAX: usize = 1 << 16;
 
-/// Longest number of a volume that is text, in bytes.
-pub const VOLUME_NUMBER_MAX: usize = 128;
+/// Longest number of a volume or of coordinates without lines that is text, in bytes.
+pub const NUMBER_LEN_MAX: usize = 128;
+
+/// Longest tag of an XML file, in bytes.
+pub const XML_TAG_MAX: usize = 1 << 16;
+
+/// Deepest element of an XML file: those of VTK have six levels.
+pub const XML_DEPTH_MAX: usize = 64;
+
+/// Longest block of a VTK file that is decompressed as a whole (LZ4), in bytes; VTK makes blocks of 32 KiB.
+pub const VTK_BLOCK_MAX: u64 = 1 << 26;
 
 /// Longest condition on points, in bytes.
 pub const CONDITION_LEN_MAX: usize = 1 << 12;

@@ -87,6 +87,8 @@ impl Folder {
     pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.root().join(name);
         fs::create_dir_all(path.parent().expect("a folder")).expect("a temporary folder");
+        // Some file systems send a file to the disk at once that is written over; a new one can wait.
+        drop(fs::remove_file(&path));
         fs::write(&path, content).expect("a temporary file");
         path
     }

@@ -4,6 +4,7 @@ mod damage;
 mod grids;
 mod las;
 mod las_file;
+mod raw;
 mod sp;
 mod structure;
 mod structure_cif;
@@ -11,6 +12,9 @@ mod structure_damage;
 mod structure_pdb;
 mod structure_selection;
 mod text;
+mod vtk_file;
+mod vtk_legacy;
+mod vtk_xml;
 
 use std::path::{Path, PathBuf};
 
@@ -55,6 +59,11 @@ fn points(paths: &[PathBuf], options: &SourceOptions) -> Result<Vec<Point>> {
 fn points_of(content: impl AsRef<[u8]>) -> Result<Vec<Point>> {
     let folder = Folder::new();
     points(&[folder.file("points", content)], &flat())
+}
+
+/// The bits of all coordinates, which tell zeros from each other.
+fn bits(points: &[Point]) -> Vec<u64> {
+    points.as_flattened().iter().map(|x| x.to_bits()).collect()
 }
 
 /// Asserts that reading fails with `kind` and a message with all of `parts`.

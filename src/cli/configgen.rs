@@ -66,7 +66,7 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 
 /// Delaunay configurations of any degree, and their generalisation.
 ///
-/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY and OBJ, point streams) or a triangle
+/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point streams) or a triangle
 /// mesh stream, and writes the configurations of all degrees up to one, which bivariate splines are defined by. The result
 /// is exact, whatever lies on one circle, on one line or in one place.
 #[derive(Debug, Parser)]

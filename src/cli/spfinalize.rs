@@ -11,7 +11,7 @@ use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory}
 use crate::error::Error;
 use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use crate::output::Output;
-use crate::source::{Input, SourceOptions};
+use crate::source::{Input, RawType, SourceOptions};
 
 const TOOL: &str = "spfinalize";
 
@@ -25,17 +25,19 @@ Examples:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Points of space from text on stdin:
       zcat scan.xyz.gz | spfinalize --octree - | spdelaunay3d -o scan.spm
+  Particles as floats without a header, the files of two processes as one input:
+      spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
 141 output closed by its reader.";
 
 /// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
 ///
-/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, or the vertices of PLY or OBJ, and writes a
-/// stream of points in which tags say which cells no later point lies in. Points of a cell are held back and written together
-/// (chunked), unless --preserve is given. The input is read two times or more: again where headers do not state
-/// its bounding box, and where cells are crowded. What cannot be read again is spooled, and decoded points are
-/// where that is cheaper (--spool).
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK (VTU, VTP, VTS
+/// or legacy), or numbers without a header (--raw), and writes a stream of points in which tags say which cells no later
+/// point lies in. Points of a cell are held back and written together (chunked), unless --preserve is given. The input is
+/// read two times or more: again where headers do not state its bounding box, and where cells are crowded. What cannot be
+/// read again is spooled, and decoded points are where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -46,6 +48,11 @@ pub struct Flags {
     /// Read the files that are listed in this file, one per line
     #[arg(long, value_name = "FILE")]
     lof: Option<PathBuf>,
+
+    /// Files hold nothing but numbers, x, y and z of one point after the other: a type of i8, u8, i16, u16, i32, u32, i64,
+    /// u64, f32 or f64 with its byte order, as in f32le or f64be
+    #[arg(long, value_name = "TYPE")]
+    raw: Option<RawType>,
 
     /// Where to write; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
@@ -200,6 +207,7 @@ impl Flags {
             skip_invalid: self.skip_invalid,
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
+            raw: self.raw,
             temp_dir: self.temp_dir.clone(),
             threads: NonZeroUsize::new(self.threads()),
         }

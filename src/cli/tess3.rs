@@ -44,7 +44,7 @@ input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF and LAS, plain or compressed
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or compressed
 /// (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of
 /// points only.
 #[derive(Debug, Parser)]
@@ -126,7 +126,7 @@ enum FormatFlag {
     Mmcif,
     /// XYZ of chemistry: number of atoms, comment, and lines of element x y z
     Xyz,
-    /// Points as spfinalize reads them: lines of x y z, streams, LAS
+    /// Points as spfinalize reads them: lines of x y z, streams, LAS, VTK
     Points,
     /// Vertices of a PLY file
     Ply,

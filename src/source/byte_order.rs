@@ -39,6 +39,10 @@ impl ByteOrder {
         u32::from_le_bytes(self.little(bytes))
     }
 
+    pub(super) fn u64(self, bytes: &[u8]) -> u64 {
+        u64::from_le_bytes(self.little(bytes))
+    }
+
     pub(super) fn f64(self, bytes: &[u8]) -> f64 {
         f64::from_le_bytes(self.little(bytes))
     }

@@ -4,6 +4,7 @@ use std::io::Read;
 
 use super::lines::number;
 use super::origin::FileView;
+use super::vtk;
 use crate::error::{Error, Result};
 
 /// Bytes from the start of a file that are looked at.
@@ -26,13 +27,17 @@ pub(super) enum Format {
     Ply,
     /// Vertices and faces as lines of statements.
     Obj,
+    /// Legacy files of VTK.
+    VtkLegacy,
+    /// XML files of VTK.
+    VtkXml,
     /// Lines of coordinates.
     Text,
 }
 
 const PCD: &str = "a PCD file: convert it first, for example with pdal translate";
 
-const VTK: &str = "a VTK file: convert it first, for example with meshio convert IN.vtk OUT.ply";
+const HDF: &str = "an HDF5 file: write it as VTU or raw numbers first, for example with ParaView or h5dump";
 const MEDIT: &str = "a Medit mesh: convert it first, for example with meshio convert IN.mesh OUT.ply";
 const INR: &str = "an INRIMAGE: it holds voxels and no points; list those that are wanted as lines of x y z";
 
@@ -40,7 +45,7 @@ const PDB: &str = "a PDB file, which tess3 reads: give points as lines of x y z"
 const MMCIF: &str = "an mmCIF file, which tess3 reads: give points as lines of x y z";
 
 /// First bytes of files that are often given by mistake, and what to do about it.
-const MISTAKEN: [(&[u8], &str); 19] = [
+const MISTAKEN: [(&[u8], &str); 18] = [
     (b"\x1f\x8b", "gzip data: decompress it first, for example with zcat"),
     (b"\x28\xb5\x2f\xfd", "zstd data: decompress it first, for example with zstdcat"),
     (b"PK\x03\x04", "a zip archive: unpack it first, for example with unzip -p"),
@@ -50,8 +55,7 @@ const MISTAKEN: [(&[u8], &str); 19] = [
     (b"# .PCD", PCD),
     (b"VERSION .7", PCD),
     (b"VERSION 0.7", PCD),
-    (b"# vtk DataFile", VTK),
-    (b"<VTKFile", VTK),
+    (b"\x89HDF", HDF),
     (b"MeshVersionFormatted", MEDIT),
     (b"#INRIMAGE", INR),
     (b"HEADER  ", PDB),
@@ -88,6 +92,12 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
     if head.starts_with(b"ply\n") || head.starts_with(b"ply\r") {
         return Ok(Format::Ply);
     }
+    if vtk::is_legacy(&head) {
+        return Ok(Format::VtkLegacy);
+    }
+    if vtk::is_xml(&head) {
+        return Ok(Format::VtkXml);
+    }
     // Version 7, byte order 0 or 1, then data type (two bits) and finalization method.
     if let [7, 0 | 1, flags, ..] = head[..]
         && flags & 3 < 3
@@ -97,7 +107,7 @@ pub(super) fn detect(file: &FileView) -> Result<Format> {
     }
     if let Some(at) = head.iter().position(|&byte| byte == 0) {
         return Err(Error::malformed(format!(
-            "zero byte at byte {at}: not text, and neither LAS, LAZ, SPB nor a spmesh stream"
+            "zero byte at byte {at}: not text, and neither LAS, LAZ, SPB, VTK nor a spmesh stream"
         )));
     }
     if head.starts_with(b"# OBJ") || is_mesh(&head) {

@@ -10,9 +10,11 @@ use super::grid::{self, Member};
 use super::las_header::LasHeader;
 use super::origin::{Origin, name_of};
 use super::placement::Placement;
+use super::point_arrays::{self, ArrayPass, PointArray};
+use super::raw_type::RawType;
 use super::records::RecordPass;
 use super::text::Columns;
-use super::{Description, PointReader, SourceOptions, spa, spb, stream, text};
+use super::{Description, PointReader, SourceOptions, raw, spa, spb, stream, text, vtk};
 use crate::bounds::{Bounds, Point};
 use crate::error::{Error, Result};
 use crate::stream::{Coordinates, Crs};
@@ -55,6 +57,8 @@ enum Content {
     Spb,
     Ply,
     Obj,
+    /// VTK, and raw numbers.
+    Arrays(Arc<[PointArray]>),
     Text(Columns),
 }
 
@@ -123,6 +127,7 @@ impl Input {
         self.sources.iter().any(|source| match &source.content {
             Content::Las(header) => header.laz.is_some(),
             Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
+            Content::Arrays(arrays) => point_arrays::are_costly(arrays),
             Content::Stream | Content::Spb => false,
         })
     }
@@ -173,7 +178,7 @@ impl Source {
     ) -> Result<Source> {
         let mut own_notices = Vec::new();
         let (content, mut stated) =
-            Content::read(&origin, &name, &mut own_notices).map_err(|e| e.of_input(&name))?;
+            Content::read(&origin, &name, options.raw, &mut own_notices).map_err(|e| e.of_input(&name))?;
         stated.crs = crs::fitting(stated.crs, &mut own_notices);
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
         let source = Source { name, origin, content, stated };
@@ -210,14 +215,23 @@ impl Source {
             Content::Spb => Box::new(spb::pass(view)?),
             Content::Ply => Box::new(stream::pass_of_ply(view, &self.name)?),
             Content::Obj => Box::new(stream::pass_of_obj(view, &self.name)),
+            Content::Arrays(arrays) => Box::new(ArrayPass::new(view, Arc::clone(arrays))),
             Content::Text(columns) => Box::new(text::TextPass::new(view, columns.clone())),
         })
     }
 }
 
 impl Content {
-    fn read(origin: &Origin, name: &str, notices: &mut Vec<String>) -> Result<(Content, Stated)> {
+    fn read(
+        origin: &Origin,
+        name: &str,
+        raw: Option<RawType>,
+        notices: &mut Vec<String>,
+    ) -> Result<(Content, Stated)> {
         let view = origin.view()?;
+        if let Some(kind) = raw {
+            return Ok(Content::of_arrays(vec![raw::open(&view, name, kind)?]));
+        }
         Ok(match detect(&view)? {
             detect::Format::Las => {
                 let header = LasHeader::read(&view, notices)?;
@@ -236,11 +250,18 @@ impl Content {
             detect::Format::Spb => (Content::Spb, spb::state(view)?),
             detect::Format::Ply => (Content::Ply, stream::state_of_ply(view, name)?),
             detect::Format::Obj => (Content::Obj, stream::state_of_obj(view, name)?),
+            detect::Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&view, name)?]),
+            detect::Format::VtkXml => Content::of_arrays(vtk::read_xml(&view)?),
             detect::Format::Text => {
                 let (columns, stated) = text::state(view)?;
                 (Content::Text(columns), stated)
             }
         })
+    }
+
+    fn of_arrays(arrays: Vec<PointArray>) -> (Content, Stated) {
+        let stated = point_arrays::state(&arrays);
+        (Content::Arrays(arrays.into()), stated)
     }
 }
 

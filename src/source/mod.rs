@@ -1,6 +1,7 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
-//! twins, SPA and SPB, and the vertices of PLY and OBJ.
+//! twins, SPA and SPB, raw numbers, and the vertices of PLY, OBJ and VTK.
 
+mod base64;
 mod byte_order;
 mod crs;
 mod detect;
@@ -14,6 +15,7 @@ mod laz_chunks;
 mod laz_codec;
 mod lines;
 mod mesh_events;
+mod numbers;
 mod obj;
 mod opened;
 mod ordered;
@@ -23,9 +25,12 @@ mod patches;
 mod placement;
 mod ply;
 mod ply_header;
+mod point_arrays;
 pub mod points4;
 mod polygon;
 mod polylines;
+mod raw;
+mod raw_type;
 mod records;
 mod sample_type;
 mod sma;
@@ -47,6 +52,7 @@ mod twin_functions;
 mod twin_header;
 mod values;
 mod vertices;
+mod vtk;
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -59,6 +65,7 @@ pub use opened::{Opened, open_knots, open_planar};
 pub(crate) use origin::name_of;
 pub use ply::open_ply;
 pub use polylines::{Polyline, PolylineKind, read_polylines};
+pub use raw_type::RawType;
 pub use sma::open_sma;
 pub use smb::open_smb;
 pub use sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpReader};
@@ -95,6 +102,8 @@ pub struct SourceOptions {
     pub dims: u8,
     /// Grid to put integer coordinates on: scale and offset per axis, instead of those of the files.
     pub grid: Option<([f64; 3], [f64; 3])>,
+    /// Files hold nothing but numbers of this type, x, y and z of one point after the other; their content does not tell.
+    pub raw: Option<RawType>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
     /// Threads that decompress points; one per core if `None`.

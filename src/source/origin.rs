@@ -93,6 +93,11 @@ impl FileView {
         self.end
     }
 
+    /// Byte that is read next, counted from the start of the file.
+    pub(super) fn position(&self) -> u64 {
+        self.position
+    }
+
     /// The same bytes from `start` up to `end`, both counted from the start of the file.
     pub(super) fn range(&self, start: u64, end: u64) -> FileView {
         FileView { file: Arc::clone(&self.file), position: start, end: end.min(self.end) }

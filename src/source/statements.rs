@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, Read};
 
 use super::lines::{number, quote};
+use super::origin::FileView;
 use crate::error::{Error, Result};
 use crate::limits::{TEXT_HEADER_LINE_MAX, TEXT_LINE_MAX};
 
@@ -68,7 +69,7 @@ impl<R: Read> Lines<R> {
     }
 
     /// What follows the line that was read last, for formats whose header alone is text.
-    pub(super) fn input(&mut self) -> &mut impl Read {
+    pub(super) fn input(&mut self) -> &mut BufReader<R> {
         &mut self.input
     }
 
@@ -95,6 +96,13 @@ impl<R: Read> Lines<R> {
     /// Adds input and line to an error about the line that was read last.
     pub(super) fn locate(&self, error: Error) -> Error {
         error.at(format!("line {}", self.number)).of_input(&self.name)
+    }
+}
+
+impl Lines<FileView> {
+    /// Byte of the file behind the line that was read last.
+    pub(super) fn byte(&self) -> u64 {
+        self.input.get_ref().position() - self.input.buffer().len() as u64
     }
 }
 

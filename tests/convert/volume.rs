@@ -1,11 +1,14 @@
 //! Tetrahedral meshes in other formats: VTU, Medit, and the hull as OBJ and PLY.
 
+use spmesh::bounds::Point;
 use spmesh::convert::Format;
 use spmesh::error::ErrorKind;
+use spmesh::source::{Input, SourceOptions};
 use spmesh::stream::Coordinates;
 
 use super::independent::{self, Volume};
 use super::{converted, samples, text_of, with_notices};
+use crate::programs::Folder;
 
 /// Vertices, cells and labels of a text twin.
 fn of_twin(stream: &[u8]) -> Volume {
@@ -22,6 +25,21 @@ fn of_twin(stream: &[u8]) -> Volume {
         }
     }
     volume
+}
+
+/// The vertices as the sources of points read them.
+fn vertices_read(vtu: &[u8]) -> Vec<Point> {
+    let folder = Folder::new();
+    let options = SourceOptions { dims: 3, ..SourceOptions::default() };
+    let input = Input::open(&[folder.file("a.vtu", vtu)], &options).unwrap();
+    let (mut reader, mut batch, mut vertices) = (input.read().unwrap(), Vec::new(), Vec::new());
+    loop {
+        reader.next_batch(&mut batch).unwrap();
+        if batch.is_empty() {
+            return vertices;
+        }
+        vertices.extend_from_slice(&batch);
+    }
 }
 
 fn volume_of_tetrahedron(volume: &Volume, cell: &[usize]) -> f64 {
@@ -52,7 +70,9 @@ fn vtu_and_medit_hold_what_the_twin_says() {
     streams.extend([samples::points(3, false, true), samples::points(2, true, false)]);
     for stream in streams {
         let twin = of_twin(&stream);
-        let vtu = independent::vtu(&converted(&stream, Format::Spm, Format::Vtu).unwrap());
+        let written = converted(&stream, Format::Spm, Format::Vtu).unwrap();
+        let vtu = independent::vtu(&written);
+        assert_eq!(vertices_read(&written), vtu.vertices);
         let medit = converted(&stream, Format::Spm, Format::Medit).unwrap();
         let medit = independent::medit(std::str::from_utf8(&medit).unwrap());
         assert_eq!((&vtu.vertices, &vtu.labels), (&twin.vertices, &twin.labels));

@@ -30,14 +30,19 @@ fn try_read(folder: &Folder, content: &[u8]) {
     assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
 }
 
-/// Damages in several ways each byte of the first `until`, of the last 64, and one of 29 between.
+/// Damages each byte of the first `until` of a sample, of the last 64, and one of 29 between.
 fn damage(name: &str, until: usize) {
-    let folder = Folder::new();
     let whole = std::fs::read(sample(name)).unwrap();
     let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 29 == 0;
-    for at in (0..whole.len()).filter(is_chosen) {
+    damage_bytes(&whole, (0..whole.len()).filter(is_chosen));
+}
+
+/// Damages the bytes at `places` of a file in several ways, one at a time.
+pub fn damage_bytes(whole: &[u8], places: impl Iterator<Item = usize>) {
+    let folder = Folder::new();
+    for at in places {
         for change in [0x01, 0x80, 0xff] {
-            let mut damaged = whole.clone();
+            let mut damaged = whole.to_vec();
             damaged[at] ^= change;
             try_read(&folder, &damaged);
         }

@@ -267,8 +267,8 @@ fn what_is_not_read_is_named() {
         (b"OFF\n0 0 0\n", &["no point"]),
         (b"# nothing\n", &["no point"]),
         (b"ATOM\0\0\0", &["zero byte"]),
-        (b"# vtk DataFile Version 4.2\nvtk output\nBINARY\n\0", &["VTK", "convert it first"]),
-        (b"# vtk DataFile Version 4.1\nvtk output\nASCII\n", &["VTK", "convert it first"]),
+        (b"# vtk DataFile Version 4.2\nvtk output\nBINARY\n\0", &["line 4", "expected POINTS"]),
+        (b"# vtk DataFile Version 4.1\nvtk output\nASCII\n", &["line 4", "truncated"]),
         (b"MeshVersionFormatted 1\nDimension 3\nVertices\n1\n0 0 0 0\n", &["Medit", "convert it first"]),
         (b"#INRIMAGE-4#{\nXDIM=2\n##}\n\0", &["INRIMAGE", "x y z"]),
     ];

@@ -38,7 +38,7 @@ meet at common vertices only.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
 pub(super) struct Flags {
-    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY and OBJ, point streams); - is stdin
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point streams); - is stdin
     #[arg(value_name = "POINTS", default_value = "-")]
     inputs: Vec<PathBuf>,
 

@@ -3,10 +3,9 @@
 use std::io::{self, BufRead, BufReader, Read};
 
 use crate::error::{Error, Result};
-use crate::limits::VOLUME_NUMBER_MAX;
 use crate::source::byte_order::ByteOrder;
 use crate::source::gzip::Gunzip;
-use crate::source::lines::quote;
+use crate::source::numbers::{NumberReader, Writing, fill, truncated};
 use crate::source::origin::Origin;
 use crate::source::sample_type::SampleType;
 
@@ -73,12 +72,20 @@ impl Data {
     }
 
     fn scan_part(&self, part: &Part, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        let writing = match self.encoding {
+            Encoding::Raw(order) | Encoding::Gzip(order) => Writing::Binary(order),
+            Encoding::Text => Writing::Text,
+        };
         let mut input = self.open(part, total)?;
-        match self.encoding {
-            Encoding::Raw(order) | Encoding::Gzip(order) => {
-                self.scan_bytes(&mut input, order, total, visit)?
+        let mut reader = NumberReader::new(&mut input, self.sample, writing, total);
+        let mut values = Vec::new();
+        loop {
+            values.clear();
+            let read = reader.read(BATCH_VALUES, &mut values);
+            if !read.map_err(|e| self.locate(e, reader.done()))? {
+                break;
             }
-            Encoding::Text => self.scan_text(&mut input, total, visit)?,
+            visit(&values)?;
         }
         if self.is_exact && !fill(&mut input)?.is_empty() {
             let bytes = total * self.sample.len() as u64;
@@ -86,6 +93,14 @@ impl Data {
             return Err(Error::malformed(reason));
         }
         Ok(())
+    }
+
+    /// Adds to an error about the value behind `done` others which one it is, where no byte tells.
+    fn locate(&self, error: Error, done: u64) -> Error {
+        match self.encoding {
+            Encoding::Text => error.at(format!("value {}", done + 1)),
+            Encoding::Raw(_) | Encoding::Gzip(_) => error,
+        }
     }
 
     /// The data of a part.
@@ -110,67 +125,10 @@ impl Data {
         }
         Ok(input)
     }
-
-    fn scan_bytes(
-        &self,
-        input: &mut dyn BufRead,
-        order: ByteOrder,
-        total: u64,
-        visit: &mut dyn FnMut(&[f64]) -> Result<()>,
-    ) -> Result<()> {
-        let (mut bytes, mut values) = (Vec::new(), Vec::new());
-        let mut done = 0;
-        while done < total {
-            let wanted = BATCH_VALUES.min(total - done) * self.sample.len() as u64;
-            bytes.clear();
-            values.clear();
-            input.take(wanted).read_to_end(&mut bytes).map_err(|e| Error::io("reading", e))?;
-            self.sample.decode(&bytes, order, &mut values);
-            visit(&values)?;
-            done += values.len() as u64;
-            if (bytes.len() as u64) < wanted {
-                return Err(truncated(done, total));
-            }
-        }
-        Ok(())
-    }
-
-    fn scan_text(
-        &self,
-        input: &mut dyn BufRead,
-        total: u64,
-        visit: &mut dyn FnMut(&[f64]) -> Result<()>,
-    ) -> Result<()> {
-        let mut number = Vec::new();
-        for done in 0..total {
-            next_number(input, &mut number).map_err(|e| e.at(format!("value {}", done + 1)))?;
-            if number.is_empty() {
-                return Err(truncated(done, total));
-            }
-            let value = self.sample.parse(&number).map_err(|e| e.at(format!("value {}", done + 1)))?;
-            visit(&[value])?;
-        }
-        Ok(())
-    }
 }
 
 fn buffered<'i>(input: impl Read + 'i) -> Box<dyn BufRead + 'i> {
     Box::new(BufReader::with_capacity(1 << 17, input))
-}
-
-fn truncated(found: u64, expected: u64) -> Error {
-    Error::malformed(format!("truncated: found {found} of {expected} values"))
-}
-
-/// The bytes that come next; none at the end.
-fn fill(input: &mut dyn BufRead) -> Result<&[u8]> {
-    // Interrupted reads are repeated here, since the slice of a failed try cannot be returned from a loop.
-    while let Err(e) = input.fill_buf() {
-        if e.kind() != io::ErrorKind::Interrupted {
-            return Err(Error::io("reading", e));
-        }
-    }
-    input.fill_buf().map_err(|e| Error::io("reading", e))
 }
 
 fn skip_bytes(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
@@ -193,31 +151,4 @@ fn skip_lines(input: &mut dyn BufRead, lines: u64) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Replaces `number` by what comes next between white space and commas; nothing at the end.
-fn next_number(input: &mut dyn BufRead, number: &mut Vec<u8>) -> Result<()> {
-    number.clear();
-    loop {
-        let bytes = fill(input)?;
-        if bytes.is_empty() {
-            return Ok(());
-        }
-        let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
-        let start =
-            if number.is_empty() { bytes.iter().take_while(|byte| is_between(byte)).count() } else { 0 };
-        let rest = &bytes[start..];
-        let len = rest.iter().position(is_between).unwrap_or(rest.len());
-        if number.len() + len > VOLUME_NUMBER_MAX {
-            let found = quote(if number.is_empty() { rest } else { number });
-            let message = format!("found {found}, expected a number of at most {VOLUME_NUMBER_MAX} bytes");
-            return Err(Error::malformed(message));
-        }
-        number.extend_from_slice(&rest[..len]);
-        let is_whole = len < rest.len() && !number.is_empty();
-        input.consume(start + len);
-        if is_whole {
-            return Ok(());
-        }
-    }
 }

@@ -8,30 +8,15 @@ use super::data::{Data, Encoding, Part, Skip};
 use super::lattice::Lattice;
 use super::volume::Volume;
 use crate::error::Result;
-use crate::source::byte_order::ByteOrder;
 use crate::source::origin::Origin;
-use crate::source::sample_type::SampleType;
+use crate::source::raw_type::RawType;
 
 /// Sizes and type of a raw volume, as in `64x64x64x20:f32le`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawLayout {
     lens: [u64; 4],
-    sample: SampleType,
-    order: ByteOrder,
+    kind: RawType,
 }
-
-const TYPES: [(&str, SampleType); 10] = [
-    ("i8", SampleType::I8),
-    ("u8", SampleType::U8),
-    ("i16", SampleType::I16),
-    ("u16", SampleType::U16),
-    ("i32", SampleType::I32),
-    ("u32", SampleType::U32),
-    ("i64", SampleType::I64),
-    ("u64", SampleType::U64),
-    ("f32", SampleType::F32),
-    ("f64", SampleType::F64),
-];
 
 impl FromStr for RawLayout {
     type Err = String;
@@ -41,34 +26,14 @@ impl FromStr for RawLayout {
             text.split_once(':').ok_or("expected sizes and a type, as in 64x64x64x20:f32le")?;
         let lens = parse_sizes(sizes)?;
         Lattice::new(lens).map_err(|e| e.to_string())?;
-        let (name, order) = match (kind.strip_suffix("le"), kind.strip_suffix("be")) {
-            (Some(name), _) => (name, Some(ByteOrder::Little)),
-            (_, Some(name)) => (name, Some(ByteOrder::Big)),
-            _ => (kind, None),
-        };
-        let Some(&(_, sample)) = TYPES.iter().find(|(known, _)| *known == name) else {
-            return Err(format!("unknown type {kind:?}, expected i8, u8, i16le, u16be, ... or f64be"));
-        };
-        let order = match order {
-            None if sample.len() > 1 => {
-                return Err(format!("the byte order of {kind} is missing: {kind}le or {kind}be"));
-            }
-            order => order.unwrap_or(ByteOrder::Little),
-        };
-        Ok(RawLayout { lens, sample, order })
+        Ok(RawLayout { lens, kind: kind.parse()? })
     }
 }
 
 impl fmt::Display for RawLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z, t] = self.lens;
-        let name = TYPES.iter().find(|(_, sample)| *sample == self.sample).map_or("", |(name, _)| name);
-        let order = match (self.sample.len(), self.order) {
-            (1, _) => "",
-            (_, ByteOrder::Little) => "le",
-            (_, ByteOrder::Big) => "be",
-        };
-        write!(f, "{x}x{y}x{z}x{t}:{name}{order}")
+        write!(f, "{x}x{y}x{z}x{t}:{}", self.kind)
     }
 }
 
@@ -97,8 +62,8 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, layout: &RawLayout) -> R
         lattice: Lattice::new(layout.lens)?,
         data: Data {
             parts: vec![Part { origin, name: None, is_gzip, header_len: 0 }],
-            sample: layout.sample,
-            encoding: Encoding::Raw(layout.order),
+            sample: layout.kind.sample,
+            encoding: Encoding::Raw(layout.kind.order),
             line_skip: 0,
             byte_skip: Skip::Bytes(0),
             is_exact: true,

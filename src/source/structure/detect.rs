@@ -3,6 +3,7 @@
 use super::{Format, off};
 use crate::error::{Error, Result};
 use crate::source::lines::number;
+use crate::source::vtk;
 
 /// Bytes from the start of an input that are looked at.
 pub(super) const HEAD_LEN: u64 = 1 << 16;
@@ -38,6 +39,9 @@ pub(super) fn detect(head: &[u8]) -> Result<Format> {
     if head.contains(&0) || head.starts_with(b"#spmesh ") {
         let is_ply = head.starts_with(b"ply\n") || head.starts_with(b"ply\r");
         return Ok(if is_ply { Format::Ply } else { Format::Points });
+    }
+    if vtk::is_legacy(head) || vtk::is_xml(head) {
+        return Ok(Format::Points);
     }
     Ok(detect_text(head))
 }

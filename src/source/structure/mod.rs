@@ -1,5 +1,5 @@
 //! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this project and
-//! its kin, PLY, OBJ and OFF, each plain or compressed with gzip. The format is told by the content.
+//! its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the content.
 //!
 //! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data, refuses others
 //! that hold all their atoms, and takes longer than the triangulation.
@@ -49,7 +49,7 @@ pub enum Format {
     Obj,
     /// Vertices of an OFF file.
     Off,
-    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text twins, LAS.
+    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text twins, LAS, VTK.
     Points,
 }
 
