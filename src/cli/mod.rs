@@ -21,6 +21,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser};
 
+use crate::bounds::Bounds;
 use crate::error::{Error, ErrorKind};
 use crate::system;
 
@@ -132,6 +133,20 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
     let found = numbers.len();
     numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
+}
+
+/// A box of space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or one of the plane, MINX,MINY,MAXX,MAXY, which is infinitely high.
+///
+/// # Errors
+/// If the text is anything else.
+pub fn parse_box(text: &str) -> Result<Bounds, String> {
+    if text.split(',').count() == 6 {
+        let [x, y, z, max_x, max_y, max_z] = parse_numbers(text)?;
+        return Ok(Bounds { min: [x, y, z], max: [max_x, max_y, max_z] });
+    }
+    let [x, y, max_x, max_y] =
+        parse_numbers(text).map_err(|message| format!("{message}, or 6 with those of z"))?;
+    Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
 }
 
 /// More threads than these are used if they are asked for only: each costs memory.

@@ -7,7 +7,8 @@ use anyhow::Context;
 use clap::Parser;
 
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
+use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory};
+use crate::bounds::Bounds;
 use crate::error::Error;
 use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use crate::output::Output;
@@ -108,9 +109,10 @@ pub struct Flags {
     #[arg(long)]
     last_only: bool,
 
-    /// Keep only points whose x and y lie in this closed box
-    #[arg(long, value_name = "MINX,MINY,MAXX,MAXY", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
-    bounds: Option<[f64; 4]>,
+    /// Keep only points that lie in this closed box: MINX,MINY,MINZ,MAXX,MAXY,MAXZ or, whatever their z,
+    /// MINX,MINY,MAXX,MAXY
+    #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
+    bounds: Option<Bounds>,
 
     /// Drop and count points with a coordinate that is not finite, instead of failing
     #[arg(long)]

@@ -275,11 +275,11 @@ fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
     if !matches!(options.dims, 2 | 3) {
         return Err(Error::usage(format!("{} dimensions, expected 2 or 3", options.dims)));
     }
-    if let Some([min_x, min_y, max_x, max_y]) = options.bounds
-        && !(min_x <= max_x && min_y <= max_y)
+    if let Some(Bounds { min, max }) = options.bounds
+        && !(0..3).all(|axis| min[axis] <= max[axis])
     {
         return Err(Error::usage(format!(
-            "bounds {min_x} {min_y} {max_x} {max_y} are empty, expected min x, min y, max x, max y"
+            "the box from {min:?} to {max:?} is empty, expected the least coordinates first"
         )));
     }
     if let Some((scale, offset)) = options.grid {

@@ -94,8 +94,8 @@ pub struct SourceOptions {
     pub first_only: bool,
     /// Keep only last returns.
     pub last_only: bool,
-    /// Keep only points whose world x and y lie in this closed box: min x, min y, max x, max y.
-    pub bounds: Option<[f64; 4]>,
+    /// Keep only points that lie in this closed box of the world; sides may be infinite.
+    pub bounds: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
     pub skip_invalid: bool,
     /// Dimensions of the geometry: 2 (z is an elevation) or 3.

@@ -1,6 +1,6 @@
 //! Moves points from the coordinates of their file to those of the whole input, and drops what is not wanted.
 
-use crate::bounds::Point;
+use crate::bounds::{Bounds, Point};
 use crate::error::{Error, Result};
 use crate::stream::Coordinates;
 
@@ -19,8 +19,8 @@ const QUANTA_TOLERANCE: f64 = 1e-6;
 #[derive(Debug)]
 pub(super) struct Placement {
     step: Step,
-    /// Sides of the bounds filter in the file's stored coordinates: min x, min y, max x, max y.
-    bounds: Option<[f64; 4]>,
+    /// The bounds filter in the file's stored coordinates.
+    bounds: Option<Bounds>,
     skip_invalid: bool,
     /// Points dropped so far because a coordinate is not finite.
     pub(super) invalid: u64,
@@ -48,7 +48,7 @@ impl Placement {
     pub(super) fn new(
         from: &Coordinates,
         to: &Coordinates,
-        bounds: Option<[f64; 4]>,
+        bounds: Option<Bounds>,
         skip_invalid: bool,
     ) -> Self {
         let step = if from == to {
@@ -76,10 +76,9 @@ impl Placement {
     /// caller knows the record and adds it.
     #[inline]
     pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<()> {
-        if let Some([min_x, min_y, max_x, max_y]) = self.bounds
-            && !(min_x <= stored[0] && stored[0] <= max_x && min_y <= stored[1] && stored[1] <= max_y)
-            && stored[0].is_finite()
-            && stored[1].is_finite()
+        if let Some(bounds) = &self.bounds
+            && !bounds.contains(stored)
+            && stored.iter().all(|value| value.is_finite())
         {
             return Ok(());
         }
@@ -144,12 +143,11 @@ fn whole(value: f64, tolerance: f64) -> Option<f64> {
 
 /// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside, however
 /// the products of scale and integer are rounded.
-fn stored_bounds(from: &Coordinates, bounds: [f64; 4]) -> [f64; 4] {
-    match from {
-        Coordinates::F64 => bounds,
-        Coordinates::I32 { scale, offset } => std::array::from_fn(|side| {
-            let steps = (bounds[side] - offset[side % 2]) / scale[side % 2];
-            if side < 2 { (steps - QUANTA_TOLERANCE).ceil() } else { (steps + QUANTA_TOLERANCE).floor() }
-        }),
+fn stored_bounds(from: &Coordinates, bounds: Bounds) -> Bounds {
+    let Coordinates::I32 { scale, offset } = from else { return bounds };
+    let steps = |side: Point, axis: usize| (side[axis] - offset[axis]) / scale[axis];
+    Bounds {
+        min: std::array::from_fn(|axis| (steps(bounds.min, axis) - QUANTA_TOLERANCE).ceil()),
+        max: std::array::from_fn(|axis| (steps(bounds.max, axis) + QUANTA_TOLERANCE).floor()),
     }
 }

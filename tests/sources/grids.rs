@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use spmesh::bounds::Point;
+use spmesh::bounds::{Bounds, Point};
 use spmesh::error::{ErrorKind, Result};
 use spmesh::source::{Input, SourceOptions};
 use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
@@ -114,7 +114,7 @@ fn a_given_grid_rounds_to_nearest_and_refuses_what_it_cannot_hold() {
     let options = SourceOptions { grid: Some(([0.5; 3], [0.0; 3])), ..flat() };
     let path = std::slice::from_ref(&path);
     assert_fails(points(path, &options), ErrorKind::Usage, &["a.xyz", "line 2", "beyond 32 bits"]);
-    let bounds = Some([-10.0, -10.0, 10.0, 10.0]);
+    let bounds = Some(Bounds { min: [-10.0; 3], max: [10.0; 3] });
     assert_eq!(points(path, &SourceOptions { bounds, ..options }).unwrap(), [[2.0, -3.0, 6.0]]);
     let uneven = SourceOptions { grid: Some(([0.5, 0.25, 1.0], [0.0; 3])), ..flat() };
     assert_fails(points(path, &uneven), ErrorKind::Usage, &["must be equal"]);

@@ -82,9 +82,14 @@ fn bounds_are_closed_and_not_fooled_by_rounding() {
     let folder = Folder::new();
     let path =
         folder.file("a.las", LasFile::of(&[[1002, 0, 0], [1003, 7, 0], [1004, 7, 0], [1005, 8, 0]]).bytes());
-    let bounds = Some([10.03, 0.0, 10.05, 0.07]);
-    let found = points(&[path], &SourceOptions { bounds, ..flat() }).unwrap();
+    let infinite = f64::INFINITY;
+    let bounds = Some(Bounds { min: [10.03, 0.0, -infinite], max: [10.05, 0.07, infinite] });
+    let path = std::slice::from_ref(&path);
+    let found = points(path, &SourceOptions { bounds, ..flat() }).unwrap();
     assert_eq!(found, [[1003.0, 7.0, 0.0], [1004.0, 7.0, 0.0]]);
+    let bounds = Some(Bounds { min: [0.0, 0.0, 0.5], max: [99.0, 99.0, 0.25] });
+    let empty = SourceOptions { bounds, ..flat() };
+    assert_fails(points(path, &empty), ErrorKind::Usage, &["from [0.0, 0.0, 0.5]", "is empty"]);
 }
 
 #[test]

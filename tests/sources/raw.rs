@@ -88,7 +88,8 @@ fn the_flag_gives_what_the_same_points_give_as_text() {
     let points: Vec<Point> =
         (0..2000u32).map(|i| [i * 7919 % 1009, i * 31 % 97, i % 101].map(f64::from)).collect();
     let text: String = points.iter().map(|[x, y, z]| format!("{x} {y} {z}\n")).collect();
-    for dims in [&["--octree"][..], &["--bounds=100,-1,900,50"]] {
+    let boxes = [&["--bounds=100,-1,900,50"][..], &["--octree", "--bounds=100,-1,20,900,50,70"]];
+    for dims in [&["--octree"][..], boxes[0], boxes[1]] {
         let raw = [dims, &["-q", "--raw", "f32be"]].concat();
         let from_raw = run("spfinalize", &raw, &bytes(&points, |x| (x as f32).to_be_bytes()));
         let from_text = run("spfinalize", &[dims, &["-q"]].concat(), text.as_bytes());

@@ -1,6 +1,6 @@
 //! Points of the XML formats of VTK.
 
-use spmesh::bounds::Point;
+use spmesh::bounds::{Bounds, Point};
 use spmesh::error::ErrorKind;
 use spmesh::source::{Input, SourceOptions};
 
@@ -136,8 +136,8 @@ fn points_come_from_files_or_pipes_and_are_finalized_in_space() {
 fn bounds_and_grids_hold_for_them_as_for_others() {
     let folder = Folder::new();
     let path = folder.file("a.vtu", VtkXml::of(vec![vec![[1.0, 1.0, 5.0], [3.5, 1.0, 6.25]]]).bytes());
-    let options =
-        SourceOptions { bounds: Some([2.0, 0.0, 4.0, 4.0]), grid: Some(([0.25; 3], [0.0; 3])), ..flat() };
+    let bounds = Some(Bounds { min: [2.0, 0.0, 0.0], max: [4.0, 4.0, 9.0] });
+    let options = SourceOptions { bounds, grid: Some(([0.25; 3], [0.0; 3])), ..flat() };
     assert_eq!(points(&[path], &options).unwrap(), [[14.0, 4.0, 25.0]]);
 }
 

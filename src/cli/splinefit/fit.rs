@@ -8,7 +8,8 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, report, say};
-use crate::cli::{Common, StatsFormat, open_input, parse_numbers, progress::Progress};
+use crate::bounds::Bounds;
+use crate::cli::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use crate::error::{Error, Result};
 use crate::fit::Loss;
 use crate::output::Output;
@@ -104,9 +105,10 @@ pub(super) struct Flags {
     #[arg(long, value_name = "CLASS", value_delimiter = ',')]
     drop_class: Vec<u8>,
 
-    /// Keep only points whose x and y lie in this closed box
-    #[arg(long, value_name = "MINX,MINY,MAXX,MAXY", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
-    bounds: Option<[f64; 4]>,
+    /// Keep only points that lie in this closed box: MINX,MINY,MINZ,MAXX,MAXY,MAXZ or, whatever their z,
+    /// MINX,MINY,MAXX,MAXY
+    #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
+    bounds: Option<Bounds>,
 
     /// Seed of folds, and of estimates for gcv
     #[arg(long, value_name = "SEED", default_value_t = 1)]
