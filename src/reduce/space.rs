@@ -10,7 +10,7 @@ use crate::delaunay3::{Corner, Kernel, Tetrahedralization};
 use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::sphere::SphereBounds;
-use crate::stream::Coordinates;
+use crate::stream::{Coordinates, Kind};
 
 /// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
 const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
@@ -67,6 +67,9 @@ impl Bulk<3> for Space {
     type Corners = [u32; 4];
     type Balls = Balls;
 
+    const MESH: Kind = Kind::TetrahedralMesh;
+    const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
+    const SIMPLEX: &'static str = "tetrahedron";
     const MAY_LEAVE_MOST: bool = true;
 
     fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {

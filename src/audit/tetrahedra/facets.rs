@@ -72,6 +72,23 @@ impl<T: Copy> OpenFacets<T> {
         }
     }
 
+    /// Takes a facet away, counterclockwise seen from outside of its tetrahedron; whether it was open.
+    pub(super) fn close(&mut self, facet: [u64; 3]) -> bool {
+        let (sorted, is_increasing) = increasing(facet);
+        match self.open.entry(sorted) {
+            Entry::Occupied(open) if open.get().is_increasing == is_increasing => {
+                open.remove();
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The open facet with the smallest ids, counterclockwise seen from outside.
+    pub(super) fn first(&self) -> Option<[u64; 3]> {
+        self.iter().map(|(facet, _)| facet).min_by_key(|&facet| increasing(facet).0)
+    }
+
     /// The open facets, counterclockwise seen from outside, with what is known of their tetrahedra, in no order.
     pub(super) fn iter(&self) -> impl Iterator<Item = ([u64; 3], T)> + '_ {
         self.open.iter().map(|(&[a, b, c], side)| {

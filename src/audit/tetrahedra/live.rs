@@ -14,7 +14,7 @@ use crate::stream::Patch;
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// Live vertices, open facets and edges of the tetrahedra seen so far.
-pub(super) struct LiveTetrahedra {
+pub(in crate::audit) struct LiveTetrahedra {
     standard: Standard,
     pub(super) vertices: Vertices,
     pub(super) facets: OpenFacets<Corner>,

@@ -45,6 +45,7 @@ mod faces;
 mod facets;
 mod hull;
 mod live;
+mod partial;
 mod vertices;
 
 use super::Standard;
@@ -55,7 +56,7 @@ pub use census::{Census, Faults, Figures};
 use coplanar::check_plane;
 use facets::Corner;
 use hull::Hull;
-use live::LiveTetrahedra;
+pub(super) use live::LiveTetrahedra;
 use vertices::Vertex;
 
 /// State of the audit of a tetrahedral mesh.
@@ -115,7 +116,7 @@ impl TetrahedraAudit {
     }
 
     pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
-        if let Some(vertex) = self.tetrahedra.vertices.first_live() {
+        if let Some(vertex) = self.tetrahedra.vertices.first_live(|_| true) {
             let message = format!("vertex {} is never finalized", vertex.id);
             return Err(Violation::new(Check::Finalization, message).with(vertex.id, vertex.at));
         }
@@ -186,10 +187,6 @@ impl TetrahedraAudit {
     }
 }
 
-/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation.
-///
-/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
-/// are one edge, or half an edge if it is inner.
 fn finalize(
     vertex: &Vertex,
     hull: &mut Hull,
@@ -197,14 +194,22 @@ fn finalize(
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
     ledger.add(Check::Vertices, 1);
-    let &Vertex { id, at, tetrahedra, edges, open } = vertex;
-    if tetrahedra == 0 {
+    if vertex.tetrahedra == 0 {
         unused.push(vertex.corner());
         return Ok(());
     }
-    if open > 0 {
+    if vertex.open > 0 {
         hull.add(vertex.corner());
     }
+    check_link(vertex)
+}
+
+/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation.
+///
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
+/// are one edge, or half an edge if it is inner.
+fn check_link(vertex: &Vertex) -> Result<(), Violation> {
+    let &Vertex { id, at, tetrahedra, edges, open } = vertex;
     // Twice V - E + F, with 2 E = 3 F + border.
     let (twice, shape) = if open > 0 { (2, "half ball") } else { (4, "ball") };
     if 2 * edges != tetrahedra + open + twice {

@@ -79,9 +79,14 @@ impl Vertices {
         self.live.contains_key(&id)
     }
 
-    /// The live vertex with the smallest id.
-    pub(super) fn first_live(&self) -> Option<&Vertex> {
-        self.live.values().min_by_key(|vertex| vertex.id)
+    /// The vertex, if it is live, between two patches.
+    pub(super) fn live(&self, id: u64) -> Option<&Vertex> {
+        self.live.get(&id)
+    }
+
+    /// The live vertex with the smallest id that `is_wrong`.
+    pub(super) fn first_live(&self, is_wrong: impl Fn(u64) -> bool) -> Option<&Vertex> {
+        self.live.values().filter(|vertex| is_wrong(vertex.id)).min_by_key(|vertex| vertex.id)
     }
 
     /// Number of vertices so far.
