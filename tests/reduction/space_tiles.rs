@@ -8,16 +8,20 @@ use spmesh::stream::{Coordinates, Header, StreamReader};
 
 use super::space::{bits, expected, fits_a_grid, read_mesh, tetrahedralize};
 use super::streams::{GRID, Tagging, stream_of};
-use crate::reference::clouds::{FAMILIES, Family, of};
+use crate::reference::clouds::{FAMILIES, Family, mixture, of};
 use crate::reference::sets::Random;
 
 const INF: f64 = f64::INFINITY;
 
 /// The part of a run, audited, with what the run says.
 pub fn partial(input: &[u8], part: Part<3>, options: &Options<3>) -> (Vec<u8>, Stats) {
-    let (bytes, stats) = tetrahedralize(input, &Options { part: Some(part), ..*options }).unwrap();
+    let (bytes, stats) = run(input, part, options);
     assert_proven(&bytes, None);
     (bytes, stats)
+}
+
+fn run(input: &[u8], part: Part<3>, options: &Options<3>) -> (Vec<u8>, Stats) {
+    tetrahedralize(input, &Options { part: Some(part), ..*options }).unwrap()
 }
 
 /// The exact audit, which shares nothing with the reduction; with the points that there must be, if they are given.
@@ -78,7 +82,7 @@ impl Tiler<'_> {
     }
 
     fn tile(&self, region: Region<3>) -> Vec<u8> {
-        let (bytes, stats) = partial(self.input, Part::Region(region), &self.options);
+        let (bytes, stats) = run(self.input, Part::Region(region), &self.options);
         let inside = self.inside(region);
         assert_proven(&bytes, Some(&inside));
         let (all, inside) = (self.points.len(), inside.len());
@@ -128,15 +132,26 @@ fn assert_tiles_merge(points: &[Point], depth: usize, run: Run, random: &mut Ran
 #[test]
 fn no_family_depends_on_tiles() {
     for (number, family) in FAMILIES.into_iter().enumerate() {
-        for (i, count) in [20, 80].into_iter().enumerate() {
+        for count in [20, 90] {
             let mut random = Random::new((number * 1000 + count) as u64);
             let mut points = of(&mut random, family, count);
             // Some points come twice.
             points.extend_from_within(..count.min(points.len()) / 9);
             random.shuffle(&mut points);
-            let run = RUNS[(number + i) % 3];
-            assert_tiles_merge(&points, 3, run, &mut random, &format!("{family:?} of {count}"));
+            for run in RUNS {
+                assert_tiles_merge(&points, 3, run, &mut random, &format!("{family:?} of {count}"));
+            }
         }
+    }
+}
+
+#[test]
+fn mixtures_in_tiles_equal_the_kernel() {
+    for seed in 0..60 {
+        let mut random = Random::new(8000 + seed);
+        let points = mixture(&mut random, 10 + 4 * seed as usize);
+        let run = RUNS[seed as usize % 3];
+        assert_tiles_merge(&points, 4, run, &mut random, &format!("mixture {seed}"));
     }
 }
 
