@@ -17,7 +17,7 @@ UNKNOWN = 2**64 - 1
 MAGIC = b"\x89SPM\r\n\x1a\n"
 KINDS = {"points": 1, "triangle mesh": 2, "partial triangle mesh": 3, "tetrahedral mesh": 4,
          "points in 4 dimensions": 5, "cells in 4 dimensions": 6, "simplices in 4 dimensions": 7,
-         "configurations": 8, "splines": 9}
+         "configurations": 8, "splines": 9, "partial tetrahedral mesh": 10}
 FUNCTIONS = ("edge", "vertex", "tent", "crease", "face")
 INF, NAN = float("inf"), float("nan")
 
@@ -89,6 +89,10 @@ class Vector:
             ("crs", crs, "CRS"),
             ("producer", producer, "producer"),
         ]
+        if kind == "partial tetrahedral mesh":
+            names = [name for name, _, _ in fields]
+            fields[names.index("cube") : names.index("encoding")] = [
+                ("origin", floats(cube[:3]), "tree origin"), ("region", floats(region or (0,) * 6), "region")]
         assert set(raw) <= {name for name, _, _ in fields} | {"checksum"}, raw
         for name, data, comment in fields:
             if data or name in raw:
@@ -182,8 +186,9 @@ class Vector:
         return self.block(b"RPNT", payload)
 
     def walls(self, *walls):
-        self.lines += ["w %d %d" % (a + 1, b + 1) for a, b in walls]
-        return self.block(b"WALL", [(struct.pack("<2I", *wall), "wall %d to %d" % wall) for wall in walls])
+        self.lines += ["w " + " ".join(str(corner + 1) for corner in wall) for wall in walls]
+        return self.block(b"WALL", [(struct.pack("<%dI" % len(wall), *wall), "wall " + " to ".join(map(str, wall)))
+                                    for wall in walls])
 
     def points4(self, *points):
         """Points of four coordinates and perhaps a value, as decimals in strings; "nan" is a value that is not known."""
@@ -297,6 +302,7 @@ DEGREE1 = [((0,), [(1, 3), (3, 2)]), ((1,), [(2, 3), (3, 0)]), ((2,), [(0, 3), (
 SPLINES = dict(kind="splines", grid=HALF)
 PAIRS = [("edge", pair, [pair + ("1",)]) for pair in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))]
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
+PARTIAL_SPACE = dict(kind="partial tetrahedral mesh", dims=3, grid=HALF, region=(0, 0, 0, 8, 8, 8))
 
 
 def passing():
@@ -354,6 +360,18 @@ def passing():
         0, [(2, 2, 0), (0, 0, 0), (6, 0, 0), (2, 6, 0)], (), [(0, 1, 2), (0, 2, 3), (0, 3, 1)], (0,)).residual(
         (1, 0, 0, 0), (2, 6, 0, 0), (3, 2, 6, 0)).walls((0, 1), (1, 2), (2, 0)).end(
         4, vertices=4, simplices=3, residual=3, walls=3)
+    yield "partial-tetrahedra-empty", "A partial mesh of all of space, without points", Vector(
+        "partial tetrahedral mesh", dims=3, region=(-INF, -INF, -INF, INF, INF, INF), points=0).end()
+    yield ("partial-tetrahedra-residual", "One final tetrahedron, its walls in any turn, and two points that are no vertices yet",
+        Vector(**PARTIAL_SPACE, bounds=(0, 0, 0, 7, 7, 7), points=7).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)]).residual(
+        (0, 0, 0, 0), (None, 7, 7, 7)).residual((2, 0, 4, 0), (1, 4, 0, 0), (3, 0, 0, 4), (None, 5, 0, 0)).walls(
+        (4, 2, 3), (0, 2, 4)).walls((4, 3, 0), (0, 3, 2)).end(7, vertices=4, simplices=1, merged=1, residual=6, walls=4))
+    yield "partial-tetrahedra-finalized-inside", "A partial mesh in space in f64 of which one vertex is final", Vector(
+        "partial tetrahedral mesh", dims=3, region=("-0.5", -INF, "-1e-7", "4.5", INF, "5e-324")).patch(
+        0, [("1", "1", "-1e-8"), ("0", "0", "0"), ("4", "0", "0"), ("0", "4", "0"), ("1", "1", "-1e-7")], (),
+        [(1, 3, 2, 0), (1, 2, 4, 0), (2, 3, 4, 0), (3, 1, 4, 0)], (0,)).residual(
+        (1, "0", "0", "0"), (2, "4", "0", "0"), (3, "0", "4", "0"), (4, "1", "1", "-1e-7")).walls(
+        (0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)).end(5, vertices=5, simplices=4, residual=4, walls=4)
     yield "tetrahedra-empty", "A tetrahedral mesh without vertices", Vector(**TETRAHEDRAL).end()
     yield "tetrahedra-one", "One tetrahedron in f64 without labels", Vector(
         "tetrahedral mesh", dims=3, bounds=("-1e22", 0, "-0.0", "0.1", "5e-324", 3), points=4).patch(
@@ -470,6 +488,15 @@ def failing_headers():
         ("tetrahedra-region", "region goes with a partial mesh", dict(kind="tetrahedral mesh", dims=3, region=(0, 0, 1, 1))),
         ("tetrahedra-chunked", "can be chunked",
             dict(kind="tetrahedral mesh", dims=3, chunked=True, tree=(2, 0, 0, 0, 4))),
+        ("partial-tetrahedra-in-2d", "a partial tetrahedral mesh in 2", dict(kind="partial tetrahedral mesh", region=(0,) * 3 + (1,) * 3)),
+        ("partial-in-3d", "a partial triangle mesh in 3", dict(kind="partial triangle mesh", dims=3, region=(0, 0, 1, 1))),
+        ("partial-tetrahedra-region-missing", "region goes with a partial mesh", dict(kind="partial tetrahedral mesh", dims=3)),
+        ("partial-tetrahedra-region-empty", "region is empty",
+            dict(kind="partial tetrahedral mesh", dims=3, region=(0, 0, 1, 1, 1, 1))),
+        ("partial-tetrahedra-region-nan", "region is empty",
+            dict(kind="partial tetrahedral mesh", dims=3, region=(0, 0, 0, 1, 1, NAN))),
+        ("partial-tetrahedra-tree", "no finalization tree", dict(**PARTIAL_SPACE, flags=b"\6")),
+        ("partial-tetrahedra-chunked", "can be chunked", dict(**PARTIAL_SPACE, chunked=True)),
         ("points4-in-3d", "expected 4", dict(kind="points in 4 dimensions", dims=3)),
         ("cells4-in-2d", "expected 4", dict(kind="cells in 4 dimensions", dims=2, elevation=1)),
         ("simplices4-in-3d", "expected 4", dict(kind="simplices in 4 dimensions", dims=3)),
@@ -603,6 +630,27 @@ def failing_streams():
         partial().residual((None, 0, 0, 0)).walls((0, 1)).end(1, residual=1, walls=1))
     yield ("wall-to-itself", "wall 0 to 0 between no",
         partial().residual((None, 0, 0, 0)).walls((0, 0)).end(1, residual=1, walls=1))
+    space = lambda: Vector(**PARTIAL_SPACE)
+    three = [(None,) + corner for corner in CORNERS[:3]]
+    yield ("partial-tetrahedra-outside-region", "outside of the region",
+        space().residual((None, 0, 0, 7), (None, 0, 0, 8)).end(2, residual=2))
+    yield ("partial-tetrahedra-vertex-outside-region", "outside of the region",
+        space().patch(0, [(0, 0, 8)], (), (), (0,)).end(1, vertices=1))
+    yield ("partial-tetrahedra-wall-length", "whole number of records",
+        space().residual(*three).block(b"WALL", raw(bytes(8))).end(3, residual=3))
+    yield ("partial-tetrahedra-wall-repeats-point", "wall 0 to 1 to 0 between no",
+        space().residual(*three).walls((0, 1, 0)).end(3, residual=3, walls=1))
+    yield ("partial-tetrahedra-wall-unknown-point", "wall 2 to 1 to 3 between no",
+        space().residual(*three).walls((2, 1, 3)).end(3, residual=3, walls=1))
+    yield ("partial-tetrahedra-end-walls", "END states", space().residual(*three).walls((0, 1, 2)).end(3, residual=3))
+    yield ("partial-tetrahedra-forgets-vertex", "1 of 2 vertices were finalized",
+        space().patch(0, CORNERS[:2]).residual((1, 4, 0, 0)).end(2, vertices=2, residual=1))
+    yield ("partial-tetrahedra-moved", "other coordinates than its vertex 1",
+        space().patch(0, CORNERS[:2]).residual((0, 0, 0, 0), (1, 4, 0, 1)).end(2, vertices=2, residual=2))
+    yield ("labels-in-partial-tetrahedra", "may stand here",
+        space().patch(0, CORNERS[:1], (), (), (0,)).labels(1).end(1, vertices=1))
+    yield ("patch-after-walls", "may stand here",
+        space().residual(*three).walls((0, 1, 2)).patch().end(3, residual=3, walls=1))
     cell = lambda **fields: Vector(**TETRAHEDRAL, **fields).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)], (0,))
     four = lambda: Vector(**TETRAHEDRAL).patch(0, CORNERS[:4], (), [(0, 1, 2, 3)], (0, 1, 2, 3))
     tetrahedra = lambda new, simplices: Vector(**TETRAHEDRAL).patch(0, CORNERS[:new], (), simplices, range(new)).end(
@@ -831,7 +879,7 @@ def failing_configurations(raw):
     yield "coefficients-end", "END states", Vector(**SPLINES).points(*KNOTS).coefficients("1").end(4, residual=2)
     yield "splines-two-degrees", "splines have one degree", Vector(**SPLINES).points(*KNOTS).configurations(
         0, DEGREE0).configurations(1, *DEGREE1).coefficients("1").end(4, simplices=13, residual=1)
-    yield "splines-tree", "stream of splines has no finalization tree", Vector(**SPLINES, tree=QUADTREE).end()
+    yield "splines-tree", "no finalization tree", Vector(**SPLINES, tree=QUADTREE).end()
 
 
 def files():

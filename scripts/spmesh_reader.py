@@ -68,6 +68,7 @@ KINDS = {
     7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
     8: ("configurations", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",))),
     9: ("splines", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",), (b"COEF",))),
+    10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
 }
 
 # Kinds of functions of splines: name, number of knots.
@@ -82,7 +83,11 @@ class Header:
         require(length >= 192, "header body of %d bytes, expected at least 192" % length)
         self.kind, dims_of_kind, self.phases = KINDS[kind]
         coordinate_type, self.dims, elevation, flags, reserved = struct.unpack_from("<BBBBI", data, 16)
-        require(reserved == 0 and elevation < 2 and flags < 16 and data[164:168] == bytes(4), "reserved bits are set")
+        is_partial_in_space = self.kind == "partial tetrahedral mesh"
+        require(
+            reserved == 0 and elevation < 2 and flags < 16 and (is_partial_in_space or data[164:168] == bytes(4)),
+            "reserved bits are set",
+        )
         require(coordinate_type in (1, 2), "coordinate type %d" % coordinate_type)
         require(
             self.dims in (2, 3, 4) and not (self.dims == 3 and elevation),
@@ -106,16 +111,18 @@ class Header:
         self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
         if self.is_integer:
             self.check_grid()
+        require(
+            not flags & 2 or not (self.has_knots or is_partial_in_space),
+            "a stream of kind %s has no finalization tree" % self.kind,
+        )
         self.tree = Tree(self.dims, data) if flags & 2 else None
         self.bounds = struct.unpack_from("<6d", data, 80) if flags & 1 else None
         self.check_bounds()
-        self.region = struct.unpack_from("<4d", data, 168) if flags & 4 else None
+        self.region = None
+        if flags & 4:
+            self.region = struct.unpack_from("<6d", data, 152) if is_partial_in_space else struct.unpack_from("<4d", data, 168)
         self.check_region()
         self.chunked = flags & 8 != 0
-        require(
-            not self.has_knots or not self.tree,
-            "a stream of %s has no finalization tree" % self.kind,
-        )
         require(
             not self.chunked or (self.tree and not self.is_mesh),
             "only points with a finalization tree can be chunked",
@@ -149,12 +156,12 @@ class Header:
 
     def check_region(self):
         require(
-            (self.region is not None) == (self.kind == "partial triangle mesh"),
+            (self.region is not None) == self.kind.startswith("partial "),
             "a region goes with a partial mesh, and only with one",
         )
         if self.region:
-            x0, y0, x1, y1 = self.region
-            require(x0 < x1 and y0 < y1, "the region is empty or not a number")
+            low, high = self.region[: self.dims], self.region[self.dims :]
+            require(all(a < b for a, b in zip(low, high)), "the region is empty or not a number")
 
     def read_tail(self, data, length):
         encoding, producer_length, crs_length = struct.unpack_from("<HHI", data, 200)
@@ -187,8 +194,10 @@ class Header:
         if self.tree:
             require(self.tree.contains(point), "point %r lies outside of the finalization tree" % (point,))
         if self.region:
-            x0, y0, x1, y1 = self.region
-            require(x0 <= x < x1 and y0 <= y < y1, "point %r lies outside of the region" % (point,))
+            low, high = self.region[: self.dims], self.region[self.dims :]
+            require(
+                all(a <= c < b for a, c, b in zip(low, point, high)), "point %r lies outside of the region" % (point,)
+            )
         return point
 
     def points_of(self, data):
@@ -511,14 +520,16 @@ class Stream:
             self.text.residual(None if vertex == UNKNOWN else vertex, point)
 
     def walls(self, payload):
-        require(len(payload) % 8 == 0, "%d bytes are not a whole number of records of 8" % len(payload))
-        for a, b in struct.iter_unpack("<II", payload):
+        corners = self.header.dims
+        size = 4 * corners
+        require(len(payload) % size == 0, "%d bytes are not a whole number of records of %d" % (len(payload), size))
+        for wall in struct.iter_unpack("<%dI" % corners, payload):
             require(
-                a != b and max(a, b) < self.total["residual"],
-                "wall %d to %d between no residual points" % (a, b),
+                len(set(wall)) == corners and max(wall) < self.total["residual"],
+                "wall %s between no %d residual points" % (" to ".join(map(str, wall)), corners),
             )
             self.total["walls"] += 1
-            self.text.line("w %d %d" % (a + 1, b + 1))
+            self.text.line("w " + " ".join(str(corner + 1) for corner in wall))
 
     def points4(self, payload):
         size = self.header.record.size

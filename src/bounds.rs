@@ -69,6 +69,17 @@ impl Region {
     pub const PLANE: Region = Region::EVERYTHING;
 }
 
+impl Region<3> {
+    /// The box with the given lower and upper sides of the first axes, open in the others.
+    #[must_use]
+    pub fn of_sides(lower: &[f64], upper: &[f64]) -> Self {
+        let mut region = Region::EVERYTHING;
+        region.min.iter_mut().zip(lower).for_each(|(side, &given)| *side = given);
+        region.max.iter_mut().zip(upper).for_each(|(side, &given)| *side = given);
+        region
+    }
+}
+
 impl<const D: usize> Region<D> {
     /// The box without sides.
     pub const EVERYTHING: Region<D> = Region { min: [f64::NEG_INFINITY; D], max: [f64::INFINITY; D] };
@@ -79,11 +90,23 @@ impl<const D: usize> Region<D> {
         Region { min: std::array::from_fn(|axis| min[axis]), max: std::array::from_fn(|axis| max[axis]) }
     }
 
+    /// The same box in space, open in the axes that it does not have.
+    #[must_use]
+    pub fn in_space(&self) -> Region<3> {
+        Region::of_sides(&self.min, &self.max)
+    }
+
     /// Whether the first D coordinates of `point` lie in the half-open box.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         (0..D).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
+    }
+
+    /// Whether no point of `inner` lies outside of this box.
+    #[must_use]
+    pub fn covers(&self, inner: &Self) -> bool {
+        (0..D).all(|axis| self.min[axis] <= inner.min[axis] && inner.max[axis] <= self.max[axis])
     }
 
     /// Whether the two half-open boxes have a point in common.

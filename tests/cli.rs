@@ -103,7 +103,7 @@ fn few_points_are_a_valid_mesh_with_a_warning() {
 fn each_failure_has_its_exit_code() {
     let tile = sample("lareunion.laz");
     type Case<'a> = (&'a str, &'a [&'a str], &'a [u8], i32, &'a str);
-    let cases: [Case; 9] = [
+    let cases: [Case; 16] = [
         ("spfinalize", &["no/such/file.laz"], b"", 1, "no/such/file.laz"),
         ("spfinalize", &["-"], b"1 2 3\n4 x 6\n", 3, "2"),
         ("spfinalize", &["-"], b"1 2 3\nnan 5 6\n", 3, "2"),
@@ -112,6 +112,13 @@ fn each_failure_has_its_exit_code() {
         ("spdelaunay2d", &[], b"not a stream at all", 3, "stdin"),
         ("spdelaunay2d", &[], b"", 3, "empty"),
         ("spdelaunay2d", &["--partial"], b"", 2, "--region"),
+        ("spdelaunay2d", &["--partial", "--region", "0,0,1"], b"", 2, "four numbers"),
+        ("spdelaunay3d", &["--partial"], b"", 2, "part of space"),
+        ("spdelaunay3d", &["--partial", "--region", "0,0,1,1"], b"", 2, "six numbers"),
+        ("spdelaunay3d", &["--partial", "--region", "0,0,3,1,1,3"], b"", 2, "the box is empty"),
+        ("spdelaunay3d", &["--partial", "--cell", "1/0/0"], b"", 2, "LEVEL/COLUMN/ROW/LAYER"),
+        ("spdelaunay3d", &["--region", "0,0,0,1,1,1"], b"", 2, "--partial or --merge"),
+        ("spdelaunay3d", &["--merge", "--threads", "2"], b"", 2, "--threads"),
         ("spinfo", &["-"], b"\x89SPM\r\n\x1a\n", 3, "stdin"),
     ];
     for (name, arguments, input, code, word) in cases {

@@ -144,6 +144,83 @@ fn tiles_of_a_real_file_merge_to_the_whole() {
     assert!(run("spinfo", &["--audit", "-"], &merged).status.success());
 }
 
+/// The tetrahedra of a mesh by their coordinates, sorted, from its text twin.
+fn tetrahedra(mesh: &[u8]) -> Vec<[String; 4]> {
+    let output = run("spconvert", &["--to", "text"], mesh);
+    assert!(output.status.success(), "{:?}", outcome(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let vertices: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("v ")).collect();
+    let corners = |line: &str| {
+        let corner = |id: &str| vertices[id.parse::<usize>().unwrap() - 1].to_string();
+        let mut corners: Vec<String> = line.split(' ').map(corner).collect();
+        corners.sort_unstable();
+        corners.try_into().unwrap()
+    };
+    let mut tetrahedra: Vec<_> =
+        text.lines().filter_map(|line| line.strip_prefix("c ")).map(corners).collect();
+    tetrahedra.sort_unstable();
+    tetrahedra
+}
+
+#[test]
+fn tiles_of_space_merge_to_the_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    let points = path("points.spm");
+    let point = |i: u64| format!("{} {} {}\n", i * 7919 % 1009, i * 104_729 % 1013 + i % 3, i * i % 1019);
+    let cloud: String = (0..4_000).map(point).collect();
+    let finalize = ["--octree", "--cell-points", "500", "-", "-o", &points];
+    let made = run("spfinalize", &finalize, cloud.as_bytes());
+    assert!(made.status.success(), "{:?}", outcome(&made));
+    let parts = ["west", "south", "low", "high"].map(|name| path(&format!("{name}.spm")));
+    let regions = [
+        "-inf,-inf,-inf,400,inf,inf",
+        "400,-inf,-inf,inf,500,inf",
+        "400,500,-inf,inf,inf,480",
+        "400,500,480,inf,inf,inf",
+    ];
+    for (part, region) in parts.iter().zip(regions) {
+        let tile = run("spdelaunay3d", &["--partial", "--region", region, "-o", part, &points], &[]);
+        let (code, message) = outcome(&tile);
+        assert!(code == Some(0) && message.contains("lie outside of the region"), "{message}");
+        let audit = run("spinfo", &["--audit", "--json", part], &[]);
+        assert!(audit.status.success(), "{:?}", outcome(&audit));
+        let report: serde_json::Value = serde_json::from_slice(&audit.stdout).unwrap();
+        assert_eq!(report["kind"], "partial tetrahedral mesh");
+        assert_eq!(report["region"]["min"].as_array().unwrap().len(), 3);
+        assert!(report["counts"]["tetrahedra"].as_u64() > Some(100), "{report}");
+        assert!(report["counts"]["walls"].as_u64() > Some(100), "{report}");
+        let text = run("spconvert", &["--to", "text", part], &[]).stdout;
+        let again = run("spconvert", &["--from", "text", "--to", "text", "-"], &text).stdout;
+        assert!(text.starts_with(b"#spmesh version 1") && again == text);
+        let python = run_python("scripts/spmesh_reader.py", &["-"], &fs::read(part).unwrap());
+        assert!(python.is_none_or(|python| python.status.success() && python.stdout == text));
+    }
+    let east = path("east.spm");
+    let [west, south, low, high] = &parts;
+    let staged = ["--merge", "--region", "400,-inf,-inf,inf,inf,inf", "-o", &east, low, south, high];
+    assert_eq!(outcome(&run("spdelaunay3d", &staged, &[])), (Some(0), String::new()));
+    let merged = run("spdelaunay3d", &["--merge", "--stats=json", &east, west], &[]);
+    let (code, stats) = outcome(&merged);
+    assert_eq!(code, Some(0), "{stats}");
+    let whole = run("spdelaunay3d", &[&points], &[]).stdout;
+    assert!(tetrahedra(&merged.stdout) == tetrahedra(&whole));
+    assert!(run("spinfo", &["--audit", "-"], &merged.stdout).status.success());
+    for (arguments, words) in [
+        (&["--merge", west, west][..], "overlap"),
+        (&["--merge", &points], "--merge takes results of --partial"),
+        (&[west], "use --merge to finish it"),
+    ] {
+        let (code, message) = outcome(&run("spdelaunay3d", arguments, &[]));
+        assert!(code == Some(2) && message.contains(words), "{message}");
+    }
+    let (code, message) = outcome(&run("spdelaunay2d", &["--merge", west], &[]));
+    assert!(code == Some(2) && message.contains("merge it with spdelaunay3d"), "{message}");
+    let cell = run("spdelaunay3d", &["--partial", "--cell", "1/0/0/0", "-q", &points], &[]);
+    assert_eq!(outcome(&cell), (Some(0), String::new()));
+    assert!(run("spinfo", &["--audit", "-"], &cell.stdout).status.success());
+}
+
 #[test]
 fn a_killed_producer_leaves_no_result() {
     for (name, arguments) in TRIANGULATORS {

@@ -245,7 +245,7 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
     let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
     let points =
         write(&Header::new(Kind::Points, grid, 2, false), &[Event::End(Default::default())]).unwrap();
-    let region = Some(Region::PLANE);
+    let region = Some(Region::EVERYTHING);
     let partial = Header { region, ..Header::new(Kind::PartialTriangleMesh, grid, 2, false) };
     let partial = write(&partial, &[Event::End(Default::default())]).unwrap();
     let tetrahedral = Header::new(Kind::TetrahedralMesh, grid, 3, false);
@@ -295,7 +295,7 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
 /// A header with random parts, and coordinates that fit all of them.
 fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
     let dims = match kind {
-        Kind::TetrahedralMesh => 3,
+        Kind::TetrahedralMesh | Kind::PartialTetrahedralMesh => 3,
         Kind::Points if random.coin() => 3,
         _ => 2,
     };
@@ -306,9 +306,10 @@ fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
     };
     let mut header = Header::new(kind, coordinates, dims, dims == 2 && random.coin());
     let tree = CellTree::new(dims, 4, [-32.0, 0.0, if dims == 3 { -8.0 } else { 0.0 }], 64.0).unwrap();
-    header.tree = (kind == Kind::Points || random.coin()).then_some(tree);
-    header.region =
-        (kind == Kind::PartialTriangleMesh).then_some(Region { min: [-32.0, 0.0], max: [32.0; 2] });
+    header.tree = (kind.may_have_tree() && (kind == Kind::Points || random.coin())).then_some(tree);
+    let region =
+        Region::of_sides(&[-32.0, 0.0, -8.0][..dims.into()], &[32.0, 32.0, f64::INFINITY][..dims.into()]);
+    header.region = kind.is_partial().then_some(region);
     header.crs = match random.below(3) {
         0 => Crs::Unknown,
         1 => Crs::Wkt("PROJCS[\"\u{fc}\\\t\u{1}\u{7f}\u{2028}\"]".repeat(random.below(9))),
@@ -383,7 +384,7 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
     if has_labels {
         events.push(Event::Labels((0..unlabelled).map(|_| random.next() % 9).collect()));
     }
-    if header.kind != Kind::PartialTriangleMesh {
+    if !header.kind.is_partial() {
         let imported: Vec<u64> = live.iter().map(|&(id, _)| id).collect();
         let finalized = (0..imported.len() as u32).collect();
         events.push(Event::Patch(Patch { first_id, imported, finalized, ..Patch::default() }));
@@ -391,7 +392,8 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
         let mut residual: Vec<_> = live.iter().map(|&(id, point)| (Some(id), point)).collect();
         residual.extend((0..random.below(5)).map(|_| (None, random_point(random, header))));
         let ends = residual.len() as u32;
-        let walls = (1..ends).map(|end| [end - 1, end]).collect();
+        let corners = header.kind.vertices_per_wall() as u32;
+        let walls = (corners..=ends).flat_map(|end| end - corners..end).collect();
         events.extend([Event::ResidualPoints(residual), Event::Walls(walls)]);
     }
     events
@@ -400,8 +402,14 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
 /// A stream with random content, whole and well-formed.
 fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
     let mut random = Random(seed);
-    let kinds = [Kind::Points, Kind::TriangleMesh, Kind::PartialTriangleMesh, Kind::TetrahedralMesh];
-    let kind = kinds[random.below(4)];
+    let kinds = [
+        Kind::Points,
+        Kind::TriangleMesh,
+        Kind::PartialTriangleMesh,
+        Kind::TetrahedralMesh,
+        Kind::PartialTetrahedralMesh,
+    ];
+    let kind = kinds[random.below(kinds.len())];
     let (mut header, tree) = random_header(&mut random, kind);
     let events = match kind {
         Kind::Points => random_points(&mut random, &header, &tree),

@@ -42,7 +42,7 @@ pub enum Check {
     Chunks,
     /// Residual points are the vertices that are not final, and points not written before, each once.
     Residual,
-    /// Walls are the open edges of the final triangles.
+    /// Walls are the open edges of final triangles, or the open facets of final tetrahedra.
     Walls,
 }
 
@@ -104,7 +104,7 @@ impl Check {
             Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
             Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),
             Check::Residual => ("residual", "the residual is what is not final, each point once"),
-            Check::Walls => ("walls", "the walls are the open edges of the final triangles"),
+            Check::Walls => ("walls", "the walls are the open edges or facets of the final simplices"),
         }
     }
 }

@@ -77,6 +77,11 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         })
     }
 
+    /// The open facet with the smallest ids, in the order that its simplex has them.
+    pub(super) fn first(&self) -> Option<[u64; N]> {
+        self.iter().map(|(facet, _)| facet).min_by_key(|&facet| increasing(facet).0)
+    }
+
     /// Number of open facets.
     pub(super) fn len(&self) -> usize {
         self.open.len()

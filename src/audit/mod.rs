@@ -44,6 +44,7 @@ mod facets;
 mod hull;
 mod mesh;
 mod partial;
+mod partial_triangles;
 mod point_set;
 mod points;
 mod survey;
@@ -67,9 +68,10 @@ pub use triangles::Standard;
 
 use check::Ledger;
 use mesh::{MESH_CHECKS, MeshAudit};
-use partial::{PARTIAL_CHECKS, PartialAudit};
+use partial::{FinalSimplices, PartialAudit};
 use points::{PointsAudit, points_checks};
-use tetrahedra::{TETRAHEDRA_CHECKS, TetrahedraAudit};
+use tetrahedra::{LiveTetrahedra, TETRAHEDRA_CHECKS, TetrahedraAudit};
+use triangles::Triangles;
 
 use crate::bounds::Point;
 use crate::error::Error;
@@ -90,7 +92,8 @@ pub struct Audit {
 enum State {
     Points(PointsAudit),
     Mesh(MeshAudit),
-    Partial(PartialAudit),
+    Partial(PartialAudit<Triangles>),
+    PartialTetrahedra(PartialAudit<LiveTetrahedra>),
     Tetrahedra(TetrahedraAudit),
 }
 
@@ -117,7 +120,11 @@ impl Audit {
             Kind::Points => (State::Points(PointsAudit::new(header)), points_checks(header)),
             Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), MESH_CHECKS.to_vec()),
             Kind::PartialTriangleMesh => {
-                (State::Partial(PartialAudit::new(header, standard)), PARTIAL_CHECKS.to_vec())
+                (State::Partial(PartialAudit::new(header, standard)), Triangles::CHECKS.to_vec())
+            }
+            Kind::PartialTetrahedralMesh => {
+                let audit = PartialAudit::new(header, standard);
+                (State::PartialTetrahedra(audit), LiveTetrahedra::CHECKS.to_vec())
             }
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())
@@ -168,13 +175,8 @@ impl Audit {
             (State::Points(audit), Event::End(totals)) => audit.end(totals, ledger),
             (State::Mesh(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
             (State::Mesh(audit), Event::End(totals)) => audit.end(totals, ledger),
-            (State::Partial(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
-            (State::Partial(audit), Event::ResidualPoints(points)) => audit.residual_points(points, ledger),
-            (State::Partial(audit), Event::Walls(walls)) => {
-                audit.walls(walls);
-                Ok(())
-            }
-            (State::Partial(audit), Event::End(totals)) => audit.end(totals, ledger),
+            (State::Partial(audit), event) => audit.event(event, ledger),
+            (State::PartialTetrahedra(audit), event) => audit.event(event, ledger),
             (State::Tetrahedra(audit), Event::Patch(patch)) => audit.patch(patch, ledger),
             (State::Tetrahedra(audit), Event::Labels(labels)) => audit.labels(labels, ledger),
             (State::Tetrahedra(audit), Event::End(totals)) => audit.end(totals, ledger),
@@ -203,7 +205,8 @@ impl Audit {
         match &self.state {
             State::Points(_) => (0, 0),
             State::Mesh(audit) => (audit.triangles().vertices.live_max(), audit.triangles().edges.len()),
-            State::Partial(audit) => (audit.triangles().vertices.live_max(), audit.triangles().edges.len()),
+            State::Partial(audit) => audit.width(),
+            State::PartialTetrahedra(audit) => audit.width(),
             State::Tetrahedra(audit) => (audit.live_max(), audit.open_facets()),
         }
     }

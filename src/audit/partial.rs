@@ -1,59 +1,95 @@
-//! Audit of the final triangles of a region and its residual.
+//! Audit of the final simplices of a region and its residual.
 //!
-//! It proves what another program needs to finish the mesh: the triangles are correct as far as they go, the
+//! It proves what another program needs to finish the mesh: the simplices are correct as far as they go, the
 //! walls and the residual are all that is open, and nothing of the region is lost or outside of it. Whether
 //! the rest fits is proved when the merged mesh is audited.
 
+use std::cmp::Ordering;
 use std::collections::HashSet;
 
 use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
-use super::exact::plane::lexicographic;
-use super::triangles::{Fans, Standard, Triangles};
-use super::vertices::Vertex;
+use super::triangles::Standard;
 use crate::bounds::{Point, Region};
-use crate::stream::{Header, Patch, Totals};
+use crate::stream::{Event, Header, Patch, Totals};
 
-/// State of the audit of a partial mesh. Memory: the width of the stream and the residual.
-pub(super) struct PartialAudit {
-    region: Region,
-    triangles: Triangles,
-    residual: Vec<(Option<u64>, Point)>,
-    walls: Vec<[u32; 2]>,
+/// What can be proved of final simplices one by one, with the vertices that are live and the facets that are open.
+pub(super) trait FinalSimplices {
+    /// What simplices and their facets are called.
+    const NAMES: [&'static str; 2];
+
+    /// Checks that every partial mesh must pass, in any case.
+    const CHECKS: [Check; 9];
+
+    fn new(standard: Standard) -> Self;
+
+    /// Checks a patch; a vertex that it finalizes must be closed on all sides: an open facet would be a wall, whose corners
+    /// are in the residual.
+    fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation>;
+
+    /// Number of vertices so far.
+    fn vertices(&self) -> u64;
+
+    /// Where a vertex is, if it is live.
+    fn place(&self, id: u64) -> Option<Point>;
+
+    /// The live vertex with the smallest id that `is_wrong`.
+    fn first_live(&self, is_wrong: impl Fn(u64) -> bool) -> Option<(u64, Point)>;
+
+    /// Takes a facet away, with its simplex on the side that a wall has it; whether it was open.
+    fn close(&mut self, facet: &[u64]) -> bool;
+
+    /// The open facet with the smallest ids.
+    fn first_open(&self) -> Option<Vec<u64>>;
+
+    /// Most vertices that were live at once, and number of open facets.
+    fn width(&self) -> (usize, usize);
 }
 
-/// Checks that a partial mesh must pass, in any case.
-pub(super) const PARTIAL_CHECKS: [Check; 9] = [
-    Check::Orientation,
-    Check::Edges,
-    Check::Delaunay,
-    Check::Vertices,
-    Check::Finalization,
-    Check::Counts,
-    Check::Region,
-    Check::Residual,
-    Check::Walls,
-];
+/// State of the audit of a partial mesh. Memory: the width of the stream and the residual.
+pub(super) struct PartialAudit<S> {
+    dims: usize,
+    region: Region<3>,
+    simplices: S,
+    residual: Vec<(Option<u64>, Point)>,
+    /// The corners of all walls, `dims` each.
+    walls: Vec<u32>,
+}
 
-impl PartialAudit {
+impl<S: FinalSimplices> PartialAudit<S> {
     pub(super) fn new(header: &Header, standard: Standard) -> Self {
         PartialAudit {
-            region: header.region.unwrap_or(Region::PLANE),
-            triangles: Triangles::new(standard),
+            dims: usize::from(header.dims),
+            region: header.region.unwrap_or(Region::EVERYTHING),
+            simplices: S::new(standard),
             residual: Vec::new(),
             walls: Vec::new(),
         }
     }
 
-    pub(super) fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
+    /// Checks the next event.
+    pub(super) fn event(&mut self, event: &Event, ledger: &mut Ledger) -> Result<(), Violation> {
+        match event {
+            Event::Patch(patch) => self.patch(patch, ledger),
+            Event::ResidualPoints(points) => self.residual_points(points, ledger),
+            Event::Walls(walls) => {
+                self.walls.extend_from_slice(walls);
+                Ok(())
+            }
+            Event::End(totals) => self.end(totals, ledger),
+            _ => unreachable!("the reader lets no such block into a partial mesh"),
+        }
+    }
+
+    fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
             self.check_region(Some(id), at, ledger)?;
         }
-        self.triangles.patch(patch, ledger, finalize)
+        self.simplices.patch(patch, ledger)
     }
 
-    pub(super) fn residual_points(
+    fn residual_points(
         &mut self,
         points: &[(Option<u64>, Point)],
         ledger: &mut Ledger,
@@ -65,30 +101,26 @@ impl PartialAudit {
         Ok(())
     }
 
-    pub(super) fn walls(&mut self, walls: &[[u32; 2]]) {
-        self.walls.extend_from_slice(walls);
-    }
-
-    pub(super) fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
+    fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
         self.check_written(ledger)?;
         self.check_distinct(ledger)?;
         self.check_walls(ledger)?;
         let unwritten = self.residual.iter().filter(|(id, _)| id.is_none()).count() as u64;
         ledger.add(Check::Counts, 1);
-        if (self.triangles.vertices.seen() + unwritten).checked_add(totals.merged) != Some(totals.points) {
+        let vertices = self.simplices.vertices();
+        if (vertices + unwritten).checked_add(totals.merged) != Some(totals.points) {
             let message = format!(
-                "{} vertices, {unwritten} residual points that are none and {} merged points are not the {} points",
-                self.triangles.vertices.seen(),
-                totals.merged,
-                totals.points
+                "{vertices} vertices, {unwritten} residual points that are none and {} merged points are not the {} points",
+                totals.merged, totals.points
             );
             return Err(Violation::new(Check::Counts, message));
         }
         Ok(())
     }
 
-    pub(super) fn triangles(&self) -> &Triangles {
-        &self.triangles
+    /// Most vertices that were live at once, and number of open facets.
+    pub(super) fn width(&self) -> (usize, usize) {
+        self.simplices.width()
     }
 
     fn check_region(&self, id: Option<u64>, at: Point, ledger: &mut Ledger) -> Result<(), Violation> {
@@ -107,34 +139,38 @@ impl PartialAudit {
         for &(id, at) in &self.residual {
             let Some(id) = id else { continue };
             ledger.add(Check::Residual, 1);
-            let Some(vertex) = self.triangles.vertices.live(id) else {
+            let Some(place) = self.simplices.place(id) else {
                 return Err(fail(format!("vertex {id} of the residual was finalized")).with(id, at));
             };
-            if vertex.at != at {
+            if place != at {
                 let violation = fail(format!("vertex {id} of the residual lies elsewhere in its patch"));
-                return Err(violation.with(id, at).with(id, vertex.at));
+                return Err(violation.with(id, at).with(id, place));
             }
             if !seen.insert(id) {
                 return Err(fail(format!("vertex {id} is in the residual twice")).with(id, at));
             }
         }
-        match self.triangles.vertices.first_live(|vertex| !seen.contains(&vertex.id)) {
+        match self.simplices.first_live(|id| !seen.contains(&id)) {
             None => Ok(()),
-            Some(lost) => {
-                let message = format!("vertex {} is neither finalized nor in the residual", lost.id);
-                Err(fail(message).with(lost.id, lost.at))
+            Some((id, at)) => {
+                let message = format!("vertex {id} is neither finalized nor in the residual");
+                Err(fail(message).with(id, at))
             }
         }
     }
 
-    /// No two residual points have the same x and y.
+    /// No two residual points are at one place; elevation does not count.
     fn check_distinct(&self, ledger: &mut Ledger) -> Result<(), Violation> {
+        let place = |at: Point| -> [f64; 3] {
+            std::array::from_fn(|axis| if axis < self.dims { at[axis] } else { 0.0 })
+        };
         let mut sorted = self.residual.clone();
-        sorted.sort_by(|(p, at_p), (q, at_q)| {
-            lexicographic([at_p[0], at_p[1]], [at_q[0], at_q[1]]).then(p.cmp(q))
+        sorted.sort_by(|&(p, at_p), &(q, at_q)| {
+            let order = place(at_p).partial_cmp(&place(at_q)).unwrap_or(Ordering::Equal);
+            order.then(p.cmp(&q))
         });
         ledger.add(Check::Residual, sorted.len().saturating_sub(1) as u64);
-        match sorted.windows(2).find(|pair| pair[0].1[..2] == pair[1].1[..2]) {
+        match sorted.windows(2).find(|pair| place(pair[0].1) == place(pair[1].1)) {
             None => Ok(()),
             Some(pair) => {
                 let violation = Violation::new(Check::Residual, "two residual points coincide");
@@ -143,46 +179,35 @@ impl PartialAudit {
         }
     }
 
-    /// Every wall is an open edge, and every open edge has a wall: a final triangle lies to the left of both.
+    /// Every wall is an open facet, and every open facet has a wall: a final simplex lies on the same side of both.
     fn check_walls(&mut self, ledger: &mut Ledger) -> Result<(), Violation> {
-        for &[from, to] in &self.walls {
+        let [simplex, facet] = S::NAMES;
+        for wall in self.walls.chunks_exact(self.dims) {
             ledger.add(Check::Walls, 1);
-            let ends = [from, to].map(|end| self.residual[end as usize]);
-            let is_open = match ends.map(|(id, _)| id) {
-                [Some(from), Some(to)] => self.triangles.edges.close([from, to]),
-                _ => false,
-            };
-            if !is_open {
+            let corners: Vec<_> = wall.iter().map(|&corner| self.residual[corner as usize]).collect();
+            let ids: Option<Vec<u64>> = corners.iter().map(|&(id, _)| id).collect();
+            if !ids.is_some_and(|ids| self.simplices.close(&ids)) {
                 let message = format!(
-                    "the wall from residual point {from} to {to} is no open edge of a final triangle on its left"
+                    "the wall from residual point {} is no open {facet} of a final {simplex} on its side",
+                    named(wall)
                 );
                 let violation = Violation::new(Check::Walls, message);
-                return Err(ends.iter().fold(violation, |violation, &(id, at)| violation.with(id, at)));
+                return Err(corners.iter().fold(violation, |violation, &(id, at)| violation.with(id, at)));
             }
         }
-        match self.triangles.edges.iter().map(|(ends, _)| ends).min() {
+        match self.simplices.first_open() {
             None => Ok(()),
-            Some(ends) => {
-                let message = format!("the open edge {} to {} has no wall", ends[0], ends[1]);
-                let live = ends.iter().filter_map(|&end| self.triangles.vertices.live(end));
+            Some(ids) => {
+                let message = format!("the open {facet} {} has no wall", named(&ids));
+                let live = ids.iter().filter_map(|&id| Some((id, self.simplices.place(id)?)));
                 let violation = Violation::new(Check::Walls, message);
-                Err(live.fold(violation, |violation, vertex| violation.with(vertex.id, vertex.at)))
+                Err(live.fold(violation, |violation, (id, at)| violation.with(id, at)))
             }
         }
     }
 }
 
-/// A final vertex is closed on all sides: an open edge would be a wall, whose ends are in the residual.
-fn finalize(vertex: &Vertex<Fans>, ledger: &mut Ledger) -> Result<(), Violation> {
-    ledger.add(Check::Vertices, 1);
-    let fans = vertex.star;
-    let fault = if !fans.is_used {
-        "without a triangle"
-    } else if fans.entering + fans.leaving > 0 {
-        "with open edges"
-    } else {
-        return fans.winding.check_once(vertex);
-    };
-    let message = format!("vertex {} is finalized {fault}", vertex.id);
-    Err(Violation::new(Check::Vertices, message).with(vertex.id, vertex.at))
+/// Numbers of corners, as they are written in messages.
+fn named<T: ToString>(corners: &[T]) -> String {
+    corners.iter().map(T::to_string).collect::<Vec<_>>().join(" to ")
 }

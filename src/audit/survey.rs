@@ -12,6 +12,7 @@ use crate::stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 pub struct Survey {
     live: LiveVertices<()>,
     vertices_per_simplex: usize,
+    vertices_per_wall: usize,
     labels: u64,
     finalized: Option<FinalizedCells>,
     found: Option<Bounds>,
@@ -54,6 +55,7 @@ impl Survey {
     pub fn new(header: &Header) -> Self {
         Survey {
             vertices_per_simplex: header.kind.vertices_per_simplex(),
+            vertices_per_wall: header.kind.vertices_per_wall(),
             finalized: header.tree.map(FinalizedCells::new),
             ..Survey::default()
         }
@@ -89,7 +91,7 @@ impl Survey {
                 self.extend(points.iter().map(|&(_, point)| point));
                 self.totals.residual_points += points.len() as u64;
             }
-            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::Walls(walls) => self.totals.walls += (walls.len() / self.vertices_per_wall) as u64,
             Event::Points4(_) | Event::Cells4(_) | Event::Simplices4(_) => self.four.event(event),
             Event::Configurations(block) => self.configurations.block(block),
             Event::Functions(functions) => self.totals.vertices += functions.len() as u64,

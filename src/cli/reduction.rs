@@ -1,94 +1,212 @@
-//! What the streaming triangulators have in common: inputs, and the figures of `--stats`.
+//! What the streaming triangulators have in common, in the plane and in space: flags, runs, and what they say.
+
+mod report;
 
 use std::io::Read;
 use std::path::PathBuf;
+use std::time::Instant;
 
-use super::{StatsFormat, open_input, peak_memory, say};
+use clap::Args;
+
+use super::progress::Progress;
+use super::{Common, StatsFormat, notice, open_input, threads};
+use crate::bounds::Region;
 use crate::error::Error;
-use crate::reduce::Stats;
+use crate::output::Output;
+use crate::reduce::{Duplicates, Options, Part, Stats};
 use crate::stream::StreamReader;
+use report::Report;
 
-/// Opens a stream, `-` for stdin.
-pub(super) fn open_stream(path: &PathBuf) -> Result<StreamReader<Box<dyn Read + Send>>, Error> {
-    let (input, name) = open_input(path)?;
-    StreamReader::new(input, name)
+/// The flags of both.
+#[derive(Debug, Args)]
+pub(super) struct Shared<const D: usize> {
+    /// Stream of points, or with --merge partial meshes; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    inputs: Vec<PathBuf>,
+
+    /// Where the mesh goes; - is stdout
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// Threads that triangulate; memory grows with them [default: one per core, at most 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+
+    /// Write what is final in --region or --cell, and the residual for --merge
+    #[arg(long)]
+    partial: bool,
+
+    /// Finish several results of --partial; with --region, into a larger partial result
+    #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads"])]
+    merge: bool,
+
+    /// Half-open box in world coordinates: a point on its upper sides is outside; inf is allowed
+    #[arg(long, value_name = names(REGION, D), allow_hyphen_values = true, value_parser = parse_region::<D>)]
+    region: Option<Region<D>>,
+
+    /// A cell of the input's tree as the region
+    #[arg(long, value_name = names(CELL, D), conflicts_with = "region", requires = "partial", value_parser = parse_cell::<D>)]
+    cell: Option<Part<D>>,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
 }
 
-/// What `--stats` tells.
-pub(super) struct Report {
-    pub(super) stats: Stats,
-    pub(super) output_bytes: u64,
-    pub(super) seconds: f64,
+/// What a region is given by, in the plane and in space.
+const REGION: [&str; 2] = ["MINX,MINY,MAXX,MAXY", "MINX,MINY,MINZ,MAXX,MAXY,MAXZ"];
+
+/// What a cell is given by, in the plane and in space.
+const CELL: [&str; 2] = ["LEVEL/COLUMN/ROW", "LEVEL/COLUMN/ROW/LAYER"];
+
+/// The name for so many dimensions.
+const fn names(both: [&'static str; 2], dimensions: usize) -> &'static str {
+    if dimensions == 2 { both[0] } else { both[1] }
+}
+
+/// A stream that is read.
+type Reader = StreamReader<Box<dyn Read + Send>>;
+
+/// What is told how much is done.
+type Done<'d> = dyn FnMut(u64) + 'd;
+
+/// What was written, and what is to be said of it.
+type Ran = Result<(Output, Stats), Error>;
+
+/// Makes a mesh of points.
+type Reduce<const D: usize> = fn(Reader, Output, &Options<D>, &mut Done) -> Ran;
+
+/// Makes a mesh of partial ones.
+type Merge<const D: usize> = fn(Vec<Reader>, Output, Option<Part<D>>, &mut Done) -> Ran;
+
+/// A program of D dimensions.
+pub(super) struct Tool<const D: usize> {
+    pub(super) name: &'static str,
+    /// What it does, for the progress.
+    pub(super) verb: &'static str,
     /// What simplices are called.
     pub(super) simplices: &'static str,
+    /// Why there may be none: too few points, or all of them in less than D dimensions.
+    pub(super) reasons: [&'static str; 2],
+    pub(super) reduce: Reduce<D>,
+    pub(super) merge: Merge<D>,
 }
 
-impl Report {
-    /// Prints the figures on stderr.
-    pub(super) fn print(&self, format: StatsFormat) {
-        match format {
-            StatsFormat::Text => say(&text_report(self)),
-            StatsFormat::Json => say(&format!("{}\n", json_report(self))),
+impl<const D: usize> Tool<D> {
+    /// Runs the program.
+    ///
+    /// # Errors
+    /// As its reduction and its merging, and if an input or the output cannot be opened.
+    pub(super) fn run(&self, flags: &Shared<D>, duplicates: Duplicates) -> anyhow::Result<()> {
+        let part = flags.part()?;
+        let started = Instant::now();
+        let (output, stats) =
+            if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, duplicates, part)? };
+        let output_bytes = output.bytes_written();
+        output.commit()?;
+        let seconds = started.elapsed().as_secs_f64();
+        self.tell(flags, &stats, part.is_some());
+        if let Some(format) = flags.stats {
+            Report { stats, output_bytes, seconds, simplices: self.simplices }.print(format);
+        }
+        Ok(())
+    }
+
+    fn reduce(
+        &self,
+        flags: &Shared<D>,
+        duplicates: Duplicates,
+        part: Option<Part<D>>,
+    ) -> anyhow::Result<(Output, Stats)> {
+        let [input] = &flags.inputs[..] else {
+            let message = "one stream of points at a time: spfinalize joins files (or use --merge)";
+            return Err(Error::usage(message).into());
+        };
+        let reader = open_stream(input)?;
+        let output = Output::create(&flags.output, true)?;
+        let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
+        let threads = threads(flags.threads).get();
+        let options = Options { duplicates, threads, part, ..Options::default() };
+        Ok((self.reduce)(reader, output, &options, &mut |points| progress.set(points))?)
+    }
+
+    fn merge(&self, flags: &Shared<D>, part: Option<Part<D>>) -> anyhow::Result<(Output, Stats)> {
+        if flags.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
+            return Err(Error::usage("stdin can be given once").into());
+        }
+        let readers = flags.inputs.iter().map(open_stream).collect::<Result<Vec<_>, Error>>()?;
+        let output = Output::create(&flags.output, true)?;
+        let mut progress = Progress::new(&flags.common, "merging", None);
+        Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
+    }
+
+    /// Says what may surprise.
+    fn tell(&self, flags: &Shared<D>, stats: &Stats, is_partial: bool) {
+        let say = |message: String| notice(self.name, &flags.common, &message);
+        if stats.simplices == 0 && !is_partial {
+            let reason = self.reasons[usize::from(stats.vertices > D as u64)];
+            say(format!("no {}: {reason} ({} points)", self.simplices, stats.points));
+        }
+        if stats.outside > 0 {
+            let points = stats.outside + stats.points;
+            let outside = stats.outside;
+            say(format!("{outside} of {points} points lie outside of the region: left to other regions"));
         }
     }
 }
 
-/// Rows of the report: a label for people, a key for programs, the value. With the time, the first rows are
-/// the columns of thesis tables 5.2 and 5.3.
-fn rows(report: &Report) -> [(String, &'static str, u64); 26] {
-    let (stats, simplices) = (&report.stats, report.simplices);
-    let rows = [
-        ("points", "points", stats.points),
-        ("input (bytes)", "input_bytes", stats.input_bytes),
-        ("levels of the tree", "level", stats.level),
-        ("most simplices active", "active_max", stats.active_max),
-        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
-        ("simplices", simplices, stats.simplices),
-        ("output (bytes)", "output_bytes", report.output_bytes),
-        ("vertices", "vertices", stats.vertices),
-        ("merged duplicates", "merged", stats.merged),
-        ("outside of the region", "outside", stats.outside),
-        ("cell tags", "cells", stats.cells),
-        ("leaves with points", "leaves", stats.leaves),
-        ("largest leaf (points)", "leaf_max", stats.leaf_max),
-        ("nodes above with points", "inner_nodes", stats.inner_nodes),
-        ("largest node above (points)", "inner_node_max", stats.inner_node_max),
-        ("points left to the root", "root_points", stats.root_points),
-        ("most points held", "held_max", stats.held_max),
-        ("points never tagged", "untagged", stats.untagged),
-        ("most residual points waiting", "residual_max", stats.residual_max),
-        ("residual written (points)", "residual", stats.residual),
-        ("width (live vertices)", "width", stats.width),
-        ("predicates: filter", "predicates_filter", stats.predicates.filter),
-        ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: expansion", "predicates_expansion", stats.predicates.expansion),
-        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
-        ("predicates: ties broken", "predicates_perturbed", stats.predicates.perturbed),
-    ];
-    rows.map(|(label, key, value)| (label.replace("simplices", simplices), key, value))
-}
-
-/// Share of the points that was left to the root: nearly all, where points lie on a surface.
-fn root_share(stats: &Stats) -> f64 {
-    stats.root_points as f64 / stats.points.max(1) as f64
-}
-
-fn text_report(report: &Report) -> String {
-    let mut text = format!("{:<30} {:>15.3}\n", "time (s)", report.seconds);
-    for (label, _, value) in rows(report) {
-        text += &format!("{label:<30} {value:>15}\n");
+impl<const D: usize> Shared<D> {
+    /// The part that a run is about, or the region of what is merged.
+    fn part(&self) -> Result<Option<Part<D>>, Error> {
+        let part = self.cell.or(self.region.map(Part::Region));
+        match (self.partial, part) {
+            (true, None) => {
+                let whole = if D == 2 { "the plane" } else { "space" };
+                let message =
+                    format!("--partial needs --region or --cell: the part of {whole} that it is about");
+                Err(Error::usage(message))
+            }
+            (false, Some(_)) if !self.merge => Err(Error::usage("--region goes with --partial or --merge")),
+            (_, part) => Ok(part),
+        }
     }
-    text += &format!("{:<30} {:>15.1}\n", "share left to the root (%)", 100.0 * root_share(&report.stats));
-    if report.stats.untagged > 0 {
-        text += "note: points without a final cell were held until the end; spfinalize bounds the memory\n";
-    }
-    text
 }
 
-fn json_report(report: &Report) -> String {
-    let mut object = serde_json::Map::new();
-    object.insert("seconds".into(), report.seconds.into());
-    object.insert("root_share".into(), root_share(&report.stats).into());
-    object.extend(rows(report).into_iter().map(|(_, key, value)| (key.to_string(), value.into())));
-    serde_json::Value::Object(object).to_string()
+/// Opens a stream, `-` for stdin.
+fn open_stream(path: &PathBuf) -> Result<Reader, Error> {
+    let (input, name) = open_input(path)?;
+    StreamReader::new(input, name)
+}
+
+/// The D least coordinates and the D greatest ones.
+fn parse_region<const D: usize>(text: &str) -> Result<Region<D>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let sides = numbers.ok().filter(|numbers| numbers.len() == 2 * D);
+    let Some(sides) = sides else {
+        let count = if D == 2 { "four" } else { "six" };
+        return Err(format!("expected {count} numbers separated by commas: {}", names(REGION, D)));
+    };
+    let region =
+        Region { min: std::array::from_fn(|i| sides[i]), max: std::array::from_fn(|i| sides[D + i]) };
+    if (0..D).all(|axis| region.min[axis] < region.max[axis]) {
+        Ok(region)
+    } else {
+        Err(format!("the box is empty: give {}", names(REGION, D)))
+    }
+}
+
+/// A level and D places.
+fn parse_cell<const D: usize>(text: &str) -> Result<Part<D>, String> {
+    let parse = || {
+        let (level, places) = text.split_once('/')?;
+        let at: Option<Vec<u32>> = places.split('/').map(|place| place.parse().ok()).collect();
+        Some(Part::Cell { level: level.parse().ok()?, at: at?.try_into().ok()? })
+    };
+    parse().ok_or_else(|| {
+        let example = if D == 2 { "3/0/7" } else { "3/0/7/2" };
+        format!("expected {}, like {example}", names(CELL, D))
+    })
 }

@@ -1,15 +1,9 @@
 //! `spdelaunay3d`: flags.
 
-use std::path::PathBuf;
-use std::time::Instant;
-
 use clap::Parser;
 
-use super::progress::Progress;
-use super::reduction::{Report, open_stream};
-use super::{Common, StatsFormat, notice, threads};
-use crate::output::Output;
-use crate::reduce::{self, Duplicates, Options};
+use super::reduction::{Shared, Tool};
+use crate::reduce::{self, Duplicates};
 use crate::system;
 
 const EXAMPLES: &str = "\
@@ -21,6 +15,9 @@ Examples:
     spinfo --audit cloud.spm
   Fewer and larger cells: less is triangulated twice, with more memory:
     spfinalize --octree --cell-points 200000 cloud.xyz | spdelaunay3d -o cloud.spm
+  One tile of many, to be finished later or elsewhere:
+    spfinalize --octree a.las b.las | spdelaunay3d --partial --region 0,0,-inf,50,50,inf -o tile7.spm
+    spdelaunay3d --merge tile*.spm -o whole.spm
 
 Points that fill space need little memory; of points on surfaces most wait until the end, because
 the balls around their tetrahedra reach far.
@@ -31,32 +28,16 @@ Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncat
 /// Streaming Delaunay tetrahedralization of points in space, in bounded memory.
 ///
 /// Reads a stream of (finalized) points of three dimensions and writes a tetrahedral mesh stream. The result is exact and
-/// canonical: the set of tetrahedra depends neither on the order of the points, nor on cells or threads.
+/// canonical: the set of tetrahedra depends neither on the order of the points, nor on cells, tiles or threads.
 #[derive(Debug, Parser)]
 #[command(name = "spdelaunay3d", version, after_help = EXAMPLES)]
 pub struct Flags {
-    /// Stream of points; - is stdin
-    #[arg(value_name = "STREAM", default_value = "-")]
-    input: PathBuf,
-
-    /// Where the mesh goes; - is stdout
-    #[arg(short, long, value_name = "FILE", default_value = "-")]
-    output: PathBuf,
+    #[command(flatten)]
+    shared: Shared<3>,
 
     /// What becomes of points that coincide
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
-
-    /// Threads that triangulate; memory grows with them [default: one per core, at most 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-
-    /// Print what the run did on stderr
-    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
-    stats: Option<StatsFormat>,
-
-    #[command(flatten)]
-    common: Common,
 }
 
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
@@ -76,30 +57,20 @@ impl From<DuplicatesFlag> for Duplicates {
     }
 }
 
+const TOOL: Tool<3> = Tool {
+    name: "spdelaunay3d",
+    verb: "tetrahedralizing",
+    simplices: "tetrahedra",
+    reasons: ["fewer than four different points", "all points in a plane"],
+    reduce: |reader, output, options, done| reduce::tetrahedralize(reader, output, options, done),
+    merge: |readers, output, part, done| reduce::merge_tetrahedra(readers, output, part, done),
+};
+
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`reduce::tetrahedralize`], and if the input or the output cannot be opened.
+/// As [`reduce::tetrahedralize`] and [`reduce::merge_tetrahedra`], and if an input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    let started = Instant::now();
     system::give_back_large_blocks();
-    let reader = open_stream(&flags.input)?;
-    let output = Output::create(&flags.output, true)?;
-    let mut progress = Progress::new(&flags.common, "tetrahedralizing", reader.header().points);
-    let threads = threads(flags.threads).get();
-    let options = Options { duplicates: flags.duplicates.into(), threads, ..Options::default() };
-    let (output, stats) = reduce::tetrahedralize(reader, output, &options, |points| progress.set(points))?;
-    drop(progress);
-    let output_bytes = output.bytes_written();
-    output.commit()?;
-    let seconds = started.elapsed().as_secs_f64();
-    if stats.simplices == 0 {
-        let reason =
-            if stats.vertices < 4 { "fewer than four different points" } else { "all points in a plane" };
-        notice("spdelaunay3d", &flags.common, &format!("no tetrahedra: {reason} ({} points)", stats.points));
-    }
-    if let Some(format) = flags.stats {
-        Report { stats, output_bytes, seconds, simplices: "tetrahedra" }.print(format);
-    }
-    Ok(())
+    TOOL.run(&flags.shared, flags.duplicates.into())
 }

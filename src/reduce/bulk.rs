@@ -4,7 +4,7 @@ use super::residual::Residual;
 use crate::bounds::Region;
 use crate::error::Result;
 use crate::predicates::PredicateCounts;
-use crate::stream::Coordinates;
+use crate::stream::{Coordinates, Kind};
 
 /// A facet of a simplex, named by the corner opposite to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,6 +21,13 @@ pub(super) trait Bulk<const D: usize>: Default {
 
     /// Decides which balls lie in a region.
     type Balls;
+
+    /// What a whole mesh is called, and that of a region.
+    const MESH: Kind;
+    const PARTIAL_MESH: Kind;
+
+    /// What a simplex is called.
+    const SIMPLEX: &'static str;
 
     /// Whether triangulating a node may leave most of its points, so that they are better passed up as they are.
     const MAY_LEAVE_MOST: bool;

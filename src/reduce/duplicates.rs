@@ -1,4 +1,4 @@
-//! Points with equal x and y are one vertex; a policy says which elevation it gets.
+//! Points that coincide are one vertex; in the plane a policy says which elevation it gets.
 
 use super::residual::Residual;
 use crate::error::{Error, Result};
@@ -33,9 +33,12 @@ impl Duplicates {
             && let Some(&[_, vertex]) = duplicates.first()
         {
             let point = coordinates.to_world(points.point(vertex as usize));
+            let place: Vec<String> =
+                ["x", "y", "z"].iter().zip(point).take(D).map(|(axis, at)| format!("{axis} {at}")).collect();
+            let policies = if D == 2 { "first, lowest, highest or mean" } else { "first" };
+            let place = place.join(" ");
             return Err(Error::malformed(format!(
-                "several points at x {} y {}: choose --duplicates first, lowest, highest or mean",
-                point[0], point[1]
+                "several points at {place}: choose --duplicates {policies}"
             )));
         }
         if matches!(self, Duplicates::First | Duplicates::Error) {

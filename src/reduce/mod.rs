@@ -13,10 +13,12 @@
 //!
 //! `ARCHITECTURE.md` says why this is right. Data flow one way: [`intake`] reads points and holds them until their
 //! cell is done, [`schedule`] says which node can be triangulated, [`node`] does that and cuts [`patches`], and
-//! [`sequencer`] writes them in order. [`crew`] is the same on several threads. All of it is for D dimensions; what
-//! differs between them is behind [`bulk`]: [`plane`] and [`space`].
+//! [`sequencer`] writes them in order. [`crew`] is the same on several threads. [`merge`] joins what partial runs have left,
+//! each of which is a [`tile`]. All of it is for D dimensions; what differs between them is behind [`bulk`]: [`plane`] and
+//! [`space`].
 
 mod arrivals;
+mod border;
 mod boxes;
 mod bulk;
 mod crew;
@@ -36,11 +38,12 @@ mod schedule;
 mod sequencer;
 mod space;
 mod stats;
+mod tile;
 mod walls;
 mod worker;
 
 pub use duplicates::Duplicates;
-pub use merge::merge;
+pub use merge::{merge_tetrahedra, merge_triangles};
 pub use partial::Part;
 pub use run::{Options, tetrahedralize, triangulate};
 pub use stats::Stats;

@@ -233,9 +233,9 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 Mark::Hull if builder.is_unused(v) => unused.push(v),
                 Mark::None if builder.is_unused(v) => {
                     let point = points.point(v as usize);
-                    let simplex = if D == 2 { "triangle" } else { "tetrahedron" };
                     return Err(Error::malformed(format!(
-                        "residual point {point:?} lies inside of a final {simplex}"
+                        "residual point {point:?} lies inside of a final {}",
+                        B::SIMPLEX
                     )));
                 }
                 Mark::Residual => builder.keep(v),

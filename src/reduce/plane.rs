@@ -8,7 +8,7 @@ use crate::delaunay2::{Corner, Kernel, NONE, Triangulation};
 use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::circle::CircleBounds;
-use crate::stream::Coordinates;
+use crate::stream::{Coordinates, Kind};
 
 /// The kernel of the plane and its triangulation.
 #[derive(Default)]
@@ -21,6 +21,9 @@ impl Bulk<2> for Plane {
     type Corners = [u32; 3];
     type Balls = Disks;
 
+    const MESH: Kind = Kind::TriangleMesh;
+    const PARTIAL_MESH: Kind = Kind::PartialTriangleMesh;
+    const SIMPLEX: &'static str = "triangle";
     const MAY_LEAVE_MOST: bool = false;
 
     fn triangulate(&mut self, points: &Residual<2>) -> Result<()> {

@@ -25,14 +25,14 @@ use crate::stream::{Header, Kind, PatchBlocks, StreamReader, StreamWriter};
 
 /// How a run triangulates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Options {
+pub struct Options<const D: usize = 2> {
     /// Which elevation survives where points coincide.
     pub duplicates: Duplicates,
     /// Threads that triangulate. With one, everything happens on the calling thread; with more, reading and
     /// writing have threads of their own. What comes out does not depend on it.
     pub threads: usize,
-    /// For a partial run, the part of the plane to triangulate.
-    pub part: Option<Part>,
+    /// For a partial run, the part of the plane or of space to triangulate.
+    pub part: Option<Part<D>>,
     /// Whether every node is triangulated, also those in space that would leave most of their points to the node above.
     /// What comes out is the same set.
     pub every_node: bool,
@@ -63,11 +63,7 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    check_input(reader.header(), 2).map_err(|e| e.of_input(reader.name()))?;
-    let part = options.part.map(|part| part.region(reader.header())).transpose()?;
-    let header = mesh_header(reader.header(), part);
-    let outer = part.unwrap_or(Region::PLANE);
-    reduce::<Plane, R, W, 2>(reader, StreamWriter::new(output, header)?, options, outer, progress)
+    reduce::<Plane, R, W, 2>(reader, output, options, progress)
 }
 
 /// Tetrahedralizes a stream of three-dimensional points and writes the mesh to `output`, as [`triangulate`] does it in
@@ -75,38 +71,27 @@ where
 /// [`Duplicates::Error`]: there are no elevations to choose from.
 ///
 /// # Errors
-/// As [`triangulate`]; if `options` ask for a part, because parts are those of a plane.
+/// As [`triangulate`].
 ///
 /// Source: thesis 5.4.
 pub fn tetrahedralize<R, W>(
     reader: StreamReader<R>,
     output: W,
-    options: &Options,
+    options: &Options<3>,
     progress: impl FnMut(u64),
 ) -> Result<(W, Stats)>
 where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    check_input(reader.header(), 3).map_err(|e| e.of_input(reader.name()))?;
-    if options.part.is_some() {
-        return Err(Error::usage(
-            "partial runs are for points of the plane: tetrahedralize all points at once",
-        ));
-    }
-    let mut header = Header::new(Kind::TetrahedralMesh, reader.header().coordinates, 3, false);
-    header.bounds = reader.header().bounds;
-    header.crs = reader.header().crs.clone();
-    let outer = Region::EVERYTHING;
-    reduce::<Space, R, W, 3>(reader, StreamWriter::new(output, header)?, options, outer, progress)
+    reduce::<Space, R, W, 3>(reader, output, options, progress)
 }
 
-/// Reduces the points in `outer` to the mesh.
+/// Reduces points to a mesh.
 fn reduce<B, R, W, const D: usize>(
     reader: StreamReader<R>,
-    stream: StreamWriter<W>,
-    options: &Options,
-    outer: Region<D>,
+    output: W,
+    options: &Options<D>,
     progress: impl FnMut(u64),
 ) -> Result<(W, Stats)>
 where
@@ -115,6 +100,10 @@ where
     W: Write + Send,
 {
     let header = reader.header();
+    check_input::<B, D>(header).map_err(|e| e.of_input(reader.name()))?;
+    let part = options.part.map(|part| part.region(header)).transpose()?;
+    let outer = part.unwrap_or(Region::EVERYTHING);
+    let stream = StreamWriter::new(output, mesh_header::<B, D>(header, part))?;
     let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
     rules.every_node = options.every_node;
     let (tree, bounds) = (header.tree, header.bounds);
@@ -132,28 +121,28 @@ where
     }
 }
 
-/// That the input is points of `wanted` dimensions.
-fn check_input(header: &Header, wanted: u8) -> Result<()> {
-    let remedy = if wanted == 2 { "without --octree" } else { "with --octree" };
+/// That the input is points of D dimensions.
+fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
+    let remedy = if D == 2 { "without --octree" } else { "with --octree" };
     match (header.kind, header.dims) {
-        (Kind::Points, dims) if dims == wanted => Ok(()),
+        (Kind::Points, dims) if usize::from(dims) == D => Ok(()),
         (Kind::Points, dims) => Err(Error::usage(format!(
-            "the points have {dims} dimensions: finalize them in {wanted} (spfinalize {remedy})"
+            "the points have {dims} dimensions: finalize them in {D} (spfinalize {remedy})"
         ))),
-        (Kind::PartialTriangleMesh, _) if wanted == 2 => {
-            Err(Error::usage("this is a partial triangle mesh: use --merge to finish it"))
+        (kind, _) if kind == B::PARTIAL_MESH => {
+            Err(Error::usage(format!("this is a {}: use --merge to finish it", kind.name())))
         }
         (kind, _) => Err(Error::usage(format!("this is a stream of kind {}, expected points", kind.name()))),
     }
 }
 
-fn mesh_header(points: &Header, part: Option<Region>) -> Header {
-    let kind = if part.is_some() { Kind::PartialTriangleMesh } else { Kind::TriangleMesh };
+fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<D>>) -> Header {
+    let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
     let mut header = Header::new(kind, points.coordinates, points.dims, points.has_elevation);
     let inside =
-        |bounds: &Bounds, region: &Region| region.contains(bounds.min) && region.contains(bounds.max);
+        |bounds: &Bounds, region: &Region<D>| region.contains(bounds.min) && region.contains(bounds.max);
     header.bounds = points.bounds.filter(|bounds| part.as_ref().is_none_or(|region| inside(bounds, region)));
-    header.region = part;
+    header.region = part.map(|region| region.in_space());
     header.crs = points.crs.clone();
     header
 }

@@ -133,7 +133,8 @@ impl<W: Write> Sequencer<W> {
         Ok(blocks)
     }
 
-    /// Writes the residual of a partial run, which the nodes `children` have left.
+    /// Writes the residual of a partial run, which the nodes `children` have left. None of its points is raw: the root is
+    /// triangulated whatever it leaves, so that points which coincide are one.
     ///
     /// # Errors
     /// If writing fails.
@@ -143,6 +144,7 @@ impl<W: Write> Sequencer<W> {
         residual: &Residual<D>,
     ) -> Result<()> {
         self.take_left(children);
+        debug_assert!(residual.raw == 0 && self.ids.len() == residual.len());
         let mut chunk: Vec<(Option<u64>, Point)> = Vec::with_capacity(RESIDUAL_CHUNK);
         for (number, ids) in self.ids.chunks(RESIDUAL_CHUNK).enumerate() {
             chunk.clear();
@@ -153,7 +155,7 @@ impl<W: Write> Sequencer<W> {
             );
             self.stream.residual_points(&chunk)?;
         }
-        self.stream.walls(&residual.walls)
+        self.stream.walls(residual.walls.as_flattened())
     }
 
     /// Adds to `stats` what was counted.

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::predicates::PredicateCounts;
 use crate::predicates::sphere::SphereBounds;
 use crate::prefetch::prefetch;
-use crate::stream::Coordinates;
+use crate::stream::{Coordinates, Kind};
 
 /// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
 const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
@@ -69,6 +69,9 @@ impl Bulk<3> for Space {
     type Corners = [u32; 4];
     type Balls = Balls;
 
+    const MESH: Kind = Kind::TetrahedralMesh;
+    const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
+    const SIMPLEX: &'static str = "tetrahedron";
     const MAY_LEAVE_MOST: bool = true;
 
     fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {

@@ -7,7 +7,7 @@ use super::world::{world_of, write_numbers};
 use super::{EventSink, twin_functions, twin4, write_error};
 use crate::bounds::Point;
 use crate::error::Result;
-use crate::stream::{Coordinates, Crs, Event, Header, Kind, Patch, Totals};
+use crate::stream::{Coordinates, Crs, Event, Header, Patch, Totals};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
@@ -37,7 +37,7 @@ impl<W: Write> TwinSink<W> {
     fn patch(&mut self, patch: &Patch) -> Result<()> {
         self.line(format_args!("# patch"))?;
         patch.new.iter().try_for_each(|&point| self.point("v", point))?;
-        if self.header.kind == Kind::TetrahedralMesh {
+        if self.header.kind.vertices_per_simplex() == 4 {
             for tetrahedron in patch.tetrahedra() {
                 let [a, b, c, d] = tetrahedron.map(|local| patch.id(local) + 1);
                 self.line(format_args!("c {a} {b} {c} {d}"))?;
@@ -49,6 +49,15 @@ impl<W: Write> TwinSink<W> {
             }
         }
         patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))
+    }
+
+    fn walls(&mut self, walls: &[u32]) -> Result<()> {
+        for wall in walls.chunks_exact(self.header.kind.vertices_per_wall()) {
+            let corners: Vec<String> =
+                wall.iter().map(|&corner| (u64::from(corner) + 1).to_string()).collect();
+            self.line(format_args!("w {}", corners.join(" ")))?;
+        }
+        Ok(())
     }
 
     fn end(&mut self, totals: &Totals) -> Result<()> {
@@ -76,9 +85,7 @@ impl<W: Write> EventSink for TwinSink<W> {
                 Some(id) => self.point(&format!("r {}", id + 1), point),
                 None => self.point("r -", point),
             }),
-            Event::Walls(walls) => walls.iter().try_for_each(|&[a, b]| {
-                self.line(format_args!("w {} {}", u64::from(a) + 1, u64::from(b) + 1))
-            }),
+            Event::Walls(walls) => self.walls(walls),
             Event::Points4(points) => twin4::points(&mut self.output, points),
             Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
             Event::Simplices4(simplices) => twin4::simplices(&mut self.output, simplices),
@@ -119,7 +126,8 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
         line(format_args!("tree {} {} {}", tree.depth(), numbers(&tree.origin()), tree.side()))?;
     }
     if let Some(region) = &header.region {
-        line(format_args!("region {} {}", numbers(&region.min), numbers(&region.max)))?;
+        let dims = usize::from(header.dims);
+        line(format_args!("region {} {}", numbers(&region.min[..dims]), numbers(&region.max[..dims])))?;
     }
     line(format_args!("chunked {}", yes_no(header.chunked)))?;
     match &header.crs {

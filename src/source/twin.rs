@@ -32,7 +32,8 @@ enum Statement {
     Final(u64),
     Label(u64),
     Residual(Option<u64>, Point),
-    Wall([u64; 2]),
+    /// In the plane the first two count.
+    Wall([u64; 3]),
     Four(Statement4),
     Configuration(ConfigurationLine),
     Function(FunctionLine),
@@ -63,7 +64,8 @@ enum Group {
     Patch(PatchLines),
     Labels(Vec<u64>),
     Residual(Vec<(Option<u64>, Point)>),
-    Walls(Vec<[u32; 2]>),
+    /// One behind the other.
+    Walls(Vec<u32>),
     Four(Group4),
     Configurations(ConfigurationBlock),
     Functions(FunctionGroup),
@@ -152,7 +154,7 @@ impl<R: Read> TwinSource<R> {
         let is_mesh = self.header.kind.vertices_per_simplex() > 0;
         let is_points = self.header.kind == Kind::Points
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
-        let is_partial = self.header.kind == Kind::PartialTriangleMesh;
+        let is_partial = self.header.kind.is_partial();
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
         let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
         let kind = self.header.kind.name();
@@ -167,7 +169,10 @@ impl<R: Read> TwinSource<R> {
             (Group::Patch(patch), Statement::Final(id)) => patch.finalized.push(id),
             (Group::Labels(labels), Statement::Label(label)) => labels.push(label),
             (Group::Residual(points), Statement::Residual(id, point)) => points.push((id, point)),
-            (Group::Walls(group), Statement::Wall(wall)) => group.push(check_wall(wall, residual_points)?),
+            (Group::Walls(walls), Statement::Wall(wall)) => {
+                let corners = self.header.kind.vertices_per_wall();
+                walls.extend(check_wall(&wall[..corners], residual_points)?);
+            }
             (Group::Four(group), Statement::Four(statement)) => group.push(statement)?,
             (Group::Configurations(block), Statement::Configuration(line)) => self.open.push(block, line)?,
             (Group::Functions(group), Statement::Function(line)) => group.push(line)?,
@@ -350,7 +355,13 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
             let vertex = (vertex != b"-").then(|| parse_number(vertex)).transpose()?;
             Statement::Residual(vertex, parse_point(fields, header)?)
         }
-        b"w" => Statement::Wall([parse_number(next_field(fields)?)?, parse_number(next_field(fields)?)?]),
+        b"w" if header.kind.is_partial() => {
+            let mut wall = [0; 3];
+            for corner in &mut wall[..header.kind.vertices_per_wall()] {
+                *corner = parse_number(next_field(fields)?)?;
+            }
+            Statement::Wall(wall)
+        }
         b"#" => match next_field(fields)? {
             b"patch" => Statement::Patch,
             _ => Statement::End(parse_end(fields)?),
@@ -368,6 +379,7 @@ fn statements_of(kind: Kind) -> &'static str {
         Kind::TriangleMesh => "v, f, x or a comment",
         Kind::PartialTriangleMesh => "v, f, x, r, w or a comment",
         Kind::TetrahedralMesh => "v, c, x, label or a comment",
+        Kind::PartialTetrahedralMesh => "v, c, x, r, w or a comment",
         Kind::Configurations => "v, degree, in, on, line, function, term or a comment",
         Kind::Splines => "v, degree, in, on, line, function, term, coefficient or a comment",
         Kind::Points4 | Kind::Cells4 | Kind::Simplices4 => "an end or a comment",
@@ -436,13 +448,14 @@ fn parse_end<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Totals> 
     })
 }
 
-/// A wall between two of the residual points.
-fn check_wall(wall: [u64; 2], residual_points: u64) -> Result<[u32; 2]> {
-    let ends = wall.map(|end| u32::try_from(end).ok().filter(|_| end < residual_points));
-    match ends {
-        [Some(from), Some(to)] if from != to => Ok([from, to]),
-        _ => Err(Error::malformed("wall between no two residual points")),
-    }
+/// A wall between different ones of the residual points.
+fn check_wall(wall: &[u64], residual_points: u64) -> Result<Vec<u32>> {
+    let known = |&corner: &u64| u32::try_from(corner).ok().filter(|_| corner < residual_points);
+    let corners: Option<Vec<u32>> = wall.iter().map(known).collect();
+    let is_sound = |corners: &Vec<u32>| (1..corners.len()).all(|i| !corners[..i].contains(&corners[i]));
+    corners
+        .filter(is_sound)
+        .ok_or_else(|| Error::malformed(format!("wall between no {} residual points", wall.len())))
 }
 
 fn too_long() -> Error {

@@ -19,7 +19,7 @@ pub(super) struct TwinHeader {
     bounds: Option<[f64; 6]>,
     points: Option<u64>,
     tree: Option<(u8, [f64; 4])>,
-    region: Option<[f64; 4]>,
+    region: Option<Vec<f64>>,
     chunked: bool,
     crs: Crs,
     producer: String,
@@ -94,7 +94,7 @@ impl TwinHeader {
             bounds: self.bounds.map(|[a, b, c, d, e, f]| Bounds { min: [a, b, c], max: [d, e, f] }),
             points: self.points,
             tree: tree.transpose()?,
-            region: self.region.map(|[a, b, c, d]| Region { min: [a, b], max: [c, d] }),
+            region: self.region.map(|sides| region_of(&sides, dims)).transpose()?,
             chunked: self.chunked,
             crs: self.crs,
             producer: self.producer,
@@ -120,12 +120,21 @@ fn only<'a, T>(value: T, mut rest: impl Iterator<Item = &'a [u8]>) -> Result<T> 
     Ok(value)
 }
 
-/// Four numbers, which may be infinite.
-fn parse_region(text: &[u8]) -> Result<[f64; 4]> {
+/// Four or six numbers, which may be infinite.
+fn parse_region(text: &[u8]) -> Result<Vec<f64>> {
     let numbers = fields(text).map(|field| std::str::from_utf8(field).ok()?.parse::<f64>().ok());
-    let numbers: Option<Vec<f64>> = numbers.collect();
-    let region = numbers.and_then(|numbers| <[f64; 4]>::try_from(numbers).ok());
-    region.ok_or_else(|| unexpected(text, "four numbers"))
+    let sides: Option<Vec<f64>> = numbers.collect();
+    sides.filter(|sides| matches!(sides.len(), 4 | 6)).ok_or_else(|| unexpected(text, "four or six numbers"))
+}
+
+/// The region with the given lower sides, then upper ones.
+fn region_of(sides: &[f64], dims: u8) -> Result<Region<3>> {
+    if sides.len() != 2 * usize::from(dims) {
+        let message = format!("a region of {} numbers in {dims} dimensions", sides.len());
+        return Err(Error::malformed(message));
+    }
+    let (lower, upper) = sides.split_at(sides.len() / 2);
+    Ok(Region::of_sides(lower, upper))
 }
 
 fn parse_string(text: &[u8]) -> Result<String> {

@@ -22,9 +22,10 @@ pub enum Event {
     Labels(Vec<u64>),
     /// Points of a residual, each with its vertex id if it was written in an earlier patch.
     ResidualPoints(Vec<(Option<u64>, Point)>),
-    /// Directed edges between residual points (counted over all their blocks): left of each lies a final
-    /// simplex, right of it one that is not final.
-    Walls(Vec<[u32; 2]>),
+    /// Facets between residual points (counted over all their blocks), `vertices_per_wall` numbers each, with a final
+    /// simplex on one side and one that is not final on the other. The final triangle lies to the left of a directed
+    /// edge; a facet in space is counterclockwise as seen from its final tetrahedron.
+    Walls(Vec<u32>),
     /// Points of four dimensions.
     Points4(Points4),
     /// The cells of four dimensions that a block completes.

@@ -1,5 +1,8 @@
 //! The header: what the stream holds, in which coordinates, and what is known beforehand.
 
+use std::cmp::Ordering;
+use std::ops::Range;
+
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::kind::Kind;
@@ -118,8 +121,8 @@ pub struct Header {
     pub points: Option<u64>,
     /// The finalization tree that cell tags refer to.
     pub tree: Option<CellTree>,
-    /// The region that a partial mesh covers, in stored coordinates.
-    pub region: Option<Region>,
+    /// The region that a partial mesh covers, in stored coordinates; in the plane it is open in z.
+    pub region: Option<Region<3>>,
     /// Whether the points between two tags lie in one cell of the second.
     pub chunked: bool,
     /// Coordinate reference system.
@@ -210,8 +213,9 @@ impl Header {
             LE::write_u32(&mut body[144..], u32::from(tree.depth()));
         }
         if let Some(region) = &self.region {
-            LE::write_f64_into(&region.min, &mut body[152..168]);
-            LE::write_f64_into(&region.max, &mut body[168..184]);
+            let dims = usize::from(self.dims);
+            let sides = [&region.min[..dims], &region.max[..dims]].concat();
+            LE::write_f64_into(&sides, &mut body[region_place(self.kind)]);
         }
         LE::write_u16(&mut body[184..], crs_code);
         LE::write_u16(&mut body[186..], self.producer.len() as u16);
@@ -228,15 +232,21 @@ impl Header {
         }
         let flags = body[3];
         let known = FLAG_BOUNDS | FLAG_TREE | FLAG_REGION | FLAG_CHUNKED;
-        let is_reserved_zero = body[4..8].iter().chain(&body[148..152]).all(|&byte| byte == 0);
+        let behind_tree = &body[148..region_place(kind).start.max(148)];
+        let is_reserved_zero = body[4..8].iter().chain(behind_tree).all(|&byte| byte == 0);
         if body[2] > 1 || flags & !known != 0 || !is_reserved_zero {
             return Err(Error::malformed("header sets reserved bits"));
         }
+        check_tree(kind, flags & FLAG_TREE != 0).map_err(Error::malformed)?;
         let floats = |range: std::ops::Range<usize>| -> Vec<f64> {
             body[range].chunks_exact(8).map(LE::read_f64).collect()
         };
         let triple = |at: usize| -> [f64; 3] { floats(at..at + 24).try_into().expect("three values") };
-        let pair = |at: usize| -> [f64; 2] { floats(at..at + 16).try_into().expect("two values") };
+        let region = || {
+            let sides = floats(region_place(kind));
+            let (lower, upper) = sides.split_at(sides.len() / 2);
+            Region::of_sides(lower, upper)
+        };
         let coordinates = match body[0] {
             1 => Coordinates::F64,
             2 => Coordinates::I32 { scale: triple(16), offset: triple(40) },
@@ -260,7 +270,7 @@ impl Header {
             bounds: (flags & FLAG_BOUNDS != 0).then(|| Bounds { min: triple(64), max: triple(88) }),
             points: (points != COUNT_UNKNOWN).then_some(points),
             tree,
-            region: (flags & FLAG_REGION != 0).then(|| Region { min: pair(152), max: pair(168) }),
+            region: (flags & FLAG_REGION != 0).then(region),
             chunked: flags & FLAG_CHUNKED != 0,
             crs,
             producer,
@@ -298,19 +308,23 @@ impl Header {
         {
             return Err("the finalization tree has other dimensions than the points".into());
         }
-        if self.kind.has_knots() && self.tree.is_some() {
-            return Err(format!("a stream of {} has no finalization tree", self.kind.name()));
-        }
+        check_tree(self.kind, self.tree.is_some())?;
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());
         }
-        if let Some(Region { min, max }) = &self.region
-            && !(0..2).all(|axis| min[axis] < max[axis])
-        {
+        self.check_region()
+    }
+
+    fn check_region(&self) -> std::result::Result<(), String> {
+        if self.kind.is_partial() != self.region.is_some() {
+            return Err("a region goes with a partial mesh, and only with one".into());
+        }
+        let Some(Region { min, max }) = &self.region else { return Ok(()) };
+        if (0..3).any(|axis| min[axis].partial_cmp(&max[axis]) != Some(Ordering::Less)) {
             return Err("the region is empty or not a number".into());
         }
-        if (self.kind == Kind::PartialTriangleMesh) != self.region.is_some() {
-            return Err("a region goes with a partial mesh, and only with one".into());
+        if self.dims == 2 && (min[2], max[2]) != (f64::NEG_INFINITY, f64::INFINITY) {
+            return Err("the region has sides in z, but the geometry has not".into());
         }
         Ok(())
     }
@@ -335,6 +349,19 @@ impl Header {
         }
         Ok(())
     }
+}
+
+/// Where a header body has the region: lower sides, then upper ones. That of space takes the place of a tree too.
+fn region_place(kind: Kind) -> Range<usize> {
+    if kind == Kind::PartialTetrahedralMesh { 136..184 } else { 152..184 }
+}
+
+/// That there is no finalization tree where the kind has none.
+fn check_tree(kind: Kind, has_tree: bool) -> std::result::Result<(), String> {
+    if has_tree && !kind.may_have_tree() {
+        return Err(format!("a stream of kind {} has no finalization tree", kind.name()));
+    }
+    Ok(())
 }
 
 /// Whether every i32 has world coordinates of its own, from which `to_stored` gives it back.

@@ -25,6 +25,8 @@ pub enum Kind {
     Configurations,
     /// The same with one degree, and with coefficients for the functions.
     Splines,
+    /// The final tetrahedra of a region and its residual, to be merged with those of other regions.
+    PartialTetrahedralMesh,
 }
 
 struct Row {
@@ -38,7 +40,7 @@ struct Row {
     is_ordered: bool,
 }
 
-const ROWS: [Row; 9] = [
+const ROWS: [Row; 10] = [
     Row {
         kind: Kind::Points,
         code: 1,
@@ -120,6 +122,15 @@ const ROWS: [Row; 9] = [
         blocks: &[Tag::Points, Tag::Configurations, Tag::Functions, Tag::Coefficients],
         is_ordered: true,
     },
+    Row {
+        kind: Kind::PartialTetrahedralMesh,
+        code: 10,
+        name: "partial tetrahedral mesh",
+        dims: &[3],
+        vertices_per_simplex: 4,
+        blocks: &[Tag::Patch, Tag::ResidualPoints, Tag::Walls],
+        is_ordered: true,
+    },
 ];
 
 impl Kind {
@@ -175,10 +186,28 @@ impl Kind {
         matches!(self, Kind::Configurations | Kind::Splines)
     }
 
+    /// Whether it is the mesh of a region, with a residual to be merged with others.
+    #[must_use]
+    pub fn is_partial(self) -> bool {
+        self.row().blocks.contains(&Tag::Walls)
+    }
+
+    /// Whether its header may have a finalization tree. In that of a partial mesh in space the region takes the place.
+    #[must_use]
+    pub fn may_have_tree(self) -> bool {
+        !self.is_4d() && !self.has_knots() && self != Kind::PartialTetrahedralMesh
+    }
+
     /// Vertices of a simplex of a patch; 0 where the kind holds no patches.
     #[must_use]
     pub fn vertices_per_simplex(self) -> usize {
         self.row().vertices_per_simplex
+    }
+
+    /// Vertices of a wall, which is a facet of a simplex; 0 where the kind holds no patches.
+    #[must_use]
+    pub fn vertices_per_wall(self) -> usize {
+        self.vertices_per_simplex().saturating_sub(1)
     }
 
     /// Whether a block of tag `tag` may follow one of tag `last` (`None` at the start) in such a stream.

@@ -137,19 +137,20 @@ pub(super) fn residual_points(
         .collect()
 }
 
-/// Walls between `residual_points` earlier ones.
-pub(super) fn walls(residual_points: u64, bytes: &[u8]) -> Result<Vec<[u32; 2]>> {
-    whole_records(bytes, 8)?
-        .map(|record| {
-            let wall = [LE::read_u32(record), LE::read_u32(&record[4..])];
-            let known = wall.iter().all(|&end| u64::from(end) < residual_points);
-            if known && wall[0] != wall[1] {
-                Ok(wall)
-            } else {
-                Err(Error::malformed(format!("wall {} to {} between no residual points", wall[0], wall[1])))
-            }
-        })
-        .collect()
+/// Walls of so many corners, one behind the other, between `residual_points` earlier ones.
+pub(super) fn walls(corners: usize, residual_points: u64, bytes: &[u8]) -> Result<Vec<u32>> {
+    let walls: Vec<u32> = whole_records(bytes, 4 * corners)?
+        .flat_map(|record| record.chunks_exact(4).map(LE::read_u32))
+        .collect();
+    for wall in walls.chunks_exact(corners) {
+        let is_known = wall.iter().all(|&corner| u64::from(corner) < residual_points);
+        if !is_known || (1..corners).any(|i| wall[..i].contains(&wall[i])) {
+            let names: Vec<String> = wall.iter().map(u32::to_string).collect();
+            let message = format!("wall {} between no {corners} residual points", names.join(" to "));
+            return Err(Error::malformed(message));
+        }
+    }
+    Ok(walls)
 }
 
 pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {

@@ -189,7 +189,10 @@ impl<R: Read> StreamReader<R> {
             Tag::ResidualPoints => {
                 Event::ResidualPoints(payload::residual_points(header, totals.vertices, payload)?)
             }
-            Tag::Walls => Event::Walls(payload::walls(totals.residual_points, payload)?),
+            Tag::Walls => {
+                let corners = header.kind.vertices_per_wall();
+                Event::Walls(payload::walls(corners, totals.residual_points, payload)?)
+            }
             Tag::Points4 => Event::Points4(Points4::decode(header, payload)?),
             Tag::Cells4 => Event::Cells4(self.cell_words.take(totals.vertices, payload)?),
             Tag::Simplices4 => Event::Simplices4(points4::simplices(payload)?),

@@ -18,6 +18,7 @@ pub(crate) struct Tally {
     finalized: u64,
     named_residual_points: u64,
     per_simplex: usize,
+    per_wall: usize,
     has_vertices: bool,
     rules4: Rules4,
     configuration_rules: ConfigurationRules,
@@ -36,6 +37,7 @@ impl Tally {
             finalized: 0,
             named_residual_points: 0,
             per_simplex,
+            per_wall: header.kind.vertices_per_wall(),
             has_vertices: header.kind.has_vertices(),
             rules4: Rules4::new(header.kind),
             configuration_rules: ConfigurationRules::new(header.kind),
@@ -76,7 +78,7 @@ impl Tally {
                 self.totals.residual_points += points.len() as u64;
                 self.named_residual_points += points.iter().filter(|(id, _)| id.is_some()).count() as u64;
             }
-            Event::Walls(walls) => self.totals.walls += walls.len() as u64,
+            Event::Walls(walls) => self.totals.walls += (walls.len() / self.per_wall) as u64,
             Event::Points4(points) => self.rules4.points(points, &mut self.totals)?,
             Event::Cells4(cells) => self.rules4.cells(cells, &mut self.totals)?,
             Event::Simplices4(simplices) => self.rules4.simplices(simplices, &mut self.totals)?,

@@ -237,17 +237,20 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends walls between residual points, which must have been written before.
+    /// Appends walls between residual points, which must have been written before, as the numbers of their corners one
+    /// behind the other.
     ///
     /// # Errors
     /// If writing fails.
-    pub fn walls<const D: usize>(&mut self, walls: &[[u32; D]]) -> Result<()> {
-        for walls in walls.chunks(BLOCK_PAYLOAD_MAX / (4 * D)) {
+    pub fn walls(&mut self, walls: &[u32]) -> Result<()> {
+        let corners = self.header.kind.vertices_per_wall();
+        assert!(walls.len().is_multiple_of(corners), "walls of {corners} corners");
+        for walls in walls.chunks(BLOCK_PAYLOAD_MAX / (4 * corners) * corners) {
             let payload = &mut self.payload;
             payload.clear();
-            walls.iter().flatten().for_each(|end| payload.extend_from_slice(&end.to_le_bytes()));
+            walls.iter().for_each(|corner| payload.extend_from_slice(&corner.to_le_bytes()));
             self.flush_block(Tag::Walls)?;
-            self.totals.walls += walls.len() as u64;
+            self.totals.walls += (walls.len() / corners) as u64;
         }
         Ok(())
     }

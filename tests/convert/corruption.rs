@@ -19,8 +19,10 @@ fn files() -> Vec<(Format, Vec<u8>)> {
     let tetrahedra = samples::tetrahedra(samples::grids()[1], true);
     files.push((Format::Text, text_of(&tetrahedra).into_bytes()));
     files.push((Format::Spm, tetrahedra));
-    files.push((Format::Spm, samples::partial()));
-    files.push((Format::Text, text_of(&samples::partial()).into_bytes()));
+    for partial in [samples::partial(), samples::partial_space()] {
+        files.push((Format::Text, text_of(&partial).into_bytes()));
+        files.push((Format::Spm, partial));
+    }
     files
 }
 

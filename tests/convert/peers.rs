@@ -61,13 +61,12 @@ fn long_obj_is_cut_into_patches() {
 #[test]
 fn kinds_that_a_format_cannot_hold_are_refused() {
     let mesh = samples::mesh(samples::grids()[0]);
+    let triangles_and_points = [Format::Obj, Format::Ply, Format::Sma, Format::Smb, Format::Spa, Format::Spb];
     let cases = [
         (samples::points(2, true, false), vec![Format::Sma, Format::Smb]),
         (mesh, vec![Format::Spa, Format::Spb]),
-        (
-            samples::partial(),
-            vec![Format::Obj, Format::Ply, Format::Sma, Format::Smb, Format::Spa, Format::Spb],
-        ),
+        (samples::partial(), triangles_and_points.to_vec()),
+        (samples::partial_space(), triangles_and_points.to_vec()),
     ];
     for (stream, formats) in cases {
         for format in formats {

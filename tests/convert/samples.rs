@@ -112,7 +112,8 @@ fn header_has_no_z(dims: u8, has_elevation: bool) -> bool {
 /// A partial mesh with a residual.
 pub fn partial() -> Vec<u8> {
     let mut header = Header::new(Kind::PartialTriangleMesh, Coordinates::F64, 2, false);
-    header.region = Some(Region { min: [f64::NEG_INFINITY, 0.0], max: [8.0, f64::INFINITY] });
+    let region = Region { min: [f64::NEG_INFINITY, 0.0], max: [8.0, f64::INFINITY] };
+    header.region = Some(region.in_space());
     header.crs = Crs::GeoKeys { directory: vec![1, 0, 255], doubles: vec![], ascii: b"x|".to_vec() };
     let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
     let new = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
@@ -120,8 +121,23 @@ pub fn partial() -> Vec<u8> {
     writer.patch(&patch).unwrap();
     let residual = [(Some(1), [1.0, 0.0, 0.0]), (None, [5.0, 1e-300, 0.0]), (Some(2), [0.0, 1.0, 0.0])];
     writer.residual_points(&residual).unwrap();
-    writer.walls(&[[0, 2], [2, 1]]).unwrap();
+    writer.walls(&[0, 2, 2, 1]).unwrap();
     writer.end(4, 0).unwrap()
+}
+
+/// The same in space.
+pub fn partial_space() -> Vec<u8> {
+    let mut header = Header::new(Kind::PartialTetrahedralMesh, Coordinates::F64, 3, false);
+    header.region = Some(Region { min: [f64::NEG_INFINITY, 0.0, -1.0], max: [8.0, f64::INFINITY, 8.0] });
+    let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
+    let new = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.5]];
+    let patch = Patch { new: new.clone(), simplices: vec![0, 1, 2, 3], ..Patch::default() };
+    writer.patch(&patch).unwrap();
+    let unwritten = (None, [5.0, 1e-300, -1.0]);
+    let residual = [(Some(1), new[1]), unwritten, (Some(2), new[2]), (Some(0), new[0]), (Some(3), new[3])];
+    writer.residual_points(&residual).unwrap();
+    writer.walls(&[0, 4, 2, 3, 2, 4, 3, 4, 0, 3, 0, 2]).unwrap();
+    writer.end(6, 1).unwrap()
 }
 
 /// A box of `LAYERS` layers of cubes, five tetrahedra in each, one patch per layer of vertices; vertices are final after
@@ -177,7 +193,7 @@ pub fn all() -> Vec<Vec<u8>> {
     for is_i32 in [false, true] {
         all.extend([points(2, true, is_i32), points(2, false, is_i32), points(3, false, is_i32)]);
     }
-    all.push(partial());
+    all.extend([partial(), partial_space()]);
     all.extend(grids().into_iter().map(|grid| tetrahedra(grid, true)));
     all.push(tetrahedra(Coordinates::F64, false));
     all

@@ -28,7 +28,8 @@ fn text_to_text_is_the_identity() {
 fn every_truncation_is_refused() {
     let tetrahedra =
         load("pass", "txt").into_iter().find(|vector| vector.name == "tetrahedra-labels").unwrap();
-    for stream in [samples::points(3, false, true), samples::partial(), tetrahedra.bytes] {
+    let partial = [samples::partial(), samples::partial_space()].into_iter();
+    for stream in partial.chain([samples::points(3, false, true), tetrahedra.bytes]) {
         assert_cuts_are_refused(&text_of(&stream));
     }
 }
@@ -54,13 +55,35 @@ fn errors_name_the_line() {
         ("x 1\n", "", "2 of 3 vertices were finalized"),
         ("v 1 0 0", "v 9 0 0", "outside of the region"),
         ("v 1 0 0", "v inf 0 0", "finite number"),
-        ("w 1 3", "w 1 4", "wall between no two"),
+        ("w 1 3", "w 1 4", "wall between no 2"),
         ("w 3 2", "# patch", "cannot have this line here"),
         ("r 2 ", "r 7 ", "residual point is vertex 7"),
         ("simplices 1", "simplices 2", "END states"),
         ("#spmesh dims 2\n", "", "does not say the dims"),
         ("#spmesh dims 2", "#spmesh dims 5", "expected 2 or 3 or 4"),
         ("version 1", "version 2", "expected 1"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&text, found, replaced, expected);
+    }
+}
+
+#[test]
+fn errors_in_partial_tetrahedra_name_the_line() {
+    let text = text_of(&samples::partial_space());
+    let cases = [
+        ("c 1 2 3 4", "f 1 2 3", "expected v, c, x, r, w"),
+        ("w 1 5 3", "w 1 5", "a field is missing"),
+        ("w 1 5 3", "w 1 5 3 2", "end of the line"),
+        ("w 1 5 3", "w 1 5 1", "wall between no 3"),
+        ("w 1 5 3", "w 1 5 6", "wall between no 3"),
+        ("w 1 5 3\n", "", "END states"),
+        ("v 0 0 1.5", "v 0 0 8", "outside of the region"),
+        ("r - 5 ", "r 5 5 ", "residual point is vertex 5"),
+        (" -1 8 inf 8", " 8 inf", "a region of 4 numbers in 3 dimensions"),
+        (" -1 8 inf 8", " -1 8 inf 8 9", "four or six numbers"),
+        (" -1 8 inf 8", " -1 8 inf -1", "the region is empty"),
+        ("#spmesh chunked", "#spmesh tree 2 -16 -16 -16 64\n#spmesh chunked", "no finalization tree"),
     ];
     for (found, replaced, expected) in cases {
         assert_refused(&text, found, replaced, expected);
@@ -87,7 +110,8 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
         ("# patch", "label 17\n# patch", "1 labels after 0 vertices"),
         ("x 4\n", "", "4 of 5 vertices were finalized"),
         ("v 2 2 1", "v 2 2 9", "outside of the header's bounding box"),
-        ("label 17", "w 1 2", "cannot have this line here"),
+        ("label 17", "w 1 2 3", "expected v, c, x, label or a comment"),
+        ("label 17", "r 1 0 0 0", "cannot have this line here"),
         ("dims 3", "dims 2", "a tetrahedral mesh in 2 dimensions"),
     ];
     for (found, replaced, expected) in cases {

@@ -153,8 +153,10 @@ fn formats_of_triangles_refuse_tetrahedra_and_written_ones_are_not_read() {
         );
     }
     for format in [Format::Vtu, Format::Medit] {
-        let error = converted(&samples::partial(), Format::Spm, format).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
+        for partial in [samples::partial(), samples::partial_space()] {
+            let error = converted(&partial, Format::Spm, format).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Usage, "{error}");
+        }
         let written = converted(&stream, Format::Spm, format).unwrap();
         let error = converted(&written, format, Format::Spm).unwrap_err();
         assert!(error.kind() == ErrorKind::Usage && error.to_string().contains("not read"), "{error}");

@@ -110,7 +110,7 @@ fn tiled(points: &[Point], input: &[u8], borders: &[Vec<f64>; 2], in_rows: bool)
     };
     let merge = |parts: &[Vec<u8>], region: Option<Region>| {
         let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
-        reduce::merge(readers, Vec::new(), region.map(Part::Region), |_| ()).unwrap().0
+        reduce::merge_triangles(readers, Vec::new(), region.map(Part::Region), |_| ()).unwrap().0
     };
     let mut parts = Vec::new();
     for y in borders[1].windows(2) {
@@ -161,14 +161,14 @@ fn cells_of_the_tree_are_tiles_too() {
     let mut random = Random::new(77);
     let points = uniform(&mut random, 800, 1000);
     let input = stream(&elevated(&points), GRID, Tagging::Chunked(4), &mut random);
-    let cells = (0..16).map(|i| Part::Cell { level: 2, column: i % 4, row: i / 4 });
+    let cells = (0..16).map(|i| Part::Cell { level: 2, at: [i % 4, i / 4] });
     let parts: Vec<Vec<u8>> = cells
         .map(|part| {
             triangulate(&input, &Options { threads: 1, part: Some(part), ..Options::default() }).unwrap().0
         })
         .collect();
     let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
-    let (bytes, stats) = reduce::merge(readers, Vec::new(), None, |_| ()).unwrap();
+    let (bytes, stats) = reduce::merge_triangles(readers, Vec::new(), None, |_| ()).unwrap();
     assert_eq!(read_mesh(&bytes).triangles, expected(&points));
     assert_eq!(stats.points, points.len() as u64);
 }

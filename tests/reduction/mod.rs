@@ -4,4 +4,6 @@ mod equality;
 mod failures;
 mod policies;
 mod space;
+mod space_tile_damage;
+mod space_tiles;
 mod streams;

@@ -108,7 +108,7 @@ fn other_kinds_are_refused_with_a_remedy() {
 fn a_residual_point_in_a_hole_is_refused() {
     let region = Region { min: [-100.0; 2], max: [100.0; 2] };
     let mut header = Header::new(Kind::PartialTriangleMesh, GRID, 2, false);
-    header.region = Some(region);
+    header.region = Some(region.in_space());
     let mut writer = StreamWriter::new(Vec::new(), header).unwrap();
     let corners = vec![[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]];
     let patch = Patch { new: corners.clone(), simplices: vec![0, 1, 2], ..Patch::default() };
@@ -116,10 +116,33 @@ fn a_residual_point_in_a_hole_is_refused() {
     let mut residual: Vec<_> = corners.iter().enumerate().map(|(i, &p)| (Some(i as u64), p)).collect();
     residual.push((None, [2.0, 2.0, 0.0]));
     writer.residual_points(&residual).unwrap();
-    writer.walls(&[[0, 1], [1, 2], [2, 0]]).unwrap();
+    writer.walls(&[0, 1, 1, 2, 2, 0]).unwrap();
     let error = merge(&[&writer.end(4, 0).unwrap()]).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Malformed);
     assert!(error.to_string().contains("inside of a final triangle"), "{error}");
+}
+
+#[test]
+fn walls_are_the_border_of_what_is_final() {
+    let region = Region { min: [-100.0; 2], max: [100.0; 2] };
+    let mut header = Header::new(Kind::PartialTriangleMesh, GRID, 2, false);
+    header.region = Some(region.in_space());
+    let corners = vec![[0.0, 0.0, 0.0], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0]];
+    let walls: [&[u32]; 6] =
+        [&[0, 1, 1, 2, 2, 0], &[], &[0, 1, 1, 2], &[1, 0, 2, 1, 0, 2], &[0, 1], &[0, 1, 1, 2, 2, 1]];
+    for (number, walls) in walls.into_iter().enumerate() {
+        let mut writer = StreamWriter::new(Vec::new(), header.clone()).unwrap();
+        let patch = Patch { new: corners.clone(), simplices: vec![0, 1, 2], ..Patch::default() };
+        writer.patch(&patch).unwrap();
+        let residual: Vec<_> = (0..).zip(&corners).map(|(id, &at)| (Some(id), at)).collect();
+        writer.residual_points(&residual).unwrap();
+        writer.walls(walls).unwrap();
+        let merged = merge(&[&writer.end(3, 0).unwrap()]);
+        match number {
+            0 => assert_eq!(read_mesh(&merged.unwrap()).triangles.len(), 1),
+            _ => assert!(merged.unwrap_err().to_string().contains("are not the border"), "{walls:?}"),
+        }
+    }
 }
 
 #[test]
@@ -140,7 +163,7 @@ fn tile(points: &[Point], region: Region) -> Vec<u8> {
 
 fn merge(parts: &[&[u8]]) -> spmesh::error::Result<Vec<u8>> {
     let readers = parts.iter().map(|part| StreamReader::new(*part, "part")).collect::<Result<_, _>>()?;
-    reduce::merge(readers, Vec::new(), None, |_| ()).map(|(bytes, _)| bytes)
+    reduce::merge_triangles(readers, Vec::new(), None, |_| ()).map(|(bytes, _)| bytes)
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::reference::clouds::{FAMILIES, Family, mixture, of};
 use crate::reference::sets::Random;
 
 /// The corners of a tetrahedron, sorted, as bits of their coordinates.
-type Corners = [[u64; 3]; 4];
+pub type Corners = [[u64; 3]; 4];
 
 const TAGGINGS: [Tagging; 9] = [
     Tagging::None,
@@ -30,16 +30,16 @@ const TAGGINGS: [Tagging; 9] = [
 ];
 
 /// Options under which also small nodes are triangulated.
-fn every_node(threads: usize) -> Options {
+fn every_node(threads: usize) -> Options<3> {
     Options { threads, every_node: true, ..Options::default() }
 }
 
-fn tetrahedralize(points: &[u8], options: &Options) -> Result<(Vec<u8>, Stats)> {
+pub fn tetrahedralize(points: &[u8], options: &Options<3>) -> Result<(Vec<u8>, Stats)> {
     let reader = StreamReader::new(Cursor::new(points.to_vec()), "points")?;
     reduce::tetrahedralize(reader, Vec::new(), options, |_| ())
 }
 
-fn bits(point: Point) -> [u64; 3] {
+pub fn bits(point: Point) -> [u64; 3] {
     point.map(|x| (x + 0.0).to_bits())
 }
 
@@ -49,7 +49,7 @@ fn sorted(mut corners: Corners) -> Corners {
 }
 
 /// What the kernel makes of all points at once.
-fn expected(points: &[Point]) -> Vec<Corners> {
+pub fn expected(points: &[Point]) -> Vec<Corners> {
     let mut mesh = Tetrahedralization::default();
     Kernel::new().triangulate(Cow::Borrowed(points), &mut mesh).unwrap();
     let corner = |v: u32| bits(mesh.vertices()[v as usize].at);
@@ -59,7 +59,7 @@ fn expected(points: &[Point]) -> Vec<Corners> {
 }
 
 /// The tetrahedra of a mesh stream and its number of vertices, after checking that each is used only while it is live.
-fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
+pub fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
     let mut reader = StreamReader::new(bytes, "mesh").unwrap();
     let mut live = LiveVertices::new();
     let (mut set, mut vertices) = (Vec::new(), 0);
@@ -91,7 +91,7 @@ fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
     }
 }
 
-fn fits_a_grid(points: &[Point]) -> bool {
+pub fn fits_a_grid(points: &[Point]) -> bool {
     points.as_flattened().iter().all(|&x| f64::from(x as i32) == x)
 }
 

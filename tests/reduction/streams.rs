@@ -49,7 +49,14 @@ pub fn stream_of(
     let depth = match tagging {
         Tagging::None => 0,
         Tagging::Never => 3,
-        Tagging::Ragged => 6,
+        // An octree of six levels has a quarter of a million cells.
+        Tagging::Ragged => {
+            if dims == 2 {
+                6
+            } else {
+                3
+            }
+        }
         Tagging::Chunked(level) | Tagging::Preserved(level) | Tagging::Forgetful(level) => level,
     };
     let bounds = header.bounds.unwrap_or(Bounds::of_point([0.0; 3]));

@@ -23,7 +23,7 @@ pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3
 
 /// The tetrahedra around a vertex: the size of its link so far.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Star {
+pub(in crate::audit) struct Star {
     /// Tetrahedra that have the vertex.
     pub(super) tetrahedra: u64,
     /// Edges that have it.
@@ -34,7 +34,7 @@ pub(super) struct Star {
 }
 
 /// Live vertices, open facets and their edges of the tetrahedra seen so far.
-pub(super) struct LiveTetrahedra {
+pub(in crate::audit) struct LiveTetrahedra {
     standard: Standard,
     pub(super) vertices: Vertices<Star>,
     pub(super) facets: OpenFacets<3, Corner>,

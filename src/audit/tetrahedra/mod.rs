@@ -47,6 +47,7 @@ mod edges;
 mod faces;
 mod hull;
 mod live;
+mod partial;
 
 use super::Standard;
 use super::check::{Check, Ledger, Violation};
@@ -58,7 +59,8 @@ use super::vertices::Vertex;
 use crate::stream::{Header, Patch, Totals};
 pub use census::{Census, Faults, Figures};
 use hull::Hull;
-use live::{LiveTetrahedra, Star};
+pub(super) use live::LiveTetrahedra;
+use live::Star;
 
 /// A vertex of a tetrahedron.
 type Corner = corner::Corner<3>;
@@ -169,11 +171,6 @@ impl TetrahedraAudit {
     }
 }
 
-/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It is wound
-/// once.
-///
-/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
-/// are one edge, or half an edge if it is inner.
 fn finalize(
     vertex: &Vertex<Star>,
     hull: &mut Hull,
@@ -181,14 +178,23 @@ fn finalize(
     ledger: &mut Ledger,
 ) -> Result<(), Violation> {
     ledger.add(Check::Vertices, 1);
-    let Star { tetrahedra, edges, open, winding } = vertex.star;
-    if tetrahedra == 0 {
+    if vertex.star.tetrahedra == 0 {
         unused.add(Corner::of(vertex));
         return Ok(());
     }
-    if open > 0 {
+    if vertex.star.open > 0 {
         hull.add(Corner::of(vertex));
     }
+    check_link(vertex)
+}
+
+/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It is wound
+/// once.
+///
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
+/// are one edge, or half an edge if it is inner.
+fn check_link(vertex: &Vertex<Star>) -> Result<(), Violation> {
+    let Star { tetrahedra, edges, open, winding } = vertex.star;
     // Twice V - E + F, with 2 E = 3 F + border.
     let (twice, shape) = if open > 0 { (2, "half ball") } else { (4, "ball") };
     if 2 * edges != tetrahedra + open + twice {

@@ -47,7 +47,9 @@ impl Summary<'_> {
             );
         }
         if let Some(region) = &self.header.region {
-            line("region", format!("from {} to {} (stored)", words(&region.min), words(&region.max)));
+            let [min, max] =
+                [region.min, region.max].map(|side| words(&side[..usize::from(self.header.dims)]));
+            line("region", format!("from {min} to {max} (stored)"));
         }
         self.figures(&mut line);
         if let Some(report) = &self.audit {
@@ -182,7 +184,7 @@ impl Summary<'_> {
                 "side": tree.side(),
             })),
             "region": header.region.map(|region| json!({
-                "min": region.min.map(finite), "max": region.max.map(finite),
+                "min": region.min.map(finite)[..dims], "max": region.max.map(finite)[..dims],
             })),
             "chunked": header.chunked,
             "counts": {
@@ -291,7 +293,7 @@ impl Summary<'_> {
     /// What the simplices of the stream are called.
     fn simplices(&self) -> &'static str {
         match self.header.kind {
-            Kind::TetrahedralMesh => "tetrahedra",
+            Kind::TetrahedralMesh | Kind::PartialTetrahedralMesh => "tetrahedra",
             Kind::Cells4 => "cells4",
             Kind::Simplices4 => "simplices",
             Kind::Configurations | Kind::Splines => "configurations",
@@ -300,7 +302,7 @@ impl Summary<'_> {
     }
 
     fn is_solid(&self) -> bool {
-        self.header.kind == Kind::TetrahedralMesh
+        self.header.kind.vertices_per_simplex() == 4
     }
 
     fn audit_text(&self, report: &Report) -> String {
