@@ -104,6 +104,8 @@ fn read<R: Read, const D: usize>(
 struct Done<const D: usize> {
     number: u64,
     cell: CellCode,
+    /// Number of its points.
+    points: usize,
     solved: Result<Solved<D>>,
 }
 
@@ -120,17 +122,17 @@ fn work<const D: usize>(
             recv(leaves) -> job => job,
         };
         let Ok(job) = job else { return };
-        let (number, cell) = (job.number, job.cell);
+        let (number, cell, points) = (job.number, job.cell, job.len());
         // A panic must reach the coordinator, which would wait for this node forever.
         let solved = catch_unwind(AssertUnwindSafe(|| solve(job))).unwrap_or_else(|_| Err(thread_gone()));
         let is_lost = solved.is_err();
-        if done.send(Done { number, cell, solved }).is_err() || is_lost {
+        if done.send(Done { number, cell, points, solved }).is_err() || is_lost {
             return;
         }
     }
 }
 
-/// Writes until there is no more; says of each node that it is written, and gives the output back.
+/// Writes until there is no more; says of each node that has patches that it is written.
 fn write<W: Write, const D: usize>(
     mut sequencer: Sequencer<W>,
     outputs: &Receiver<Output<D>>,
@@ -138,10 +140,12 @@ fn write<W: Write, const D: usize>(
     shelf: &Shelf<D>,
 ) -> Result<Sequencer<W>> {
     for output in outputs {
-        let points = output.points;
+        let (points, has_patches) = (output.points, output.solved.has_patches());
         shelf.keep_blocks(sequencer.write(output)?);
-        // Only a failure elsewhere makes the coordinator stop listening.
-        let _ = written.send(points);
+        if has_patches {
+            // Only a failure elsewhere makes the coordinator stop listening.
+            let _ = written.send(points);
+        }
     }
     Ok(sequencer)
 }
@@ -261,10 +265,15 @@ fn hand_out<const D: usize>(
         let arrivals = if ended.is_none() && has_room { arrivals } else { &nothing };
         select! {
             recv(hands.done) -> done => {
-                let Done { number, cell, solved } = done.map_err(|_| Stop::ThreadGone)?;
+                let Done { number, cell, points: solved_points, solved } = done.map_err(|_| Stop::ThreadGone)?;
                 let solved = solved.map_err(|e| Stop::Failed(run.locate(e, cell)))?;
-                run.schedule.solved(number, solved);
                 jobs -= 1;
+                if !solved.has_patches() {
+                    // Nothing to be written: what it passes up must not hold others up until its turn comes.
+                    points -= solved_points;
+                    nodes -= 1;
+                }
+                run.schedule.solved(number, solved);
             }
             recv(hands.written) -> written => {
                 points -= written.map_err(|_| Stop::ThreadGone)?;

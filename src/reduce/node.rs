@@ -74,6 +74,13 @@ pub(super) struct Solved<const D: usize> {
     pub(super) merged: u64,
 }
 
+impl<const D: usize> Solved<D> {
+    /// Whether there is anything to be written: not where points are passed up as they are.
+    pub(super) fn has_patches(&self) -> bool {
+        self.blocks.len() > 0
+    }
+}
+
 /// Triangulates nodes, one after the other, in buffers that are used again.
 pub(super) struct Solver<B, const D: usize> {
     rules: Rules,
