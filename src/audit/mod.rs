@@ -68,7 +68,7 @@ pub use triangles::Standard;
 
 use check::Ledger;
 use mesh::{MESH_CHECKS, MeshAudit};
-use partial::{FinalSimplices, PartialAudit};
+use partial::PartialAudit;
 use points::{PointsAudit, points_checks};
 use tetrahedra::{LiveTetrahedra, TETRAHEDRA_CHECKS, TetrahedraAudit};
 use triangles::Triangles;
@@ -92,8 +92,8 @@ pub struct Audit {
 enum State {
     Points(PointsAudit),
     Mesh(MeshAudit),
-    Partial(PartialAudit<Triangles>),
-    PartialTetrahedra(PartialAudit<LiveTetrahedra>),
+    Partial(PartialAudit<Triangles, 2>),
+    PartialTetrahedra(PartialAudit<LiveTetrahedra, 3>),
     Tetrahedra(TetrahedraAudit),
 }
 
@@ -119,12 +119,13 @@ impl Audit {
         let (state, mut checks) = match header.kind {
             Kind::Points => (State::Points(PointsAudit::new(header)), points_checks(header)),
             Kind::TriangleMesh => (State::Mesh(MeshAudit::new(header, standard)), MESH_CHECKS.to_vec()),
-            Kind::PartialTriangleMesh => {
-                (State::Partial(PartialAudit::new(header, standard)), Triangles::CHECKS.to_vec())
-            }
+            Kind::PartialTriangleMesh => (
+                State::Partial(PartialAudit::new(header, standard)),
+                PartialAudit::<Triangles, 2>::CHECKS.to_vec(),
+            ),
             Kind::PartialTetrahedralMesh => {
                 let audit = PartialAudit::new(header, standard);
-                (State::PartialTetrahedra(audit), LiveTetrahedra::CHECKS.to_vec())
+                (State::PartialTetrahedra(audit), PartialAudit::<LiveTetrahedra, 3>::CHECKS.to_vec())
             }
             Kind::TetrahedralMesh => {
                 (State::Tetrahedra(TetrahedraAudit::new(header, standard)), TETRAHEDRA_CHECKS.to_vec())

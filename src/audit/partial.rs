@@ -10,17 +10,23 @@ use std::collections::HashSet;
 use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
+use super::corner::Corner;
+use super::facets::OpenFacets;
 use super::triangles::Standard;
+use super::vertices::Vertices;
 use crate::bounds::{Point, Region};
 use crate::stream::{Event, Header, Patch, Totals};
 
 /// What can be proved of final simplices one by one, with the vertices that are live and the facets that are open.
-pub(super) trait FinalSimplices {
+pub(super) trait FinalSimplices<const D: usize> {
     /// What simplices and their facets are called.
     const NAMES: [&'static str; 2];
 
-    /// Checks that every partial mesh must pass, in any case.
-    const CHECKS: [Check; 9];
+    /// The check that facets meet their twins.
+    const FACETS: Check;
+
+    /// What is known of a vertex.
+    type Star: Copy + Default;
 
     fn new(standard: Standard) -> Self;
 
@@ -28,39 +34,41 @@ pub(super) trait FinalSimplices {
     /// are in the residual.
     fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation>;
 
-    /// Number of vertices so far.
-    fn vertices(&self) -> u64;
+    fn vertices(&self) -> &Vertices<Self::Star>;
 
-    /// Where a vertex is, if it is live.
-    fn place(&self, id: u64) -> Option<Point>;
+    fn facets(&self) -> &OpenFacets<D, Corner<D>>;
 
-    /// The live vertex with the smallest id that `is_wrong`.
-    fn first_live(&self, is_wrong: impl Fn(u64) -> bool) -> Option<(u64, Point)>;
+    fn facets_mut(&mut self) -> &mut OpenFacets<D, Corner<D>>;
 
-    /// Takes a facet away, with its simplex on the side that a wall has it; whether it was open.
-    fn close(&mut self, facet: &[u64]) -> bool;
-
-    /// The open facet with the smallest ids.
-    fn first_open(&self) -> Option<Vec<u64>>;
-
-    /// Most vertices that were live at once, and number of open facets.
-    fn width(&self) -> (usize, usize);
+    /// From the order that a wall has its corners in to that of its simplex, and back.
+    fn turned(facet: [u64; D]) -> [u64; D];
 }
 
 /// State of the audit of a partial mesh. Memory: the width of the stream and the residual.
-pub(super) struct PartialAudit<S> {
-    dims: usize,
+pub(super) struct PartialAudit<S, const D: usize> {
     region: Region<3>,
     simplices: S,
     residual: Vec<(Option<u64>, Point)>,
-    /// The corners of all walls, `dims` each.
+    /// The corners of all walls, D each.
     walls: Vec<u32>,
 }
 
-impl<S: FinalSimplices> PartialAudit<S> {
+impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
+    /// Checks that every partial mesh must pass, in any case.
+    pub(super) const CHECKS: [Check; 9] = [
+        Check::Orientation,
+        S::FACETS,
+        Check::Delaunay,
+        Check::Vertices,
+        Check::Finalization,
+        Check::Counts,
+        Check::Region,
+        Check::Residual,
+        Check::Walls,
+    ];
+
     pub(super) fn new(header: &Header, standard: Standard) -> Self {
         PartialAudit {
-            dims: usize::from(header.dims),
             region: header.region.unwrap_or(Region::EVERYTHING),
             simplices: S::new(standard),
             residual: Vec::new(),
@@ -107,7 +115,7 @@ impl<S: FinalSimplices> PartialAudit<S> {
         self.check_walls(ledger)?;
         let unwritten = self.residual.iter().filter(|(id, _)| id.is_none()).count() as u64;
         ledger.add(Check::Counts, 1);
-        let vertices = self.simplices.vertices();
+        let vertices = self.simplices.vertices().seen();
         if (vertices + unwritten).checked_add(totals.merged) != Some(totals.points) {
             let message = format!(
                 "{vertices} vertices, {unwritten} residual points that are none and {} merged points are not the {} points",
@@ -120,7 +128,7 @@ impl<S: FinalSimplices> PartialAudit<S> {
 
     /// Most vertices that were live at once, and number of open facets.
     pub(super) fn width(&self) -> (usize, usize) {
-        self.simplices.width()
+        (self.simplices.vertices().live_max(), self.simplices.facets().len())
     }
 
     fn check_region(&self, id: Option<u64>, at: Point, ledger: &mut Ledger) -> Result<(), Violation> {
@@ -139,31 +147,30 @@ impl<S: FinalSimplices> PartialAudit<S> {
         for &(id, at) in &self.residual {
             let Some(id) = id else { continue };
             ledger.add(Check::Residual, 1);
-            let Some(place) = self.simplices.place(id) else {
+            let Some(vertex) = self.simplices.vertices().live(id) else {
                 return Err(fail(format!("vertex {id} of the residual was finalized")).with(id, at));
             };
-            if place != at {
+            if vertex.at != at {
                 let violation = fail(format!("vertex {id} of the residual lies elsewhere in its patch"));
-                return Err(violation.with(id, at).with(id, place));
+                return Err(violation.with(id, at).with(id, vertex.at));
             }
             if !seen.insert(id) {
                 return Err(fail(format!("vertex {id} is in the residual twice")).with(id, at));
             }
         }
-        match self.simplices.first_live(|id| !seen.contains(&id)) {
+        match self.simplices.vertices().first_live(|vertex| !seen.contains(&vertex.id)) {
             None => Ok(()),
-            Some((id, at)) => {
-                let message = format!("vertex {id} is neither finalized nor in the residual");
-                Err(fail(message).with(id, at))
+            Some(lost) => {
+                let message = format!("vertex {} is neither finalized nor in the residual", lost.id);
+                Err(fail(message).with(lost.id, lost.at))
             }
         }
     }
 
     /// No two residual points are at one place; elevation does not count.
     fn check_distinct(&self, ledger: &mut Ledger) -> Result<(), Violation> {
-        let place = |at: Point| -> [f64; 3] {
-            std::array::from_fn(|axis| if axis < self.dims { at[axis] } else { 0.0 })
-        };
+        let place =
+            |at: Point| -> [f64; 3] { std::array::from_fn(|axis| if axis < D { at[axis] } else { 0.0 }) };
         let mut sorted = self.residual.clone();
         sorted.sort_by(|&(p, at_p), &(q, at_q)| {
             let order = place(at_p).partial_cmp(&place(at_q)).unwrap_or(Ordering::Equal);
@@ -182,11 +189,12 @@ impl<S: FinalSimplices> PartialAudit<S> {
     /// Every wall is an open facet, and every open facet has a wall: a final simplex lies on the same side of both.
     fn check_walls(&mut self, ledger: &mut Ledger) -> Result<(), Violation> {
         let [simplex, facet] = S::NAMES;
-        for wall in self.walls.chunks_exact(self.dims) {
+        for wall in self.walls.chunks_exact(D) {
             ledger.add(Check::Walls, 1);
             let corners: Vec<_> = wall.iter().map(|&corner| self.residual[corner as usize]).collect();
             let ids: Option<Vec<u64>> = corners.iter().map(|&(id, _)| id).collect();
-            if !ids.is_some_and(|ids| self.simplices.close(&ids)) {
+            let facet_of = |ids: Vec<u64>| ids.try_into().ok().map(S::turned);
+            if !ids.and_then(facet_of).is_some_and(|facet| self.simplices.facets_mut().close(facet)) {
                 let message = format!(
                     "the wall from residual point {} is no open {facet} of a final {simplex} on its side",
                     named(wall)
@@ -195,13 +203,13 @@ impl<S: FinalSimplices> PartialAudit<S> {
                 return Err(corners.iter().fold(violation, |violation, &(id, at)| violation.with(id, at)));
             }
         }
-        match self.simplices.first_open() {
+        match self.simplices.facets().first().map(S::turned) {
             None => Ok(()),
             Some(ids) => {
                 let message = format!("the open {facet} {} has no wall", named(&ids));
-                let live = ids.iter().filter_map(|&id| Some((id, self.simplices.place(id)?)));
+                let live = ids.iter().filter_map(|&id| self.simplices.vertices().live(id));
                 let violation = Violation::new(Check::Walls, message);
-                Err(live.fold(violation, |violation, (id, at)| violation.with(id, at)))
+                Err(live.fold(violation, |violation, vertex| violation.with(vertex.id, vertex.at)))
             }
         }
     }

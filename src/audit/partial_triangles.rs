@@ -1,26 +1,16 @@
 //! The final triangles of a region.
 
 use super::check::{Check, Ledger, Violation};
+use super::facets::OpenFacets;
 use super::partial::FinalSimplices;
-use super::triangles::{Fans, Standard, Triangles};
-use super::vertices::Vertex;
-use crate::bounds::Point;
+use super::triangles::{Corner, Fans, Standard, Triangles};
+use super::vertices::{Vertex, Vertices};
 use crate::stream::Patch;
 
-impl FinalSimplices for Triangles {
+impl FinalSimplices<2> for Triangles {
     const NAMES: [&'static str; 2] = ["triangle", "edge"];
-
-    const CHECKS: [Check; 9] = [
-        Check::Orientation,
-        Check::Edges,
-        Check::Delaunay,
-        Check::Vertices,
-        Check::Finalization,
-        Check::Counts,
-        Check::Region,
-        Check::Residual,
-        Check::Walls,
-    ];
+    const FACETS: Check = Check::Edges;
+    type Star = Fans;
 
     fn new(standard: Standard) -> Self {
         Triangles::new(standard)
@@ -30,29 +20,21 @@ impl FinalSimplices for Triangles {
         self.patch(patch, ledger, finalize)
     }
 
-    fn vertices(&self) -> u64 {
-        self.vertices.seen()
+    fn vertices(&self) -> &Vertices<Fans> {
+        &self.vertices
     }
 
-    fn place(&self, id: u64) -> Option<Point> {
-        self.vertices.live(id).map(|vertex| vertex.at)
+    fn facets(&self) -> &OpenFacets<2, Corner> {
+        &self.edges
     }
 
-    fn first_live(&self, is_wrong: impl Fn(u64) -> bool) -> Option<(u64, Point)> {
-        self.vertices.first_live(|vertex| is_wrong(vertex.id)).map(|vertex| (vertex.id, vertex.at))
+    fn facets_mut(&mut self) -> &mut OpenFacets<2, Corner> {
+        &mut self.edges
     }
 
     /// A wall has its triangle on the left, as an open edge has.
-    fn close(&mut self, edge: &[u64]) -> bool {
-        matches!(edge, &[from, to] if self.edges.close([from, to]))
-    }
-
-    fn first_open(&self) -> Option<Vec<u64>> {
-        self.edges.first().map(Vec::from)
-    }
-
-    fn width(&self) -> (usize, usize) {
-        (self.vertices.live_max(), self.edges.len())
+    fn turned(edge: [u64; 2]) -> [u64; 2] {
+        edge
     }
 }
 

@@ -13,8 +13,6 @@ Examples:
   Show what the run did, and prove the result:
     spfinalize --octree cloud.las | spdelaunay3d --stats -o cloud.spm
     spinfo --audit cloud.spm
-  Fewer and larger cells: less is triangulated twice, with more memory:
-    spfinalize --octree --cell-points 200000 cloud.xyz | spdelaunay3d -o cloud.spm
   One tile of many, to be finished later or elsewhere:
     spfinalize --octree a.las b.las | spdelaunay3d --partial --region 0,0,-inf,50,50,inf -o tile7.spm
     spdelaunay3d --merge tile*.spm -o whole.spm

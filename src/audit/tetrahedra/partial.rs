@@ -1,28 +1,18 @@
 //! The final tetrahedra of a region.
 
-use super::check_link;
 use super::live::{LiveTetrahedra, Star};
+use super::{Corner, check_link};
 use crate::audit::Standard;
 use crate::audit::check::{Check, Ledger, Violation};
+use crate::audit::facets::OpenFacets;
 use crate::audit::partial::FinalSimplices;
-use crate::audit::vertices::Vertex;
-use crate::bounds::Point;
+use crate::audit::vertices::{Vertex, Vertices};
 use crate::stream::Patch;
 
-impl FinalSimplices for LiveTetrahedra {
+impl FinalSimplices<3> for LiveTetrahedra {
     const NAMES: [&'static str; 2] = ["tetrahedron", "facet"];
-
-    const CHECKS: [Check; 9] = [
-        Check::Orientation,
-        Check::Facets,
-        Check::Delaunay,
-        Check::Vertices,
-        Check::Finalization,
-        Check::Counts,
-        Check::Region,
-        Check::Residual,
-        Check::Walls,
-    ];
+    const FACETS: Check = Check::Facets;
+    type Star = Star;
 
     fn new(standard: Standard) -> Self {
         LiveTetrahedra::new(standard)
@@ -32,29 +22,21 @@ impl FinalSimplices for LiveTetrahedra {
         self.patch(patch, ledger, finalize)
     }
 
-    fn vertices(&self) -> u64 {
-        self.seen().vertices
+    fn vertices(&self) -> &Vertices<Star> {
+        &self.vertices
     }
 
-    fn place(&self, id: u64) -> Option<Point> {
-        self.vertices.live(id).map(|vertex| vertex.at)
+    fn facets(&self) -> &OpenFacets<3, Corner> {
+        &self.facets
     }
 
-    fn first_live(&self, is_wrong: impl Fn(u64) -> bool) -> Option<(u64, Point)> {
-        self.vertices.first_live(|vertex| is_wrong(vertex.id)).map(|vertex| (vertex.id, vertex.at))
+    fn facets_mut(&mut self) -> &mut OpenFacets<3, Corner> {
+        &mut self.facets
     }
 
     /// A wall is counterclockwise as seen from its tetrahedron, an open facet as seen from outside of it.
-    fn close(&mut self, wall: &[u64]) -> bool {
-        matches!(wall, &[a, b, c] if self.facets.close([a, c, b]))
-    }
-
-    fn first_open(&self) -> Option<Vec<u64>> {
-        self.facets.first().map(|[a, b, c]| vec![a, c, b])
-    }
-
-    fn width(&self) -> (usize, usize) {
-        (self.vertices.live_max(), self.facets.len())
+    fn turned([a, b, c]: [u64; 3]) -> [u64; 3] {
+        [a, c, b]
     }
 }
 
