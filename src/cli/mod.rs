@@ -1,5 +1,6 @@
 //! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
 
+mod cells;
 pub mod configgen;
 pub mod dd4;
 pub mod progress;
