@@ -46,6 +46,9 @@ pub const NRRD_HEADER_MAX: u64 = 1 << 20;
 /// Most data files of an NRRD file.
 pub const NRRD_FILES_MAX: usize = 1 << 16;
 
+/// Most tiles of a raster that triangles are drawn on, of 65,536 cells each: their places take 100 MB.
+pub const RASTER_TILES_MAX: u64 = 1 << 22;
+
 /// Longest number of a volume that is text, in bytes.
 pub const VOLUME_NUMBER_MAX: usize = 128;
 

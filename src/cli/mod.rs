@@ -9,6 +9,7 @@ mod rows;
 pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spdelaunay3d;
+pub mod spdem;
 pub mod spfinalize;
 pub mod spinfo;
 pub mod splinefit;
