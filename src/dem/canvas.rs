@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::spill::Spill;
-use super::tile::{Tile, overlap};
+use super::tile::Tile;
 use crate::error::{Error, Result};
 use crate::limits::RASTER_TILES_MAX;
 use crate::raster::{Grid, TILE};
@@ -90,22 +90,22 @@ impl Canvas {
         self.spill.len()
     }
 
-    /// A tile, to be drawn on.
+    /// A tile, to be drawn on; nothing, if it was complete and handed on.
     ///
     /// # Errors
-    /// If it is complete, so that triangles overlap; if the temporary file fails.
-    pub(super) fn tile(&mut self, at: TilePlace) -> Result<&mut Tile> {
+    /// If the temporary file fails.
+    pub(super) fn tile(&mut self, at: TilePlace) -> Result<Option<&mut Tile>> {
         let number = self.number(at);
         let place = match self.states[number] {
             State::Held(place) => place as usize,
-            State::Complete => return Err(overlap()),
+            State::Complete => return Ok(None),
             State::Blank => self.hold(number, None)?,
             State::Spilled(record) => self.hold(number, Some(record))?,
         };
         self.clock += 1;
         let held = &mut self.held[place];
         held.used = self.clock;
-        Ok(&mut held.tile)
+        Ok(Some(&mut held.tile))
     }
 
     /// Takes a tile in memory, if all of its cells belong to triangles: it is complete.

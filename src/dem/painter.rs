@@ -6,6 +6,7 @@ use super::canvas::{Canvas, TilePlace};
 use super::centers::Centers;
 use super::facet::{Facet, place};
 use super::span::Span;
+use super::tile::overlap;
 use super::{Attribute, Options};
 use crate::bounds::Point;
 use crate::error::{Error, Result};
@@ -120,7 +121,11 @@ impl Painter {
             return Ok(());
         }
         let flat = self.attribute.of_plane(self.centers.gradient_to_world(facet.gradient))?;
-        let tile = self.canvas.tile(at)?;
+        let Some(tile) = self.canvas.tile(at)? else {
+            // All of its cells belong to other triangles, on whose borders those of this one must be.
+            let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
+            return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
+        };
         for (row, span) in (first_row..).zip(spans) {
             let y = self.centers.y(row);
             let start = (row - top) as usize * TILE;

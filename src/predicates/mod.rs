@@ -3,7 +3,7 @@
 //! The sign is never wrong; only the price differs. [`Arithmetic::of`] looks once at the coordinates of a chunk
 //! and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs an algorithm
 //! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`TotalPredicates`]. In space,
-//! [`Arithmetic3`] and [`TotalPredicates3`] do the same. Where a size is wanted and not a sign, [`area`] is accurate.
+//! [`Arithmetic3`] and [`TotalPredicates3`] do the same. Where a size is wanted and not a sign, [`area()`] is accurate.
 
 mod adaptive;
 mod area;

@@ -91,23 +91,32 @@ fn memory_and_formats_change_nothing() {
 
 #[test]
 fn tiles_that_are_full_leave_memory() {
-    // Squares from left to right: of 20 tiles in a row, few are open at a time.
+    // Squares from left to right, or back: of 20 tiles in a row, few are open at a time.
     let points: Vec<[i64; 2]> = (0..=500).flat_map(|x| [[10 * x, 0], [10 * x, 240]]).collect();
     let corner = |x: u32, y: u32| 2 * x + y;
     let square = |x| {
         [[corner(x, 0), corner(x + 1, 0), corner(x + 1, 1)], [corner(x, 0), corner(x + 1, 1), corner(x, 1)]]
     };
-    let mesh = Mesh {
+    let mut mesh = Mesh {
         points: points.iter().map(|&[x, y]| [x as f64, y as f64, x as f64]).collect(),
         triangles: (0..500).flat_map(square).collect(),
     };
-    let grid = Grid { left: 0.0, top: 240.0, step: 1.0, columns: 5_000, rows: 240 };
     let limited = Options { memory: 3 * 270_336, ..options(Attribute::Elevation) };
-    let (bytes, stats) =
-        file(&mesh.stream(Coordinates::F64), RasterFormat::GeoTiff, &grid, &limited).unwrap();
-    assert_eq!((stats.known, stats.spilled), (5_000 * 240, 0));
-    let found = tiff_values(&bytes, &grid);
-    assert!((0..found.len()).all(|cell| (found[cell] - (cell % 5_000) as f32 - 0.5).abs() < 1e-3));
+    for is_back in [false, true] {
+        if is_back {
+            mesh.triangles.reverse();
+        }
+        // Centres off the borders of squares, and on them: then triangles touch cells of tiles that are full.
+        for shift in [0.0, 0.5] {
+            let grid = Grid { left: -shift, top: 240.0 - shift, step: 1.0, columns: 5_000, rows: 239 };
+            let stream = mesh.stream(Coordinates::F64);
+            let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &limited).unwrap();
+            assert_eq!((stats.known, stats.spilled), (5_000 * 239, 0), "{is_back} {shift}");
+            let found = tiff_values(&bytes, &grid);
+            let expected = |cell: usize| f64::from(cell as u32 % 5_000) + 0.5 - shift;
+            assert!((0..found.len()).all(|cell| (f64::from(found[cell]) - expected(cell)).abs() < 1e-3));
+        }
+    }
 }
 
 #[test]
