@@ -8,12 +8,14 @@ use std::ops::Range;
 #[inline]
 pub(super) fn first(range: Range<u32>, guess: f64, mut holds: impl FnMut(u32) -> bool) -> u32 {
     let Range { mut start, mut end } = range;
-    let (mut probe, mut stride) = (guess.ceil(), 1.0);
+    // Rounded up: conversions take what is not a number for zero, and stay in range.
+    let below = guess as u32;
+    let (mut probe, mut stride) = (f64::from(below) + if f64::from(below) < guess { 1.0 } else { 0.0 }, 1.0);
     while start < end {
         // Beyond the ends the guess says nothing any more: the middle does.
         let last = end - 1;
         let at = if stride == 1.0 {
-            (probe.max(0.0) as u32).clamp(start, last)
+            (probe as u32).clamp(start, last)
         } else if f64::from(start) <= probe && probe <= f64::from(last) {
             probe as u32
         } else {

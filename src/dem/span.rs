@@ -32,6 +32,9 @@ impl Span {
         let mut span = Span { owned_end: columns.end, cells: columns };
         let [a, b, c] = corners;
         for [from, to] in [[a, b], [b, c], [c, a]] {
+            if span.cells.is_empty() {
+                break;
+            }
             span.cut([from, to], y, centers, predicates);
         }
         span.owned_end = span.owned_end.clamp(span.cells.start, span.cells.end.max(span.cells.start));
