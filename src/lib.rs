@@ -17,6 +17,7 @@ pub mod dd4;
 pub mod delaunay2;
 pub mod delaunay3;
 pub mod delaunay3_float;
+pub mod dem;
 pub mod diagram4;
 pub mod error;
 pub mod finalize;

@@ -58,6 +58,9 @@ pub const XML_DEPTH_MAX: usize = 64;
 /// Longest block of a VTK file that is decompressed as a whole (LZ4), in bytes; VTK makes blocks of 32 KiB.
 pub const VTK_BLOCK_MAX: u64 = 1 << 26;
 
+/// Most tiles of a raster that triangles are drawn on, of 65,536 cells each: their places take 100 MB.
+pub const RASTER_TILES_MAX: u64 = 1 << 22;
+
 /// Longest condition on points, in bytes.
 pub const CONDITION_LEN_MAX: usize = 1 << 12;
 

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use crate::programs::{outcome, run, sample};
 
-const TOOLS: [&str; 9] = [
+const TOOLS: [&str; 10] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
+    "spdem",
     "tess3",
     "dd4",
     "configgen",

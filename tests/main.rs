@@ -10,6 +10,7 @@ mod configgen;
 mod convert;
 mod dd4;
 mod delaunay3_float;
+mod dem;
 mod diagram4;
 mod finalize;
 mod fit;

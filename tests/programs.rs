@@ -12,6 +12,7 @@ pub fn tool(name: &str) -> Command {
         "spdelaunay2d" => env!("CARGO_BIN_EXE_spdelaunay2d"),
         "splinefit" => env!("CARGO_BIN_EXE_splinefit"),
         "spdelaunay3d" => env!("CARGO_BIN_EXE_spdelaunay3d"),
+        "spdem" => env!("CARGO_BIN_EXE_spdem"),
         "spinfo" => env!("CARGO_BIN_EXE_spinfo"),
         "spconvert" => env!("CARGO_BIN_EXE_spconvert"),
         "configgen" => env!("CARGO_BIN_EXE_configgen"),

@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use spmesh::cli::{
-    configgen, dd4, spconvert, spdelaunay2d, spdelaunay3d, spfinalize, spinfo, splinefit, tess3,
+    configgen, dd4, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize, spinfo, splinefit, tess3,
 };
 
 fn main() -> std::io::Result<()> {
@@ -29,11 +29,12 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 9] {
+fn tools() -> [Command; 10] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
         spdelaunay3d::Flags::command(),
+        spdem::Flags::command(),
         tess3::Flags::command(),
         dd4::Flags::command(),
         configgen::Flags::command(),

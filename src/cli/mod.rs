@@ -1,5 +1,6 @@
 //! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
 
+mod cells;
 pub mod configgen;
 pub mod dd4;
 pub mod progress;
@@ -8,6 +9,7 @@ mod rows;
 pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spdelaunay3d;
+pub mod spdem;
 pub mod spfinalize;
 pub mod spinfo;
 pub mod splinefit;

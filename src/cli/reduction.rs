@@ -176,7 +176,7 @@ impl<const D: usize> Shared<D> {
 }
 
 /// Opens a stream, `-` for stdin.
-fn open_stream(path: &PathBuf) -> Result<Reader, Error> {
+pub(super) fn open_stream(path: &PathBuf) -> Result<Reader, Error> {
     let (input, name) = open_input(path)?;
     StreamReader::new(input, name)
 }

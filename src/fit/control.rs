@@ -10,8 +10,8 @@ use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::delaunay2::{self, Triangulation};
 use crate::error::{Error, Result};
-use crate::predicates::Point2;
-use crate::spline::{Basis, area};
+use crate::predicates::{Point2, area};
+use crate::spline::Basis;
 
 /// The share of the control mesh in [`bending`]: so little that creases are free to fold where observations want it.
 const SHARE: f64 = 1e-3;

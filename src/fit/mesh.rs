@@ -2,8 +2,7 @@
 
 use crate::delaunay2::{self, Triangulation};
 use crate::error::{Error, Result};
-use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
-use crate::spline::area;
+use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]

@@ -3,9 +3,10 @@
 //! The sign is never wrong; only the price differs. [`Arithmetic::of`] looks once at the coordinates of a chunk
 //! and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs an algorithm
 //! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`TotalPredicates`]. In space,
-//! [`Arithmetic3`] and [`TotalPredicates3`] do the same.
+//! [`Arithmetic3`] and [`TotalPredicates3`] do the same. Where a size is wanted and not a sign, [`area()`] is accurate.
 
 mod adaptive;
+mod area;
 pub(crate) mod big;
 pub mod circle;
 mod counts;
@@ -17,6 +18,8 @@ pub mod sphere;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
 pub use adaptive::{ExpansionPredicates, TotalPredicates};
+pub use area::area;
+pub(crate) use area::exact_area;
 pub use counts::PredicateCounts;
 pub use extent::Extent;
 pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredicates, Width};

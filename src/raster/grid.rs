@@ -5,6 +5,8 @@ use crate::predicates::Point2;
 
 /// Most cells of a row, and of a column.
 const CELLS_MAX: f64 = (1u32 << 31) as f64;
+/// Cells along the longer side of a grid, if nothing is said.
+const CELLS_DEFAULT: f64 = 1_000.0;
 
 /// A grid of square cells, in rows from the top (north).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +23,19 @@ pub struct Grid {
     pub rows: u32,
 }
 
+/// How large cells are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cells {
+    /// Their side; sides are at its multiples, so that grids of neighbours fit together.
+    Step(f64),
+    /// So many columns.
+    Columns(u32),
+    /// So many rows.
+    Rows(u32),
+    /// A thousand along the longer side.
+    Default,
+}
+
 /// A box in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
@@ -31,6 +46,26 @@ pub struct Window {
 }
 
 impl Grid {
+    /// The grid of a window.
+    ///
+    /// # Errors
+    /// As [`Grid::covering`].
+    pub fn of(window: Window, cells: Cells) -> Result<Grid> {
+        let [width, height] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
+        // A number of cells divides the window, however that is rounded: half a cell less never makes one more.
+        let exactly = |step: f64, counts: [Option<u32>; 2]| {
+            let inner =
+                [0, 1].map(|axis| window.max[axis] - if counts[axis].is_some() { 0.5 * step } else { 0.0 });
+            Grid::covering(Window { min: window.min, max: inner }, step, window.min)
+        };
+        match cells {
+            Cells::Step(step) => Grid::covering(window, step, [0.0; 2]),
+            Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
+            Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
+            Cells::Default => Grid::covering(window, width.max(height) / CELLS_DEFAULT, window.min),
+        }
+    }
+
     /// The least grid that covers a window and has sides of cells at multiples of `step` from `anchor`: so grids of windows of
     /// one area fit together.
     ///
@@ -67,7 +102,13 @@ impl Grid {
     /// The centre of a cell.
     #[must_use]
     pub fn center(&self, column: u32, row: u32) -> Point2 {
-        [self.left + (f64::from(column) + 0.5) * self.step, self.y_of(row)]
+        [self.x_of(column), self.y_of(row)]
+    }
+
+    /// The abscissa of the centres of a column.
+    #[must_use]
+    pub fn x_of(&self, column: u32) -> f64 {
+        self.left + (f64::from(column) + 0.5) * self.step
     }
 
     /// The ordinate of the centres of a row.

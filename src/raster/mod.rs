@@ -1,16 +1,18 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
-//! `grid` says where cells are, `geotiff` and `ascii` write files.
+//! `grid` says where cells are, `geotiff` and `ascii` write files; `relief` has what is made of gradients.
 
 mod ascii;
 mod geo_keys;
 mod geotiff;
 mod grid;
+mod relief;
 
 use std::io::{Seek, Write};
 
 pub use geotiff::{TILE, Tiles, write_tiles};
-pub use grid::{Grid, Window};
+pub use grid::{Cells, Grid, Window};
+pub use relief::{Light, aspect, slope};
 
 use crate::error::Result;
 use crate::stream::Crs;

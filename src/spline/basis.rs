@@ -3,7 +3,6 @@
 mod bends;
 
 use super::approach::Approach;
-use super::area::area;
 use super::domain::Domain;
 use super::elements::{Elements, Share};
 use super::factors::Factors;
@@ -13,7 +12,7 @@ use super::simplex;
 use super::tent::{self, Found, Line, Tent};
 use super::tree::Tree;
 use crate::error::{Error, Result};
-use crate::predicates::Point2;
+use crate::predicates::{Point2, area};
 use crate::prefetch::prefetch;
 
 /// Functions of one degree over configurations of knots.

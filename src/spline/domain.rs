@@ -26,7 +26,7 @@
 
 use super::approach::Approach;
 use crate::config::{Configurations, Knots};
-use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
 
 /// Closed half-planes to the right of directed lines, in common.
 #[derive(Debug, Clone)]
@@ -100,7 +100,7 @@ pub(super) fn is_right_or_on([p, q]: [Point2; 2], x: Point2) -> bool {
 
 /// What of a convex polygon is to the right of a line.
 fn cut(polygon: &[Point2], [p, q]: [Point2; 2]) -> Vec<Point2> {
-    let depth = |x: Point2| super::area(q, p, x);
+    let depth = |x: Point2| area(q, p, x);
     let mut kept = Vec::with_capacity(polygon.len() + 1);
     for (&a, &b) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
         let (at_a, at_b) = (depth(a), depth(b));

@@ -5,11 +5,10 @@
 //! all of them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at
 //! one place, edges of one element cancel, and elements of different knots are the same function: they are merged.
 
-use super::area::area;
 use crate::config::{Configurations, Knots};
 use crate::delaunay2::distinct;
 use crate::order::{Curve, SpatialOrder};
-use crate::predicates::{Extent, Point2, Predicates2, Sign, TotalPredicates};
+use crate::predicates::{Extent, Point2, Predicates2, Sign, TotalPredicates, area};
 use foldhash::HashMap;
 
 /// The share of a function in an element: `factor * area(x, a, b)`, for an edge ab.

@@ -3,12 +3,11 @@
 //! [`simplex_spline`] evaluates single simplex splines of any degree, [`Basis`] all functions at a point that
 //! [`crate::config`] makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
 //!
-//! `area` has accurate areas, `approach` the sides of lines that points lie on, `simplex` the recurrence, `tent` closed
-//! forms of degrees 0 and 1, and `factors` what they are multiplied by; `elements` is the way from configurations to simplex
+//! `approach` has the sides of lines that points lie on, `simplex` the recurrence, `tent` closed forms of degrees 0 and 1, and
+//! `factors` what they are multiplied by; `elements` is the way from configurations to simplex
 //! splines, `build` that to bases; `domain` knows where functions sum to one, and `tree` finds what is alive.
 
 mod approach;
-mod area;
 mod basis;
 mod build;
 mod domain;
@@ -22,7 +21,6 @@ mod tent;
 mod tree;
 
 pub use approach::Approach;
-pub use area::area;
 pub use basis::{Basis, Scratch};
 pub use jet::Jet;
 pub use raster::{Raster, Row};

@@ -9,9 +9,8 @@
 //! are.
 
 use super::approach::Approach;
-use super::area::area;
 use super::jet::Jet;
-use crate::predicates::{Point2, Sign};
+use crate::predicates::{Point2, Sign, area};
 use foldhash::{HashMap, HashMapExt};
 
 /// Greatest degree of a simplex spline: sets of knots are held in 32 bits.

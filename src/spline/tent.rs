@@ -13,9 +13,8 @@
 //! constant.
 
 use super::approach::Approach;
-use super::area::{area, exact_area};
 use super::elements::hull_edges;
-use crate::predicates::{Extent, Point2, Sign};
+use crate::predicates::{Extent, Point2, Sign, area, exact_area};
 
 /// Relative to the greatest value, the error from which on linear functions are not good enough. It is a bound: errors that
 /// occur are a tenth of it, and less.

@@ -1,5 +1,6 @@
 //! What can be asked of a spline at a point: its value, and what follows from its derivatives.
 
+use crate::raster::{aspect, slope};
 use crate::spline::Jet;
 
 /// What is asked.
@@ -54,9 +55,8 @@ impl Attribute {
         match self {
             Attribute::Value => jet.value,
             Attribute::Gradient => p,
-            Attribute::Slope => square.sqrt().atan().to_degrees(),
-            Attribute::Aspect if square == 0.0 => f64::NAN,
-            Attribute::Aspect => (-p).atan2(-q).to_degrees().rem_euclid(360.0),
+            Attribute::Slope => slope(jet.gradient),
+            Attribute::Aspect => aspect(jet.gradient),
             // Not a number where the square is zero.
             Attribute::ProfileCurvature => {
                 -(p * p * r + 2.0 * p * q * s + q * q * t) / (square * (1.0 + square).powf(1.5))

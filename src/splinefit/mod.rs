@@ -33,7 +33,7 @@ pub use layout::{Layout, Spline};
 pub use lists::write_residuals;
 pub use options::{Options, Smoothing};
 pub use points::{InFrame, Points};
-pub use raster::{Cells, write_raster, write_table};
+pub use raster::{write_raster, write_table};
 pub use smoothness::{Candidate, Smoothness};
 pub use statistics::{PERCENTILES, Statistics};
 pub use summary::{Condition, Summary};

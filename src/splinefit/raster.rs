@@ -8,50 +8,23 @@ use super::layout::Spline;
 use super::values::{line, write_error};
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::raster::{self, Grid, RasterFormat, Window};
+use crate::raster::{self, Cells, Grid, RasterFormat, Window};
 use crate::spline::{Raster, Scratch};
 
 /// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
 const ROWS_PER_THREAD: usize = 64;
-/// Cells along the longer side of a grid, if nothing is said.
-const CELLS: f64 = 1_000.0;
-
-/// How large cells are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Cells {
-    /// Their side, in world coordinates; sides are at its multiples, so that grids of neighbours fit together.
-    Step(f64),
-    /// So many columns.
-    Columns(u32),
-    /// So many rows.
-    Rows(u32),
-    /// A thousand along the longer side.
-    Default,
-}
 
 impl Spline {
     /// The grid of a window, or else of the domain, in world coordinates.
     ///
     /// # Errors
-    /// As [`Grid::covering`]; a domain without an area.
+    /// As [`Grid::of`]; a domain without an area.
     pub fn grid(&self, cells: Cells, window: Option<Window>) -> Result<Grid> {
         let window = match window {
             Some(window) => window,
             None => self.layout.domain_window()?,
         };
-        let [width, height] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
-        // A number of cells divides the window, however that is rounded: half a cell less never makes one more.
-        let exactly = |step: f64, counts: [Option<u32>; 2]| {
-            let inner =
-                [0, 1].map(|axis| window.max[axis] - if counts[axis].is_some() { 0.5 * step } else { 0.0 });
-            Grid::covering(Window { min: window.min, max: inner }, step, window.min)
-        };
-        match cells {
-            Cells::Step(step) => Grid::covering(window, step, [0.0; 2]),
-            Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
-            Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
-            Cells::Default => Grid::covering(window, width.max(height) / CELLS, window.min),
-        }
+        Grid::of(window, cells)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::sets::{Case, cases};
 use spmesh::config::{self, FARAWAY};
-use spmesh::spline::{Basis, Scratch, area, simplex_spline};
+use spmesh::predicates::area;
+use spmesh::spline::{Basis, Scratch, simplex_spline};
 use std::collections::HashMap;
 
 /// The value of the B-spline of a set of knots, and whether x is in the support of one of its terms.

@@ -3,7 +3,8 @@
 use super::rational;
 use crate::reference::sets::Random;
 use num_traits::Zero;
-use spmesh::spline::{Approach, Jet, area, simplex_spline, simplex_spline_jet};
+use spmesh::predicates::area;
+use spmesh::spline::{Approach, Jet, simplex_spline, simplex_spline_jet};
 
 fn at(x: [f64; 2]) -> Approach {
     Approach::new(x, [0.123, 0.456])

@@ -1,17 +1,17 @@
 //! `splinefit eval`: flags.
 
-use std::io::Seek;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, say};
-use crate::cli::{Common, parse_numbers, progress::Progress};
+use crate::cli::cells::{self, CellFlags};
+use crate::cli::{Common, progress::Progress};
 use crate::error::{Error, Result};
 use crate::output::Output;
-use crate::raster::{Grid, RasterFormat, Window};
+use crate::raster::RasterFormat;
 use crate::source::{Input, SourceOptions};
-use crate::splinefit::{self, Attribute, Cells, Spline};
+use crate::splinefit::{self, Attribute, Spline};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
@@ -38,21 +38,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "format"])]
     at: Option<PathBuf>,
 
-    /// Sides of cells, which are at multiples of it [default: a thousand cells along the longer side]
-    #[arg(long, value_name = "S", allow_negative_numbers = true, conflicts_with_all = ["columns", "rows"])]
-    step: Option<f64>,
-
-    /// Number of columns
-    #[arg(long, value_name = "N", conflicts_with = "rows", value_parser = clap::value_parser!(u32).range(1..))]
-    columns: Option<u32>,
-
-    /// Number of rows
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    rows: Option<u32>,
-
-    /// What the raster covers [default: the domain]
-    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
-    bounds: Option<[f64; 4]>,
+    #[command(flatten)]
+    cells: CellFlags,
 
     /// What is evaluated
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Value)]
@@ -117,66 +104,40 @@ impl Flags {
         let (format, attribute) = (self.format(), self.kind.into());
         let mut output = self.output(format, attribute)?;
         let spline = Spline::open(&self.spline)?;
-        let grid = self.grid(&spline)?;
+        let grid = spline.grid(self.cells.cells(), self.cells.window()?)?;
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);
         let threads = self.threads.get();
         let outside = match format {
-            FormatFlag::Text => splinefit::write_table(&spline, attribute, &grid, &mut output, done),
-            FormatFlag::Tif | FormatFlag::Asc => {
-                let format =
-                    if format == FormatFlag::Tif { RasterFormat::GeoTiff } else { RasterFormat::Ascii };
+            None => splinefit::write_table(&spline, attribute, &grid, &mut output, done),
+            Some(format) => {
                 splinefit::write_raster(&spline, attribute, &grid, format, threads, &mut output, done)
             }
         }?;
         output.commit()?;
         drop(progress);
-        let Grid { columns, rows, step, .. } = grid;
-        let all = grid.cells();
-        let without = if outside > 0 { format!(", {outside} of {all} without data") } else { String::new() };
-        say(common, &format!("{columns} by {rows} cells of size {step}{without}"));
+        say(common, &cells::summary(&grid, outside));
         Ok(())
     }
 
-    fn format(&self) -> FormatFlag {
-        let ending = self.output.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        self.format.unwrap_or(match ending.as_deref() {
-            Some("tif" | "tiff") => FormatFlag::Tif,
-            Some("asc") => FormatFlag::Asc,
-            _ => FormatFlag::Text,
-        })
+    /// The format of a raster; `None` for lines.
+    fn format(&self) -> Option<RasterFormat> {
+        match self.format {
+            Some(FormatFlag::Tif) => Some(RasterFormat::GeoTiff),
+            Some(FormatFlag::Asc) => Some(RasterFormat::Ascii),
+            Some(FormatFlag::Text) => None,
+            None => cells::format_of(&self.output),
+        }
     }
 
-    /// The output: what cannot be written is better known before the work.
-    fn output(&self, format: FormatFlag, attribute: Attribute) -> Result<Output> {
-        if format != FormatFlag::Text && !attribute.is_single() {
-            return Err(Error::usage("a gradient is two numbers, and a cell has one: take --format text"));
-        }
-        let mut output = Output::create(&self.output, format == FormatFlag::Tif)?;
-        if format == FormatFlag::Tif && output.stream_position().is_err() {
-            let what = "GeoTIFF is not written in order, and a pipe takes nothing else: use -o FILE, or --format asc";
-            return Err(Error::usage(what));
-        }
-        Ok(output)
-    }
-
-    fn grid(&self, spline: &Spline) -> Result<Grid> {
-        let cells = match (self.step, self.columns, self.rows) {
-            (Some(step), ..) => Cells::Step(step),
-            (_, Some(columns), _) => Cells::Columns(columns),
-            (_, _, Some(rows)) => Cells::Rows(rows),
-            _ => Cells::Default,
-        };
-        let window = match self.bounds {
-            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Some(Window { min: [x0, y0], max: [x1, y1] }),
-            Some([x0, y0, x1, y1]) => {
-                return Err(Error::usage(format!(
-                    "bounds {x0},{y0},{x1},{y1} are empty: expected least x, least y, greatest x, greatest y"
-                )));
+    fn output(&self, format: Option<RasterFormat>, attribute: Attribute) -> Result<Output> {
+        match format {
+            Some(_) if !attribute.is_single() => {
+                Err(Error::usage("a gradient is two numbers, and a cell has one: take --format text"))
             }
-            None => None,
-        };
-        spline.grid(cells, window)
+            Some(format) => cells::create(&self.output, format),
+            None => Output::create(&self.output, false),
+        }
     }
 }
 

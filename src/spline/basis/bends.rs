@@ -6,8 +6,7 @@
 //! of its elements, almost everywhere: where it has an edge, along collinear knots, there are none.
 
 use super::Basis;
-use crate::predicates::Point2;
-use crate::spline::area::area;
+use crate::predicates::{Point2, area};
 use crate::spline::elements::{Share, hull_edges};
 use crate::spline::tent::slope;
 

@@ -1,6 +1,6 @@
 //! Areas of triangles, accurate however flat they are.
 
-use crate::predicates::Point2;
+use super::Point2;
 
 /// From this part of the sum of its two products on, a determinant in plain arithmetic is good to about 2^-47: each
 /// product and its factors are off by three roundings of 2^-53.
@@ -9,7 +9,7 @@ const TRUSTED: f64 = 1.0 / 16.0;
 /// Signed area of the triangle abc: positive if it is counterclockwise.
 ///
 /// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are zero or have
-/// magnitudes in the range of [`crate::predicates::ExpansionPredicates`].
+/// magnitudes in the range of [`super::ExpansionPredicates`].
 #[inline]
 #[must_use]
 pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
@@ -24,7 +24,7 @@ pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
 
 /// The same to two units in the last place.
 #[cold]
-pub(super) fn exact_area(a: Point2, b: Point2, c: Point2) -> f64 {
+pub(crate) fn exact_area(a: Point2, b: Point2, c: Point2) -> f64 {
     0.5 * exact_determinant(a, b, c)
 }
 

@@ -1,0 +1,202 @@
+//! `spdem`: flags, and the figures of `--stats`.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::{Parser, ValueEnum};
+use serde_json::Value;
+
+use super::cells::{self, CellFlags};
+use super::progress::Progress;
+use super::reduction::open_stream;
+use super::rows::{Row, entries, lines, seconds};
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, say};
+use crate::dem::{self, Attribute, Options, Stats};
+use crate::error::{Error, ErrorKind};
+use crate::raster::{Grid, Light, RasterFormat};
+use crate::system;
+
+const TOOL: &str = "spdem";
+
+const EXAMPLES: &str = "\
+Examples:
+  A terrain model of the ground points of many tiles, with cells of half a metre:
+    spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spdem --step 0.5 -o terrain.tif
+  Nothing where points are far apart, as on water:
+    spdem --step 1 --kill 30 ground.spm -o terrain.tif
+  How steep it is, and how it looks with the light from the north-west:
+    spdem --step 1 --kind slope ground.spm -o slope.tif
+    spdem --step 1 --kind hillshade ground.spm -o shade.tif
+  A part of it as text, for programs that read nothing else:
+    spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
+  From a mesh of another program:
+    spconvert terrain.ply --to spm | spdem --step 1 --bounds 0,0,1000,1000 -o terrain.tif
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+A cell has what the triangle has at its centre; there is no data (-9999) outside of the mesh. Triangles are drawn as they arrive, and \
+tiles of 256 by 256 cells are written when they are full, so that memory is that of tiles that are begun. Beyond --memory these wait \
+in a temporary file. ESRI grids are written from the top, when all triangles have come.
+
+Slopes are angles in degrees, aspects directions of steepest descent in degrees clockwise from north; level triangles have no \
+aspect. Elevations and coordinates are taken to be in the same unit.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
+its reader.";
+
+/// What is said where memory that is needed cannot be had.
+const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";
+
+/// Rasters of triangle meshes, in bounded memory.
+///
+/// Reads a triangle mesh stream with elevations and writes a GeoTIFF or an ESRI grid. Which triangle a cell is in is decided
+/// exactly: there are no gaps along edges, and the raster does not depend on the order of triangles.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Stream of a triangle mesh; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    input: PathBuf,
+
+    /// Where the raster goes; - is stdout, which takes no GeoTIFF if it is a pipe
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    #[command(flatten)]
+    cells: CellFlags,
+
+    /// What cells have
+    #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Elevation)]
+    kind: KindFlag,
+
+    /// Where the light of a hillshade is: clockwise from north, and above the horizon, in degrees [default: 315,45]
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    light: Option<[f64; 2]>,
+
+    /// Leave out triangles with an edge that is longer
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    kill: Option<f64>,
+
+    /// GeoTIFF or ESRI ASCII grid [default: by the name of the output, otherwise tif]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<FormatFlag>,
+
+    /// Memory for tiles; others wait in a temporary file (see --temp-dir)
+    #[arg(long, value_name = "SIZE", default_value = "256M", value_parser = parse_size)]
+    memory: u64,
+
+    /// Folder for the temporary file [default: the system's]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+
+    /// Print what the run did on stderr
+    #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
+    stats: Option<StatsFormat>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--kind` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum KindFlag {
+    Elevation,
+    Slope,
+    Aspect,
+    Hillshade,
+}
+
+/// What `--format` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FormatFlag {
+    Tif,
+    Asc,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`dem::rasterize`], and if the input or the output cannot be opened.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let started = Instant::now();
+    let (options, format) = (flags.options()?, flags.format());
+    let mut reader = open_stream(&flags.input)?;
+    let window = match flags.cells.window()? {
+        Some(window) => window,
+        None => dem::window(reader.header()).map_err(|e| e.of_input(reader.name()))?,
+    };
+    let grid = Grid::of(window, flags.cells.cells())?;
+    let mut output = cells::create(&flags.output, format)?;
+    let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
+    let done = |vertices| progress.set(vertices);
+    let stats = dem::rasterize(&mut reader, &mut output, format, &grid, &options, done)?;
+    drop(progress);
+    let output_bytes = output.bytes_written();
+    output.commit()?;
+    notice(TOOL, &flags.common, &cells::summary(&grid, stats.cells - stats.known));
+    if let Some(format) = flags.stats {
+        print(format, &stats, output_bytes, started.elapsed());
+    }
+    Ok(())
+}
+
+impl Flags {
+    fn options(&self) -> Result<Options, Error> {
+        if self.kill.is_some_and(|length| length.is_nan() || length <= 0.0) {
+            return Err(Error::usage("--kill takes a length above zero"));
+        }
+        if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
+            return Err(Error::usage("--light takes two angles in degrees"));
+        }
+        if self.light.is_some() && self.kind != KindFlag::Hillshade {
+            return Err(Error::usage("--light is for a hillshade: add --kind hillshade"));
+        }
+        let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
+        let attribute = match self.kind {
+            KindFlag::Elevation => Attribute::Elevation,
+            KindFlag::Slope => Attribute::Slope,
+            KindFlag::Aspect => Attribute::Aspect,
+            KindFlag::Hillshade => Attribute::Hillshade(Light::from(azimuth, altitude)),
+        };
+        Ok(Options { attribute, kill: self.kill, memory: self.memory, temp_dir: self.temp_dir.clone() })
+    }
+
+    fn format(&self) -> RasterFormat {
+        match self.format {
+            Some(FormatFlag::Tif) => RasterFormat::GeoTiff,
+            Some(FormatFlag::Asc) => RasterFormat::Ascii,
+            None => cells::format_of(&self.output).unwrap_or(RasterFormat::GeoTiff),
+        }
+    }
+}
+
+fn print(format: StatsFormat, stats: &Stats, output_bytes: u64, time: Duration) {
+    let times = seconds([("time (s)", "seconds", time)]);
+    let counts = counts(stats, output_bytes);
+    match format {
+        StatsFormat::Text => say(&lines(&times, counts)),
+        StatsFormat::Json => say(&format!("{}\n", Value::Object(entries(&times, counts)))),
+    }
+}
+
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 15] {
+    [
+        ("input (bytes)", "input_bytes", stats.input_bytes),
+        ("vertices", "vertices", stats.vertices),
+        ("triangles", "triangles", stats.triangles),
+        ("triangles with a long edge", "killed", stats.killed),
+        ("width (live vertices)", "width", stats.width),
+        ("cells", "cells", stats.cells),
+        ("cells with data", "known", stats.known),
+        ("tiles sent to the disk", "spilled", stats.spilled),
+        ("temporary file (bytes)", "spilled_bytes", stats.spilled_bytes),
+        ("output (bytes)", "output_bytes", output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+        ("predicates: filter", "predicates_filter", stats.predicates.filter),
+        ("predicates: integer", "predicates_integer", stats.predicates.integer),
+        ("predicates: expansion", "predicates_expansion", stats.predicates.expansion),
+        ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
+    ]
+}

@@ -1,0 +1,217 @@
+//! `spdem`: triangles in, a raster out.
+//!
+//! A cell has the value of the triangle that its centre is in; triangles are drawn as they arrive, in any order. `centers` says
+//! where centres are, `span` which of them are in a triangle, exactly; `search` is how they are found. `facet` is the plane of a
+//! triangle. `tile` has cells, `canvas` all tiles, of which some are in the temporary file of `spill`; `painter` draws, and `ending`
+//! writes what is left when all triangles have come.
+
+mod canvas;
+mod centers;
+mod ending;
+mod facet;
+mod painter;
+mod search;
+mod span;
+mod spill;
+mod tile;
+
+use std::io::{Read, Seek, Write};
+use std::path::PathBuf;
+
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::predicates::{Point2, PredicateCounts, Predicates2};
+use crate::raster::{self, Grid, Light, RasterFormat, Window};
+use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader};
+use painter::{Handover, Painter};
+
+/// What cells have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Attribute {
+    /// The elevation at the centre.
+    Elevation,
+    /// The angle of the triangle with the horizontal, in degrees.
+    Slope,
+    /// The direction of steepest descent, in degrees clockwise from north; nothing where a triangle is level.
+    Aspect,
+    /// How bright the triangle is in some light, from 0 to 255.
+    Hillshade(Light),
+}
+
+/// What is drawn, and with how much memory.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// What cells have.
+    pub attribute: Attribute,
+    /// Triangles with an edge that is longer are left out. Units: those of the world.
+    pub kill: Option<f64>,
+    /// Bytes for tiles; others wait in a temporary file.
+    pub memory: u64,
+    /// Where that file goes; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+}
+
+/// Figures of a run.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Triangles left out because of a long edge.
+    pub killed: u64,
+    /// Most vertices that were live at once.
+    pub width: u64,
+    /// Cells of the raster.
+    pub cells: u64,
+    /// Cells with a value.
+    pub known: u64,
+    /// How many times a tile went to the temporary file.
+    pub spilled: u64,
+    /// Bytes of the temporary file.
+    pub spilled_bytes: u64,
+    /// Bytes read.
+    pub input_bytes: u64,
+    /// Decisions on which side of edges centres are.
+    pub predicates: PredicateCounts,
+}
+
+/// What a mesh covers, in world coordinates.
+///
+/// # Errors
+/// Usage, if it is no mesh that can be drawn, or the header does not say it.
+pub fn window(header: &Header) -> Result<Window> {
+    check_input(header)?;
+    let Some(bounds) = header.bounds else {
+        return Err(Error::usage("the header does not say where the mesh is: give --bounds"));
+    };
+    let [min, max] = [bounds.min, bounds.max].map(|corner| facet::place(header.coordinates.to_world(corner)));
+    Ok(Window { min, max })
+}
+
+/// Writes the raster of a triangle mesh with elevations; `progress` is told how many vertices are read.
+///
+/// A centre on an edge or a vertex belongs to one triangle, as if it were moved to the right and a little up by less than any
+/// number; on the border of the mesh, to a triangle there. Which cells have a value, and which triangle they have it from, is decided
+/// exactly, and does not depend on the order of triangles; where it is a tie on the border, the least value counts.
+///
+/// Memory: `options.memory` for tiles, 24 bytes for each tile of the grid, and the vertices that are not final. Tiles are written
+/// when all their cells have a value.
+///
+/// # Errors
+/// If the input is no triangle mesh with elevations, is malformed or ends too early; if elevations do not fit 32 bits; if there are
+/// too many tiles; if writing fails.
+pub fn rasterize<R: Read, W: Write + Seek>(
+    reader: &mut StreamReader<R>,
+    output: &mut W,
+    format: RasterFormat,
+    grid: &Grid,
+    options: &Options,
+    progress: impl FnMut(u64),
+) -> Result<Stats> {
+    let header = reader.header().clone();
+    check_input(&header).map_err(|e| e.of_input(reader.name()))?;
+    let mut painter = Painter::new(*grid, &header.coordinates, options)?;
+    let (mut width, mut known) = (0, 0);
+    match format {
+        RasterFormat::Ascii => {
+            width = read(reader, &mut painter, None, progress)?;
+            known = ending::write_rows(&mut painter.canvas, output, format, grid, &header.crs)?;
+        }
+        RasterFormat::GeoTiff => raster::write_tiles(output, grid, &header.crs, |tiles| {
+            let mut write = |[column, row]: [usize; 2], values: &[f32]| {
+                known += ending::count_known(values);
+                tiles.tile(column, row, values)
+            };
+            width = read(reader, &mut painter, Some(&mut write), progress)?;
+            ending::hand_over(&mut painter.canvas, &mut write)
+        })?,
+    }
+    let totals = reader.totals();
+    Ok(Stats {
+        vertices: totals.vertices,
+        triangles: totals.simplices,
+        killed: painter.killed,
+        width,
+        cells: grid.cells(),
+        known,
+        spilled: painter.canvas.spilled,
+        spilled_bytes: painter.canvas.spill_len(),
+        input_bytes: reader.bytes_read(),
+        predicates: *painter.predicates.counts(),
+    })
+}
+
+fn check_input(header: &Header) -> Result<()> {
+    let what = match header.kind {
+        Kind::TriangleMesh if header.has_elevation => return Ok(()),
+        Kind::TriangleMesh => "vertices have no elevation: give points x y z to spfinalize".to_string(),
+        Kind::PartialTriangleMesh => {
+            "this is a partial triangle mesh: finish it with spdelaunay2d --merge".to_string()
+        }
+        Kind::Points => "these are points: triangulate them with spdelaunay2d".to_string(),
+        kind => format!("this is a stream of kind {}, expected a triangle mesh", kind.name()),
+    };
+    Err(Error::usage(what))
+}
+
+/// Draws all triangles of a stream; its width.
+fn read<R: Read>(
+    reader: &mut StreamReader<R>,
+    painter: &mut Painter,
+    mut complete: Option<&mut Handover>,
+    mut progress: impl FnMut(u64),
+) -> Result<u64> {
+    let coordinates = reader.header().coordinates;
+    let to_drawn = |stored: Point| [stored[0], stored[1], coordinates.to_world(stored)[2]];
+    let mut live = LiveVertices::new();
+    while let Some(event) = reader.next_event()? {
+        if let Event::Patch(patch) = event {
+            let drawn = draw(&patch, to_drawn, &mut live, painter, complete.as_deref_mut());
+            drawn.map_err(|error| reader.locate(error))?;
+            progress(reader.totals().vertices);
+        }
+    }
+    Ok(live.live_max() as u64)
+}
+
+/// Draws the triangles of a patch.
+fn draw(
+    patch: &Patch,
+    to_drawn: impl Fn(Point) -> Point,
+    live: &mut LiveVertices<Point>,
+    painter: &mut Painter,
+    mut complete: Option<&mut Handover>,
+) -> Result<()> {
+    let vertices = live.enter(patch, |_, stored| to_drawn(stored))?;
+    if let Some((_, [.., elevation])) = vertices.iter().find(|(_, [.., z])| z.abs() > f64::from(f32::MAX)) {
+        let what =
+            format!("elevation {elevation:e} is too great for a raster, which has 32 bits: scale elevations");
+        return Err(Error::usage(what));
+    }
+    for triangle in patch.triangles() {
+        painter.draw(triangle.map(|local| vertices[local as usize].1), complete.as_deref_mut())?;
+    }
+    Ok(())
+}
+
+impl Attribute {
+    /// What all of a plane has in common, if it does, from its gradient in world coordinates.
+    ///
+    /// # Errors
+    /// Usage, if the gradient is out of the range of numbers.
+    fn of_plane(self, gradient: Point2) -> Result<Option<f32>> {
+        let value = match self {
+            Attribute::Elevation => return Ok(None),
+            _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
+            Attribute::Slope => raster::slope(gradient),
+            Attribute::Aspect => raster::aspect(gradient),
+            Attribute::Hillshade(light) => light.shade(gradient),
+        };
+        Ok(Some(value as f32))
+    }
+}
+
+fn out_of_range() -> Error {
+    Error::usage("coordinates are too great or too small to interpolate between: shift and scale them")
+}

@@ -1,0 +1,188 @@
+//! Draws triangles.
+
+use std::ops::Range;
+
+use super::canvas::{Canvas, TilePlace};
+use super::centers::Centers;
+use super::facet::{Facet, place};
+use super::span::Span;
+use super::tile::overlap;
+use super::{Attribute, Options};
+use crate::bounds::Point;
+use crate::error::{Error, Result};
+use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use crate::raster::{Grid, TILE};
+use crate::stream::Coordinates;
+
+/// By how much, relatively, an edge may be longer than allowed: one that is meant to be as long is not, however its length is
+/// rounded.
+const LENGTH_TOLERANCE: f64 = 1e-12;
+
+/// Takes the values of tiles that are complete.
+pub(super) type Handover<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
+
+/// Draws triangles on the tiles of a grid, one by one.
+#[derive(Debug)]
+pub(super) struct Painter {
+    centers: Centers,
+    attribute: Attribute,
+    longest: f64,
+    pub(super) canvas: Canvas,
+    pub(super) predicates: TotalPredicates,
+    /// Triangles that were not drawn because of a long edge.
+    pub(super) killed: u64,
+    /// Those of the rows of a triangle in a row of tiles.
+    spans: Vec<Span>,
+}
+
+impl Painter {
+    /// Nothing drawn so far.
+    ///
+    /// # Errors
+    /// As [`Canvas::new`].
+    pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Painter> {
+        Ok(Painter {
+            centers: Centers::new(grid, coordinates),
+            attribute: options.attribute,
+            longest: options.kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)),
+            canvas: Canvas::new(grid, options.memory, options.temp_dir.as_deref())?,
+            predicates: TotalPredicates::default(),
+            killed: 0,
+            spans: Vec::with_capacity(TILE),
+        })
+    }
+
+    /// Draws a triangle: corners have stored coordinates, and elevations of the world. Tiles that become complete go to `complete`, if
+    /// there is one.
+    ///
+    /// # Errors
+    /// [`crate::error::ErrorKind::Malformed`], if it is clockwise or overlaps another one, as far as there are cells to tell; those of
+    /// `complete` and of temporary files.
+    pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut Handover>) -> Result<()> {
+        let corners = least_first(corners);
+        let places = corners.map(place);
+        if self.is_killed(places) {
+            self.killed += 1;
+            return Ok(());
+        }
+        let rows = self.centers.rows(range(places, 1));
+        let columns = if rows.is_empty() { 0..0 } else { self.centers.columns(range(places, 0)) };
+        if columns.is_empty() || !is_counterclockwise(places, &mut self.predicates)? {
+            return Ok(());
+        }
+        let facet = Facet::of(corners);
+        let mut from = rows.start;
+        while from < rows.end {
+            let band = from as usize / TILE;
+            let end = rows.end.min(((band + 1) * TILE) as u32);
+            self.draw_band(&facet, places, columns.clone(), from..end, &mut complete)?;
+            from = end;
+        }
+        Ok(())
+    }
+
+    /// Draws what of a triangle is in rows of one row of tiles.
+    fn draw_band(
+        &mut self,
+        facet: &Facet,
+        places: [Point2; 3],
+        columns: Range<u32>,
+        rows: Range<u32>,
+        complete: &mut Option<&mut Handover>,
+    ) -> Result<()> {
+        let mut spans = std::mem::take(&mut self.spans);
+        spans.clear();
+        spans.extend(rows.clone().map(|row| {
+            let y = self.centers.y(row);
+            Span::of(places, columns.clone(), y, &self.centers, &mut self.predicates)
+        }));
+        let filled = || spans.iter().map(|span| &span.cells).filter(|cells| !cells.is_empty());
+        let ends = filled().map(|cells| cells.start).min().zip(filled().map(|cells| cells.end).max());
+        let tiles = ends.map_or(0..0, |(start, end)| start as usize / TILE..(end as usize).div_ceil(TILE));
+        let band = rows.start as usize / TILE;
+        for column in tiles {
+            self.draw_tile(facet, [column, band], rows.start, &spans)?;
+            if let Some(complete) = complete.as_deref_mut()
+                && let Some(tile) = self.canvas.take_complete([column, band])
+            {
+                complete([column, band], &tile.values)?;
+                self.canvas.give_back(tile);
+            }
+        }
+        self.spans = spans;
+        Ok(())
+    }
+
+    /// Draws what of spans, from a row on, is in a tile.
+    fn draw_tile(&mut self, facet: &Facet, at: TilePlace, first_row: u32, spans: &[Span]) -> Result<()> {
+        let [left, top] = at.map(|place| (place * TILE) as u32);
+        let within = |cells: &Range<u32>| cells.start.max(left)..cells.end.min(left + TILE as u32);
+        if spans.iter().all(|span| within(&span.cells).is_empty()) {
+            return Ok(());
+        }
+        let flat = self.attribute.of_plane(self.centers.gradient_to_world(facet.gradient))?;
+        let Some(tile) = self.canvas.tile(at)? else {
+            // All of its cells belong to other triangles, on whose borders those of this one must be.
+            let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
+            return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
+        };
+        for (row, span) in (first_row..).zip(spans) {
+            let y = self.centers.y(row);
+            let start = (row - top) as usize * TILE;
+            for column in within(&span.cells) {
+                let value = match flat {
+                    Some(value) => value,
+                    None => number(facet.elevation([self.centers.x(column), y]))?,
+                };
+                let cell = start + (column - left) as usize;
+                if column < span.owned_end {
+                    tile.own(cell, value)?;
+                } else {
+                    tile.touch(cell, value);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_killed(&self, [a, b, c]: [Point2; 3]) -> bool {
+        let is_long = |p, q| self.centers.length(p, q) > self.longest;
+        self.longest.is_finite() && (is_long(a, b) || is_long(b, c) || is_long(c, a))
+    }
+}
+
+/// The same triangle, with the corner first that is least in x, then y: values do not depend on which corner a stream has first.
+fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
+    let is_less = |p: Point, q: Point| place(p) < place(q);
+    if is_less(a, b) && is_less(a, c) {
+        [a, b, c]
+    } else if is_less(b, c) {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Least and greatest coordinate of an axis.
+fn range([a, b, c]: [Point2; 3], axis: usize) -> [f64; 2] {
+    [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]
+}
+
+/// Whether corners are counterclockwise; false, if they are on one line, where no cell is in the triangle alone.
+fn is_counterclockwise([a, b, c]: [Point2; 3], predicates: &mut impl Predicates2) -> Result<bool> {
+    match predicates.orient2d(a, b, c) {
+        Sign::Positive => Ok(true),
+        Sign::Zero => Ok(false),
+        Sign::Negative => Err(Error::malformed(format!(
+            "the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is clockwise"
+        ))),
+    }
+}
+
+/// A number of 32 bits.
+///
+/// # Errors
+/// Usage, if it is none.
+fn number(value: f64) -> Result<f32> {
+    if value.is_nan() { Err(super::out_of_range()) } else { Ok(value as f32) }
+}

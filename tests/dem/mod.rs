@@ -1,0 +1,82 @@
+//! `spdem`: rasters against what exact arithmetic says of each cell, and what goes wrong.
+
+mod drawing;
+mod failures;
+mod pipelines;
+mod tiles;
+
+use std::io::Cursor;
+
+use spmesh::bounds::Bounds;
+use spmesh::dem::{Attribute, Options, Stats, rasterize};
+use spmesh::error::Result;
+use spmesh::raster::{Grid, RasterFormat};
+use spmesh::stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
+
+use crate::reference::incremental;
+use crate::reference::sets::Random;
+
+/// A triangle mesh with stored coordinates.
+#[derive(Clone)]
+struct Mesh {
+    points: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// The Delaunay triangulation of integer points, with random elevations from 0 to 999.
+    fn of(random: &mut Random, points: &[[i64; 2]]) -> Mesh {
+        let triangles = incremental::triangles(points);
+        let point = |&[x, y]: &[i64; 2]| [x as f64, y as f64, random.integer(0, 999) as f64];
+        Mesh { points: points.iter().map(point).collect(), triangles }
+    }
+
+    /// The same with triangles in random order, each starting with any of its corners.
+    fn shuffled(&self, random: &mut Random) -> Mesh {
+        let mut mesh = self.clone();
+        random.shuffle(&mut mesh.triangles);
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.rotate_left(random.integer(0, 2) as usize));
+        mesh
+    }
+
+    fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
+        let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
+        header.bounds = Bounds::of_points(&self.points);
+        let (mut output, at) = (Vec::new(), |vertex: u32| self.points[vertex as usize]);
+        write_triangles(header, &self.triangles, self.points.len(), 0, at, &mut output).unwrap();
+        output
+    }
+}
+
+fn options(attribute: Attribute) -> Options {
+    Options { attribute, kill: None, memory: 1 << 30, temp_dir: None }
+}
+
+/// A raster as a file.
+fn file(stream: &[u8], format: RasterFormat, grid: &Grid, options: &Options) -> Result<(Vec<u8>, Stats)> {
+    let mut reader = StreamReader::new(stream, "mesh")?;
+    let mut output = Cursor::new(Vec::new());
+    let stats = rasterize(&mut reader, &mut output, format, grid, options, |_| {})?;
+    Ok((output.into_inner(), stats))
+}
+
+/// The values of an ESRI grid, row by row; NaN where there are none.
+fn values(text: &[u8]) -> Vec<f32> {
+    let text = std::str::from_utf8(text).unwrap();
+    let numbers = text.lines().skip(6).flat_map(|line| line.split(' ')).map(|word| word.parse().unwrap());
+    numbers.map(|value| if value == -9999.0 { f32::NAN } else { value }).collect()
+}
+
+/// The values of a raster; NaN where there are none.
+fn raster(stream: &[u8], grid: &Grid, options: &Options) -> Vec<f32> {
+    let (text, stats) = file(stream, RasterFormat::Ascii, grid, options).unwrap();
+    let values = values(&text);
+    assert_eq!(stats.cells, values.len() as u64);
+    assert_eq!(stats.known, values.iter().filter(|value| !value.is_nan()).count() as u64);
+    values
+}
+
+/// Whether values are the same to the last bit, those that are none included.
+fn is_same(a: &[f32], b: &[f32]) -> bool {
+    a.iter().map(|value| value.to_bits()).eq(b.iter().map(|value| value.to_bits()))
+}
