@@ -1,8 +1,9 @@
 //! A run on several threads: one reads, several triangulate, one writes, and the calling one says who does what.
 //!
 //! No channel that anyone waits for has a limit of its own, but that of the arrivals: so many points are under way at
-//! most, from the moment in which their node can be triangulated to that in which it is written. What is under way
-//! needs nothing that still has to arrive, so it always comes to an end, and no thread waits for one that waits for it.
+//! most, from the moment in which their node can be triangulated to that in which it is written, or at once passes them
+//! up. What is under way needs nothing that still has to arrive, so it always comes to an end, and no thread waits for one
+//! that waits for it.
 
 use std::io::{Read, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
