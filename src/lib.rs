@@ -37,4 +37,5 @@ pub mod spline;
 pub mod splinefit;
 pub mod stream;
 pub mod system;
+mod temporary;
 pub mod tess3;

@@ -2,7 +2,9 @@
 
 use std::io::Cursor;
 
-use spmesh::raster::{Grid, RasterFormat, TILE, write_rows, write_tiles};
+use spmesh::raster::{
+    Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, TILE, write_rows, write_tiles,
+};
 use spmesh::stream::Crs;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
@@ -33,9 +35,14 @@ fn stored(column: u32, row: u32) -> f32 {
 }
 
 fn file(grid: &Grid, format: RasterFormat) -> Vec<u8> {
+    let options = RasterOptions { format, ..RasterOptions::default() };
     let mut output = Cursor::new(Vec::new());
-    write_rows(&mut output, format, grid, &Crs::Unknown, row).unwrap();
+    write_rows(&mut output, &of(grid, &options), row).unwrap();
     output.into_inner()
+}
+
+fn of<'a>(grid: &Grid, options: &'a RasterOptions) -> RasterFile<'a> {
+    RasterFile { options, grid: *grid, crs: &Crs::Unknown, reduction: Reduction::Mean, is_staged: false }
 }
 
 fn decoded(bytes: &[u8]) -> (Decoder<Cursor<&[u8]>>, Vec<f32>) {
@@ -71,7 +78,7 @@ fn smooth_values_become_short() {
         values.iter_mut().enumerate().for_each(|(column, cell)| *cell = height(column) as f32);
         Ok(())
     };
-    write_rows(&mut output, RasterFormat::GeoTiff, &GRID, &Crs::Unknown, smooth).unwrap();
+    write_rows(&mut output, &of(&GRID, &RasterOptions::default()), smooth).unwrap();
     let ratio = output.get_ref().len() as f64 / (4.0 * GRID.cells() as f64);
     assert!(ratio < 0.7, "{ratio}");
 }
@@ -79,7 +86,7 @@ fn smooth_values_become_short() {
 #[test]
 fn tiles_come_in_any_order_or_not_at_all() {
     let mut output = Cursor::new(Vec::new());
-    write_tiles(&mut output, &GRID, &Crs::Unknown, |tiles| {
+    write_tiles(&mut output, &of(&GRID, &RasterOptions::default()), |tiles| {
         for (column, row) in [(2, 1), (0, 0), (1, 0)] {
             tiles.tile(column, row, &vec![(10 * row + column) as f32; TILE * TILE])?;
         }
@@ -124,7 +131,109 @@ fn failures_stop_the_file() {
     };
     for format in [RasterFormat::Ascii, RasterFormat::GeoTiff] {
         let mut output = Cursor::new(Vec::new());
-        let error = write_rows(&mut output, format, &GRID, &Crs::Unknown, failing).unwrap_err();
+        let options = RasterOptions { format, ..RasterOptions::default() };
+        let error = write_rows(&mut output, &of(&GRID, &options), failing).unwrap_err();
         assert!(error.to_string().contains("no more"), "{error}");
     }
+}
+
+/// An image of a file: the numbers of its columns and rows, and its values.
+type Image = ([u32; 2], Vec<f32>);
+
+/// All images of a file, in order, and where the first byte of the data of each is.
+fn images(bytes: &[u8]) -> (Vec<Image>, Vec<u64>) {
+    let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap().with_limits(Limits::unlimited());
+    let (mut images, mut starts) = (Vec::new(), Vec::new());
+    loop {
+        let (columns, rows) = decoder.dimensions().unwrap();
+        let DecodingResult::F32(values) = decoder.read_image().unwrap() else { panic!("32-bit numbers") };
+        images.push(([columns, rows], values));
+        starts.push(decoder.get_tag_u64_vec(Tag::TileOffsets).unwrap()[0]);
+        if !decoder.more_images() {
+            return (images, starts);
+        }
+        decoder.next_image().unwrap();
+        assert_eq!(decoder.get_tag_u32(Tag::NewSubfileType).unwrap(), 1);
+    }
+}
+
+/// An image with half as many cells along each axis: the means of four cells, or the first one of these.
+fn halved(([columns, rows], values): &Image, reduction: Reduction) -> Image {
+    let size = [columns.div_ceil(2), rows.div_ceil(2)];
+    let cell = |x: u32, y: u32| {
+        let inside = x < *columns && y < *rows;
+        let value = inside.then(|| values[(y * columns + x) as usize]);
+        value.filter(|&value| value != -9999.0)
+    };
+    let reduced = |[x, y]: [u32; 2]| {
+        let four = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| cell(2 * x + i, 2 * y + j));
+        let known: Vec<f64> = four.iter().flatten().map(|&value| f64::from(value)).collect();
+        match reduction {
+            _ if known.is_empty() => -9999.0,
+            Reduction::First => known[0] as f32,
+            Reduction::Mean => (known.iter().sum::<f64>() / known.len() as f64) as f32,
+        }
+    };
+    let cells = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| [x, y]));
+    (size, cells.map(reduced).collect())
+}
+
+#[test]
+fn overviews_are_halves_and_stand_before_the_image() {
+    let options = RasterOptions { has_overviews: true, ..RasterOptions::default() };
+    for [columns, rows] in [[700, 300], [1, 1], [1025, 513], [3, 600]] {
+        for reduction in [Reduction::Mean, Reduction::First] {
+            let grid = Grid { columns, rows, ..GRID };
+            let mut output = Cursor::new(Vec::new());
+            let smooth = |number: u32, values: &mut [f32]| {
+                row(number, values)?;
+                // A hole that is larger than a cell of the first overviews.
+                let hole = values.len() / 3..values.len() / 2;
+                values[hole].iter_mut().filter(|_| number > 8).for_each(|value| *value = f32::NAN);
+                Ok(())
+            };
+            write_rows(&mut output, &RasterFile { reduction, ..of(&grid, &options) }, smooth).unwrap();
+            let (images, starts) = images(output.get_ref());
+            for (image, half) in images.iter().zip(&images[1..]) {
+                assert!(*half == halved(image, reduction), "{:?} of {:?}", half.0, image.0);
+            }
+            assert!(images.last().unwrap().0.iter().all(|&count| count as usize <= TILE));
+            assert!(starts.windows(2).all(|pair| pair[0] > pair[1]), "the least image has its data first");
+        }
+    }
+}
+
+#[test]
+fn staged_files_have_the_same_cells_in_rows() {
+    let options = RasterOptions { no_data: NoData(7.0), ..RasterOptions::default() };
+    let staged = RasterFile { is_staged: true, ..of(&GRID, &options) };
+    let mut output = Cursor::new(Vec::new());
+    write_tiles(&mut output, &staged, |tiles| {
+        let mut values = vec![0.0; TILE * TILE];
+        for (column, row) in [(2, 1), (0, 0), (1, 0)] {
+            // The number for cells without data is kept apart from such as have it by chance.
+            tiles.tile(column, row, &vec![7.0; TILE * TILE])?;
+            assert!(tiles.read(column, row, &mut values)?);
+            assert!(values.iter().all(|value| (*value - 7.0).abs() < 1e-5), "{column} {row}");
+        }
+        assert!(!tiles.read(1, 1, &mut values)?);
+        Ok(())
+    })
+    .unwrap();
+    let mut decoder = Decoder::new(Cursor::new(&output.get_ref()[..])).unwrap();
+    let offsets = decoder.get_tag_u64_vec(Tag::TileOffsets).unwrap();
+    let written: Vec<u64> = offsets.iter().copied().filter(|&offset| offset > 0).collect();
+    assert_eq!(written.len(), 3);
+    assert!(written.is_sorted() && offsets[2] == 0);
+    assert_eq!(decoder.get_tag_ascii_string(Tag::Unknown(42113)).unwrap(), "7");
+}
+
+#[test]
+fn grids_are_read_from_files() {
+    let folder = crate::programs::Folder::new();
+    let path = folder.write("a.tif", file(&GRID, RasterFormat::GeoTiff));
+    assert_eq!(Grid::of_file(path.as_ref()).unwrap(), GRID);
+    let text = folder.write("a.asc", file(&GRID, RasterFormat::Ascii));
+    let message = Grid::of_file(text.as_ref()).unwrap_err().to_string();
+    assert!(message.contains("a.asc") && message.contains("this is no TIFF"), "{message}");
 }

@@ -5,11 +5,14 @@ import sys
 from collections import defaultdict
 from dataclasses import dataclass, field
 
+import rasters
 import structures
 from inputs import count_of, program
 from measure import Contestant, compete
 
 OURS = "spmesh"
+# Elevation models: their peers are other programs than those that triangulate.
+DEM = "dem"
 # Looking at a clock takes time, so this is not what is compared.
 IN_PARTS = "spmesh, parts timed"
 DECODER = "decode LAZ once (laz crate, 2 threads)"
@@ -36,9 +39,9 @@ COORDINATE_BYTES = 8
 
 def dims_of(name):
     """Of the points of a set, by its name; 0 if it has no peers."""
-    if name == SWEEP:
-        return 0
     kind = name.split("-")[0]
+    if name == SWEEP or kind == DEM:
+        return 0
     return 3 if name == STRUCTURES else int(kind[-1]) if kind[-1] in "34" else 2
 
 
@@ -55,7 +58,7 @@ class Contest:
 
     @property
     def is_pipe(self):
-        return self.name.startswith("pipe")
+        return self.name.startswith(("pipe", DEM))
 
     @property
     def element(self):
@@ -74,7 +77,7 @@ class Contest:
         """Peers with figures, the fastest first; in 3D those on one thread, as ours is."""
         names = {OURS, IN_PARTS, DECODER, FROM_LAZ, ALONE.format(1), ALONE.format(2)}
         ran = [c for c in self.contestants if c.name not in names and c.runs and self.seconds(c)]
-        return sorted((c for c in ran if self.dims == 2 or "threads" not in c.name), key=self.seconds)
+        return sorted((c for c in ran if self.dims in (0, 2) or "threads" not in c.name), key=self.seconds)
 
     def speed(self, contestant, other):
         """How many times as fast as another a contestant is: median over the rounds, as a machine's pace drifts."""
@@ -105,7 +108,9 @@ class Contests:
 
     def run(self, name):
         kind, size = name.split("-")
-        if dims_of(name) == 3:
+        if kind == DEM:
+            contest = self.dem(name)
+        elif dims_of(name) == 3:
             contest = self.kernel3(name, self.inputs.file(f"{name}.f64"))
         elif dims_of(name) == 4:
             contest = self.kernel4(name, self.inputs.file(f"{name}.f64"))
@@ -186,6 +191,10 @@ class Contests:
             alone = [[*self.delaunay(), "--threads", threads, stream]]
             contestants.append(Contestant(ALONE.format(threads), alone, self.mesh))
         return Contest(name, count_of(size), contestants, self.absent(2))
+
+    def dem(self, name):
+        points, contestants, absent = rasters.contestants(self.inputs, name, self.flags.dir)
+        return Contest(name, points, contestants, absent, dims=0)
 
     def contestant(self, peer, points):
         output = f"{self.triangles}.ply" if peer.whole_only else self.triangles

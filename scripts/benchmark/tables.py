@@ -103,11 +103,12 @@ def contest(contest):
 def conclusions(contest):
     """Ratios, in words."""
     ours, peers = contest.get(OURS), contest.peers()
-    if ours and peers:
-        best = peers[0]
+    # Of elevation models, which have two peers, both are named.
+    for best in peers[: 1 if contest.dims else None] if ours else []:
         times = contest.seconds(best) / contest.seconds(ours)
         memory = 100 * sum(ours.peaks) / sum(best.peaks)
-        yield f"{times:.2f} times as fast as {best.name}, the fastest peer, with {memory:.1f} % of its peak memory"
+        which = f"{best.name}, the fastest peer," if contest.dims else best.name
+        yield f"{times:.2f} times as fast as {which} with {memory:.1f} % of its peak memory"
     cgal = contest.get(CGAL)
     if contest.dims >= 3 and ours and cgal:
         times, memory = contest.speed(ours, cgal), sum(ours.peaks) / contest.points

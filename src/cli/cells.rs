@@ -1,14 +1,13 @@
 //! What programs that write rasters have in common: flags that say which cells there are, formats, outputs.
 
-use std::io::Seek;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::parse_numbers;
 use crate::error::{Error, Result};
 use crate::output::Output;
-use crate::raster::{Cells, Grid, RasterFormat, Window};
+use crate::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
 
 /// Which cells a raster has.
 #[derive(Debug, Clone, Args)]
@@ -16,6 +15,14 @@ pub(super) struct CellFlags {
     /// Sides of cells, which are at multiples of it [default: a thousand cells along the longer side]
     #[arg(long, value_name = "S", allow_negative_numbers = true, conflicts_with_all = ["columns", "rows"])]
     step: Option<f64>,
+
+    /// A corner of cells, instead of 0,0: they are at multiples of the step from there
+    #[arg(long, value_name = "X,Y", value_parser = parse_numbers::<2>, allow_hyphen_values = true, requires = "step")]
+    align: Option<[f64; 2]>,
+
+    /// The cells of a GeoTIFF, so that both fit cell by cell
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["step", "columns", "rows", "bounds"])]
+    like: Option<PathBuf>,
 
     /// Number of columns
     #[arg(long, value_name = "N", conflicts_with = "rows", value_parser = clap::value_parser!(u32).range(1..))]
@@ -31,10 +38,19 @@ pub(super) struct CellFlags {
 }
 
 impl CellFlags {
+    /// The cells of what is covered if nothing is said: `window` is asked for it only then.
+    pub(super) fn grid(&self, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {
+        match (&self.like, self.window()?) {
+            (Some(like), _) => Grid::of_file(like),
+            (None, Some(given)) => Grid::of(given, self.cells()),
+            (None, None) => Grid::of(window()?, self.cells()),
+        }
+    }
+
     /// How large cells are.
-    pub(super) fn cells(&self) -> Cells {
+    fn cells(&self) -> Cells {
         match (self.step, self.columns, self.rows) {
-            (Some(step), ..) => Cells::Step(step),
+            (Some(step), ..) => Cells::Step { step, anchor: self.align.unwrap_or([0.0; 2]) },
             (_, Some(columns), _) => Cells::Columns(columns),
             (_, _, Some(rows)) => Cells::Rows(rows),
             _ => Cells::Default,
@@ -42,7 +58,7 @@ impl CellFlags {
     }
 
     /// What the raster covers, if that is said.
-    pub(super) fn window(&self) -> Result<Option<Window>> {
+    fn window(&self) -> Result<Option<Window>> {
         match self.bounds {
             Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Some(Window { min: [x0, y0], max: [x1, y1] })),
             Some([x0, y0, x1, y1]) => Err(Error::usage(format!(
@@ -50,6 +66,53 @@ impl CellFlags {
             ))),
             None => Ok(None),
         }
+    }
+}
+
+/// How a raster is written, but for its format.
+#[derive(Debug, Clone, Args)]
+pub(super) struct RasterFlags {
+    /// What cells have where nothing is known: a number, or nan [default: -9999]
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    no_data: Option<f32>,
+
+    /// Cloud-optimised GeoTIFF: with overviews, which stand before the image
+    #[arg(long)]
+    cog: bool,
+
+    /// Folder for temporary files [default: the system's]
+    #[arg(long, value_name = "FOLDER")]
+    temp_dir: Option<PathBuf>,
+}
+
+impl RasterFlags {
+    /// Options for a format.
+    ///
+    /// # Errors
+    /// Usage, if a flag is for another format.
+    pub(super) fn options(&self, format: RasterFormat) -> Result<RasterOptions> {
+        if self.cog && format != RasterFormat::GeoTiff {
+            return Err(Error::usage("--cog is for GeoTIFF: take an output that ends in .tif"));
+        }
+        if self.no_data.is_some_and(f32::is_infinite) {
+            return Err(Error::usage("--no-data takes a finite number of 32 bits, or nan"));
+        }
+        let RasterFlags { no_data, cog, temp_dir } = self.clone();
+        let no_data = no_data.map(NoData).unwrap_or_default();
+        Ok(RasterOptions { format, no_data, has_overviews: cog, temp_dir })
+    }
+
+    /// That nothing is said about a raster where there is none.
+    ///
+    /// # Errors
+    /// Usage, if something is.
+    pub(super) fn check_unused(&self) -> Result<()> {
+        if self.cog || self.no_data.is_some() {
+            return Err(Error::usage(
+                "--cog and --no-data are for rasters: take an output that ends in .tif or .asc",
+            ));
+        }
+        Ok(())
     }
 }
 
@@ -65,14 +128,7 @@ pub(super) fn format_of(path: &Path) -> Option<RasterFormat> {
 
 /// An output for a raster: what cannot be written is better known before the work.
 pub(super) fn create(path: &Path, format: RasterFormat) -> Result<Output> {
-    let is_tiff = format == RasterFormat::GeoTiff;
-    let mut output = Output::create(path, is_tiff)?;
-    if is_tiff && output.stream_position().is_err() {
-        let what =
-            "GeoTIFF is not written in order, and a pipe takes nothing else: use -o FILE, or --format asc";
-        return Err(Error::usage(what));
-    }
-    Ok(output)
+    Output::create(path, format == RasterFormat::GeoTiff)
 }
 
 /// What was written, for a notice.

@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 use clap::{Parser, ValueEnum};
 use serde_json::Value;
 
-use super::cells::{self, CellFlags};
+use super::cells::{self, CellFlags, RasterFlags};
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{Row, entries, lines, seconds};
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, say};
 use crate::dem::{self, Attribute, Options, Stats};
 use crate::error::{Error, ErrorKind};
-use crate::raster::{Grid, Light, RasterFormat};
+use crate::raster::{Light, RasterFormat};
 use crate::system;
 
 const TOOL: &str = "spdem";
@@ -27,6 +27,8 @@ Examples:
   How steep it is, and how it looks with the light from the north-west:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
+  For the web: overviews, and gaps of up to 20 cells filled:
+    spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
   A part of it as text, for programs that read nothing else:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
   From a mesh of another program:
@@ -59,7 +61,7 @@ pub struct Flags {
     #[arg(value_name = "STREAM", default_value = "-")]
     input: PathBuf,
 
-    /// Where the raster goes; - is stdout, which takes no GeoTIFF if it is a pipe
+    /// Where the raster goes; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
@@ -78,6 +80,10 @@ pub struct Flags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     kill: Option<f64>,
 
+    /// Fill cells without data from data in eight directions, at most so many cells away
+    #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
+    fill: Option<u32>,
+
     /// GeoTIFF or ESRI ASCII grid [default: by the name of the output, otherwise tif]
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
@@ -86,9 +92,8 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", default_value = "256M", value_parser = parse_size)]
     memory: u64,
 
-    /// Folder for the temporary file [default: the system's]
-    #[arg(long, value_name = "FOLDER")]
-    temp_dir: Option<PathBuf>,
+    #[command(flatten)]
+    raster: RasterFlags,
 
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
@@ -121,17 +126,13 @@ enum FormatFlag {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let started = Instant::now();
-    let (options, format) = (flags.options()?, flags.format());
+    let options = flags.options()?;
     let mut reader = open_stream(&flags.input)?;
-    let window = match flags.cells.window()? {
-        Some(window) => window,
-        None => dem::window(reader.header()).map_err(|e| e.of_input(reader.name()))?,
-    };
-    let grid = Grid::of(window, flags.cells.cells())?;
-    let mut output = cells::create(&flags.output, format)?;
+    let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
+    let mut output = cells::create(&flags.output, options.raster.format)?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
-    let stats = dem::rasterize(&mut reader, &mut output, format, &grid, &options, done)?;
+    let stats = dem::rasterize(&mut reader, &mut output, &grid, &options, done)?;
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
@@ -160,7 +161,8 @@ impl Flags {
             KindFlag::Aspect => Attribute::Aspect,
             KindFlag::Hillshade => Attribute::Hillshade(Light::from(azimuth, altitude)),
         };
-        Ok(Options { attribute, kill: self.kill, memory: self.memory, temp_dir: self.temp_dir.clone() })
+        let raster = self.raster.options(self.format())?;
+        Ok(Options { attribute, kill: self.kill, fill: self.fill, memory: self.memory, raster })
     }
 
     fn format(&self) -> RasterFormat {
@@ -181,7 +183,7 @@ fn print(format: StatsFormat, stats: &Stats, output_bytes: u64, time: Duration) 
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 15] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 16] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
@@ -190,6 +192,7 @@ fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 15] {
         ("width (live vertices)", "width", stats.width),
         ("cells", "cells", stats.cells),
         ("cells with data", "known", stats.known),
+        ("cells that were filled", "filled", stats.filled),
         ("tiles sent to the disk", "spilled", stats.spilled),
         ("temporary file (bytes)", "spilled_bytes", stats.spilled_bytes),
         ("output (bytes)", "output_bytes", output_bytes),

@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
-use super::spill::Spill;
 use super::tile::Tile;
 use crate::error::{Error, Result};
 use crate::limits::RASTER_TILES_MAX;
 use crate::raster::{Grid, TILE};
+use crate::temporary::Records;
+
+/// What is being done when reading the temporary file fails.
+const READING: &str = "reading tiles back";
 
 /// Column and row of a tile.
 pub(super) type TilePlace = [usize; 2];
@@ -45,7 +48,7 @@ pub(super) struct Canvas {
     held_max: usize,
     /// Grows with each tile that is asked for.
     clock: u64,
-    spill: Spill,
+    spill: Records,
     /// How many times a tile went to the temporary file.
     pub(super) spilled: u64,
     /// A tile that can be used again.
@@ -74,7 +77,7 @@ impl Canvas {
             held: Vec::new(),
             held_max: usize::try_from(memory / Tile::LEN).unwrap_or(usize::MAX).max(1),
             clock: 0,
-            spill: Spill::new(temp_dir),
+            spill: Records::new(temp_dir, Tile::LEN),
             spilled: 0,
             spare: None,
         })
@@ -112,7 +115,8 @@ impl Canvas {
     pub(super) fn take_complete(&mut self, at: TilePlace) -> Option<Tile> {
         let number = self.number(at);
         let State::Held(place) = self.states[number] else { return None };
-        let is_complete = self.held[place as usize].tile.owned_count() == self.cells(at);
+        let is_complete =
+            self.held[place as usize].tile.owned_count() == self.inside(at).iter().product::<usize>() as u32;
         is_complete.then(|| {
             self.states[number] = State::Complete;
             self.let_go(place as usize)
@@ -124,15 +128,22 @@ impl Canvas {
         self.spare = Some(tile);
     }
 
-    /// Reads a tile, which stays what it is; false if it is blank, or was handed on.
+    /// Whether a tile was complete and handed on.
+    pub(super) fn is_handed_on(&self, at: TilePlace) -> bool {
+        self.states[self.number(at)] == State::Complete
+    }
+
+    /// Reads the values of a tile, which stays what it is; false if it is blank, or was handed on.
     ///
     /// # Errors
     /// If the temporary file fails.
-    pub(super) fn read(&mut self, at: TilePlace, tile: &mut Tile) -> Result<bool> {
+    pub(super) fn read(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         match self.states[self.number(at)] {
             State::Blank | State::Complete => return Ok(false),
-            State::Held(place) => tile.clone_from(&self.held[place as usize].tile),
-            State::Spilled(record) => self.spill.read(record, tile)?,
+            State::Held(place) => values.copy_from_slice(&self.held[place as usize].tile.values),
+            State::Spilled(record) => {
+                self.spill.read(READING, record, 0, bytemuck::cast_slice_mut(values))?;
+            }
         }
         Ok(true)
     }
@@ -141,13 +152,10 @@ impl Canvas {
         row * self.across + column
     }
 
-    /// Number of cells of a tile that are cells of the grid.
-    fn cells(&self, at: TilePlace) -> u32 {
-        let [columns, rows] = [self.grid.columns, self.grid.rows];
-        [(columns, at[0]), (rows, at[1])]
-            .map(|(count, at)| (count - (at * TILE) as u32).min(TILE as u32))
-            .iter()
-            .product()
+    /// Number of columns and rows of a tile that are in the grid.
+    pub(super) fn inside(&self, at: TilePlace) -> [usize; 2] {
+        [(self.grid.columns, at[0]), (self.grid.rows, at[1])]
+            .map(|(count, at)| (count as usize - at * TILE).min(TILE))
     }
 
     /// Puts a tile into memory; its place there.
@@ -158,7 +166,7 @@ impl Canvas {
         let mut tile = self.spare.take().unwrap_or_else(Tile::new);
         match record {
             Some(record) => {
-                self.spill.read(record, &mut tile)?;
+                read(&mut self.spill, record, &mut tile)?;
                 self.spill.forget(record);
             }
             None => tile.clear(),
@@ -173,7 +181,7 @@ impl Canvas {
         let oldest = (0..self.held.len()).min_by_key(|&place| self.held[place].used);
         let Some(place) = oldest else { return Ok(()) };
         let number = self.held[place].number;
-        self.states[number] = State::Spilled(self.spill.put(&self.held[place].tile)?);
+        self.states[number] = State::Spilled(write(&mut self.spill, &self.held[place].tile)?);
         self.spilled += 1;
         self.spare = Some(self.let_go(place));
         Ok(())
@@ -187,4 +195,21 @@ impl Canvas {
         }
         tile
     }
+}
+
+/// Keeps a tile in the temporary file; the number of its record.
+fn write(spill: &mut Records, tile: &Tile) -> Result<u32> {
+    let (record, [values, owned]) = (spill.add(), tile.bytes());
+    let what = "writing tiles that exceed --memory";
+    spill.write(what, record, 0, values)?;
+    spill.write(what, record, Tile::VALUES_LEN, owned)?;
+    Ok(record)
+}
+
+/// Reads a tile that was kept.
+fn read(spill: &mut Records, record: u32, tile: &mut Tile) -> Result<()> {
+    tile.fill(|[values, owned]| {
+        spill.read(READING, record, 0, values)?;
+        spill.read(READING, record, Tile::VALUES_LEN, owned)
+    })
 }

@@ -1,71 +1,101 @@
-//! What is written when all triangles are drawn.
+//! What tiles have when all triangles are drawn.
 
-use std::io::{Seek, Write};
-
-use super::canvas::Canvas;
-use super::painter::Handover;
-use super::tile::Tile;
+use super::canvas::{Canvas, TilePlace};
+use super::fill::Filler;
 use crate::error::Result;
-use crate::raster::{self, Grid, RasterFormat, TILE};
-use crate::stream::Crs;
+use crate::raster::TILE;
 
 /// Number of cells with a value.
 pub(super) fn count_known(values: &[f32]) -> u64 {
     values.iter().filter(|value| !value.is_nan()).count() as u64
 }
 
-/// Hands over all tiles that are not complete, but for blank ones.
-///
-/// # Errors
-/// Those of `take`; if the temporary file fails.
-pub(super) fn hand_over(canvas: &mut Canvas, take: &mut Handover) -> Result<()> {
-    let [across, down] = canvas.tiles();
-    let mut tile = Tile::new();
-    for at in (0..down).flat_map(|row| (0..across).map(move |column| [column, row])) {
-        if canvas.read(at, &mut tile)? {
-            take(at, &tile.values)?;
-        }
-    }
-    Ok(())
+/// Reads the values of a tile; false, if nothing is known of it.
+pub(super) type ReadTile<'a> = dyn FnMut(TilePlace, &mut [f32]) -> Result<bool> + 'a;
+
+/// Tiles after the last triangle.
+pub(super) struct Ending<'a> {
+    canvas: &'a mut Canvas,
+    filler: Option<Filler>,
+    /// Number of cells that were filled.
+    pub(super) filled: u64,
 }
 
-/// Writes all tiles row by row; the number of cells with a value.
-///
-/// Memory: one row of tiles.
-///
-/// # Errors
-/// If writing or the temporary file fails.
-pub(super) fn write_rows<W: Write + Seek>(
-    canvas: &mut Canvas,
-    output: &mut W,
-    format: RasterFormat,
-    grid: &Grid,
-    crs: &Crs,
-) -> Result<u64> {
-    let width = canvas.tiles()[0] * TILE;
-    let (mut band, mut tile, mut known) = (vec![f32::NAN; width * TILE], Tile::new(), 0);
-    raster::write_rows(output, format, grid, crs, |row, values| {
-        let row = row as usize;
-        if row.is_multiple_of(TILE) {
-            read_band(canvas, row / TILE, &mut tile, &mut band)?;
+impl<'a> Ending<'a> {
+    pub(super) fn new(canvas: &'a mut Canvas, filler: Option<Filler>) -> Ending<'a> {
+        Ending { canvas, filler, filled: 0 }
+    }
+
+    /// The values of the tile at a place; false, if nothing is known of it. `handed_on` reads those that were handed on.
+    ///
+    /// # Errors
+    /// Those of `handed_on`; if the temporary file fails.
+    pub(super) fn tile(
+        &mut self,
+        at: TilePlace,
+        handed_on: &mut ReadTile,
+        values: &mut [f32],
+    ) -> Result<bool> {
+        let (tiles, inside) = (self.canvas.tiles(), self.canvas.inside(at));
+        let mut read = |at: TilePlace, values: &mut [f32]| {
+            if self.canvas.is_handed_on(at) { handed_on(at, values) } else { self.canvas.read(at, values) }
+        };
+        let has_data = read(at, values)?;
+        let Some(filler) = &mut self.filler else { return Ok(has_data) };
+        let drawn = if has_data { count_known(values) } else { 0 };
+        if !filler.fill(at, tiles, read, values)? {
+            return Ok(false);
         }
-        values.copy_from_slice(&band[row % TILE * width..][..values.len()]);
-        known += count_known(values);
+        blank_beyond(inside, values);
+        let known = count_known(values);
+        self.filled += known - drawn;
+        Ok(known > 0)
+    }
+
+    /// Calls `take` with the tiles that were not handed on, in rows, but for those of which nothing is known.
+    ///
+    /// # Errors
+    /// Those of `take` and of [`Ending::tile`].
+    pub(super) fn hand_over<T>(
+        &mut self,
+        target: &mut T,
+        mut read: impl FnMut(&mut T, TilePlace, &mut [f32]) -> Result<bool>,
+        mut take: impl FnMut(&mut T, TilePlace, &[f32]) -> Result<()>,
+    ) -> Result<()> {
+        let [across, down] = self.canvas.tiles();
+        let mut values = vec![f32::NAN; TILE * TILE];
+        for at in (0..down).flat_map(|row| (0..across).map(move |column| [column, row])) {
+            let is_left = !self.canvas.is_handed_on(at);
+            if is_left && self.tile(at, &mut |at, values| read(target, at, values), &mut values)? {
+                take(target, at, &values)?;
+            }
+        }
         Ok(())
-    })?;
-    Ok(known)
+    }
+
+    /// Reads a row of tiles as rows of cells, of which none were handed on.
+    ///
+    /// # Errors
+    /// If the temporary file fails.
+    pub(super) fn band(&mut self, row: usize, band: &mut [f32]) -> Result<()> {
+        let [across, _] = self.canvas.tiles();
+        let mut values = vec![f32::NAN; TILE * TILE];
+        for column in 0..across {
+            if !self.tile([column, row], &mut |_, _| Ok(false), &mut values)? {
+                values.fill(f32::NAN);
+            }
+            for (into, from) in band.chunks_exact_mut(across * TILE).zip(values.chunks_exact(TILE)) {
+                into[column * TILE..][..TILE].copy_from_slice(from);
+            }
+        }
+        Ok(())
+    }
 }
 
-/// Reads a row of tiles.
-fn read_band(canvas: &mut Canvas, row: usize, tile: &mut Tile, band: &mut [f32]) -> Result<()> {
-    let [across, _] = canvas.tiles();
-    for column in 0..across {
-        if !canvas.read([column, row], tile)? {
-            tile.clear();
-        }
-        for (into, from) in band.chunks_exact_mut(across * TILE).zip(tile.values.chunks_exact(TILE)) {
-            into[column * TILE..][..TILE].copy_from_slice(from);
-        }
+/// Takes away what was filled beyond the grid; `inside` are the numbers of columns and rows that are in it.
+fn blank_beyond([columns, rows]: [usize; 2], values: &mut [f32]) {
+    for (number, row) in values.chunks_exact_mut(TILE).enumerate() {
+        let kept = if number < rows { columns } else { 0 };
+        row[kept..].fill(f32::NAN);
     }
-    Ok(())
 }

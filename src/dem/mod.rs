@@ -1,28 +1,33 @@
 //! `spdem`: triangles in, a raster out.
 //!
-//! A cell has the value of the triangle that its centre is in; triangles are drawn as they arrive, in any order. `centers` says
-//! where centres are, `span` which of them are in a triangle, exactly; `search` is how they are found. `facet` is the plane of a
-//! triangle. `tile` has cells, `canvas` all tiles, of which some are in the temporary file of `spill`; `painter` draws, and `ending`
-//! writes what is left when all triangles have come.
+//! A cell has the value of the triangle that its centre is in; triangles are drawn as they arrive, in any order. `axis` and
+//! `centers` say where centres are, `span` which of them are in a triangle, exactly; `search` finds those that are hard to find. `facet` is the plane of a
+//! triangle. `tile` has cells, `canvas` all tiles, of which some are in a temporary file; `painter` draws. `ending` has what is left when all
+//! triangles have come, of which `fill` fills holes.
 
+mod axis;
 mod canvas;
 mod centers;
 mod ending;
 mod facet;
+mod fill;
 mod painter;
 mod search;
 mod span;
-mod spill;
 mod tile;
 
 use std::io::{Read, Seek, Write};
-use std::path::PathBuf;
 
 use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::predicates::{Point2, PredicateCounts, Predicates2};
-use crate::raster::{self, Grid, Light, RasterFormat, Window};
-use crate::stream::{Event, Header, Kind, LiveVertices, Patch, StreamReader};
+use crate::raster::{
+    self, Grid, Light, RasterFile, RasterFormat, RasterOptions, Reduction, TILE, Tiles, Window,
+};
+use crate::stream::{Crs, Event, Header, Kind, LiveVertices, Patch, StreamReader};
+use canvas::TilePlace;
+use ending::Ending;
+use fill::Filler;
 use painter::{Handover, Painter};
 
 /// What cells have.
@@ -45,10 +50,12 @@ pub struct Options {
     pub attribute: Attribute,
     /// Triangles with an edge that is longer are left out. Units: those of the world.
     pub kill: Option<f64>,
+    /// Cells without data are filled from data that are at most so many cells away.
+    pub fill: Option<u32>,
     /// Bytes for tiles; others wait in a temporary file.
     pub memory: u64,
-    /// Where that file goes; the system's folder for temporary files if `None`.
-    pub temp_dir: Option<PathBuf>,
+    /// How the raster is written.
+    pub raster: RasterOptions,
 }
 
 /// Figures of a run.
@@ -66,6 +73,8 @@ pub struct Stats {
     pub cells: u64,
     /// Cells with a value.
     pub known: u64,
+    /// Cells that were filled from data around them.
+    pub filled: u64,
     /// How many times a tile went to the temporary file.
     pub spilled: u64,
     /// Bytes of the temporary file.
@@ -104,27 +113,44 @@ pub fn window(header: &Header) -> Result<Window> {
 pub fn rasterize<R: Read, W: Write + Seek>(
     reader: &mut StreamReader<R>,
     output: &mut W,
-    format: RasterFormat,
     grid: &Grid,
     options: &Options,
     progress: impl FnMut(u64),
 ) -> Result<Stats> {
     let header = reader.header().clone();
     check_input(&header).map_err(|e| e.of_input(reader.name()))?;
+    let filler = options.fill.map(Filler::new).transpose()?;
     let mut painter = Painter::new(*grid, &header.coordinates, options)?;
-    let (mut width, mut known) = (0, 0);
-    match format {
+    let file = options.file(*grid, &header.crs);
+    let (mut width, mut known, mut filled) = (0, 0, 0);
+    match options.raster.format {
         RasterFormat::Ascii => {
             width = read(reader, &mut painter, None, progress)?;
-            known = ending::write_rows(&mut painter.canvas, output, format, grid, &header.crs)?;
+            let mut ending = Ending::new(&mut painter.canvas, filler);
+            let band_width = (grid.columns as usize).next_multiple_of(TILE);
+            let mut band = vec![f32::NAN; band_width * TILE];
+            raster::write_rows(output, &file, |row, values| {
+                let row = row as usize;
+                if row.is_multiple_of(TILE) {
+                    ending.band(row / TILE, &mut band)?;
+                }
+                values.copy_from_slice(&band[row % TILE * band_width..][..values.len()]);
+                known += ending::count_known(values);
+                Ok(())
+            })?;
+            filled = ending.filled;
         }
-        RasterFormat::GeoTiff => raster::write_tiles(output, grid, &header.crs, |tiles| {
-            let mut write = |[column, row]: [usize; 2], values: &[f32]| {
+        RasterFormat::GeoTiff => raster::write_tiles(output, &file, |tiles| {
+            let mut write = |tiles: &mut Tiles, [column, row]: TilePlace, values: &[f32]| {
                 known += ending::count_known(values);
                 tiles.tile(column, row, values)
             };
-            width = read(reader, &mut painter, Some(&mut write), progress)?;
-            ending::hand_over(&mut painter.canvas, &mut write)
+            let mut complete = |at: TilePlace, values: &[f32]| write(tiles, at, values);
+            width = read(reader, &mut painter, Some(&mut complete), progress)?;
+            let mut ending = Ending::new(&mut painter.canvas, filler);
+            ending.hand_over(tiles, |tiles, [column, row], values| tiles.read(column, row, values), write)?;
+            filled = ending.filled;
+            Ok(())
         })?,
     }
     let totals = reader.totals();
@@ -135,6 +161,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         width,
         cells: grid.cells(),
         known,
+        filled,
         spilled: painter.canvas.spilled,
         spilled_bytes: painter.canvas.spill_len(),
         input_bytes: reader.bytes_read(),
@@ -193,6 +220,19 @@ fn draw(
         painter.draw(triangle.map(|local| vertices[local as usize].1), complete.as_deref_mut())?;
     }
     Ok(())
+}
+
+impl Options {
+    /// The file that the raster becomes.
+    fn file<'a>(&'a self, grid: Grid, crs: &'a Crs) -> RasterFile<'a> {
+        // The mean of north-east and north-west is no south.
+        let reduction = match self.attribute {
+            Attribute::Aspect => Reduction::First,
+            _ => Reduction::Mean,
+        };
+        // Holes are filled from tiles that have been written.
+        RasterFile { options: &self.raster, grid, crs, reduction, is_staged: self.fill.is_some() }
+    }
 }
 
 impl Attribute {

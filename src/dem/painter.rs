@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::canvas::{Canvas, TilePlace};
 use super::centers::Centers;
 use super::facet::{Facet, place};
-use super::span::Span;
+use super::span::{Edges, Span};
 use super::tile::overlap;
 use super::{Attribute, Options};
 use crate::bounds::Point;
@@ -45,7 +45,7 @@ impl Painter {
             centers: Centers::new(grid, coordinates),
             attribute: options.attribute,
             longest: options.kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)),
-            canvas: Canvas::new(grid, options.memory, options.temp_dir.as_deref())?,
+            canvas: Canvas::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
             predicates: TotalPredicates::default(),
             killed: 0,
             spans: Vec::with_capacity(TILE),
@@ -65,17 +65,22 @@ impl Painter {
             self.killed += 1;
             return Ok(());
         }
-        let rows = self.centers.rows(range(places, 1));
-        let columns = if rows.is_empty() { 0..0 } else { self.centers.columns(range(places, 0)) };
+        let [bottom, top] = range(places, 1);
+        let rows = self.centers.rows.cells(bottom, top);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let [left, right] = range(places, 0);
+        let columns = self.centers.columns.cells(left, right);
         if columns.is_empty() || !is_counterclockwise(places, &mut self.predicates)? {
             return Ok(());
         }
-        let facet = Facet::of(corners);
+        let (facet, edges) = (Facet::of(corners), Edges::of(places, &self.centers.columns));
         let mut from = rows.start;
         while from < rows.end {
             let band = from as usize / TILE;
             let end = rows.end.min(((band + 1) * TILE) as u32);
-            self.draw_band(&facet, places, columns.clone(), from..end, &mut complete)?;
+            self.draw_band(&facet, &edges, columns.clone(), from..end, &mut complete)?;
             from = end;
         }
         Ok(())
@@ -85,7 +90,7 @@ impl Painter {
     fn draw_band(
         &mut self,
         facet: &Facet,
-        places: [Point2; 3],
+        edges: &Edges,
         columns: Range<u32>,
         rows: Range<u32>,
         complete: &mut Option<&mut Handover>,
@@ -93,8 +98,8 @@ impl Painter {
         let mut spans = std::mem::take(&mut self.spans);
         spans.clear();
         spans.extend(rows.clone().map(|row| {
-            let y = self.centers.y(row);
-            Span::of(places, columns.clone(), y, &self.centers, &mut self.predicates)
+            let y = self.centers.rows.at(row);
+            edges.span(y, columns.clone(), &self.centers.columns, &mut self.predicates)
         }));
         let filled = || spans.iter().map(|span| &span.cells).filter(|cells| !cells.is_empty());
         let ends = filled().map(|cells| cells.start).min().zip(filled().map(|cells| cells.end).max());
@@ -127,19 +132,24 @@ impl Painter {
             return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
         };
         for (row, span) in (first_row..).zip(spans) {
-            let y = self.centers.y(row);
-            let start = (row - top) as usize * TILE;
-            for column in within(&span.cells) {
-                let value = match flat {
-                    Some(value) => value,
-                    None => number(facet.elevation([self.centers.x(column), y]))?,
-                };
-                let cell = start + (column - left) as usize;
-                if column < span.owned_end {
-                    tile.own(cell, value)?;
-                } else {
-                    tile.touch(cell, value);
+            let y = self.centers.rows.at(row);
+            let values_of = |cells: Range<u32>, values: &mut [f32]| match flat {
+                Some(value) => {
+                    values.fill(value);
+                    Ok(())
                 }
+                None => facet.row(y, cells.map(|column| self.centers.columns.at(column)), values),
+            };
+            let place = |cells: &Range<u32>| (cells.start - left) as usize..(cells.end - left) as usize;
+            let owned = within(&(span.cells.start..span.owned_end));
+            if !owned.is_empty() {
+                let values = tile.own((row - top) as usize, place(&owned))?;
+                values_of(owned, values)?;
+            }
+            for column in within(&(span.owned_end..span.cells.end)) {
+                let mut value = [0.0];
+                values_of(column..column + 1, &mut value)?;
+                tile.touch((row - top) as usize, (column - left) as usize, value[0]);
             }
         }
         Ok(())
@@ -177,12 +187,4 @@ fn is_counterclockwise([a, b, c]: [Point2; 3], predicates: &mut impl Predicates2
             "the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is clockwise"
         ))),
     }
-}
-
-/// A number of 32 bits.
-///
-/// # Errors
-/// Usage, if it is none.
-fn number(value: f64) -> Result<f32> {
-    if value.is_nan() { Err(super::out_of_range()) } else { Ok(value as f32) }
 }

@@ -2,9 +2,12 @@
 
 use std::ops::Range;
 
-use super::centers::Centers;
+use super::axis::{Axis, Place};
 use super::search::first;
 use crate::predicates::{Point2, Predicates2, Sign};
+
+/// Half a unit in the last place of one.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// The cells of a row with centres in a closed triangle; the first ones belong to it.
 ///
@@ -18,48 +21,103 @@ pub(super) struct Span {
     pub(super) owned_end: u32,
 }
 
-impl Span {
-    /// The cells of a row among `columns`.
+/// The edges of a triangle, with what all rows need to know of them.
+#[derive(Debug)]
+pub(super) struct Edges([Edge; 3]);
+
+#[derive(Debug)]
+struct Edge {
+    from: Point2,
+    to: Point2,
+    /// The place of its start among columns, and by how much that changes by unit of the ordinate.
+    start: Place,
+    slope: f64,
+}
+
+impl Edges {
+    /// Those of a triangle.
     ///
-    /// Domain: corners counterclockwise, and the row not above or below all of them.
-    pub(super) fn of(
-        corners: [Point2; 3],
-        columns: Range<u32>,
-        y: f64,
-        centers: &Centers,
-        predicates: &mut impl Predicates2,
-    ) -> Span {
-        let mut span = Span { owned_end: columns.end, cells: columns };
-        let [a, b, c] = corners;
-        for [from, to] in [[a, b], [b, c], [c, a]] {
-            if span.cells.is_empty() {
-                break;
-            }
-            span.cut([from, to], y, centers, predicates);
-        }
-        span.owned_end = span.owned_end.clamp(span.cells.start, span.cells.end.max(span.cells.start));
-        span
+    /// Domain: corners counterclockwise.
+    #[inline]
+    pub(super) fn of([a, b, c]: [Point2; 3], columns: &Axis) -> Edges {
+        Edges([[a, b], [b, c], [c, a]].map(|[from, to]| Edge {
+            from,
+            to,
+            start: columns.place(from[0]),
+            slope: (to[0] - from[0]) / (to[1] - from[1]) * columns.slope(),
+        }))
     }
 
+    /// The cells of a row among `within`; `y` is the ordinate of its centres.
+    ///
+    /// Domain: the row not above or below all corners, and no column of its cells beside all of them.
+    #[inline]
+    pub(super) fn span(
+        &self,
+        y: f64,
+        within: Range<u32>,
+        columns: &Axis,
+        predicates: &mut impl Predicates2,
+    ) -> Span {
+        let mut span = Span { owned_end: within.end, cells: within };
+        for edge in &self.0 {
+            span.cut(edge, y, columns, predicates);
+        }
+        span.cells.end = span.cells.end.max(span.cells.start);
+        span.owned_end = span.owned_end.clamp(span.cells.start, span.cells.end);
+        span
+    }
+}
+
+impl Edge {
+    /// Where the line of the edge meets a row.
+    ///
+    /// Error: differences of ordinates and abscissae are off by u = 2^-53 of themselves, their quotient by 3u, the product with the
+    /// slope of the axis, which is off by u, by 5u, and the distance from the start by 7u, plus u of the sum.
+    #[inline]
+    fn place(&self, y: f64) -> Place {
+        let distance = (y - self.from[1]) * self.slope;
+        let error = self.start.error + 16.0 * ROUNDING * (distance.abs() + self.start.near.abs());
+        Place { near: self.start.near + distance, error }
+    }
+}
+
+impl Span {
     /// Leaves what is on the left of an edge, or on it. The interior is on the left: on the right side of edges that fall.
-    fn cut(&mut self, [a, b]: [Point2; 2], y: f64, centers: &Centers, predicates: &mut impl Predicates2) {
-        if a[1] == b[1] {
+    #[inline]
+    fn cut(&mut self, edge: &Edge, y: f64, columns: &Axis, predicates: &mut impl Predicates2) {
+        let Edge { from, to, .. } = *edge;
+        if from[1] == to[1] {
             // Between its ends, an upper edge has nothing above that would belong to the triangle.
-            if a[0] > b[0] && y == a[1] {
+            if from[0] > to[0] && y == from[1] {
                 self.owned_end = 0;
             }
             return;
         }
-        let mut side = |column| predicates.orient2d(a, b, [centers.x(column), y]);
-        let near = centers.column_near(a[0] + (y - a[1]) * ((b[0] - a[0]) / (b[1] - a[1])));
-        let cells = self.cells.clone();
-        if a[1] > b[1] {
-            self.cells.start = first(cells, near, |column| side(column) != Sign::Negative);
+        let falls = from[1] > to[1];
+        let [low, high] = if falls { [to[1], from[1]] } else { [from[1], to[1]] };
+        if y < low || y > high || self.cells.is_empty() {
+            // In a row that an edge does not meet, others bound the triangle.
+            return;
+        }
+        let place = edge.place(y);
+        if let Some(cell) = place.first_cell(self.cells.clone()) {
+            predicates.counts_mut().filter += 1;
+            if falls {
+                self.cells.start = cell;
+            } else {
+                self.cells.end = cell;
+            }
+            return;
+        }
+        let mut side = |column| predicates.orient2d(from, to, [columns.at(column), y]);
+        if falls {
+            self.cells.start = first(self.cells.clone(), place.near, |column| side(column) != Sign::Negative);
         } else {
-            let on_edge = first(cells.clone(), near, |column| side(column) != Sign::Positive);
+            let on_edge = first(self.cells.clone(), place.near, |column| side(column) != Sign::Positive);
             self.owned_end = self.owned_end.min(on_edge);
-            let end = on_edge..cells.end;
-            self.cells.end = first(end, f64::from(on_edge), |column| side(column) == Sign::Negative);
+            let rest = on_edge..self.cells.end;
+            self.cells.end = first(rest, f64::from(on_edge), |column| side(column) == Sign::Negative);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The cells of a tile while triangles arrive.
 
+use std::ops::Range;
+
 use crate::error::Error;
 use crate::raster::TILE;
 
@@ -8,6 +10,8 @@ pub(super) const CELLS: usize = TILE * TILE;
 
 /// Bits of a word of a set.
 const WORD: usize = u64::BITS as usize;
+/// Words of a row.
+const WORDS: usize = TILE / WORD;
 
 /// Values of cells, row by row, and which of them belong to triangles that have arrived.
 ///
@@ -58,28 +62,34 @@ impl Tile {
         Ok(())
     }
 
-    /// Gives a cell the value of the triangle that it belongs to.
+    /// Gives cells of a row to the triangle that they belong to; their values, to be written.
     ///
     /// # Errors
-    /// If it belongs to another one.
+    /// If one of them belongs to another triangle.
     #[inline]
-    pub(super) fn own(&mut self, cell: usize, value: f32) -> Result<(), Error> {
-        let (word, bit) = (&mut self.owned[cell / WORD], 1 << (cell % WORD));
-        if *word & bit != 0 {
-            return Err(overlap());
+    pub(super) fn own(&mut self, row: usize, cells: Range<usize>) -> Result<&mut [f32], Error> {
+        let (first, last) = (cells.start / WORD, (cells.end - 1) / WORD);
+        for word in first..=last {
+            let start = cells.start.max(word * WORD) % WORD;
+            let count = cells.end.min((word + 1) * WORD) - word * WORD - start;
+            let bits = (u64::MAX >> (WORD - count)) << start;
+            let owned = &mut self.owned[row * WORDS + word];
+            if *owned & bits != 0 {
+                return Err(overlap());
+            }
+            *owned |= bits;
         }
-        *word |= bit;
-        self.owned_count += 1;
-        self.values[cell] = value;
-        Ok(())
+        self.owned_count += cells.len() as u32;
+        Ok(&mut self.values[row * TILE..][cells])
     }
 
     /// Gives a cell a value for the case that it belongs to no triangle: of several ones the least, so that their order does not
     /// matter.
     #[inline]
-    pub(super) fn touch(&mut self, cell: usize, value: f32) {
-        if self.owned[cell / WORD] & (1 << (cell % WORD)) == 0 {
-            self.values[cell] = self.values[cell].min(value);
+    pub(super) fn touch(&mut self, row: usize, column: usize, value: f32) {
+        if self.owned[row * WORDS + column / WORD] & (1 << (column % WORD)) == 0 {
+            let cell = &mut self.values[row * TILE + column];
+            *cell = cell.min(value);
         }
     }
 }

@@ -3,21 +3,21 @@
 //! An extent is the offset of the next extent of its cell, its own length, and points. Extents are appended,
 //! and read back from first to last when their cell is complete; nothing is kept in memory per extent.
 
-use std::fs::File;
-use std::os::unix::fs::FileExt;
 use std::path::Path;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::temporary::TemporaryFile;
 
 /// No extent.
 pub(super) const NO_EXTENT: u64 = u64::MAX;
 
 const EXTENT_HEADER_LEN: usize = 16;
+/// What is being done when reading fails.
+const READING: &str = "reading points back";
 
-/// A file without a name, so that nothing is left of it however the process ends.
+/// Extents of points.
 pub(super) struct Spill {
-    file: File,
-    place: String,
+    file: TemporaryFile,
     /// Bytes that wait to be written at `end`.
     waiting: Vec<u8>,
     waiting_max: usize,
@@ -33,12 +33,9 @@ impl Spill {
     /// # Errors
     /// If it cannot be created.
     pub(super) fn create(folder: Option<&Path>, io_len: usize) -> Result<Spill> {
-        let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
-        let place = format!("temporary file in {}", folder.display());
-        let file =
-            tempfile::tempfile_in(&folder).map_err(|e| Error::io("creating it", e).of_input(&place))?;
+        let file = TemporaryFile::create(folder)?;
         let waiting = Vec::with_capacity(io_len);
-        Ok(Spill { file, place, waiting, waiting_max: io_len, end: 0, piece: vec![0; io_len] })
+        Ok(Spill { file, waiting, waiting_max: io_len, end: 0, piece: vec![0; io_len] })
     }
 
     /// Bytes in the file.
@@ -107,14 +104,14 @@ impl Spill {
         let mut extent = first;
         while extent != NO_EXTENT {
             let mut header = [0; EXTENT_HEADER_LEN];
-            read_at(&self.file, &self.place, &mut header, extent)?;
+            self.file.read_at(READING, &mut header, extent)?;
             let (next, len) = header.split_at(8);
             let len = u64::from_le_bytes(len.try_into().expect("8 bytes"));
             let mut done = 0;
             while done < len {
                 let piece = 0..(len - done).min(piece_max) as usize;
                 let offset = extent + EXTENT_HEADER_LEN as u64 + done;
-                read_at(&self.file, &self.place, &mut self.piece[piece.clone()], offset)?;
+                self.file.read_at(READING, &mut self.piece[piece.clone()], offset)?;
                 consume(&self.piece[piece.clone()])?;
                 done += piece.len() as u64;
             }
@@ -124,12 +121,6 @@ impl Spill {
     }
 
     fn write_at(&self, bytes: &[u8], offset: u64) -> Result<()> {
-        let written = self.file.write_all_at(bytes, offset);
-        written.map_err(|e| Error::io("writing points that exceed --memory", e).of_input(&self.place))
+        self.file.write_at("writing points that exceed --memory", bytes, offset)
     }
-}
-
-fn read_at(file: &File, place: &str, bytes: &mut [u8], offset: u64) -> Result<()> {
-    let read = file.read_exact_at(bytes, offset);
-    read.map_err(|e| Error::io("reading points back", e).of_input(place))
 }

@@ -3,8 +3,6 @@
 //! Decompressing and parsing cost more than writing 12 bytes per point and reading them back. The file has no
 //! name, and consists of blocks: the length of the payload, its CRC-32C, and the points of a batch as records.
 
-use std::fs::File;
-use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 
 use crate::bounds::Point;
@@ -12,6 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::source::{Description, PointReader};
 use crate::stream::{Header, Kind, decode_points, encode_points};
 use crate::system;
+use crate::temporary::TemporaryFile;
 
 const BLOCK_HEADER_LEN: usize = 8;
 
@@ -33,8 +32,7 @@ pub enum Spooling {
 
 /// Points in a temporary file, in input order.
 pub(super) struct Spool {
-    file: File,
-    place: String,
+    file: TemporaryFile,
     header: Header,
     bytes: u64,
     points: u64,
@@ -44,10 +42,9 @@ pub(super) struct Spool {
 impl Spool {
     fn create(folder: &Path, description: &Description) -> Result<Spool> {
         let Description { coordinates, dims, has_elevation, .. } = *description;
-        let place = format!("temporary file in {}", folder.display());
-        let file = tempfile::tempfile_in(folder).map_err(|e| Error::io("creating it", e).of_input(&place))?;
+        let file = TemporaryFile::create(Some(folder))?;
         let header = Header::new(Kind::Points, coordinates, dims, has_elevation);
-        Ok(Spool { file, place, header, bytes: 0, points: 0, invalid: 0 })
+        Ok(Spool { file, header, bytes: 0, points: 0, invalid: 0 })
     }
 
     /// Points in it.
@@ -73,8 +70,7 @@ impl Spool {
         let (len, checksum) = (payload.len() as u32, crc32c::crc32c(payload));
         block[..4].copy_from_slice(&len.to_le_bytes());
         block[4..BLOCK_HEADER_LEN].copy_from_slice(&checksum.to_le_bytes());
-        let written = self.file.write_all_at(block, self.bytes);
-        written.map_err(|e| Error::io("keeping decoded points", e).of_input(&self.place))?;
+        self.file.write_at("keeping decoded points", block, self.bytes)?;
         self.bytes += block.len() as u64;
         self.points += points.len() as u64;
         Ok(())
@@ -91,8 +87,7 @@ pub(super) struct SpoolReader<'a> {
 impl SpoolReader<'_> {
     fn read_exact(&mut self, len: usize) -> Result<()> {
         self.payload.resize(len, 0);
-        let read = self.spool.file.read_exact_at(&mut self.payload, self.at);
-        read.map_err(|e| Error::new(ErrorKind::Io, format!("reading points back: {e}")))?;
+        self.spool.file.read_at("reading points back", &mut self.payload, self.at)?;
         self.at += len as u64;
         Ok(())
     }
@@ -127,7 +122,7 @@ impl PointReader for SpoolReader<'_> {
         if self.at == self.spool.bytes {
             return Ok(());
         }
-        self.read_block(batch).map_err(|e| e.of_input(&self.spool.place))
+        self.read_block(batch).map_err(|e| e.of_input(self.spool.file.name()))
     }
 
     fn invalid(&self) -> u64 {
@@ -215,7 +210,7 @@ impl<'a> Tee<'a> {
             self.next_room_check += ROOM_CHECK_LEN;
             if system::free_bytes(&self.plan.folder).is_some_and(|free| free < (ROOM - 1) * spool.bytes) {
                 return Err(Error::new(ErrorKind::Io, "more than a quarter of the room would be used up")
-                    .of_input(&spool.place));
+                    .of_input(spool.file.name()));
             }
         }
         spool.append(batch, &mut self.block)

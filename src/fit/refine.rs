@@ -10,7 +10,7 @@ use super::cover::Cover;
 use super::normal::Normal;
 use super::observations::Observations;
 use super::places::{KNOTS_MIN, bounds, first_places, settled};
-use super::robust::{Loss, robust_soon};
+use super::robust::{Loss, ROUNDS_FEW, Rounds};
 use super::solve::Equations;
 use super::survey::Survey;
 use crate::error::{Error, Result};
@@ -134,7 +134,8 @@ impl Solution {
             let coefficients = Equations::new(basis, &normal, energy)?.solve(lambda)?;
             return Ok(Solution { coefficients, limit: f64::INFINITY });
         };
-        let fit = robust_soon(&normal, basis, observations, loss, energy, lambda, threads)?;
+        let rounds = Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_FEW };
+        let fit = rounds.fit(loss, &normal)?;
         Ok(Solution { limit: fit.limit(), coefficients: fit.coefficients })
     }
 }

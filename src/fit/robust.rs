@@ -22,8 +22,8 @@ const SCALE_MIN: f64 = 1e-12;
 const CHANGE_MAX: f64 = 1e-2;
 /// Rounds for one loss, at most...
 const ROUNDS_MAX: usize = 50;
-/// ...and where knots are added after it.
-const ROUNDS_FEW: usize = 6;
+/// ...and where knots are added after it: coefficients may still change, but gross errors can be told from others.
+pub(super) const ROUNDS_FEW: usize = 6;
 
 /// What residuals cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,15 +73,8 @@ pub fn robust<O: Observations + ?Sized>(
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
-    robust_from(
-        &Normal::of(basis, observations, threads)?,
-        basis,
-        observations,
-        loss,
-        energy,
-        lambda,
-        threads,
-    )
+    let plain = Normal::of(basis, observations, threads)?;
+    robust_from(&plain, basis, observations, loss, energy, lambda, threads)
 }
 
 /// The same from the normal equations of all observations, where they are known: a pass less.
@@ -97,19 +90,6 @@ pub fn robust_from<O: Observations + ?Sized>(
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
     Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss, plain)
-}
-
-/// The same with so few rounds that coefficients may still change: enough to tell gross errors from others.
-pub(super) fn robust_soon<O: Observations + ?Sized>(
-    plain: &Normal,
-    basis: &Basis,
-    observations: &O,
-    loss: Loss,
-    energy: Option<&Symmetric>,
-    lambda: f64,
-    threads: NonZeroUsize,
-) -> Result<RobustFit> {
-    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_FEW }.fit(loss, plain)
 }
 
 impl RobustFit {
@@ -142,17 +122,21 @@ impl RobustFit {
 }
 
 /// What all rounds have in common.
-struct Rounds<'a, O: ?Sized> {
-    basis: &'a Basis,
-    observations: &'a O,
-    energy: Option<&'a Symmetric>,
-    lambda: f64,
-    threads: NonZeroUsize,
-    most: usize,
+pub(super) struct Rounds<'a, O: ?Sized> {
+    pub(super) basis: &'a Basis,
+    pub(super) observations: &'a O,
+    pub(super) energy: Option<&'a Symmetric>,
+    pub(super) lambda: f64,
+    pub(super) threads: NonZeroUsize,
+    /// So many rounds for one loss, at most.
+    pub(super) most: usize,
 }
 
 impl<O: Observations + ?Sized> Rounds<'_, O> {
-    fn fit(&self, loss: Loss, plain: &Normal) -> Result<RobustFit> {
+    /// Fits with a loss, from the normal equations of all observations.
+    ///
+    /// Errors: those of [`robust()`].
+    pub(super) fn fit(&self, loss: Loss, plain: &Normal) -> Result<RobustFit> {
         let coefficients = self.solve(plain)?;
         let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
         let scale = self.scale(&coefficients, scale_min)?;

@@ -26,8 +26,13 @@ pub struct Grid {
 /// How large cells are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cells {
-    /// Their side; sides are at its multiples, so that grids of neighbours fit together.
-    Step(f64),
+    /// Their side; sides are at its multiples from an anchor, so that grids of neighbours fit together.
+    Step {
+        /// Their side.
+        step: f64,
+        /// A corner of cells.
+        anchor: Point2,
+    },
     /// So many columns.
     Columns(u32),
     /// So many rows.
@@ -59,7 +64,7 @@ impl Grid {
             Grid::covering(Window { min: window.min, max: inner }, step, window.min)
         };
         match cells {
-            Cells::Step(step) => Grid::covering(window, step, [0.0; 2]),
+            Cells::Step { step, anchor } => Grid::covering(window, step, anchor),
             Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
             Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
             Cells::Default => Grid::covering(window, width.max(height) / CELLS_DEFAULT, window.min),

@@ -7,21 +7,18 @@ use std::path::Path;
 use super::world::world_of;
 use crate::error::{Error, Result};
 use crate::stream::{Event, Header};
+use crate::temporary::TemporaryFile;
 
 const BUFFER_LEN: usize = 1 << 16;
 
-/// A temporary file that has no name, so that nothing stays behind whatever happens.
+/// A temporary file.
 pub(super) struct Spool(BufWriter<File>);
 
 impl Spool {
     /// An empty file in `temp_dir`, or in the system's folder for temporary files.
     pub(super) fn new(temp_dir: Option<&Path>) -> Result<Self> {
-        let file = match temp_dir {
-            Some(folder) => tempfile::tempfile_in(folder),
-            None => tempfile::tempfile(),
-        };
-        let file = file.map_err(|e| Error::io("creating a temporary file", e))?;
-        Ok(Spool(BufWriter::with_capacity(BUFFER_LEN, file)))
+        let file = TemporaryFile::create(temp_dir)?;
+        Ok(Spool(BufWriter::with_capacity(BUFFER_LEN, file.into_file())))
     }
 
     /// Appends bytes.

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::error::{Error, Result};
+use crate::temporary::TemporaryFile;
 
 /// What messages call an input: its path, or stdin for "-".
 pub(crate) fn name_of(path: &Path) -> String {
@@ -68,15 +69,14 @@ impl Origin {
 
 fn spool(mut from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
     let place = temp_dir.display();
-    let mut file = tempfile::tempfile_in(temp_dir)
-        .map_err(|e| Error::io(format!("creating a temporary file in {place}"), e))?;
-    let bytes = io::copy(&mut from, &mut file)
+    let file = TemporaryFile::create(Some(temp_dir))?;
+    let bytes = io::copy(&mut from, &mut file.file())
         .map_err(|e| Error::io(format!("spooling to a temporary file in {place}"), e))?;
     let size =
         if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
     notices
         .push(format!("{name}: spooled {size} to an unlinked temporary file in {place} for the second pass"));
-    Ok(Origin::Open(Arc::new(file)))
+    Ok(Origin::Open(Arc::new(file.into_file())))
 }
 
 /// A reader with a position of its own over a shared file, so that passes do not disturb each other.

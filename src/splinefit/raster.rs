@@ -8,23 +8,19 @@ use super::layout::Spline;
 use super::values::{line, write_error};
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
-use crate::raster::{self, Cells, Grid, RasterFormat, Window};
+use crate::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
 use crate::spline::{Raster, Scratch};
 
 /// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
 const ROWS_PER_THREAD: usize = 64;
 
 impl Spline {
-    /// The grid of a window, or else of the domain, in world coordinates.
+    /// What the domain covers, in world coordinates.
     ///
     /// # Errors
-    /// As [`Grid::of`]; a domain without an area.
-    pub fn grid(&self, cells: Cells, window: Option<Window>) -> Result<Grid> {
-        let window = match window {
-            Some(window) => window,
-            None => self.layout.domain_window()?,
-        };
-        Grid::of(window, cells)
+    /// A domain without an area.
+    pub fn window(&self) -> Result<Window> {
+        self.layout.domain_window()
     }
 }
 
@@ -37,7 +33,7 @@ pub fn write_raster<W: Write + Seek>(
     spline: &Spline,
     attribute: Attribute,
     grid: &Grid,
-    format: RasterFormat,
+    options: &RasterOptions,
     threads: NonZeroUsize,
     output: &mut W,
     mut done: impl FnMut(u64),
@@ -47,7 +43,10 @@ pub fn write_raster<W: Write + Seek>(
     }
     let mut bands = Bands { spline, attribute, grid, threads, first: 0, values: Vec::new() };
     let mut unknown = 0;
-    raster::write_rows(output, format, grid, &spline.layout.frame.crs, |row, values| {
+    let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
+    let crs = &spline.layout.frame.crs;
+    let file = RasterFile { options, grid: *grid, crs, reduction, is_staged: false };
+    raster::write_rows(output, &file, |row, values| {
         for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
             *value = found as f32;
             unknown += u64::from(value.is_nan());

@@ -111,7 +111,7 @@ fn check(mesh: &Mesh, grid: &Grid, bits: i32, [scale, offset]: [f64; 2]) -> [usi
 }
 
 fn grid(min: f64, max: f64, step: f64) -> Grid {
-    Grid::of(Window { min: [min; 2], max: [max; 2] }, Cells::Step(step)).unwrap()
+    Grid::of(Window { min: [min; 2], max: [max; 2] }, Cells::Step { step, anchor: [0.0; 2] }).unwrap()
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn degenerate_points_have_no_gaps_and_no_doubles() {
         // Steps of two and more put centres on whole numbers.
         let step = (side / 40.0).ceil() * 2.0;
         for step in [step, step + 1.0] {
-            check(&mesh, &Grid::of(window, Cells::Step(step)).unwrap(), 4, [1.0, 0.0]);
+            check(&mesh, &Grid::of(window, Cells::Step { step, anchor: [0.0; 2] }).unwrap(), 4, [1.0, 0.0]);
         }
     }
 }
@@ -198,7 +198,9 @@ fn tenths_are_no_tenths_but_lose_nothing() {
         let points = points.iter().map(|&[x, y]| [x, y, random.integer(0, 9) as f64]).collect();
         let mesh = Mesh { points, triangles };
         let step = [0.1, 0.2, 0.05][case % 3];
-        let grid = Grid::of(Window { min: [-0.1; 2], max: [0.95; 2] }, Cells::Step(step)).unwrap();
+        let grid =
+            Grid::of(Window { min: [-0.1; 2], max: [0.95; 2] }, Cells::Step { step, anchor: [0.0; 2] })
+                .unwrap();
         check(&mesh, &grid, 60, [1.0, 0.0]);
     }
 }

@@ -2,6 +2,8 @@
 
 mod drawing;
 mod failures;
+mod files;
+mod pieces;
 mod pipelines;
 mod tiles;
 
@@ -10,7 +12,7 @@ use std::io::Cursor;
 use spmesh::bounds::Bounds;
 use spmesh::dem::{Attribute, Options, Stats, rasterize};
 use spmesh::error::Result;
-use spmesh::raster::{Grid, RasterFormat};
+use spmesh::raster::{Grid, RasterFormat, RasterOptions};
 use spmesh::stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
 
 use crate::reference::incremental;
@@ -49,14 +51,16 @@ impl Mesh {
 }
 
 fn options(attribute: Attribute) -> Options {
-    Options { attribute, kill: None, memory: 1 << 30, temp_dir: None }
+    Options { attribute, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default() }
 }
 
 /// A raster as a file.
 fn file(stream: &[u8], format: RasterFormat, grid: &Grid, options: &Options) -> Result<(Vec<u8>, Stats)> {
     let mut reader = StreamReader::new(stream, "mesh")?;
     let mut output = Cursor::new(Vec::new());
-    let stats = rasterize(&mut reader, &mut output, format, grid, options, |_| {})?;
+    let raster = RasterOptions { format, ..options.raster.clone() };
+    let options = Options { raster, ..options.clone() };
+    let stats = rasterize(&mut reader, &mut output, grid, &options, |_| {})?;
     Ok((output.into_inner(), stats))
 }
 

@@ -14,7 +14,7 @@ use crate::reference::sets::{Random, uniform};
 const SIDE: i64 = 1_000;
 
 /// A mesh with large triangles and small ones, in random order, and a grid of three tiles each way, of which the last ones are cut.
-fn mesh_and_grid() -> (Vec<u8>, Grid) {
+pub(super) fn mesh_and_grid() -> (Vec<u8>, Grid) {
     let mut random = Random::new(11);
     let mut points = uniform(&mut random, 30, SIDE);
     points.extend(uniform(&mut random, 150, 60).iter().map(|[x, y]| [x + 470, y + 480]));
@@ -22,13 +22,13 @@ fn mesh_and_grid() -> (Vec<u8>, Grid) {
     points.dedup();
     let mesh = Mesh::of(&mut random, &points).shuffled(&mut random);
     let window = Window { min: [-20.0; 2], max: [SIDE as f64 + 20.0, SIDE as f64 - 100.0] };
-    let grid = Grid::of(window, Cells::Step(1.6)).unwrap();
+    let grid = Grid::of(window, Cells::Step { step: 1.6, anchor: [0.0; 2] }).unwrap();
     assert_eq!([grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE)), [3, 3]);
     (mesh.stream(Coordinates::F64), grid)
 }
 
 /// The values of a GeoTIFF, tile by tile; tiles that are not there have none.
-fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
+pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (grid.columns, grid.rows));
     let lengths = decoder.get_tag_u64_vec(Tag::TileByteCounts).unwrap();

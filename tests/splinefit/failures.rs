@@ -65,7 +65,7 @@ fn splines_that_cannot_be_evaluated_are_refused() {
     let cases: [(&[&str], &[u8], i32, &str); 8] = [
         (&["eval", "-"], &set, 2, "configurations without coefficients"),
         (&["eval", "-", "--kind", "gradient", "--format", "tif"], &spline, 2, "take --format text"),
-        (&["eval", "-", "--format", "tif"], &spline, 2, "GeoTIFF is not written in order"),
+        (&["eval", "-", "--cog"], &spline, 2, "--cog and --no-data are for rasters"),
         (&["eval", "-", "--step", "-1"], &spline, 2, "must be finite and above zero"),
         (&["eval", "-", "--step", "0"], &spline, 2, "must be finite and above zero"),
         (&["eval", "-", "--step", "1e-12"], &spline, 2, "take larger cells"),

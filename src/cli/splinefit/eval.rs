@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, say};
-use crate::cli::cells::{self, CellFlags};
+use crate::cli::cells::{self, CellFlags, RasterFlags};
 use crate::cli::{Common, progress::Progress};
 use crate::error::{Error, Result};
 use crate::output::Output;
@@ -35,11 +35,14 @@ pub(super) struct Flags {
     output: PathBuf,
 
     /// Sites: the output has a line for each, in their order; - is stdin
-    #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "format"])]
+    #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like", "format"])]
     at: Option<PathBuf>,
 
     #[command(flatten)]
     cells: CellFlags,
+
+    #[command(flatten)]
+    raster: RasterFlags,
 
     /// What is evaluated
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Value)]
@@ -83,6 +86,7 @@ impl Flags {
     }
 
     fn sites(&self, common: &Common, sites: &Path) -> Result<()> {
+        self.raster.check_unused()?;
         let mut output = Output::create(&self.output, false)?;
         let spline = Spline::open(&self.spline)?;
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };
@@ -104,14 +108,15 @@ impl Flags {
         let (format, attribute) = (self.format(), self.kind.into());
         let mut output = self.output(format, attribute)?;
         let spline = Spline::open(&self.spline)?;
-        let grid = spline.grid(self.cells.cells(), self.cells.window()?)?;
+        let grid = self.cells.grid(|| spline.window())?;
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);
         let threads = self.threads.get();
         let outside = match format {
             None => splinefit::write_table(&spline, attribute, &grid, &mut output, done),
             Some(format) => {
-                splinefit::write_raster(&spline, attribute, &grid, format, threads, &mut output, done)
+                let options = self.raster.options(format)?;
+                splinefit::write_raster(&spline, attribute, &grid, &options, threads, &mut output, done)
             }
         }?;
         output.commit()?;
@@ -136,7 +141,10 @@ impl Flags {
                 Err(Error::usage("a gradient is two numbers, and a cell has one: take --format text"))
             }
             Some(format) => cells::create(&self.output, format),
-            None => Output::create(&self.output, false),
+            None => {
+                self.raster.check_unused()?;
+                Output::create(&self.output, false)
+            }
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Points without names: whatever `spfinalize` reads, and the vertices of meshes.
 
-use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::model::{Model, Structure};
 use super::names::Names;
@@ -10,6 +9,7 @@ use crate::bounds::Point;
 use crate::error::{Error, Result};
 use crate::source::{EventSource, Input, SourceOptions};
 use crate::stream::{Coordinates, Event};
+use crate::temporary::TemporaryFile;
 
 /// Reads the points of a file that can be read several times.
 ///
@@ -24,11 +24,9 @@ pub(super) fn read_file(path: &Path) -> Result<Structure> {
 /// # Errors
 /// As [`Input::open`], and if there is no point.
 pub(super) fn read_copy(mut input: impl Read, name: &str) -> Result<Structure> {
-    let folder: PathBuf = std::env::temp_dir();
-    let in_folder = |e| Error::io(format!("copying to a temporary file in {}", folder.display()), e);
-    let mut file = tempfile::tempfile_in(&folder).map_err(in_folder)?;
-    copy(&mut input, &mut file).map_err(|e| e.of_input(name))?;
-    read_input(&Input::open_file(file, name, &options())?)
+    let file = TemporaryFile::create(None)?;
+    copy(&mut input, &file).map_err(|e| e.of_input(name))?;
+    read_input(&Input::open_file(file.into_file(), name, &options())?)
 }
 
 fn options() -> SourceOptions {
@@ -36,14 +34,14 @@ fn options() -> SourceOptions {
 }
 
 /// Copies all bytes. What fails is told apart: reading, or writing.
-fn copy(input: &mut impl Read, file: &mut File) -> Result<()> {
+fn copy(input: &mut impl Read, file: &TemporaryFile) -> Result<()> {
     use std::io::Write;
     let mut buffer = vec![0; 1 << 16];
     loop {
         match input.read(&mut buffer) {
             Ok(0) => return Ok(()),
             Ok(len) => {
-                file.write_all(&buffer[..len]).map_err(|e| Error::io("writing a temporary file", e))?;
+                file.file().write_all(&buffer[..len]).map_err(|e| file.error("writing to it", e))?;
             }
             Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
             Err(e) => return Err(Error::io("reading", e)),

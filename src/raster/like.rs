@@ -1,0 +1,43 @@
+//! The grid of a GeoTIFF that is there already.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use tiff::decoder::Decoder;
+use tiff::tags::Tag;
+
+use super::Grid;
+use super::geotiff::{PIXEL_SCALE, TIEPOINT};
+use crate::error::{Error, Result};
+
+impl Grid {
+    /// The cells of a GeoTIFF.
+    ///
+    /// # Errors
+    /// If it cannot be read, is no GeoTIFF, or has cells that are not square or not along the axes.
+    pub fn of_file(path: &Path) -> Result<Grid> {
+        read(path).map_err(|error| error.of_input(path.display().to_string()))
+    }
+}
+
+fn read(path: &Path) -> Result<Grid> {
+    let file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let malformed = |error: tiff::TiffError| Error::malformed(format!("this is no TIFF: {error}"));
+    let mut decoder = Decoder::new(BufReader::new(file)).map_err(malformed)?;
+    let (columns, rows) = decoder.dimensions().map_err(malformed)?;
+    let mut numbers = |tag: u16| decoder.get_tag_f64_vec(Tag::Unknown(tag)).unwrap_or_default();
+    let (scale, tie) = (numbers(PIXEL_SCALE), numbers(TIEPOINT));
+    let (&[width, height, ..], &[column, row, _, x, y, ..]) = (&scale[..], &tie[..]) else {
+        let what =
+            "it does not say where its cells are by their size and one place: warp it to a plain grid first";
+        return Err(Error::malformed(what));
+    };
+    if !(width > 0.0 && width.is_finite() && [column, row, x, y].iter().all(|number| number.is_finite())) {
+        return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
+    }
+    if width != height {
+        return Err(Error::usage(format!("its cells are {width} by {height}, ours are square")));
+    }
+    Ok(Grid { left: x - column * width, top: y + row * width, step: width, columns, rows })
+}

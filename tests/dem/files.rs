@@ -1,0 +1,120 @@
+//! What files hold beyond cells that triangles give: holes that are filled, overviews, other numbers for no data, grids of others.
+
+use std::io::Cursor;
+
+use spmesh::dem::{Attribute, Options};
+use spmesh::raster::{NoData, RasterFormat, RasterOptions, TILE};
+use tiff::decoder::Decoder;
+
+use super::tiles::{mesh_and_grid, tiff_values};
+use super::{file, is_same, options, raster, values};
+use crate::programs::{Folder, cloud, outcome, run};
+
+/// The mean, by inverse distance, of the nearest data in eight directions, each within reach.
+fn filled(values: &[f32], columns: usize, at: [usize; 2], reach: i64) -> f32 {
+    let rows = values.len() / columns;
+    let cell = |[x, y]: [i64; 2]| {
+        let is_inside = (0..columns as i64).contains(&x) && (0..rows as i64).contains(&y);
+        is_inside.then(|| values[y as usize * columns + x as usize]).filter(|value| !value.is_nan())
+    };
+    let known = cell(at.map(|place| place as i64));
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for [dx, dy] in [[-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1]] {
+        let distance = |step: i64| step as f64 * ((dx * dx + dy * dy) as f64).sqrt();
+        let steps = (1..=reach).filter(|&step| distance(step) <= reach as f64);
+        let found = steps.map(|step| (step, cell([at[0] as i64 + dx * step, at[1] as i64 + dy * step])));
+        if let Some((step, Some(value))) = { found }.find(|(_, value)| value.is_some()) {
+            sum += f64::from(value) / distance(step);
+            weights += 1.0 / distance(step);
+        }
+    }
+    known.unwrap_or((sum / weights) as f32)
+}
+
+#[test]
+fn holes_are_filled_from_what_is_near() {
+    let (stream, grid) = mesh_and_grid();
+    let whole = Options { kill: Some(150.0), ..options(Attribute::Elevation) };
+    let drawn = raster(&stream, &grid, &whole);
+    let columns = grid.columns as usize;
+    for reach in [1, 40] {
+        for memory in [1 << 30, 600_000] {
+            let options = Options { fill: Some(reach), memory, ..whole.clone() };
+            let (text, stats) = file(&stream, RasterFormat::Ascii, &grid, &options).unwrap();
+            let found = values(&text);
+            let (bytes, of_tiff) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
+            assert!(is_same(&found, &tiff_values(&bytes, &grid)), "{reach}");
+            assert_eq!((stats.known, stats.filled), (of_tiff.known, of_tiff.filled));
+            let mut count = 0;
+            for (number, (&value, &before)) in found.iter().zip(&drawn).enumerate() {
+                let expected =
+                    filled(&drawn, columns, [number % columns, number / columns], i64::from(reach));
+                let is_near = (value - expected).abs() <= 1e-3 || value.is_nan() && expected.is_nan();
+                assert!(is_near, "{reach}: cell {number} has {value}, expected {expected}");
+                count += u64::from(before.is_nan() && !value.is_nan());
+            }
+            assert_eq!(stats.filled, count);
+            assert!(count > 100);
+        }
+    }
+}
+
+#[test]
+fn complete_tiles_are_sources_for_their_neighbours() {
+    // A square that covers the first of two tiles in a row, and a bit of the second one.
+    let points = vec![[0.0, 0.0, 5.0], [300.0, 0.0, 5.0], [300.0, 256.0, 5.0], [0.0, 256.0, 5.0]];
+    let mesh = super::Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+    let stream = mesh.stream(spmesh::stream::Coordinates::F64);
+    let grid = spmesh::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
+    let options = Options { fill: Some(100), ..options(Attribute::Elevation) };
+    let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
+    assert_eq!((stats.known, stats.filled), (400 * 256, 100 * 256));
+    let found = tiff_values(&bytes, &grid);
+    assert!(found.iter().enumerate().all(|(cell, value)| (cell % 512 < 400) == (*value == 5.0)));
+}
+
+#[test]
+fn overviews_change_no_cell() {
+    let (stream, grid) = mesh_and_grid();
+    for no_data in [NoData::default(), NoData(f32::NAN), NoData(500.0)] {
+        let plain = RasterOptions { no_data, ..RasterOptions::default() };
+        let with = RasterOptions { has_overviews: true, ..plain.clone() };
+        let decoded = [plain, with].map(|raster| {
+            let options = Options { raster, ..options(Attribute::Elevation) };
+            let (bytes, _) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
+            let values = tiff_values(&bytes, &grid);
+            let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();
+            let mut images = 1;
+            while decoder.more_images() {
+                decoder.next_image().unwrap();
+                images += 1;
+            }
+            (images, values)
+        });
+        assert!(is_same(&decoded[0].1, &decoded[1].1));
+        assert!(grid.columns as usize > 2 * TILE);
+        assert_eq!([decoded[0].0, decoded[1].0], [1, 3]);
+    }
+}
+
+#[test]
+fn grids_fit_those_of_other_files() {
+    let folder = Folder::new();
+    let points = run("spfinalize", &["-"], cloud(3_000).as_bytes());
+    let mesh = run("spdelaunay2d", &[], &points.stdout).stdout;
+    let raster = |name: &str, arguments: &[&str]| {
+        let path = folder.path(name);
+        let (code, message) = outcome(&run("spdem", &[arguments, &["-o", &path]].concat(), &mesh));
+        assert_eq!(code, Some(0), "{message}");
+        (spmesh::raster::Grid::of_file(path.as_ref()).unwrap(), std::fs::read(&path).unwrap())
+    };
+    let (grid, bytes) = raster("a.tif", &["--step", "1000", "--align", "17,-5"]);
+    assert_eq!([(grid.left - 17.0) % 1000.0, (grid.top + 5.0) % 1000.0], [0.0, 0.0]);
+    let path = folder.path("a.tif");
+    let (again, same) = raster("b.tif", &["--like", &path]);
+    assert_eq!(again, grid);
+    assert!(same == bytes);
+    // Through a pipe, tiles come in rows; cells are the same.
+    let piped = run("spdem", &["--like", &path], &mesh).stdout;
+    assert!(is_same(&tiff_values(&piped, &grid), &tiff_values(&bytes, &grid)));
+}
