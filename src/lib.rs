@@ -38,3 +38,4 @@ pub mod splinefit;
 pub mod stream;
 pub mod system;
 pub mod tess3;
+pub mod view;

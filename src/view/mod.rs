@@ -1,0 +1,4 @@
+//! Pictures of streams.
+
+pub mod frame;
+pub mod page;
