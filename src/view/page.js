@@ -1,5 +1,5 @@
-// Pan and zoom of the picture. A place of the map is drawn at zoom * place + (x, y) in units of the picture; only the
-// transform of the group "map" changes, its paths are never touched. Numbers stay doubles up to what is shown.
+// Pan and zoom of the picture. A place of the map is shown at zoom * place + (x, y) in units of the picture; only
+// transforms change, paths are never touched. Numbers stay doubles up to what is shown.
 
 const LEAST_ZOOM = 2 ** -2;
 const ZOOM_STEP = 2;
@@ -10,6 +10,11 @@ const WHEEL_PIXELS_TO_DOUBLE = 300;
 const PINCH_PIXELS_TO_DOUBLE = 60;
 // Pixels of a line and of a page of the wheel, which some mice count in.
 const WHEEL_PIXELS = [1, 16, 400];
+// A map of more paths than this takes longer to draw than a frame lasts. Units: characters.
+const LIGHT_PATHS = 100_000;
+const PATH_CHARACTERS = 50;
+// It is drawn again when it has rested for so long, or has been moved by half of the picture or zoomed by two.
+const REST_MILLISECONDS = 100;
 const STEP_MILLISECONDS = 160;
 // Browsers refuse an address that changes with every frame.
 const SETTLE_MILLISECONDS = 300;
@@ -17,24 +22,35 @@ const HOME = { zoom: 1, x: 0, y: 0 };
 
 const stage = document.querySelector('.page-stage');
 const svg = stage.querySelector('svg');
+const sheet = svg.parentElement;
 const map = svg.querySelector('#map');
 const { width, height } = svg.viewBox.baseVal;
 // A picture that is not seen from above has no world coordinates: its own take their place, and are not shown.
 const isPlan = stage.dataset.unit !== undefined;
 const [left, top, unit] = isPlan ? ['left', 'top', 'unit'].map((name) => Number(stage.dataset[name])) : [0, 0, 1];
 const shown = Object.fromEntries([...document.querySelectorAll('[data-show]')].map((part) => [part.dataset.show, part]));
+sheet.style.setProperty('--aspect', width / height);
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
+// The stage says it to those who listen; browsers would show it wherever the mouse rests.
+svg.querySelector(':scope > title')?.remove();
+svg.removeAttribute('role');
+const furniture = separated();
 const drawScaleBar = scaleBar();
+const isHeavy = pathCharacters() > LIGHT_PATHS;
 
 let view = HOME;
 // Where a step that is under way ends: the next one starts there.
 let goal = HOME;
+// What is shown: the paths as they were drawn for a view, and moved as a whole since.
+let drawn = HOME;
+let seen = null;
 // From the window to the picture; asked only when sizes change, because the answer can cost a layout.
 let placement = { a: 1, d: 1, e: 0, f: 0 };
 // Where the mouse is, in units of the picture.
 let pointer = null;
 let frameIsDue = false;
 let animation = 0;
+let resting = 0;
 let settling = 0;
 
 // Views
@@ -125,8 +141,8 @@ function lengthText(length) {
 
 // The bar of the picture, drawn again at most as long, for any zoom.
 function scaleBar() {
-  const bar = svg.querySelector('#scale path');
-  const text = svg.querySelector('#scale text');
+  const bar = furniture.querySelector('#scale path');
+  const text = furniture.querySelector('#scale text');
   if (!bar || !text) {
     return () => {};
   }
@@ -147,12 +163,50 @@ function scaleBar() {
 
 // Drawing
 
+function pathCharacters() {
+  const paths = [...map.querySelectorAll('*')];
+  return paths.reduce((sum, path) => sum + PATH_CHARACTERS + (path.getAttribute('d')?.length ?? 0), 0);
+}
+
 function draw() {
   frameIsDue = false;
-  map.setAttribute('transform', `matrix(${view.zoom} 0 0 ${view.zoom} ${view.x} ${view.y})`);
   stage.classList.toggle('page-near', view.zoom > 4 * placement.a);
-  drawScaleBar();
+  if (view !== seen) {
+    seen = view;
+    if (isHeavy && isNearDrawn()) {
+      slide();
+    } else {
+      render();
+    }
+    drawScaleBar();
+  }
   tell();
+}
+
+function render() {
+  clearTimeout(resting);
+  drawn = view;
+  svg.style.transform = '';
+  map.setAttribute('transform', `matrix(${view.zoom} 0 0 ${view.zoom} ${view.x} ${view.y})`);
+}
+
+// From where the paths are drawn to where they should be.
+function slip() {
+  const scale = view.zoom / drawn.zoom;
+  return { scale, x: view.x - scale * drawn.x, y: view.y - scale * drawn.y };
+}
+
+function isNearDrawn() {
+  const { scale, x, y } = slip();
+  return scale > 1 / 2 && scale < 2 && Math.abs(x) < width / 2 && Math.abs(y) < height / 2;
+}
+
+// Moves what is drawn, as a whole, which costs little.
+function slide() {
+  const { scale, x, y } = slip();
+  svg.style.transform = `matrix(${scale}, 0, 0, ${scale}, ${x / placement.a}, ${y / placement.d})`;
+  clearTimeout(resting);
+  resting = setTimeout(render, REST_MILLISECONDS);
 }
 
 function tell() {
@@ -251,6 +305,7 @@ stage.addEventListener('keydown', (event) => {
   // With these keys they are the browser's.
   if (act && !event.ctrlKey && !event.altKey && !event.metaKey) {
     event.preventDefault();
+    stage.classList.add('page-keyed');
     glide(act());
   }
 });
@@ -292,6 +347,7 @@ function release(event) {
 stage.addEventListener('pointerdown', (event) => {
   if (event.button === 0 && held.size < 2) {
     stage.setPointerCapture(event.pointerId);
+    stage.classList.remove('page-keyed');
     held.set(event.pointerId, place(event));
   }
 });
@@ -328,14 +384,20 @@ stage.addEventListener('wheel', (event) => {
 function measure() {
   // A stage that is squeezed to nothing shows nothing.
   if (stage.clientWidth > 0 && stage.clientHeight > 0) {
-    placement = svg.getScreenCTM().inverse();
+    placement = furniture.getScreenCTM().inverse();
     requestDraw();
   }
 }
 
-// Browsers would show it wherever the mouse rests; the stage has it for those who listen.
-svg.querySelector(':scope > title')?.remove();
-svg.style.setProperty('--aspect', width / height);
+// The furniture gets a layer of its own, above that of the map.
+function separated() {
+  const above = svg.cloneNode(false);
+  above.append(svg.querySelector('#furniture') ?? '');
+  svg.after(above);
+  return above;
+}
+
+sheet.classList.toggle('page-heavy', isHeavy);
 document.querySelector('.page-bar').hidden = false;
 measure();
 show(viewOfAddress());
