@@ -29,6 +29,8 @@ const EXAMPLES: &str = "\
 Examples:
   A terrain as a picture, in colours of its elevations and lit from the north-west:
     spview terrain.spm -o terrain.png
+  The same in a browser, to look around in it:
+    spview terrain.spm -o terrain.html
   Its triangles and nothing else, of a part of it, to be printed:
     spview --fill none --bounds 4000,7000,4100,7080 terrain.spm -o part.svg
   When each cell of a finalized stream got its first and its last point:
@@ -63,7 +65,7 @@ const BUFFER_LEN: usize = 1 << 18;
 
 /// Pictures of streams: meshes, points and their cells, configurations; also on the way through a pipe.
 ///
-/// Reads a stream and writes SVG or PNG. What is drawn follows from what the stream holds: the relief of a terrain, the
+/// Reads a stream and writes SVG, PNG, or an HTML page that pans and zooms. What is drawn follows from what the stream holds: the relief of a terrain, the
 /// edges of other triangle meshes, cells of finalized points, knots and centroid triangulations of configurations.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
@@ -76,7 +78,7 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// SVG or PNG [default: by the name of the output, otherwise svg]
+    /// SVG, PNG, or a page that pans and zooms [default: by the name of the output, otherwise svg]
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<Format>,
 

@@ -1,6 +1,6 @@
 //! `spview`: pictures of streams.
 //!
-//! A picture is SVG; PNG is that SVG, rendered. `drawing` goes from events to pictures. `stage` says what is seen: `sheet` has what
+//! A picture is SVG; PNG is that SVG, rendered, and `page` puts it on a page that pans and zooms. `drawing` goes from events to pictures. `stage` says what is seen: `sheet` has what
 //! stands around the map, `view` how the world comes on it, and `frame` where it is in the world. `look` says what triangles and
 //! points look like, with the colours of `ramp`. `layer` keeps those that are few, for `triangles` and `dots` to draw, and paints
 //! others on the pixels of `canvas`. `hiding` puts triangles in order that are seen from one side. `front` has the vertices that are live, `cells` those of a finalization, and
@@ -19,6 +19,7 @@ mod front;
 mod hiding;
 mod layer;
 mod look;
+mod page;
 mod picture;
 mod ramp;
 mod sheet;

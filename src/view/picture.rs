@@ -1,5 +1,6 @@
-//! A picture that is complete: SVG, and PNG made of it.
+//! A picture that is complete: SVG, and what is made of it.
 
+use std::io::Write;
 use std::sync::Arc;
 
 use resvg::tiny_skia::{Color, Pixmap, Transform};
@@ -7,6 +8,7 @@ use resvg::usvg::{self, fontdb};
 
 use super::canvas::too_large;
 use super::frame::Frame;
+use super::page::{self, Page};
 use crate::error::{Error, Result};
 
 /// The font of pictures, so that they look the same everywhere: Latin letters of DejaVu Sans.
@@ -24,6 +26,14 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// The picture on a page that pans and zooms, as one file of HTML.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn html(&self, output: &mut impl Write) -> Result<()> {
+        page::write(output, &Page { title: &self.title, svg: &self.svg, frame: self.frame.as_ref() })
+    }
+
     /// The picture as PNG.
     ///
     /// # Errors

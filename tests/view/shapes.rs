@@ -200,3 +200,20 @@ fn the_furniture_says_what_is_shown() {
     let elements = parse(&super::picture(&mesh, &image).svg);
     assert_eq!(within(&elements, "map", "image").len(), 1);
 }
+
+#[test]
+fn the_ending_of_a_name_says_the_format() {
+    let (folder, mesh) = (crate::programs::Folder::new(), mesh_of(&grid(6)));
+    let written = |name: &str| {
+        output("spview", &["-o", &folder.path(name), "-"], &mesh);
+        std::fs::read(folder.path(name)).unwrap()
+    };
+    let svg = output("spview", &["-"], &mesh);
+    assert!(written("mesh.svg") == svg && written("no-ending") == svg && svg.starts_with(b"<svg "));
+    assert!(written("mesh.PNG").starts_with(b"\x89PNG\r\n"));
+    let page = String::from_utf8(written("mesh.html")).unwrap();
+    assert!(
+        page.to_lowercase().starts_with("<!doctype html>")
+            && page.contains(std::str::from_utf8(&svg).unwrap())
+    );
+}

@@ -14,6 +14,7 @@ use crate::view::Picture;
 pub(super) enum Format {
     Svg,
     Png,
+    Html,
 }
 
 /// Where pictures go.
@@ -74,11 +75,12 @@ impl Outputs {
             }
         };
         let Some(mut output) = output else { return Ok(()) };
-        let written = match self.format {
-            Format::Svg => output.write_all(picture.svg.as_bytes()),
-            Format::Png => output.write_all(&picture.png()?),
-        };
-        written.map_err(|error| Error::io("writing the picture", error))?;
+        let failed = |error| Error::io("writing the picture", error);
+        match self.format {
+            Format::Svg => output.write_all(picture.svg.as_bytes()).map_err(failed)?,
+            Format::Png => output.write_all(&picture.png()?).map_err(failed)?,
+            Format::Html => picture.html(&mut output)?,
+        }
         output.commit()
     }
 
@@ -98,6 +100,7 @@ fn format_of(path: &Path) -> Option<Format> {
     match &ending[..] {
         "svg" => Some(Format::Svg),
         "png" => Some(Format::Png),
+        "html" | "htm" => Some(Format::Html),
         _ => None,
     }
 }
