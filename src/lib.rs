@@ -39,3 +39,4 @@ pub mod stream;
 pub mod system;
 mod temporary;
 pub mod tess3;
+pub mod view;

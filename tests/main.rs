@@ -35,3 +35,4 @@ mod stream;
 mod system;
 mod tess3;
 mod vectors;
+mod view;

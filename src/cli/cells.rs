@@ -59,13 +59,7 @@ impl CellFlags {
 
     /// What the raster covers, if that is said.
     fn window(&self) -> Result<Option<Window>> {
-        match self.bounds {
-            Some([x0, y0, x1, y1]) if x0 < x1 && y0 < y1 => Ok(Some(Window { min: [x0, y0], max: [x1, y1] })),
-            Some([x0, y0, x1, y1]) => Err(Error::usage(format!(
-                "bounds {x0},{y0},{x1},{y1} are empty: expected least x, least y, greatest x, greatest y"
-            ))),
-            None => Ok(None),
-        }
+        self.bounds.map(window_of).transpose()
     }
 }
 
@@ -114,6 +108,16 @@ impl RasterFlags {
         }
         Ok(())
     }
+}
+
+/// What `--bounds` says.
+pub(super) fn window_of([x0, y0, x1, y1]: [f64; 4]) -> Result<Window> {
+    if x0 < x1 && y0 < y1 {
+        return Ok(Window { min: [x0, y0], max: [x1, y1] });
+    }
+    Err(Error::usage(format!(
+        "bounds {x0},{y0},{x1},{y1} are empty: expected least x, least y, greatest x, greatest y"
+    )))
 }
 
 /// The format that the ending of a name tells.

@@ -13,6 +13,7 @@ pub mod spdem;
 pub mod spfinalize;
 pub mod spinfo;
 pub mod splinefit;
+pub mod spview;
 pub mod tess3;
 
 use std::ffi::OsString;

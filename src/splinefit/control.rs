@@ -2,9 +2,8 @@
 
 use std::io::Write;
 
-use super::drawing;
 use super::layout::Spline;
-use crate::bounds::Point;
+use crate::bounds::{Bounds, Point};
 use crate::delaunay2;
 use crate::error::{Error, Result};
 use crate::predicates::Point2;
@@ -53,19 +52,12 @@ impl ControlMesh {
     /// If writing fails.
     pub fn write(&self, output: impl Write) -> Result<()> {
         let header = Header {
+            bounds: Bounds::of_points(&self.points),
             crs: self.crs.clone(),
             producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
             ..Header::new(Kind::TriangleMesh, Coordinates::F64, 2, true)
         };
         let at = |id: u32| self.points[id as usize];
         write_triangles(header, &self.triangles, self.points.len(), self.merged, at, output)
-    }
-
-    /// Draws it as SVG, seen from above one side.
-    ///
-    /// # Errors
-    /// If writing fails.
-    pub fn draw(&self, output: &mut impl Write) -> Result<()> {
-        drawing::draw(self, output)
     }
 }

@@ -4,12 +4,11 @@
 //! their elevations, `given` knots of files, `sharp` breaklines among them, `options` what is wanted; `choose` finds how much is
 //! smoothed, `fit` the coefficients, `statistics` and `lists` what is left of points. `attributes` are what can be asked of a
 //! spline, `values` answers at sites, `raster` in cells. `summary` says what functions are like, `smoothness` where they are less
-//! smooth than others, and `control` has control meshes, of which `drawing` makes pictures.
+//! smooth than others, and `control` has control meshes.
 
 mod attributes;
 mod choose;
 mod control;
-mod drawing;
 mod fit;
 mod frame;
 mod given;

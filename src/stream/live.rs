@@ -61,6 +61,11 @@ impl<T: Copy> LiveVertices<T> {
             .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
     }
 
+    /// Ids and values of the vertices that are live now, in any order.
+    pub fn iter(&self) -> impl Iterator<Item = (u64, T)> + '_ {
+        self.live.iter().map(|(&id, &value)| (id, value))
+    }
+
     /// Number of vertices that are live now.
     #[must_use]
     pub fn len(&self) -> usize {

@@ -20,14 +20,14 @@ use crate::reference::sets::Random;
 
 /// A triangle mesh with stored coordinates.
 #[derive(Clone)]
-struct Mesh {
-    points: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
+pub struct Mesh {
+    pub points: Vec<[f64; 3]>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
     /// The Delaunay triangulation of integer points, with random elevations from 0 to 999.
-    fn of(random: &mut Random, points: &[[i64; 2]]) -> Mesh {
+    pub fn of(random: &mut Random, points: &[[i64; 2]]) -> Mesh {
         let triangles = incremental::triangles(points);
         let point = |&[x, y]: &[i64; 2]| [x as f64, y as f64, random.integer(0, 999) as f64];
         Mesh { points: points.iter().map(point).collect(), triangles }
@@ -41,7 +41,7 @@ impl Mesh {
         mesh
     }
 
-    fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
+    pub fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
         let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
         header.bounds = Bounds::of_points(&self.points);
         let (mut output, at) = (Vec::new(), |vertex: u32| self.points[vertex as usize]);

@@ -112,9 +112,10 @@ fn control_meshes_are_drawn() {
     let twin = String::from_utf8(run("spconvert", &["--to", "text"], &triangles).stdout).unwrap();
     let expected = twin.lines().filter(|line| line.starts_with("f ")).count();
     assert!(expected > 50);
-    assert_eq!(picture.matches("<path ").count(), expected);
+    assert_eq!(picture.matches("<path color=").count(), expected);
+    assert!(picture.contains("Control mesh of stdin"));
     assert!(picture.starts_with("<svg ") && picture.ends_with("</svg>\n") && !picture.contains("NaN"));
     // The least elevation and the greatest have the ends of the ramp.
-    assert!(picture.contains("#440154") && picture.contains("#fde725"));
+    assert!(picture.contains("#011959") && picture.contains("#faccfa"));
     assert_eq!(output(&["mesh", "-", "--svg"], &spline), picture.as_bytes());
 }

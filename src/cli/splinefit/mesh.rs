@@ -1,12 +1,16 @@
 //! `splinefit mesh`: flags.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::Output;
+use crate::source::name_of;
 use crate::splinefit::{ControlMesh, Spline};
+use crate::stream::StreamReader;
+use crate::view::{self, Moments, Options, Picture};
 
 #[derive(Debug, Clone, Args)]
 pub(super) struct Flags {
@@ -29,10 +33,24 @@ impl Flags {
         let mut output = Output::create(&self.output, !is_picture)?;
         let mesh = ControlMesh::of(&Spline::open(&self.spline)?)?;
         if is_picture {
-            mesh.draw(&mut output)?
+            self.draw(&mesh, &mut output)?
         } else {
             mesh.write(&mut output)?
         }
         output.commit()
+    }
+
+    /// The picture that `spview` makes of the mesh, from one side.
+    fn draw(&self, mesh: &ControlMesh, output: &mut Output) -> Result<()> {
+        let mut stream = Vec::new();
+        mesh.write(&mut stream)?;
+        let mut reader = StreamReader::new(&stream[..], "the control mesh")?;
+        let name = format!("Control mesh of {}", name_of(&self.spline));
+        let options = Options { oblique: true, ..Options::new(name) };
+        let mut take = |picture: &Picture| {
+            let written = output.write_all(picture.svg.as_bytes());
+            written.map_err(|error| Error::io("writing the picture", error))
+        };
+        view::draw(&mut reader, &options, Moments::default(), &mut take, |_| {})
     }
 }

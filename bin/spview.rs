@@ -1,0 +1,5 @@
+//! Pictures of streams.
+
+fn main() -> std::process::ExitCode {
+    spmesh::cli::main(spmesh::cli::spview::run)
+}

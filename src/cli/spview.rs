@@ -1,0 +1,278 @@
+//! `spview`: flags.
+
+mod moment;
+mod outputs;
+mod tee;
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use clap::{Parser, ValueEnum};
+
+use super::cells::window_of;
+use super::progress::Progress;
+use super::{Common, notice, open_input, parse_numbers};
+use crate::error::{Error, ErrorKind, Result};
+use crate::raster::Light;
+use crate::source::name_of;
+use crate::stream::{Kind, StreamReader};
+use crate::system;
+use crate::view::{self, Fill, Form, Moments, Options, Picture, Survey, When};
+use moment::{Every, Moment};
+use outputs::{Format, Outputs};
+use tee::Tee;
+
+const TOOL: &str = "spview";
+
+const EXAMPLES: &str = "\
+Examples:
+  A terrain as a picture, in colours of its elevations and lit from the north-west:
+    spview terrain.spm -o terrain.png
+  The same in a browser, to look around in it:
+    spview terrain.spm -o terrain.html
+  Its triangles and nothing else, of a part of it, to be printed:
+    spview --fill none --bounds 4000,7000,4100,7080 terrain.spm -o part.svg
+  When each cell of a finalized stream got its first and its last point:
+    spfinalize tiles/*.laz | spview -o order.png
+  How far a triangulation is after two fifths of its triangles, with its live vertices:
+    spview --at 0.4 terrain.spm -o front.png
+  Pictures of a pipe at work, one for each million points:
+    spfinalize big.laz | spview --tee --snapshot every=1000000 -o shots/%04d.png | spdelaunay2d -o big.spm
+  A control mesh, seen from one side:
+    splinefit mesh spline.spm | spview --oblique -o control.svg
+  The centroid triangulation of configurations, and the link of a pair of knots:
+    spview --order 2 knots.spm -o order2.svg
+    spview --set 3,7 knots.spm -o link.svg
+";
+
+// Paragraphs are single lines: they are wrapped to the width of the terminal.
+const NOTES: &str = "
+Up to 20,000 triangles or points are drawn one by one; more are painted as pixels, in memory that depends on the size of the picture. \
+What the header says of where the stream lies is used; a file that does not say it is read twice, a pipe needs --bounds if it is long.
+
+Streams in the plane and points in space are seen from above. Colours of time go by the position in the stream; those of a cell show \
+its first point in the middle and its last one at the border. Units are those of the coordinates.
+
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
+its reader.";
+
+/// What is said where memory that is needed cannot be had.
+const OUT_OF_MEMORY: &str = "spview: not enough memory: take less --width, or --raster\n";
+
+/// Bytes that are read of a pipe at once.
+const BUFFER_LEN: usize = 1 << 18;
+
+/// Pictures of streams: meshes, points and their cells, configurations; also on the way through a pipe.
+///
+/// Reads a stream and writes SVG, PNG, or an HTML page that pans and zooms. What is drawn follows from what the stream holds: the relief of a terrain, the
+/// edges of other triangle meshes, cells of finalized points, knots and centroid triangulations of configurations.
+#[derive(Debug, Parser)]
+#[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
+pub struct Flags {
+    /// Stream of points, of a triangle mesh, or of configurations; - is stdin
+    #[arg(value_name = "STREAM", default_value = "-")]
+    input: PathBuf,
+
+    /// Where the picture goes; - is stdout. With --snapshot, a name with one %d, or %04d for numbers of four digits
+    #[arg(short, long, value_name = "FILE", default_value = "-")]
+    output: PathBuf,
+
+    /// SVG, PNG, or a page that pans and zooms [default: by the name of the output, otherwise svg]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<Format>,
+
+    /// What triangles or points show [default: relief where there are elevations, time for points]
+    #[arg(long, value_enum, value_name = "WHAT")]
+    fill: Option<FillFlag>,
+
+    /// Whether edges of triangles are drawn
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t = WhenFlag::Auto)]
+    edges: WhenFlag,
+
+    /// Draw finalized points without their cells
+    #[arg(long)]
+    no_cells: bool,
+
+    /// Seen from above one side
+    #[arg(long)]
+    oblique: bool,
+
+    /// Where the light is: clockwise from north, and above the horizon, in degrees
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = "315,45", allow_hyphen_values = true)]
+    light: [f64; 2],
+
+    /// Colours of two sorts, for elevations below and above this one
+    #[arg(long, value_name = "Z", allow_negative_numbers = true)]
+    middle: Option<f64>,
+
+    /// Width of the picture in pixels
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(320..=8192))]
+    width: u32,
+
+    /// The part of the plane that is seen, in world coordinates [default: all that there is]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
+    bounds: Option<[f64; 4]>,
+
+    /// Draw triangles or points one by one, however many there are
+    #[arg(long, conflicts_with = "raster")]
+    vector: bool,
+
+    /// Paint triangles or points as pixels, however few there are
+    #[arg(long)]
+    raster: bool,
+
+    /// A moment instead of the end: a part of the stream, like 0.4, or a number of triangles or points
+    #[arg(long, value_name = "MOMENT", value_parser = moment::parse_moment)]
+    at: Option<Moment>,
+
+    /// A picture after each of so many triangles or points, too
+    #[arg(long, value_name = "every=N", value_parser = moment::parse_every)]
+    snapshot: Option<Every>,
+
+    /// Pass the stream on to stdout, byte for byte
+    #[arg(long)]
+    tee: bool,
+
+    /// Of configurations, the centroid triangulation of this order [default: the greatest]
+    #[arg(long, value_name = "K", conflicts_with = "set", value_parser = clap::value_parser!(u16).range(1..))]
+    order: Option<u16>,
+
+    /// Of configurations, the link of this set of knots
+    #[arg(long, value_name = "KNOT,KNOT,...", value_delimiter = ',')]
+    set: Option<Vec<u32>>,
+
+    #[command(flatten)]
+    common: Common,
+}
+
+/// What `--fill` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FillFlag {
+    None,
+    Elevation,
+    Hillshade,
+    Relief,
+    Time,
+}
+
+/// What `--edges` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum WhenFlag {
+    Auto,
+    Always,
+    Never,
+}
+
+/// Runs the tool.
+///
+/// # Errors
+/// As [`view::draw`], and if the input or an output cannot be opened.
+pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+    let mut options = flags.options()?;
+    let mut outputs = Outputs::new(&flags.output, flags.format, flags.snapshot.is_some(), flags.tee)?;
+    let (input, name) = open_input(&flags.input)?;
+    let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
+    let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
+    let survey = flags.survey(&reader)?;
+    options.surveyed = survey.and_then(|survey| survey.bounds);
+    let moments =
+        Moments { at: flags.moment(&reader, survey)?, every: flags.snapshot.map(|Every(count)| count) };
+    let mut progress = Progress::new(&flags.common, "drawing", reader.header().points);
+    let mut take = |picture: &Picture| outputs.put(picture);
+    let drawn = view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
+    drop(progress);
+    drawn?;
+    drop(reader);
+    if let Some(summary) = outputs.finish() {
+        notice(TOOL, &flags.common, &summary);
+    }
+    Ok(())
+}
+
+impl Flags {
+    fn options(&self) -> Result<Options> {
+        if !self.light.iter().all(|angle| angle.is_finite()) {
+            return Err(Error::usage("--light takes two angles in degrees"));
+        }
+        if self.middle.is_some_and(|middle| !middle.is_finite()) {
+            return Err(Error::usage("--middle takes an elevation"));
+        }
+        let name = Path::new(&self.input).file_name().map(|name| name.to_string_lossy().into_owned());
+        let [azimuth, altitude] = self.light;
+        let defaults = Options::new(name.filter(|name| name != "-").unwrap_or("stdin".to_string()));
+        Ok(Options {
+            fill: self.fill.map(|fill| match fill {
+                FillFlag::None => Fill::None,
+                FillFlag::Elevation => Fill::Elevation,
+                FillFlag::Hillshade => Fill::Hillshade,
+                FillFlag::Relief => Fill::Relief,
+                FillFlag::Time => Fill::Time,
+            }),
+            edges: match self.edges {
+                WhenFlag::Auto => When::Auto,
+                WhenFlag::Always => When::Always,
+                WhenFlag::Never => When::Never,
+            },
+            cells: !self.no_cells,
+            form: match (self.vector, self.raster) {
+                (true, _) => Form::Vector,
+                (_, true) => Form::Raster,
+                _ => Form::Auto,
+            },
+            width: self.width,
+            bounds: self.bounds.map(window_of).transpose()?,
+            oblique: self.oblique,
+            light: Light::from(azimuth, altitude),
+            middle: self.middle,
+            order: self.order.map(usize::from),
+            set: self.set.clone(),
+            ..defaults
+        })
+    }
+
+    /// Reads a file to its end, if its header does not say what is asked for.
+    fn survey<R: Read>(&self, reader: &StreamReader<R>) -> Result<Option<Survey>> {
+        let header = reader.header();
+        if header.kind.has_knots()
+            || header.kind.is_4d()
+            || !self.input.metadata().is_ok_and(|file| file.is_file())
+        {
+            return Ok(None);
+        }
+        let is_counted = header.kind == Kind::Points && header.points.is_some();
+        let needs_count = matches!(self.at, Some(Moment::Part(_))) && !is_counted;
+        let needs_bounds = header.bounds.is_none() && (self.bounds.is_none() || self.oblique);
+        if !(needs_count || needs_bounds) {
+            return Ok(None);
+        }
+        let name = name_of(&self.input);
+        let file = File::open(&self.input).map_err(|error| Error::io("opening", error).of_input(&name))?;
+        let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, file), name)?;
+        view::survey(&mut reader).map(Some)
+    }
+
+    /// The number of triangles or points that `--at` means.
+    fn moment<R: Read>(&self, reader: &StreamReader<R>, survey: Option<Survey>) -> Result<Option<u64>> {
+        let part = match self.at {
+            None => return Ok(None),
+            Some(Moment::Count(count)) => return Ok(Some(count)),
+            Some(Moment::Part(part)) => part,
+        };
+        let header = reader.header();
+        let is_mesh = header.kind != Kind::Points;
+        let total = match survey {
+            Some(Survey { totals, .. }) if is_mesh => Some(totals.simplices),
+            Some(Survey { totals, .. }) => Some(totals.points),
+            None => header.points.filter(|_| !is_mesh),
+        };
+        let Some(total) = total else {
+            let what = format!(
+                "--at {part} needs to know how long the stream is: give a number, or a file instead of a pipe"
+            );
+            return Err(Error::usage(what).of_input(reader.name()));
+        };
+        Ok(Some((part * total as f64).round() as u64))
+    }
+}

@@ -1,0 +1,128 @@
+//! Where pictures go: one output, or numbered files.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use clap::ValueEnum;
+
+use crate::error::{Error, Result};
+use crate::output::Output;
+use crate::view::Picture;
+
+/// What `--format` can say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    Svg,
+    Png,
+    Html,
+}
+
+/// Where pictures go.
+pub(super) struct Outputs {
+    format: Format,
+    target: Target,
+    pictures: u64,
+}
+
+enum Target {
+    /// For one picture: opened before the work, because what cannot be written is better known then.
+    One(Option<Output>),
+    /// For several, with names of these parts before and after the number, which has so many digits at least.
+    Numbered { before: String, digits: usize, after: String },
+}
+
+impl Outputs {
+    /// # Errors
+    /// Usage, if names do not go together; if the output cannot be created.
+    pub(super) fn new(
+        path: &Path,
+        format: Option<Format>,
+        is_numbered: bool,
+        is_tee: bool,
+    ) -> Result<Outputs> {
+        let is_stdout = path == Path::new("-");
+        if is_tee && is_stdout {
+            return Err(Error::usage(
+                "--tee passes the stream on to stdout: give the picture a name with -o",
+            ));
+        }
+        let format = format.or_else(|| format_of(path)).unwrap_or(Format::Svg);
+        let target = if is_numbered {
+            if is_stdout {
+                return Err(Error::usage(
+                    "--snapshot makes several pictures: give their names with -o shots/%04d.png",
+                ));
+            }
+            pattern(path)?
+        } else {
+            Target::One(Some(Output::create(path, format == Format::Png)?))
+        };
+        Ok(Outputs { format, target, pictures: 0 })
+    }
+
+    /// Writes a picture.
+    ///
+    /// # Errors
+    /// If it cannot be rendered or written.
+    pub(super) fn put(&mut self, picture: &Picture) -> Result<()> {
+        self.pictures += 1;
+        let output = match &mut self.target {
+            Target::One(output) => output.take(),
+            Target::Numbered { before, digits, after } => {
+                let number = self.pictures;
+                let path = PathBuf::from(format!("{before}{number:0digits$}{after}"));
+                Some(Output::create(&path, self.format == Format::Png)?)
+            }
+        };
+        let Some(mut output) = output else { return Ok(()) };
+        let failed = |error| Error::io("writing the picture", error);
+        match self.format {
+            Format::Svg => output.write_all(picture.svg.as_bytes()).map_err(failed)?,
+            Format::Png => output.write_all(&picture.png()?).map_err(failed)?,
+            Format::Html => picture.html(&mut output)?,
+        }
+        output.commit()
+    }
+
+    /// What is to be said at the end.
+    pub(super) fn finish(self) -> Option<String> {
+        match self.target {
+            Target::One(_) => None,
+            Target::Numbered { .. } if self.pictures == 1 => Some("1 picture".to_string()),
+            Target::Numbered { .. } => Some(format!("{} pictures", self.pictures)),
+        }
+    }
+}
+
+/// The format that the ending of a name tells.
+fn format_of(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
+    match &ending[..] {
+        "svg" => Some(Format::Svg),
+        "png" => Some(Format::Png),
+        "html" | "htm" => Some(Format::Html),
+        _ => None,
+    }
+}
+
+/// A name with one number in it.
+fn pattern(path: &Path) -> Result<Target> {
+    let unfit = || {
+        let path = path.display();
+        Error::usage(format!(
+            "{path}: expected a name with one %d or %04d, which stands for the number of the picture"
+        ))
+    };
+    let text = path.to_str().ok_or_else(unfit)?;
+    let (before, rest) = text.split_once('%').ok_or_else(unfit)?;
+    let (digits, after) = rest.split_once('d').ok_or_else(unfit)?;
+    let digits = match digits.strip_prefix('0') {
+        None if digits.is_empty() => 1,
+        Some(digits) => digits.parse().ok().filter(|digits| (1..=20).contains(digits)).ok_or_else(unfit)?,
+        None => return Err(unfit()),
+    };
+    if after.contains('%') {
+        return Err(unfit());
+    }
+    Ok(Target::Numbered { before: before.to_string(), digits, after: after.to_string() })
+}

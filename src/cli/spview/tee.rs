@@ -1,0 +1,31 @@
+//! Passes on what is read.
+
+use std::io::{self, Read, Write};
+use std::path::Path;
+
+use crate::error::Result;
+use crate::output::Output;
+
+/// An input whose bytes go to stdout, too.
+pub(super) struct Tee<R> {
+    input: R,
+    output: Output,
+}
+
+impl<R: Read> Tee<R> {
+    /// # Errors
+    /// If stdout is a terminal.
+    pub(super) fn new(input: R) -> Result<Tee<R>> {
+        Ok(Tee { input, output: Output::create(Path::new("-"), true)? })
+    }
+}
+
+impl<R: Read> Read for Tee<R> {
+    /// Whoever reads stdout need not wait for more than what was read here.
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let len = self.input.read(buffer)?;
+        self.output.write_all(&buffer[..len])?;
+        self.output.flush()?;
+        Ok(len)
+    }
+}

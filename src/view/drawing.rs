@@ -1,0 +1,368 @@
+//! From a stream to pictures: of its end, or of moments on the way.
+
+use std::io::Read;
+
+use super::cells::Cells;
+use super::dots::{self, Dot};
+use super::front::Front;
+use super::layer::Layer;
+use super::look::{Colours, Look};
+use super::picture::Picture;
+use super::ramp::Colour;
+use super::sheet::{Furniture, Legend, Mark, Shape};
+use super::stage::Stage;
+use super::triangles::{self, Triangle};
+use super::view::PAD;
+use super::{Fill, Moments, Options, configurations, svg, ticks};
+use crate::bounds::{Bounds, Point};
+use crate::cells::CellCode;
+use crate::configgen::read::ConfigurationSet;
+use crate::error::{Error, Result};
+use crate::stream::{Coordinates, Event, Header, Kind, Patch, StreamReader};
+
+/// Vertices that are live, points of a residual.
+const LIVE: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "live vertices" };
+const RESIDUAL: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "residual points" };
+/// The border of what is final, and walls.
+const BORDER: Mark =
+    Mark { shape: Shape::Line, colour: [230, 120, 0], words: "border of the triangles so far" };
+const WALLS: Mark = Mark { shape: Shape::Line, colour: [230, 120, 0], words: "walls" };
+/// Cells.
+const CLOSED: Colour = [59, 82, 139];
+const FINAL: Mark = Mark {
+    shape: Shape::Area,
+    colour: CLOSED,
+    words: "final cell: middle by its first point, border by its last",
+};
+const OPEN: Mark = Mark { shape: Shape::Area, colour: [255; 3], words: "open cell" };
+
+/// Takes a picture that is complete.
+pub type Take<'a> = dyn FnMut(&Picture) -> Result<()> + 'a;
+
+/// Draws a stream: `take` gets the pictures of `moments`, the last one of which is of the end, unless that is another;
+/// `progress` is told how many points or vertices are read. The stream is read to its end in any case.
+///
+/// Memory: that of [`super`].
+///
+/// # Errors
+/// Usage, if the stream has nothing that could be seen from above, or lacks what options ask for; if it is malformed or ends too
+/// early; those of `take`.
+pub fn draw<R: Read>(
+    reader: &mut StreamReader<R>,
+    options: &Options,
+    moments: Moments,
+    take: &mut Take,
+    mut progress: impl FnMut(u64),
+) -> Result<()> {
+    let header = reader.header().clone();
+    check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
+    if header.kind.has_knots() {
+        let set = ConfigurationSet::read(reader)?;
+        return take(&configurations::picture(&set, header.coordinates, options)?);
+    }
+    let mut drawing = Drawing::new(&header, options, moments)?;
+    while let Some(event) = reader.next_event()? {
+        drawing.event(event, take).map_err(|error| reader.locate(error))?;
+        progress(reader.totals().points.max(reader.totals().vertices));
+    }
+    drawing.end(take)
+}
+
+/// Whether a stream can be drawn, and so.
+fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
+    let kind = header.kind;
+    let refuse = |what: String| Err(Error::usage(what));
+    if kind.is_4d() {
+        return refuse(format!(
+            "{} cannot be seen from above: dd4 --slice makes a mesh of a moment",
+            kind.name()
+        ));
+    }
+    if kind.vertices_per_simplex() == 4 {
+        return refuse(format!(
+            "a {} hides itself if seen from above: spconvert makes a VTU of it, which other programs draw in space",
+            kind.name()
+        ));
+    }
+    if kind.has_knots() {
+        if moments.at.is_some() || moments.every.is_some() || options.oblique || options.fill.is_some() {
+            let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, \
+                        --snapshot, --oblique and --fill";
+            return refuse(what.to_string());
+        }
+        return Ok(());
+    }
+    if options.order.is_some() || options.set.is_some() {
+        return refuse(format!(
+            "--order and --set are for configurations, this is a stream of kind {}",
+            kind.name()
+        ));
+    }
+    let has_z = header.dims == 3 || header.has_elevation;
+    if !has_z && (options.oblique || !matches!(options.fill, None | Some(Fill::None | Fill::Time))) {
+        return refuse(
+            "points have no elevation: give points x y z to spfinalize, or take --fill time".to_string(),
+        );
+    }
+    if kind == Kind::Points
+        && (options.oblique || matches!(options.fill, Some(Fill::Hillshade | Fill::Relief)))
+    {
+        return refuse(
+            "points are no surface: make one with spdelaunay2d, or take --fill elevation".to_string(),
+        );
+    }
+    if options.oblique && options.bounds.is_some() {
+        return refuse("--bounds is for what is seen from above: leave out --oblique".to_string());
+    }
+    Ok(())
+}
+
+/// For what lies in a box of the world.
+fn stage_of(bounds: &Bounds, options: &Options) -> Result<Stage> {
+    if options.oblique {
+        Stage::oblique(bounds, options.width)
+    } else {
+        Stage::plan(bounds, options.bounds, PAD, options.width)
+    }
+}
+
+/// What has been drawn so far.
+struct Drawing<'a> {
+    options: &'a Options,
+    moments: Moments,
+    kind: Kind,
+    coordinates: Coordinates,
+    look: Look,
+    stage: Option<Stage>,
+    /// Elevations, if the header says them.
+    stated: Option<[f64; 2]>,
+    triangles: Layer<Triangle>,
+    points: Layer<Dot>,
+    front: Front,
+    cells: Option<Cells>,
+    residual: Vec<Point>,
+    walls: Vec<[Point; 2]>,
+    /// Triangles so far, or points.
+    done: u64,
+    /// Of the last picture.
+    taken: Option<u64>,
+    is_over: bool,
+}
+
+impl<'a> Drawing<'a> {
+    fn new(header: &Header, options: &'a Options, moments: Moments) -> Result<Drawing<'a>> {
+        let coordinates = header.coordinates;
+        let world = |bounds: Bounds| Bounds {
+            min: coordinates.to_world(bounds.min),
+            max: coordinates.to_world(bounds.max),
+        };
+        let stated = header.bounds.map(world).or(options.surveyed);
+        let is_mesh = header.kind != Kind::Points;
+        let has_elevation = header.dims == 3 || header.has_elevation;
+        let anywhere = Bounds::of_point([0.0; 3]);
+        let stage = (stated.is_some() || options.bounds.is_some())
+            .then(|| stage_of(&stated.unwrap_or(anywhere), options))
+            .transpose()?;
+        let has_cells = options.cells && !is_mesh && options.fill.is_none_or(|fill| fill == Fill::Time);
+        let tree = header.tree.filter(|tree| has_cells && tree.dims() == 2);
+        let cells = tree.zip(stage.as_ref()).map(|(tree, stage)| Cells::new(tree, coordinates, stage));
+        Ok(Drawing {
+            look: Look::of(options, has_elevation, if is_mesh { "triangles" } else { "points" }),
+            front: Front::new(moments.at.is_some() || moments.every.is_some()),
+            options,
+            moments,
+            kind: header.kind,
+            coordinates,
+            stage,
+            stated: stated.filter(|_| has_elevation).map(|bounds| [bounds.min[2], bounds.max[2]]),
+            triangles: Layer::new(options.form),
+            points: Layer::new(options.form),
+            cells,
+            residual: Vec::new(),
+            walls: Vec::new(),
+            done: 0,
+            taken: None,
+            is_over: false,
+        })
+    }
+
+    fn event(&mut self, event: Event, take: &mut Take) -> Result<()> {
+        match event {
+            _ if self.is_over => Ok(()),
+            Event::Points(points) => points.into_iter().try_for_each(|point| self.point(point, take)),
+            Event::Cells(cells) => cells.into_iter().try_for_each(|cell| self.tag(cell)),
+            Event::Patch(patch) => self.patch(&patch, take),
+            Event::ResidualPoints(points) => {
+                let world = points.into_iter().map(|(_, stored)| self.coordinates.to_world(stored));
+                self.residual.extend(world);
+                Ok(())
+            }
+            Event::Walls(ends) => {
+                let wall = |ends: &[u32]| [0, 1].map(|end| self.residual[ends[end] as usize]);
+                self.walls.extend(ends.chunks_exact(2).map(wall));
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn end(&mut self, take: &mut Take) -> Result<()> {
+        if self.is_over { Ok(()) } else { take(&self.picture(":")?) }
+    }
+
+    fn patch(&mut self, patch: &Patch, take: &mut Take) -> Result<()> {
+        let coordinates = self.coordinates;
+        self.front.begin(patch, |stored| coordinates.to_world(stored))?;
+        for local in patch.triangles() {
+            self.look_up(take)?;
+            if self.is_over {
+                return Ok(());
+            }
+            let triangle = self.front.triangle(local, self.done);
+            self.triangles.push(triangle, self.stage.as_ref(), &self.look)?;
+            self.done += 1;
+        }
+        self.front.end();
+        Ok(())
+    }
+
+    fn point(&mut self, stored: Point, take: &mut Take) -> Result<()> {
+        self.look_up(take)?;
+        if self.is_over {
+            return Ok(());
+        }
+        let dot = Dot { at: self.coordinates.to_world(stored), number: self.done };
+        match (&mut self.cells, &self.stage) {
+            (Some(cells), Some(stage)) => {
+                cells.point(stored, self.done, stage);
+                self.points.push_few(dot, stage);
+            }
+            _ => self.points.push(dot, self.stage.as_ref(), &self.look)?,
+        }
+        self.done += 1;
+        Ok(())
+    }
+
+    fn tag(&mut self, cell: CellCode) -> Result<()> {
+        self.cells.as_mut().map_or(Ok(()), |cells| cells.finalize(cell))
+    }
+
+    /// Takes the picture that is due before the next triangle or point.
+    fn look_up(&mut self, take: &mut Take) -> Result<()> {
+        let Moments { at, every } = self.moments;
+        let is_last = at == Some(self.done);
+        let is_due = every.is_some_and(|every| self.done > 0 && self.done.is_multiple_of(every));
+        if (is_last || is_due) && self.taken != Some(self.done) {
+            self.taken = Some(self.done);
+            take(&self.picture(" after")?)?;
+            self.is_over = is_last;
+        }
+        Ok(())
+    }
+
+    /// What there is to be seen now; `relation` is what stands between the name of the stream and how much of it has come.
+    fn picture(&self, relation: &str) -> Result<Picture> {
+        let stage = match self.stage {
+            _ if self.is_tight() => self.tight_stage()?,
+            Some(stage) => stage,
+            None => {
+                let seen = self.triangles.bounds.or(self.points.bounds).unwrap_or(Bounds::of_point([0.0; 3]));
+                stage_of(&seen, self.options)?
+            }
+        };
+        let (mut map, legend) =
+            if self.kind == Kind::Points { self.map_of_points(&stage)? } else { self.map_of_mesh(&stage)? };
+        let marks = self.marks(&stage, &mut map);
+        let title = format!("{}{relation} {}", self.options.name, self.what());
+        let frame = stage.view.frame();
+        // Of nothing there is no scale.
+        let unit = frame.map(|frame| frame.unit).filter(|_| self.done > 0 || self.stage.is_some());
+        let marks: Vec<&Mark> = marks.iter().collect();
+        let furniture = Furniture { title: &title, legend, marks: &marks, unit };
+        Ok(Picture { svg: stage.sheet.svg(&map, &furniture), title, frame })
+    }
+
+    /// Whether all that is seen from one side is there, so that there need not be room for anything else.
+    fn is_tight(&self) -> bool {
+        self.options.oblique && self.moments == Moments::default() && !self.triangles.kept.is_empty()
+    }
+
+    fn tight_stage(&self) -> Result<Stage> {
+        let corners = || self.triangles.kept.iter().flat_map(|triangle| triangle.corners);
+        let bounds = corners().map(Bounds::of_point).reduce(Bounds::union);
+        Stage::oblique_of(&bounds.unwrap_or(Bounds::of_point([0.0; 3])), corners(), self.options.width)
+    }
+
+    /// What the title says.
+    fn what(&self) -> String {
+        let done = self.done;
+        if self.kind == Kind::Points {
+            return ticks::counted(done, "point", "points");
+        }
+        let vertices = ticks::counted(self.front.count(), "vertex", "vertices");
+        format!("{}, {vertices}", ticks::counted(done, "triangle", "triangles"))
+    }
+
+    fn map_of_mesh(&self, stage: &Stage) -> Result<(String, Option<Legend>)> {
+        let layer = &self.triangles;
+        let painted = layer.painted(stage, &self.look);
+        let canvas = layer.canvas.as_ref().or(painted.as_ref());
+        let fill = self.look.fill(canvas.is_some());
+        let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
+        let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
+        let colours = self.look.colours(fill, elevations, self.done);
+        let map = match canvas {
+            Some(canvas) => {
+                svg::image(stage.sheet.corner, &canvas.pixels(|value, shade| colours.of(value, shade))?)
+            }
+            None => triangles::vectors(&layer.kept, stage, &self.look, &colours),
+        };
+        Ok((map, colours.legend().filter(|_| self.done > 0)))
+    }
+
+    fn map_of_points(&self, stage: &Stage) -> Result<(String, Option<Legend>)> {
+        let (layer, fill) = (&self.points, self.look.point_fill());
+        let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
+        let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
+        let colours = self.look.colours(fill, elevations, self.done);
+        let painted = layer.painted(stage, &self.look);
+        let map = match (&self.cells, layer.canvas.as_ref().or(painted.as_ref())) {
+            (Some(cells), _) => {
+                cells.vectors(stage, &colours) + &dots::vectors(&layer.kept, stage, &self.look, None)
+            }
+            (None, Some(canvas)) => svg::image(
+                stage.sheet.corner,
+                &canvas.pixels(|value, shade| self.point_colour(&colours, value, shade))?,
+            ),
+            (None, None) => dots::vectors(&layer.kept, stage, &self.look, Some(&colours)),
+        };
+        Ok((map, colours.legend().filter(|_| self.done > 0)))
+    }
+
+    /// Points that show nothing are dark.
+    fn point_colour(&self, colours: &Colours, value: f64, shade: f64) -> Colour {
+        if self.look.point_fill() == Fill::None { [36, 41, 47] } else { colours.of(value, shade) }
+    }
+
+    /// Puts on the map what stands out, and says what it means.
+    fn marks(&self, stage: &Stage, map: &mut String) -> Vec<Mark> {
+        let mut marks = Vec::new();
+        if let Some(cells) = &self.cells {
+            let kinds = cells.counts().into_iter().zip([FINAL, OPEN]);
+            marks.extend(kinds.filter(|(count, _)| *count > 0).map(|(_, mark)| mark));
+        }
+        let (border, vertices) = (self.front.border(), self.front.vertices());
+        let is_partial = !self.residual.is_empty();
+        let dots = if is_partial { (RESIDUAL, &self.residual) } else { (LIVE, &vertices) };
+        let lines = if is_partial { (WALLS, &self.walls) } else { (BORDER, &border) };
+        if !lines.1.is_empty() {
+            *map += &dots::lines("border", lines.0.colour, lines.1, stage);
+            marks.push(lines.0);
+        }
+        if !dots.1.is_empty() {
+            *map += &dots::marks("live", dots.0.colour, 3.0, dots.1, stage);
+            marks.push(dots.0);
+        }
+        marks
+    }
+}

@@ -1,0 +1,124 @@
+//! The order in which triangles are drawn that hide others: those behind first.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use foldhash::{HashMap, HashMapExt};
+
+use super::triangles::Triangle;
+
+/// A triangle that may be drawn, with how far away it is.
+struct Ready {
+    depth: f64,
+    number: usize,
+}
+
+impl Ord for Ready {
+    fn cmp(&self, other: &Ready) -> Ordering {
+        self.depth.total_cmp(&other.depth).then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Ready {
+    fn partial_cmp(&self, other: &Ready) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Ready {
+    fn eq(&self, other: &Ready) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Ready {}
+
+/// Numbers of triangles, each after those that it may hide; `across_away` has places of the plan as the eye sees them: to the
+/// right, and away from it.
+///
+/// Of two triangles with a common edge, the one behind it comes first. In a Delaunay triangulation no triangles are behind each other
+/// in turn (Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990), so this decides; in others the
+/// farthest of such a turn comes first.
+pub(super) fn back_to_front(
+    triangles: &[Triangle],
+    across_away: impl Fn([f64; 3]) -> [f64; 2],
+) -> Vec<usize> {
+    let places: Vec<[[f64; 2]; 3]> =
+        triangles.iter().map(|triangle| triangle.corners.map(&across_away)).collect();
+    let depth = |number: usize| places[number].iter().map(|place| place[1]).sum::<f64>();
+    // For each triangle those that it must wait for, and those that wait for it.
+    let (mut waits, mut frees) = (vec![0u8; triangles.len()], vec![[usize::MAX; 3]; triangles.len()]);
+    let mut open: HashMap<[u64; 2], usize> = HashMap::new();
+    for (number, triangle) in triangles.iter().enumerate() {
+        for (side, [from, to]) in [[0, 1], [1, 2], [2, 0]].into_iter().enumerate() {
+            let [a, b] = [from, to].map(|end| triangle.ids[end]);
+            let Some(other) = open.remove(&[b, a]) else {
+                open.insert([a, b], 3 * number + side);
+                continue;
+            };
+            // The triangle is on the left of its edge: behind it, if that goes to the right.
+            let is_behind = places[number][to][0] > places[number][from][0];
+            let [first, second] =
+                if is_behind { [3 * number + side, other] } else { [other, 3 * number + side] };
+            frees[first / 3][first % 3] = second / 3;
+            waits[second / 3] += 1;
+        }
+    }
+    let ready = |number| Ready { depth: depth(number), number };
+    let mut heap: BinaryHeap<Ready> =
+        (0..triangles.len()).filter(|&number| waits[number] == 0).map(ready).collect();
+    let mut farthest: Vec<usize> = (0..triangles.len()).collect();
+    farthest.sort_by(|&a, &b| depth(a).total_cmp(&depth(b)));
+    let (mut order, mut is_drawn) = (Vec::with_capacity(triangles.len()), vec![false; triangles.len()]);
+    while order.len() < triangles.len() {
+        let next = heap.pop().map(|Ready { number, .. }| number).or_else(|| farthest.pop());
+        let Some(number) = next.filter(|&number| !is_drawn[number]) else { continue };
+        is_drawn[number] = true;
+        order.push(number);
+        for &freed in frees[number].iter().filter(|&&freed| freed != usize::MAX) {
+            waits[freed] = waits[freed].saturating_sub(1);
+            if waits[freed] == 0 && !is_drawn[freed] {
+                heap.push(ready(freed));
+            }
+        }
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(ids: [u64; 3], corners: [[f64; 2]; 3]) -> Triangle {
+        Triangle { ids, corners: corners.map(|[x, y]| [x, y, 0.0]), number: 0 }
+    }
+
+    #[test]
+    fn a_long_triangle_in_front_comes_after_those_that_it_hides() {
+        // Its far end is farther away than the middle of the small one behind it.
+        let long = triangle([0, 1, 2], [[0.0, 0.0], [100.0, 90.0], [20.0, 19.0]]);
+        let small = triangle([0, 2, 3], [[0.0, 0.0], [20.0, 19.0], [1.0, 4.0]]);
+        let plan = |[x, y, _]: [f64; 3]| [x, y];
+        assert_eq!(back_to_front(&[long, small], plan), [1, 0]);
+        assert_eq!(back_to_front(&[small, long], plan), [0, 1]);
+    }
+
+    #[test]
+    fn triangles_behind_each_other_in_turn_are_all_drawn() {
+        // Three around a hole, each with an edge that goes on below the next one.
+        let (a, b, c) = ([0.0, 0.0], [10.0, 0.0], [5.0, 9.0]);
+        let (p, q, r) = ([4.0, 2.0], [6.0, 3.0], [4.5, 4.0]);
+        let of = |ids, corners| triangle(ids, corners);
+        let turn = [
+            of([0, 1, 3], [a, b, p]),
+            of([1, 4, 3], [b, q, p]),
+            of([1, 2, 4], [b, c, q]),
+            of([2, 5, 4], [c, r, q]),
+            of([2, 0, 5], [c, a, r]),
+            of([0, 3, 5], [a, p, r]),
+        ];
+        let mut order = back_to_front(&turn, |[x, y, _]| [x, y]);
+        order.sort_unstable();
+        assert_eq!(order, [0, 1, 2, 3, 4, 5]);
+    }
+}

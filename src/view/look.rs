@@ -1,0 +1,138 @@
+//! What triangles and points look like.
+
+use super::canvas::Paint;
+use super::ramp::{self, BATLOW, Colour, Ramp, VIK, VIRIDIS};
+use super::sheet::Legend;
+use super::{Fill, Options, When};
+use crate::bounds::Point;
+use crate::raster::Light;
+
+/// Of triangles and points that show nothing.
+const BARE: Colour = [255; 3];
+
+/// How numbers become colours.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    fill: Option<Fill>,
+    edges: When,
+    light: Light,
+    middle: Option<f64>,
+    /// Whether vertices have elevations.
+    has_elevation: bool,
+    /// What is counted, in the plural.
+    unit: &'static str,
+}
+
+/// What numbers mean when the range of them is known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Colours {
+    fill: Fill,
+    ramp: &'static Ramp,
+    range: [f64; 2],
+    /// How bright level ground is.
+    level: f64,
+    has_middle: bool,
+    unit: &'static str,
+}
+
+impl Look {
+    pub(super) fn of(options: &Options, has_elevation: bool, unit: &'static str) -> Look {
+        let Options { fill, edges, light, middle, .. } = *options;
+        Look { fill, edges, light, middle, has_elevation, unit }
+    }
+
+    /// What triangles show: their relief, if they have one; otherwise their edges, if these can be seen.
+    pub(super) fn fill(&self, is_painted: bool) -> Fill {
+        let flat = if is_painted { Fill::Time } else { Fill::None };
+        self.fill.unwrap_or(if self.has_elevation { Fill::Relief } else { flat })
+    }
+
+    /// What points show.
+    pub(super) fn point_fill(&self) -> Fill {
+        self.fill.unwrap_or(Fill::Time)
+    }
+
+    /// Whether edges of triangles are drawn.
+    pub(super) fn has_edges(&self, is_painted: bool) -> bool {
+        match self.edges {
+            When::Always => true,
+            When::Never => false,
+            When::Auto => !is_painted || self.fill(is_painted) == Fill::None,
+        }
+    }
+
+    /// What a triangle is painted with: the triangle of a number in the stream, of corners in the world.
+    pub(super) fn paint(&self, fill: Fill, corners: &[Point; 3], number: u64) -> Paint {
+        let values = match fill {
+            Fill::Elevation | Fill::Relief => corners.map(|corner| corner[2]),
+            Fill::Time => [number as f64; 3],
+            Fill::Hillshade | Fill::None => [0.0; 3],
+        };
+        let is_lit = matches!(fill, Fill::Hillshade | Fill::Relief);
+        let shade = if is_lit { ramp::shade(&self.light, gradient(corners)) } else { 1.0 };
+        Paint { values, shade: shade as f32 }
+    }
+
+    /// What a point shows.
+    pub(super) fn value(&self, fill: Fill, at: Point, number: u64) -> f64 {
+        match fill {
+            Fill::Elevation => at[2],
+            _ => number as f64,
+        }
+    }
+
+    /// Colours for elevations of a range, after so many triangles or points.
+    pub(super) fn colours(&self, fill: Fill, elevations: [f64; 2], count: u64) -> Colours {
+        let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief);
+        let (ramp, range) = match self.middle {
+            _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64]),
+            None => (&BATLOW, elevations),
+            Some(middle) => {
+                let reach = elevations.map(|elevation| (elevation - middle).abs());
+                let reach = reach[0].max(reach[1]);
+                (&VIK, [middle - reach, middle + reach])
+            }
+        };
+        let level = ramp::shade(&self.light, [0.0; 2]).clamp(0.05, 0.95);
+        Colours { fill, ramp, range, level, has_middle: self.middle.is_some(), unit: self.unit }
+    }
+}
+
+impl Colours {
+    /// The colour of a number on a surface of some shade.
+    pub(super) fn of(&self, value: f64, shade: f64) -> Colour {
+        match self.fill {
+            Fill::None => BARE,
+            Fill::Hillshade => ramp::grey(shade),
+            Fill::Elevation | Fill::Time => self.ramp.at(self.part(value)),
+            Fill::Relief => ramp::lit(self.ramp.at(self.part(value)), shade, self.level),
+        }
+    }
+
+    /// What the colours mean.
+    pub(super) fn legend(&self) -> Option<Legend> {
+        let label = match self.fill {
+            Fill::None | Fill::Hillshade => return None,
+            Fill::Time => format!("Position in the stream ({})", self.unit),
+            Fill::Elevation | Fill::Relief if self.has_middle => {
+                "Elevation, below and above the middle".to_string()
+            }
+            Fill::Elevation | Fill::Relief => "Elevation".to_string(),
+        };
+        let is_count = self.fill == Fill::Time;
+        Some(Legend { label, ramp: self.ramp, range: self.range, is_count })
+    }
+
+    /// How far up the range a number is; halves, because the whole may be out of the range of numbers.
+    fn part(&self, value: f64) -> f64 {
+        let [low, high] = self.range;
+        if high > low { (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.5 }
+    }
+}
+
+/// The gradient of the plane through three points.
+fn gradient([a, b, c]: &[Point; 3]) -> [f64; 2] {
+    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let determinant = u[0] * v[1] - u[1] * v[0];
+    [(u[2] * v[1] - u[1] * v[2]) / determinant, (u[0] * v[2] - u[2] * v[0]) / determinant]
+}

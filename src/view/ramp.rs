@@ -1,0 +1,155 @@
+//! Colours of numbers: ramps of which equal steps look equal, and lightness tells the order.
+
+use crate::raster::Light;
+
+/// Red, green and blue.
+pub(super) type Colour = [u8; 3];
+
+/// Colours at equal steps from the least number to the greatest.
+#[derive(Debug, PartialEq)]
+pub(super) struct Ramp(&'static [Colour]);
+
+/// For time and order (viridis, CC0).
+pub(super) const VIRIDIS: Ramp = Ramp(&[
+    [68, 1, 84],
+    [71, 45, 123],
+    [59, 82, 139],
+    [44, 114, 142],
+    [33, 145, 140],
+    [40, 174, 128],
+    [94, 201, 98],
+    [173, 220, 48],
+    [253, 231, 37],
+]);
+
+/// For elevations (batlow of Crameri, "Scientific colour maps", MIT).
+pub(super) const BATLOW: Ramp = Ramp(&[
+    [1, 25, 89],
+    [16, 63, 96],
+    [28, 90, 98],
+    [60, 109, 86],
+    [104, 123, 62],
+    [157, 137, 43],
+    [210, 147, 67],
+    [248, 161, 123],
+    [253, 183, 188],
+    [250, 204, 250],
+]);
+
+/// For what is below and above a middle (vik of Crameri, MIT).
+pub(super) const VIK: Ramp = Ramp(&[
+    [0, 18, 97],
+    [2, 63, 125],
+    [30, 111, 157],
+    [113, 168, 196],
+    [201, 221, 231],
+    [236, 229, 224],
+    [234, 206, 189],
+    [211, 151, 116],
+    [190, 101, 51],
+    [139, 39, 6],
+    [89, 0, 8],
+]);
+
+impl Ramp {
+    /// The colour of a part between zero and one; beyond, that of the end.
+    pub(super) fn at(&self, part: f64) -> Colour {
+        let steps = self.0.len() - 1;
+        let place = part.clamp(0.0, 1.0) * steps as f64;
+        // What is no number has the colour of the least.
+        let first = (place as usize).min(steps - 1);
+        mix(self.0[first], self.0[first + 1], place - first as f64)
+    }
+}
+
+/// What is between two colours, `part` of the way.
+pub(super) fn mix(from: Colour, to: Colour, part: f64) -> Colour {
+    [0, 1, 2].map(|channel| {
+        let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
+        (from + part * (to - from)).round() as u8
+    })
+}
+
+/// As SVG writes a colour.
+pub(super) fn hex([r, g, b]: Colour) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// Grey as bright as a surface in some light: from 0 to 1.
+pub(super) fn grey(shade: f64) -> Colour {
+    [(255.0 * shade).round() as u8; 3]
+}
+
+/// A colour on a surface: a level one keeps it, others are darker or brighter.
+pub(super) fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
+    /// What is left of a colour in the dark.
+    const AMBIENT: f64 = 0.45;
+    if shade <= level {
+        mix([0; 3], colour, AMBIENT + (1.0 - AMBIENT) * shade / level)
+    } else {
+        mix(colour, [255; 3], 0.6 * (shade - level) / (1.0 - level))
+    }
+}
+
+/// How bright a surface is, from 0 to 1.
+pub(super) fn shade(light: &Light, gradient: [f64; 2]) -> f64 {
+    let shade = light.shade(gradient) / 255.0;
+    // A wall, of which gradients are out of the range of numbers.
+    if shade.is_nan() { 0.0 } else { shade }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// CIE lightness, from 0 to 100.
+    fn lightness(colour: Colour) -> f64 {
+        let linear = colour.map(|channel| {
+            let part = f64::from(channel) / 255.0;
+            if part <= 0.04045 { part / 12.92 } else { ((part + 0.055) / 1.055).powf(2.4) }
+        });
+        let luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
+        let cube = 216.0 / 24389.0;
+        if luminance > cube { 116.0 * luminance.cbrt() - 16.0 } else { luminance * 24389.0 / 27.0 }
+    }
+
+    fn steps(ramp: &Ramp, from: f64, to: f64) -> Vec<f64> {
+        let at = |step: u32| lightness(ramp.at(from + (to - from) * f64::from(step) / 64.0));
+        (0..64).map(|step| at(step + 1) - at(step)).collect()
+    }
+
+    #[test]
+    fn lightness_tells_the_order() {
+        for ramp in [&VIRIDIS, &BATLOW] {
+            // Rounding to whole channels takes a little.
+            assert!(steps(ramp, 0.0, 1.0).iter().all(|&step| step > -0.15 && step < 3.0), "{ramp:?}");
+            let [first, last] = [0.0, 1.0].map(|part| lightness(ramp.at(part)));
+            assert!(last - first > 65.0, "{ramp:?}: {first} to {last}");
+        }
+    }
+
+    #[test]
+    fn lightness_rises_to_the_middle_and_falls_from_it() {
+        assert!(steps(&VIK, 0.0, 0.5).iter().all(|&step| step > -0.15));
+        assert!(steps(&VIK, 0.5, 1.0).iter().all(|&step| step < 0.15));
+        let [low, high] = [0.0, 1.0].map(|part| lightness(VIK.at(part)));
+        assert!((low - high).abs() < 8.0, "{low}, {high}");
+    }
+
+    #[test]
+    fn ends_and_what_is_beyond_have_the_colours_of_the_ends() {
+        assert_eq!([-1.0, 0.0, 1.0, 9.0].map(|part| VIRIDIS.at(part)[0]), [68, 68, 253, 253]);
+        assert_eq!(VIRIDIS.at(f64::NAN), VIRIDIS.at(0.0));
+        assert_eq!(hex(BATLOW.at(0.0)), "#011959");
+    }
+
+    #[test]
+    fn level_ground_keeps_its_colour() {
+        assert_eq!(lit([10, 100, 200], 0.5, 0.5), [10, 100, 200]);
+        let channels = |shade| lit([90, 100, 110], shade, 0.5)[1];
+        assert!(
+            channels(0.0) < channels(0.4) && channels(0.4) < channels(0.7) && channels(0.7) < channels(1.0)
+        );
+        assert_eq!(grey(1.0), [255; 3]);
+    }
+}

@@ -1,0 +1,231 @@
+//! The sheet that a picture is on: where the map is on it, and what stands around the map.
+
+use super::frame::Frame;
+use super::ramp::{Colour, Ramp, hex};
+use super::svg::{self, Anchor};
+use super::ticks;
+use crate::error::{Error, Result};
+use crate::predicates::Point2;
+
+/// Around everything. Units: those of the picture, as all lengths here.
+const MARGIN: f64 = 16.0;
+/// Height of the title above the map.
+const HEAD: f64 = 44.0;
+/// Height of the ramp and the scale bar below the map, without their margins.
+const FOOT: f64 = 58.0;
+/// Height of a row of words that say what marks mean.
+const ROW: f64 = 22.0;
+/// The map is not higher than so many times its width, and not lower than this part of it.
+const TALLEST: f64 = 1.2;
+const FLATTEST: f64 = 0.1;
+/// Parts of a ramp that have one colour.
+const STEPS: usize = 64;
+/// Sizes of text.
+const TITLE: u32 = 16;
+const LABEL: u32 = 12;
+/// Colour of text and lines.
+const DARK: &str = "#24292f";
+
+/// Where the map is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sheet {
+    width: f64,
+    /// The upper left corner of the map.
+    pub(super) corner: Point2,
+    /// Width and height of the map, whole numbers.
+    pub(super) size: [usize; 2],
+}
+
+/// Colours and what they mean.
+pub(super) struct Legend {
+    pub(super) label: String,
+    pub(super) ramp: &'static Ramp,
+    pub(super) range: [f64; 2],
+    /// The numbers are counts.
+    pub(super) is_count: bool,
+}
+
+/// How a mark looks.
+pub(super) enum Shape {
+    Dot,
+    Line,
+    Area,
+}
+
+/// A mark and what it means.
+pub(super) struct Mark {
+    pub(super) shape: Shape,
+    pub(super) colour: Colour,
+    pub(super) words: &'static str,
+}
+
+/// What stands around a map.
+pub(super) struct Furniture<'a> {
+    pub(super) title: &'a str,
+    pub(super) legend: Option<Legend>,
+    pub(super) marks: &'a [&'a Mark],
+    /// World units for one of the picture, if it is seen from above.
+    pub(super) unit: Option<f64>,
+}
+
+impl Sheet {
+    /// The sheet for a box of the plane, in any units, with so much around it, and how the box lies on it.
+    ///
+    /// # Errors
+    /// Usage, if the box is out of the range of numbers.
+    pub(super) fn of(min: Point2, max: Point2, pad: f64, width: u32) -> Result<(Sheet, Frame)> {
+        let width = f64::from(width);
+        let across = width - 2.0 * MARGIN;
+        // Half of each first: the whole may be out of the range of numbers.
+        let half = [0, 1].map(|axis| 0.5 * max[axis] - 0.5 * min[axis]);
+        let largest = min.into_iter().chain(max).fold(0.0, |largest: f64, side| largest.max(side.abs()));
+        let half = if half[0].max(half[1]) > 0.0 {
+            half
+        } else {
+            // A single place: something around it.
+            [0.5f64.max(largest * 1e-6); 2]
+        };
+        let inner = across - 2.0 * pad;
+        let unit = 2.0 * (half[0] / inner).max(half[1] / (TALLEST * inner));
+        if !(unit.is_normal() && (unit * width * 4.0).is_finite()) {
+            let what =
+                "coordinates are too great, or too near to each other, to be drawn: shift and scale them";
+            return Err(Error::usage(what));
+        }
+        let height = (2.0 * (half[1] / unit + pad)).ceil().max((FLATTEST * across).ceil());
+        let corner = [MARGIN, HEAD];
+        let centre = [corner[0] + 0.5 * across, corner[1] + 0.5 * height];
+        let middle = [0, 1].map(|axis| 0.5 * min[axis] + 0.5 * max[axis]);
+        let frame = Frame { left: middle[0] - unit * centre[0], top: middle[1] + unit * centre[1], unit };
+        Ok((Sheet { width, corner, size: [across as usize, height as usize] }, frame))
+    }
+
+    /// The whole picture: what is drawn on the map, and what stands around it.
+    pub(super) fn svg(&self, map: &str, furniture: &Furniture) -> String {
+        let ([left, top], [across, down]) = (self.corner, self.size.map(|size| size as f64));
+        let (below, rows) = self.marks(top + down, furniture);
+        let width = self.width;
+        let foot = if furniture.legend.is_some() || furniture.unit.is_some() { FOOT } else { 0.0 };
+        let height = top + down + foot + rows + MARGIN;
+        let title = svg::escape(furniture.title);
+        let background = |y: f64, height: f64| {
+            format!("<rect y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n")
+        };
+        let head = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+             role=\"img\" font-family=\"'DejaVu Sans', sans-serif\">\n<title>{title}</title>\n{}\
+             <clipPath id=\"window\"><rect x=\"{left}\" y=\"{top}\" width=\"{across}\" height=\"{down}\"/></clipPath>\n\
+             <g id=\"map\">\n<g clip-path=\"url(#window)\">\n",
+            background(0.0, height)
+        );
+        // What is drawn around a map that is moved or enlarged stays legible.
+        let ends = [background(0.0, top - 4.0), background(top + down + 4.0, height - top - down - 4.0)];
+        let parts = [
+            head,
+            map.to_string(),
+            format!("</g>\n</g>\n<g id=\"furniture\" fill=\"{DARK}\">\n"),
+            ends.concat(),
+            self.title(furniture.title),
+            furniture.legend.as_ref().map_or_else(String::new, |legend| self.ramp(top + down, legend)),
+            below,
+            furniture.unit.map_or_else(String::new, |unit| self.scale(top + down, unit)),
+            "</g>\n</svg>\n".to_string(),
+        ];
+        parts.concat()
+    }
+
+    fn title(&self, title: &str) -> String {
+        let room = self.width - 2.0 * MARGIN;
+        let mut shown = title.to_string();
+        if svg::text_width(TITLE, title) > room {
+            while svg::text_width(TITLE, &shown) + svg::text_width(TITLE, "...") > room {
+                shown.pop();
+            }
+            shown += "...";
+        }
+        svg::text([MARGIN, 28.0], TITLE, Anchor::Start, &shown)
+    }
+
+    /// A ramp of colours with its numbers.
+    fn ramp(&self, below: f64, legend: &Legend) -> String {
+        let across = (0.5 * (self.width - 3.0 * MARGIN)).min(360.0).floor();
+        let (top, step) = (below + 24.0, across / STEPS as f64);
+        let mut text = svg::text([MARGIN, below + 18.0], LABEL, Anchor::Start, &legend.label);
+        for at in 0..STEPS {
+            let (left, colour) = (MARGIN + step * at as f64, legend.ramp.at(at as f64 / (STEPS - 1) as f64));
+            // Each reaches below the next one, so that nothing shows between them.
+            let reach = if at + 1 < STEPS { step + 1.0 } else { step };
+            let [left, reach] = [left, reach].map(svg::length);
+            text += &format!(
+                "<rect x=\"{left}\" y=\"{top}\" width=\"{reach}\" height=\"12\" fill=\"{}\"/>\n",
+                hex(colour)
+            );
+        }
+        let [low, high] = legend.range;
+        let words = |at: f64, tick: f64| {
+            if legend.is_count { ticks::count(at.max(0.0) as u64) } else { ticks::number(at, tick) }
+        };
+        // As many as there is room for.
+        let fits = |(places, tick): &(Vec<f64>, f64)| {
+            let widest =
+                places.iter().map(|&at| svg::text_width(LABEL - 1, &words(at, *tick))).fold(0.0, f64::max);
+            widest * places.len() as f64 <= across
+        };
+        let some = (1..=6).rev().map(|count| ticks::ticks(legend.range, count)).find(fits);
+        let (places, tick) = some.unwrap_or((vec![low], 0.0));
+        for &at in &places {
+            let part = if high > low { (at / 2.0 - low / 2.0) / (high / 2.0 - low / 2.0) } else { 0.5 };
+            let x = MARGIN + across * part;
+            let words = words(at, tick);
+            let half = 0.5 * svg::text_width(LABEL - 1, &words);
+            let (at, anchor) =
+                if x - half < MARGIN - 6.0 { (MARGIN, Anchor::Start) } else { (x, Anchor::Middle) };
+            text += &format!("<path d=\"M{} {}v5\" stroke=\"{DARK}\"/>\n", svg::length(x), top + 12.0);
+            text += &svg::text([at, top + 29.0], LABEL - 1, anchor, &words);
+        }
+        text
+    }
+
+    /// A bar of round length.
+    fn scale(&self, below: f64, unit: f64) -> String {
+        let length = ticks::round_below(0.25 * (self.width - 2.0 * MARGIN) * unit);
+        let (drawn, right, y) = (length / unit, self.width - MARGIN, below + 30.0);
+        let words = format!("{} units", ticks::number(length, length));
+        format!(
+            "<g id=\"scale\">\n<path d=\"M{} {}v8h{}v-8\" fill=\"none\" stroke=\"{DARK}\" stroke-width=\"1.5\"/>\n{}</g>\n",
+            svg::length(right - drawn),
+            y - 4.0,
+            svg::length(drawn),
+            svg::text([right, y + 23.0], LABEL - 1, Anchor::End, &words)
+        )
+    }
+
+    /// Marks with their words, in as many rows as they need, and the height of these.
+    fn marks(&self, below: f64, furniture: &Furniture) -> (String, f64) {
+        let foot = if furniture.legend.is_some() || furniture.unit.is_some() { FOOT } else { 0.0 };
+        let (mut text, mut x, mut y) = (String::new(), MARGIN, below + foot + 16.0);
+        for mark in furniture.marks {
+            let width = 24.0 + svg::text_width(LABEL, mark.words);
+            if x > MARGIN && x + width > self.width - MARGIN {
+                (x, y) = (MARGIN, y + ROW);
+            }
+            let colour = hex(mark.colour);
+            text += &match mark.shape {
+                Shape::Dot => {
+                    format!("<circle cx=\"{}\" cy=\"{}\" r=\"3.5\" fill=\"{colour}\"/>\n", x + 7.0, y - 4.0)
+                }
+                Shape::Line => {
+                    format!("<path d=\"M{x} {}h15\" stroke=\"{colour}\" stroke-width=\"2\"/>\n", y - 4.0)
+                }
+                Shape::Area => format!(
+                    "<rect x=\"{x}\" y=\"{}\" width=\"14\" height=\"10\" fill=\"{colour}\" stroke=\"{DARK}\" stroke-width=\"0.5\"/>\n",
+                    y - 9.0
+                ),
+            };
+            text += &svg::text([x + 20.0, y], LABEL, Anchor::Start, mark.words);
+            x += width + MARGIN;
+        }
+        let rows = if furniture.marks.is_empty() { 0.0 } else { y + ROW - (below + foot + 16.0) };
+        (text, rows)
+    }
+}

@@ -1,0 +1,100 @@
+//! Pieces of SVG.
+
+use super::canvas::Pixels;
+use crate::predicates::Point2;
+use data_encoding::BASE64;
+
+/// Text as XML has it; characters that XML cannot have are left out.
+pub(super) fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => {}
+            _ if character.is_control() => escaped.push(' '),
+            _ => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+/// A length with hundredths, without zeros at its end.
+pub(super) fn length(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_string() } else { text.to_string() }
+}
+
+/// A place as a path has it.
+pub(super) fn place([x, y]: Point2) -> String {
+    format!("{} {}", length(x), length(y))
+}
+
+/// A closed polygon as a piece of a path.
+pub(super) fn ring(places: &[Point2]) -> String {
+    let mut path = String::new();
+    for (number, &at) in places.iter().enumerate() {
+        path.push(if number == 0 { 'M' } else { 'L' });
+        path += &place(at);
+    }
+    path + "Z"
+}
+
+/// A line as a piece of a path.
+pub(super) fn line([from, to]: [Point2; 2]) -> String {
+    format!("M{}L{}", place(from), place(to))
+}
+
+/// An anchor of text, as SVG calls it.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A line of text of some size at a place.
+pub(super) fn text([x, y]: Point2, size: u32, anchor: Anchor, words: &str) -> String {
+    let anchor = match anchor {
+        Anchor::Start => "",
+        Anchor::Middle => " text-anchor=\"middle\"",
+        Anchor::End => " text-anchor=\"end\"",
+    };
+    let [x, y] = [x, y].map(length);
+    format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{anchor}>{}</text>\n", escape(words))
+}
+
+/// How wide text is at most, in lengths of the picture. Characters of the font are this wide on the average of any word.
+pub(super) fn text_width(size: u32, words: &str) -> f64 {
+    /// The mean width of letters of DejaVu Sans, and a bit.
+    const MEAN: f64 = 0.62;
+    MEAN * f64::from(size) * words.chars().count() as f64
+}
+
+/// Pixels at a place, one for each length of the picture.
+pub(super) fn image([x, y]: Point2, pixels: &Pixels) -> String {
+    let data = BASE64.encode(&pixels.png);
+    let (x, y, width, height) = (length(x), length(y), pixels.width, pixels.height);
+    format!(
+        "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{data}\"/>\n"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_cannot_leave_its_element() {
+        assert_eq!(escape("a<b>&\"c\"\n\u{1}é"), "a&lt;b&gt;&amp;&quot;c&quot;  é");
+    }
+
+    #[test]
+    fn lengths_are_short() {
+        assert_eq!([1.0, 0.5, -0.001, 100.0, 1.239].map(length), ["1", "0.5", "0", "100", "1.24"]);
+        assert_eq!(ring(&[[0.0, 1.0], [2.5, 3.0], [4.0, 0.0]]), "M0 1L2.5 3L4 0Z");
+    }
+}

@@ -1,0 +1,52 @@
+//! `spview`: pictures against the streams that they show, and what goes wrong.
+
+mod configurations;
+mod failures;
+mod moments;
+mod pixels;
+mod shapes;
+mod svg;
+
+use spmesh::error::Result;
+use spmesh::stream::StreamReader;
+use spmesh::view::{Moments, Options, Picture, draw};
+
+use crate::programs::{outcome, run};
+
+/// All pictures of a stream.
+fn pictures(stream: &[u8], options: &Options, moments: Moments) -> Result<Vec<Picture>> {
+    let mut reader = StreamReader::new(stream, "stream")?;
+    let mut pictures = Vec::new();
+    let mut take = |picture: &Picture| {
+        let Picture { title, svg, frame } = picture;
+        pictures.push(Picture { title: title.clone(), svg: svg.clone(), frame: *frame });
+        Ok(())
+    };
+    draw(&mut reader, options, moments, &mut take, |_| {})?;
+    Ok(pictures)
+}
+
+/// The picture of the end of a stream.
+fn picture(stream: &[u8], options: &Options) -> Picture {
+    let mut pictures = pictures(stream, options, Moments::default()).unwrap();
+    assert_eq!(pictures.len(), 1);
+    pictures.remove(0)
+}
+
+/// What a program writes.
+fn output(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
+    let output = run(name, arguments, input);
+    assert!(output.status.success(), "{name} {arguments:?}: {:?}", outcome(&output));
+    output.stdout
+}
+
+/// The mesh of lines of points.
+fn mesh_of(points: &str) -> Vec<u8> {
+    output("spdelaunay2d", &[], &output("spfinalize", &["--cell-points", "60", "-"], points.as_bytes()))
+}
+
+/// Lines of the points of a grid, jogged so that no four are on a circle.
+fn grid(side: u64) -> String {
+    let point = |i: u64| (i % side * 100 + i * 37 % 23, i / side * 100 + i * 53 % 29, i * 71 % 97);
+    (0..side * side).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()
+}

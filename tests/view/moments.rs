@@ -1,0 +1,134 @@
+//! Pictures on the way through a stream, and what passes through `spview`.
+
+use std::collections::{HashMap, HashSet};
+
+use spmesh::stream::{Event, StreamReader};
+use spmesh::view::{Moments, Options};
+
+use super::svg::{named, parse, within};
+use super::{grid, mesh_of, output, pictures};
+use crate::programs::{Folder, outcome, run};
+
+/// What is live, and which edges are open, after a number of triangles.
+fn front(stream: &[u8], at: u64) -> (usize, usize) {
+    let mut reader = StreamReader::new(stream, "mesh").unwrap();
+    let (mut live, mut is_final) = (HashSet::new(), HashSet::new());
+    let mut edges: HashMap<[u64; 2], u32> = HashMap::new();
+    let mut done = 0;
+    'stream: while let Some(event) = reader.next_event().unwrap() {
+        let Event::Patch(patch) = event else { continue };
+        live.extend((0..patch.new.len() as u64).map(|new| patch.first_id + new));
+        for triangle in patch.triangles() {
+            if done == at {
+                break 'stream;
+            }
+            let [a, b, c] = triangle.map(|local| patch.id(local));
+            for [a, b] in [[a, b], [b, c], [c, a]] {
+                *edges.entry([a.min(b), a.max(b)]).or_default() += 1;
+            }
+            done += 1;
+        }
+        for &local in &patch.finalized {
+            live.remove(&patch.id(local));
+            is_final.insert(patch.id(local));
+        }
+    }
+    let open =
+        edges.iter().filter(|(ends, count)| **count == 1 && !ends.iter().any(|end| is_final.contains(end)));
+    (live.len(), open.count())
+}
+
+#[test]
+fn moments_show_what_is_live_then() {
+    let stream = mesh_of(&grid(20));
+    let total = StreamReader::new(&stream[..], "mesh").map(|mut reader| {
+        while reader.next_event().unwrap().is_some() {}
+        reader.totals().simplices
+    });
+    let total = total.unwrap();
+    let mut open_counts = Vec::new();
+    for at in [0, 1, 7, total / 3, total / 2, total - 1] {
+        let moments = Moments { at: Some(at), every: None };
+        let pictures = pictures(&stream, &Options::new("mesh"), moments).unwrap();
+        assert_eq!(pictures.len(), 1);
+        let elements = parse(&pictures[0].svg);
+        let drawn = within(&elements, "map", "path");
+        let triangles = drawn.iter().filter(|path| path.attributes.contains_key("color")).count();
+        assert_eq!(triangles as u64, at);
+        let border = named(&elements, "border").map_or(0, |path| path.rings().len());
+        let (live, open) = front(&stream, at);
+        assert_eq!((within(&elements, "live", "circle").len(), border), (live, open), "after {at}");
+        open_counts.push(open);
+    }
+    assert!(open_counts.iter().any(|&open| open > 10), "{open_counts:?}");
+    let end = pictures(&stream, &Options::new("mesh"), Moments::default()).unwrap().remove(0);
+    assert!(named(&parse(&end.svg), "live").is_none());
+}
+
+#[test]
+fn snapshots_come_after_each_number_and_at_the_end() {
+    let stream = mesh_of(&grid(12));
+    let last = pictures(&stream, &Options::new("mesh"), Moments::default()).unwrap().remove(0);
+    // 242 triangles: with every 121 of them, and every 242, the end is no second picture of the same moment.
+    for (every, count) in [(100, 3), (121, 2), (242, 1), (1_000, 1)] {
+        let moments = Moments { at: None, every: Some(every) };
+        let all = pictures(&stream, &Options::new("mesh"), moments).unwrap();
+        assert_eq!(all.len(), count, "every {every}");
+        assert_eq!(all[count - 1].svg, last.svg);
+        for (number, picture) in all[..count - 1].iter().enumerate() {
+            let after = every * (number as u64 + 1);
+            assert!(picture.title.contains(&format!("after {after} triangles")), "{}", picture.title);
+        }
+    }
+    let moments = Moments { at: Some(150), every: Some(100) };
+    assert_eq!(pictures(&stream, &Options::new("mesh"), moments).unwrap().len(), 2);
+}
+
+#[test]
+fn a_pipe_goes_through_unchanged() {
+    let folder = Folder::new();
+    let points = output("spfinalize", &["--cell-points", "40", "-"], grid(20).as_bytes());
+    let pattern = folder.path("shots-%03d.png");
+    let arguments = ["--tee", "--snapshot", "every=150", "--width", "320", "-o", &pattern];
+    let passed = run("spview", &arguments, &points);
+    assert!(passed.status.success() && passed.stdout == points, "{:?}", outcome(&passed));
+    assert_eq!(folder.names(""), ["shots-001.png", "shots-002.png", "shots-003.png"]);
+    let whole = folder.path("whole.png");
+    output("spview", &["--width", "320", "-o", &whole, "-"], &points);
+    let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
+    assert!(read("shots-003.png") == read("whole.png"));
+    assert!(read("shots-002.png") != read("whole.png"));
+    // What is malformed goes through, too, up to where it breaks off: who reads it will see.
+    let half = &points[..points.len() / 2];
+    let passed = run("spview", &["--tee", "-o", &whole], half);
+    assert_eq!((passed.status.code(), &passed.stdout[..]), (Some(3), half));
+}
+
+#[test]
+fn parts_of_a_stream_are_counts_of_it() {
+    let folder = Folder::new();
+    let mesh = folder.write("mesh.spm", mesh_of(&grid(12)));
+    let points = folder.write("points.spm", output("spfinalize", &["-"], grid(12).as_bytes()));
+    let title = |arguments: &[&str]| {
+        let svg = String::from_utf8(output("spview", arguments, &[])).unwrap();
+        svg.split("<title>").nth(1).unwrap().split("</title>").next().unwrap().to_string()
+    };
+    assert!(title(&["--at", "0.5", &mesh]).starts_with("mesh.spm after 121 triangles, "));
+    assert!(title(&["--at", "17", &mesh]).starts_with("mesh.spm after 17 triangles, "));
+    assert!(title(&["--at", "1.0", &mesh]).starts_with("mesh.spm: 242 triangles, "));
+    assert_eq!(title(&["--at", "0.25", &points]), "points.spm after 36 points");
+    assert_eq!(title(&["--at", "5000", &points]), "points.spm: 144 points");
+}
+
+#[test]
+fn residuals_of_partial_meshes_are_shown() {
+    let points = output("spfinalize", &["--cell-points", "30", "-"], grid(16).as_bytes());
+    let part = output("spdelaunay2d", &["--partial", "--region", "0,0,800,800"], &points);
+    let elements = parse(&super::picture(&part, &Options::new("part")).svg);
+    let mut reader = StreamReader::new(&part[..], "part").unwrap();
+    while reader.next_event().unwrap().is_some() {}
+    let totals = reader.totals();
+    assert!(totals.residual_points > 5 && totals.walls > 5);
+    assert_eq!(within(&elements, "live", "circle").len() as u64, totals.residual_points);
+    assert_eq!(named(&elements, "border").unwrap().rings().len() as u64, totals.walls);
+}
