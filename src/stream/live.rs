@@ -61,6 +61,12 @@ impl<T: Copy> LiveVertices<T> {
             .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
     }
 
+    /// Whether a vertex is live: whether a later patch may use it.
+    #[must_use]
+    pub fn contains(&self, id: u64) -> bool {
+        self.live.contains_key(&id)
+    }
+
     /// Number of vertices that are live now.
     #[must_use]
     pub fn len(&self) -> usize {
