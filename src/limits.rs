@@ -61,6 +61,9 @@ pub const VTK_BLOCK_MAX: u64 = 1 << 26;
 /// Most tiles of a raster that triangles are drawn on, of 65,536 cells each: their places take 100 MB.
 pub const RASTER_TILES_MAX: u64 = 1 << 22;
 
+/// Most levels of contour lines that pass through one triangle: their open ends take about 40 MB.
+pub const CONTOURS_PER_TRIANGLE_MAX: u64 = 1 << 17;
+
 /// Longest condition on points, in bytes.
 pub const CONDITION_LEN_MAX: usize = 1 << 12;
 

@@ -7,6 +7,7 @@ mod circle;
 mod cli;
 mod config;
 mod configgen;
+mod contours;
 mod convert;
 mod dd4;
 mod delaunay3_float;

@@ -1,5 +1,7 @@
 //! `spdem`: flags, and the figures of `--stats`.
 
+mod contours;
+
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -15,6 +17,7 @@ use crate::dem::{self, Attribute, Options, Stats};
 use crate::error::{Error, ErrorKind};
 use crate::raster::{Light, RasterFormat};
 use crate::system;
+use contours::ContourFlags;
 
 const TOOL: &str = "spdem";
 
@@ -31,6 +34,12 @@ Examples:
     spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
   A part of it as text, for programs that read nothing else:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
+  Contour lines every five metres; both, the mesh being made once:
+    spdem --contours 5 ground.spm -o lines.geojson
+    spfinalize tiles/*.laz | spdelaunay2d | tee >(spdem --step 1 -o terrain.tif) | spdem --contours 5 -o lines.geojson
+  Very many lines, as a GeoPackage (the format does not say which coordinates these are):
+    spdem --contours 0.5 ground.spm -o lines.geojsonl
+    ogr2ogr -a_srs EPSG:2154 lines.gpkg lines.geojsonl
   From a mesh of another program:
     spconvert terrain.ply --to spm | spdem --step 1 --bounds 0,0,1000,1000 -o terrain.tif
 ";
@@ -44,15 +53,20 @@ in a temporary file. ESRI grids are written from the top, when all triangles hav
 Slopes are angles in degrees, aspects directions of steepest descent in degrees clockwise from north; level triangles have no \
 aspect. Elevations and coordinates are taken to be in the same unit.
 
+With --contours D there are lines instead of a raster, at all multiples of D (beginning at --contour-base), as features of GeoJSON with \
+the properties elevation and is_closed. Higher ground is on the left of a line; a vertex on a level counts as above it. Lines are in memory \
+until nothing can be added to them: 16 bytes for each point. --contour-points bounds that; a line that is cut goes on with its last \
+point. Coordinates are those of the mesh, not degrees as RFC 7946 wants; .geojson states their EPSG code as GDAL and QGIS read it.
+
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
 its reader.";
 
 /// What is said where memory that is needed cannot be had.
 const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";
 
-/// Rasters of triangle meshes, in bounded memory.
+/// Rasters and contour lines of triangle meshes, in bounded memory.
 ///
-/// Reads a triangle mesh stream with elevations and writes a GeoTIFF or an ESRI grid. Which triangle a cell is in is decided
+/// Reads a triangle mesh stream with elevations and writes a GeoTIFF or an ESRI grid, or lines as GeoJSON. Which triangle a cell is in is decided
 /// exactly: there are no gaps along edges, and the raster does not depend on the order of triangles.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
@@ -61,12 +75,15 @@ pub struct Flags {
     #[arg(value_name = "STREAM", default_value = "-")]
     input: PathBuf,
 
-    /// Where the raster goes; - is stdout
+    /// Where the raster or lines go; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
     #[command(flatten)]
     cells: CellFlags,
+
+    #[command(flatten)]
+    contours: ContourFlags,
 
     /// What cells have
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Elevation)]
@@ -84,7 +101,8 @@ pub struct Flags {
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
     fill: Option<u32>,
 
-    /// GeoTIFF or ESRI ASCII grid [default: by the name of the output, otherwise tif]
+    /// GeoTIFF or ESRI ASCII grid; GeoJSON of lines, whole or a feature on each line [default: by the name of the output, otherwise tif or
+    /// geojson]
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
@@ -117,15 +135,21 @@ enum KindFlag {
 enum FormatFlag {
     Tif,
     Asc,
+    Geojson,
+    Geojsonl,
 }
 
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`dem::rasterize`], and if the input or the output cannot be opened.
+/// As [`dem::rasterize`] or [`crate::contours::contour`], and if the input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
-    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let started = Instant::now();
+    if let Some(options) = flags.contours.options(flags.kill()?)? {
+        system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        return contours::run(&flags, &options, started);
+    }
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
     let mut reader = open_stream(&flags.input)?;
     let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
@@ -144,10 +168,17 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 }
 
 impl Flags {
-    fn options(&self) -> Result<Options, Error> {
-        if self.kill.is_some_and(|length| length.is_nan() || length <= 0.0) {
-            return Err(Error::usage("--kill takes a length above zero"));
+    fn kill(&self) -> Result<Option<f64>, Error> {
+        match self.kill {
+            Some(length) if length.is_nan() || length <= 0.0 => {
+                Err(Error::usage("--kill takes a length above zero"))
+            }
+            kill => Ok(kill),
         }
+    }
+
+    fn options(&self) -> Result<Options, Error> {
+        let kill = self.kill()?;
         if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
             return Err(Error::usage("--light takes two angles in degrees"));
         }
@@ -161,15 +192,18 @@ impl Flags {
             KindFlag::Aspect => Attribute::Aspect,
             KindFlag::Hillshade => Attribute::Hillshade(Light::from(azimuth, altitude)),
         };
-        let raster = self.raster.options(self.format())?;
-        Ok(Options { attribute, kill: self.kill, fill: self.fill, memory: self.memory, raster })
+        let raster = self.raster.options(self.format()?)?;
+        Ok(Options { attribute, kill, fill: self.fill, memory: self.memory, raster })
     }
 
-    fn format(&self) -> RasterFormat {
+    fn format(&self) -> Result<RasterFormat, Error> {
         match self.format {
-            Some(FormatFlag::Tif) => RasterFormat::GeoTiff,
-            Some(FormatFlag::Asc) => RasterFormat::Ascii,
-            None => cells::format_of(&self.output).unwrap_or(RasterFormat::GeoTiff),
+            Some(FormatFlag::Tif) => Ok(RasterFormat::GeoTiff),
+            Some(FormatFlag::Asc) => Ok(RasterFormat::Ascii),
+            None if contours::format_of(&self.output).is_none() => {
+                Ok(cells::format_of(&self.output).unwrap_or(RasterFormat::GeoTiff))
+            }
+            _ => Err(Error::usage("GeoJSON holds lines, not rasters: add --contours D")),
         }
     }
 }

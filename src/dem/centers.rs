@@ -31,10 +31,4 @@ impl Centers {
     pub(super) fn gradient_to_world(&self, gradient: Point2) -> Point2 {
         [0, 1].map(|axis| gradient[axis] / self.scale[axis])
     }
-
-    /// The length of an edge. Units: those of the world.
-    pub(super) fn length(&self, a: Point2, b: Point2) -> f64 {
-        let [x, y] = [0, 1].map(|axis| (b[axis] - a[axis]) * self.scale[axis]);
-        x.hypot(y)
-    }
 }

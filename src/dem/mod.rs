@@ -24,7 +24,8 @@ use crate::predicates::{Point2, PredicateCounts, Predicates2};
 use crate::raster::{
     self, Grid, Light, RasterFile, RasterFormat, RasterOptions, Reduction, TILE, Tiles, Window,
 };
-use crate::stream::{Crs, Event, Header, Kind, LiveVertices, Patch, StreamReader};
+use crate::stream::{Crs, Event, Header, LiveVertices, Patch, StreamReader};
+use crate::terrain::check_input;
 use canvas::TilePlace;
 use ending::Ending;
 use fill::Filler;
@@ -167,19 +168,6 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         input_bytes: reader.bytes_read(),
         predicates: *painter.predicates.counts(),
     })
-}
-
-fn check_input(header: &Header) -> Result<()> {
-    let what = match header.kind {
-        Kind::TriangleMesh if header.has_elevation => return Ok(()),
-        Kind::TriangleMesh => "vertices have no elevation: give points x y z to spfinalize".to_string(),
-        Kind::PartialTriangleMesh => {
-            "this is a partial triangle mesh: finish it with spdelaunay2d --merge".to_string()
-        }
-        Kind::Points => "these are points: triangulate them with spdelaunay2d".to_string(),
-        kind => format!("this is a stream of kind {}, expected a triangle mesh", kind.name()),
-    };
-    Err(Error::usage(what))
 }
 
 /// Draws all triangles of a stream; its width.

@@ -9,14 +9,11 @@ use super::span::{Edges, Span};
 use super::tile::overlap;
 use super::{Attribute, Options};
 use crate::bounds::Point;
-use crate::error::{Error, Result};
-use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use crate::error::Result;
+use crate::predicates::{Point2, TotalPredicates};
 use crate::raster::{Grid, TILE};
 use crate::stream::Coordinates;
-
-/// By how much, relatively, an edge may be longer than allowed: one that is meant to be as long is not, however its length is
-/// rounded.
-const LENGTH_TOLERANCE: f64 = 1e-12;
+use crate::terrain::{LongEdges, is_counterclockwise};
 
 /// Takes the values of tiles that are complete.
 pub(super) type Handover<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
@@ -26,7 +23,7 @@ pub(super) type Handover<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
 pub(super) struct Painter {
     centers: Centers,
     attribute: Attribute,
-    longest: f64,
+    long_edges: LongEdges,
     pub(super) canvas: Canvas,
     pub(super) predicates: TotalPredicates,
     /// Triangles that were not drawn because of a long edge.
@@ -44,7 +41,7 @@ impl Painter {
         Ok(Painter {
             centers: Centers::new(grid, coordinates),
             attribute: options.attribute,
-            longest: options.kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)),
+            long_edges: LongEdges::new(options.kill, coordinates),
             canvas: Canvas::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
             predicates: TotalPredicates::default(),
             killed: 0,
@@ -61,7 +58,7 @@ impl Painter {
     pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut Handover>) -> Result<()> {
         let corners = least_first(corners);
         let places = corners.map(place);
-        if self.is_killed(places) {
+        if self.long_edges.are_in(places) {
             self.killed += 1;
             return Ok(());
         }
@@ -154,11 +151,6 @@ impl Painter {
         }
         Ok(())
     }
-
-    fn is_killed(&self, [a, b, c]: [Point2; 3]) -> bool {
-        let is_long = |p, q| self.centers.length(p, q) > self.longest;
-        self.longest.is_finite() && (is_long(a, b) || is_long(b, c) || is_long(c, a))
-    }
 }
 
 /// The same triangle, with the corner first that is least in x, then y: values do not depend on which corner a stream has first.
@@ -176,15 +168,4 @@ fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
 /// Least and greatest coordinate of an axis.
 fn range([a, b, c]: [Point2; 3], axis: usize) -> [f64; 2] {
     [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]
-}
-
-/// Whether corners are counterclockwise; false, if they are on one line, where no cell is in the triangle alone.
-fn is_counterclockwise([a, b, c]: [Point2; 3], predicates: &mut impl Predicates2) -> Result<bool> {
-    match predicates.orient2d(a, b, c) {
-        Sign::Positive => Ok(true),
-        Sign::Zero => Ok(false),
-        Sign::Negative => Err(Error::malformed(format!(
-            "the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is clockwise"
-        ))),
-    }
 }

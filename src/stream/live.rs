@@ -66,6 +66,12 @@ impl<T: Copy> LiveVertices<T> {
         self.live.iter().map(|(&id, &value)| (id, value))
     }
 
+    /// Whether a vertex is live: whether a later patch may use it.
+    #[must_use]
+    pub fn contains(&self, id: u64) -> bool {
+        self.live.contains_key(&id)
+    }
+
     /// Number of vertices that are live now.
     #[must_use]
     pub fn len(&self) -> usize {

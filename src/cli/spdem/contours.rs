@@ -1,0 +1,157 @@
+//! `spdem --contours`: flags, and the figures of `--stats`.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use serde_json::Value;
+
+use super::{Flags, FormatFlag, TOOL};
+use crate::cli::progress::Progress;
+use crate::cli::reduction::open_stream;
+use crate::cli::rows::{Row, entries, lines, seconds};
+use crate::cli::{StatsFormat, cells, notice, peak_memory, say};
+use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
+use crate::error::{Error, Result};
+use crate::output::Output;
+use crate::stream::Crs;
+
+/// What is said where memory that is needed cannot be had.
+pub(super) const OUT_OF_MEMORY: &str =
+    "spdem: not enough memory: take a larger distance for --contours, or cut lines with --contour-points\n";
+
+/// Flags about contour lines.
+#[derive(Debug, Clone, Args)]
+pub(super) struct ContourFlags {
+    /// Contour lines instead of a raster, at multiples of this elevation
+    #[arg(
+        long,
+        value_name = "D",
+        allow_negative_numbers = true,
+        conflicts_with_all = ["step", "columns", "rows", "bounds", "kind", "light", "memory", "temp_dir", "align", "like", "fill", "no_data", "cog"]
+    )]
+    contours: Option<f64>,
+
+    /// Count multiples from this elevation
+    #[arg(
+        long,
+        value_name = "B",
+        default_value_t = 0.0,
+        allow_negative_numbers = true,
+        requires = "contours"
+    )]
+    contour_base: f64,
+
+    /// Cut lines that have so many points before they are complete, to bound memory
+    #[arg(
+        long,
+        value_name = "N",
+        value_parser = clap::value_parser!(u32).range(2..),
+        requires = "contours"
+    )]
+    contour_points: Option<u32>,
+}
+
+impl ContourFlags {
+    /// Which lines are wanted, if any are.
+    pub(super) fn options(&self, kill: Option<f64>) -> Result<Option<Options>> {
+        let Some(interval) = self.contours else { return Ok(None) };
+        let levels = Levels::new(interval, self.contour_base)?;
+        Ok(Some(Options { levels, kill, points: self.contour_points.map(|points| points as usize) }))
+    }
+}
+
+/// The format of lines that the ending of a name tells.
+pub(super) fn format_of(path: &Path) -> Option<LineFormat> {
+    let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
+    match &ending[..] {
+        "geojson" | "json" => Some(LineFormat::GeoJson),
+        "geojsonl" | "ndjson" => Some(LineFormat::GeoJsonLines),
+        _ => None,
+    }
+}
+
+/// Writes lines instead of a raster.
+pub(super) fn run(flags: &Flags, options: &Options, started: Instant) -> anyhow::Result<()> {
+    let format = format(flags)?;
+    let mut reader = open_stream(&flags.input)?;
+    let mut output = Output::create(&flags.output, false)?;
+    let mut progress = Progress::new(&flags.common, "contouring", reader.header().points);
+    let stats = contours::contour(&mut reader, &mut output, format, options, |done| progress.set(done))?;
+    drop(progress);
+    let output_bytes = output.bytes_written();
+    output.commit()?;
+    for message in [summary(&stats), about_crs(format, &reader.header().crs)] {
+        notice(TOOL, &flags.common, &message);
+    }
+    if let Some(format) = flags.stats {
+        print(format, &stats, output_bytes, started.elapsed());
+    }
+    Ok(())
+}
+
+fn format(flags: &Flags) -> Result<LineFormat> {
+    match flags.format {
+        Some(FormatFlag::Geojson) => Ok(LineFormat::GeoJson),
+        Some(FormatFlag::Geojsonl) => Ok(LineFormat::GeoJsonLines),
+        None if cells::format_of(&flags.output).is_none() => {
+            Ok(format_of(&flags.output).unwrap_or(LineFormat::GeoJson))
+        }
+        _ => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
+    }
+}
+
+/// What was written, for a notice.
+fn summary(stats: &Stats) -> String {
+    match stats.elevations {
+        None => "no lines: there are no triangles".to_string(),
+        Some([least, greatest]) if stats.lines == 0 => {
+            format!("no lines: elevations are from {least} to {greatest}")
+        }
+        _ => format!("{} lines ({} rings) at {} levels", stats.lines, stats.rings, stats.levels),
+    }
+}
+
+/// What programs will know of where lines are, for a notice.
+fn about_crs(format: LineFormat, crs: &Crs) -> String {
+    match (format, epsg_code(crs)) {
+        (LineFormat::GeoJson, Some(code)) => {
+            format!("coordinates are those of EPSG:{code}, which the file states")
+        }
+        (LineFormat::GeoJsonLines, Some(code)) => {
+            format!(
+                "coordinates are those of EPSG:{code}, which the format has no room for: say -a_srs EPSG:{code}"
+            )
+        }
+        (_, None) => "the stream states no EPSG code: programs will take coordinates for degrees".to_string(),
+    }
+}
+
+fn print(format: StatsFormat, stats: &Stats, output_bytes: u64, time: Duration) {
+    let times = seconds([("time (s)", "seconds", time)]);
+    let counts = counts(stats, output_bytes);
+    match format {
+        StatsFormat::Text => say(&lines(&times, counts)),
+        StatsFormat::Json => say(&format!("{}\n", Value::Object(entries(&times, counts)))),
+    }
+}
+
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 15] {
+    [
+        ("input (bytes)", "input_bytes", stats.input_bytes),
+        ("vertices", "vertices", stats.vertices),
+        ("triangles", "triangles", stats.triangles),
+        ("triangles with a long edge", "killed", stats.killed),
+        ("width (live vertices)", "width", stats.width),
+        ("levels with lines", "levels", stats.levels),
+        ("lines", "lines", stats.lines),
+        ("lines that are rings", "rings", stats.rings),
+        ("points of lines", "points", stats.points),
+        ("single points, left out", "single_points", stats.single_points),
+        ("cuts", "cuts", stats.cuts),
+        ("points of open lines, at most", "open_points", stats.open_points),
+        ("open ends of lines, at most", "open_ends", stats.open_ends),
+        ("output (bytes)", "output_bytes", output_bytes),
+        ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
+    ]
+}

@@ -1,0 +1,112 @@
+//! Steps of a decimal, as people mean them: three times 0.1 is 0.3.
+
+/// Up to this power of ten, powers are numbers of 64 bits exactly.
+const POWER_MAX: i32 = 22;
+
+/// Whole numbers below this, times a step below [`STEP_MAX`], and a base below [`BASE_MAX`] have a sum of 128 bits.
+const STEP_MAX: i128 = 1 << 60;
+const BASE_MAX: i128 = 1 << 120;
+
+/// `base + k * step` for whole numbers k, as numbers that never decrease as k grows.
+///
+/// Base and step stand for the shortest decimals that they can be written as, which is what people and files say. Where these have
+/// few digits, the sum is taken of the decimals, and rounded once to the nearest number of 64 bits as long as it has at most 15
+/// digits; otherwise it is a plain sum and product.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Decimals {
+    base: f64,
+    step: f64,
+    exact: Option<Exact>,
+}
+
+/// Base and step as whole numbers of a unit, of which `units` are one.
+#[derive(Debug, Clone, Copy)]
+struct Exact {
+    base: i128,
+    step: i128,
+    units: f64,
+}
+
+impl Decimals {
+    /// Multiples of `step / 10^finer`, from `base` on.
+    ///
+    /// Domain: finite numbers.
+    pub(super) fn new(base: f64, step: f64, finer: i32) -> Decimals {
+        Decimals { base, step: step / 10f64.powi(finer), exact: Exact::of(base, step, finer) }
+    }
+
+    /// The number at place `k`. Domain: |k| at most 2^53.
+    #[inline]
+    pub(super) fn at(&self, k: i64) -> f64 {
+        match self.exact {
+            Some(Exact { base, step, units }) => (base + step * i128::from(k)) as f64 / units,
+            None => self.base + self.step * k as f64,
+        }
+    }
+}
+
+impl Exact {
+    /// Nothing, if there are too many digits.
+    fn of(base: f64, step: f64, finer: i32) -> Option<Exact> {
+        let ((base, base_power), (step, step_power)) = (digits(base)?, digits(step)?);
+        let step_power = step_power - finer;
+        let power = base_power.min(step_power).min(0);
+        let shifted = |digits: i128, from: i32| {
+            10i128.checked_pow((from - power) as u32).and_then(|factor| digits.checked_mul(factor))
+        };
+        let base = shifted(base, base_power).filter(|base| base.abs() < BASE_MAX)?;
+        let step = shifted(step, step_power).filter(|step| step.abs() < STEP_MAX)?;
+        (-power <= POWER_MAX).then(|| Exact { base, step, units: 10f64.powi(-power) })
+    }
+}
+
+/// The digits of the shortest decimal of a finite number, and the power of ten of the last one.
+fn digits(value: f64) -> Option<(i128, i32)> {
+    let text = format!("{value:e}");
+    let (number, power) = text.split_once('e')?;
+    let behind_point = number.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
+    Some((number.replace('.', "").parse().ok()?, power.parse::<i32>().ok()? - behind_point))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multiples_are_the_decimals_that_people_mean() {
+        for (base, step, finer) in
+            [(0.0, 0.1, 0), (0.05, 0.1, 0), (-1234.5, 0.01, 2), (7.0, 25.0, 0), (0.0, 2.5e-7, 0)]
+        {
+            let decimals = Decimals::new(base, step, finer);
+            let parsed = |text: String| text.parse::<f64>().unwrap();
+            for k in -4000..4000 {
+                // In units of 10^-10, which all of these are multiples of.
+                let [base, step] = [base, step].map(|value: f64| (value * 1e10).round() as i64);
+                let expected = parsed(format!("{}e-10", base + k * step / 10i64.pow(finer as u32)));
+                assert_eq!(decimals.at(k), expected, "{base} {step} {finer} {k}");
+            }
+        }
+        assert_eq!(Decimals::new(0.0, 0.1, 0).at(3), 0.3);
+    }
+
+    #[test]
+    fn long_numbers_are_multiplied_plainly() {
+        for (base, step) in [(0.0, 1.0 / 3.0 * 1e-9), (1e300, 1.0), (0.0, 5e-324), (1e-30, 1e-3)] {
+            let decimals = Decimals::new(base, step, 0);
+            assert!(decimals.exact.is_none(), "{base} {step}");
+            assert_eq!(decimals.at(7), base + 7.0 * step);
+        }
+        assert_eq!(Decimals::new(0.0, 1e17, 0).at(1 << 53), 2f64.powi(53) * 1e17);
+    }
+
+    #[test]
+    fn numbers_never_decrease() {
+        for (base, step) in [(0.1, 1e-17), (1e9, 1e-7), (0.3, 1.0 / 3.0), (1e22, 123.456)] {
+            let decimals = Decimals::new(base, step, 0);
+            for near in [-(1i64 << 52), -1000, 0, 1 << 52] {
+                let values: Vec<f64> = (near..near + 3000).map(|k| decimals.at(k)).collect();
+                assert!(values.windows(2).all(|pair| pair[0] <= pair[1]), "{base} {step} {near}");
+            }
+        }
+    }
+}

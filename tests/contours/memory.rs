@@ -1,0 +1,41 @@
+//! What is held: lines that are over are written while triangles come, and joining takes any order.
+
+use spmesh::contours::Options;
+
+use super::{WHOLE, options, try_lines};
+use crate::dem::Mesh;
+use crate::reference::sets::Random;
+
+/// Two rows of vertices, one step apart, of which the upper one is higher; from left to right.
+fn strip(columns: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {
+    let points =
+        (0..2 * columns).map(|i| [f64::from(i / 2), f64::from(i % 2), elevation(i / 2, i % 2)]).collect();
+    let square = |i: u32| [[2 * i, 2 * i + 2, 2 * i + 3], [2 * i, 2 * i + 3, 2 * i + 1]];
+    Mesh { points, triangles: (0..columns - 1).flat_map(square).collect() }
+}
+
+#[test]
+fn lines_that_are_over_are_not_held() {
+    // Each column but the first has two levels before it, and each line ends on both sides of the strip.
+    let stream = strip(60_000, |x, _| f64::from(2 * x)).stream(WHOLE);
+    let (lines, stats) = try_lines(&stream, &options(1.0, 0.5)).unwrap();
+    assert_eq!((lines.len(), stats.points), (2 * 59_999, 3 * 2 * 59_999));
+    assert!(stats.open_points + stats.open_ends < 120_000, "{stats:?}");
+}
+
+#[test]
+fn pieces_are_joined_in_any_order() {
+    let mesh = strip(20_000, |_, y| f64::from(y)).shuffled(&mut Random::new(5));
+    let (lines, stats) = try_lines(&mesh.stream(WHOLE), &options(1.0, 0.5)).unwrap();
+    assert_eq!((lines.len(), stats.points), (1, 2 * 19_999 + 1));
+    // Higher ground on the left: to the right, above which the upper row is.
+    assert_eq!([lines[0].points[0], lines[0].points[39_998]], [[0.0, 0.5], [19_999.0, 0.5]]);
+    // Every second triangle first: nothing can be joined, and then all of it.
+    let mut mesh = strip(20_000, |_, y| f64::from(y));
+    let every_second = |from: usize| mesh.triangles.iter().copied().skip(from).step_by(2);
+    mesh.triangles = every_second(0).chain(every_second(1)).collect();
+    let options = Options { points: Some(1000), ..options(1.0, 0.5) };
+    let (parts, stats) = try_lines(&mesh.stream(WHOLE), &options).unwrap();
+    assert!(parts.iter().all(|line| line.points.len() <= 2000) && stats.cuts > 10, "{stats:?}");
+    assert_eq!(parts.iter().map(|line| line.segments().count()).sum::<usize>(), 2 * 19_999);
+}
