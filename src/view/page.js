@@ -22,26 +22,21 @@ const HOME = { zoom: 1, x: 0, y: 0 };
 
 const stage = document.querySelector('.page-stage');
 const svg = stage.querySelector('svg');
-const sheet = svg.parentElement;
 const map = svg.querySelector('#map');
 const { width, height } = svg.viewBox.baseVal;
 // A picture that is not seen from above has no world coordinates: its own take their place, and are not shown.
 const isPlan = stage.dataset.unit !== undefined;
 const [left, top, unit] = isPlan ? ['left', 'top', 'unit'].map((name) => Number(stage.dataset[name])) : [0, 0, 1];
 const shown = Object.fromEntries([...document.querySelectorAll('[data-show]')].map((part) => [part.dataset.show, part]));
-sheet.style.setProperty('--aspect', width / height);
 const stillness = matchMedia('(prefers-reduced-motion: reduce)');
-// The stage says it to those who listen; browsers would show it wherever the mouse rests.
-svg.querySelector(':scope > title')?.remove();
-svg.removeAttribute('role');
-const furniture = separated();
-const drawScaleBar = scaleBar();
 const isHeavy = pathCharacters() > LIGHT_PATHS;
+const furniture = arranged();
+const drawScaleBar = scaleBar();
 
 let view = HOME;
 // Where a step that is under way ends: the next one starts there.
 let goal = HOME;
-// What is shown: the paths as they were drawn for a view, and moved as a whole since.
+// The view that paths are drawn for, and the one that they have been brought to since.
 let drawn = HOME;
 let seen = null;
 // From the window to the picture; asked only when sizes change, because the answer can cost a layout.
@@ -115,7 +110,8 @@ function coordinateText(value, step) {
   const decimals = Math.max(0, Math.ceil(-Math.log10(step)));
   const leading = Math.floor(Math.log10(Math.abs(value) || step));
   if (decimals > 9 || leading >= 15) {
-    return value.toExponential(clamp(leading + decimals, 0, 15));
+    // A plus sign would be a blank in an address.
+    return value.toExponential(clamp(leading + decimals, 0, 15)).replace('+', '');
   }
   const text = value.toFixed(Math.min(decimals, 15 - Math.max(leading, 0)));
   return Number(text) === 0 ? text.replace('-', '') : text;
@@ -143,10 +139,10 @@ function lengthText(length) {
 function scaleBar() {
   const bar = furniture.querySelector('#scale path');
   const text = furniture.querySelector('#scale text');
-  if (!bar || !text) {
+  const [longest, ...name] = text?.textContent.trim().split(/\s+/) ?? [];
+  if (!bar || !(Number(longest) > 0)) {
     return () => {};
   }
-  const [longest, ...name] = text.textContent.trim().split(/\s+/);
   const anchor = getComputedStyle(text).textAnchor;
   const box = bar.getBBox();
   return () => {
@@ -381,6 +377,20 @@ stage.addEventListener('wheel', (event) => {
 
 // Start
 
+// Gives the furniture a layer of its own, above that of the map, and the sheet its shape.
+function arranged() {
+  // The stage says it to those who listen; browsers would show it wherever the mouse rests.
+  svg.querySelector(':scope > title')?.remove();
+  svg.removeAttribute('role');
+  const above = svg.cloneNode(false);
+  above.append(svg.querySelector('#furniture') ?? '');
+  svg.after(above);
+  above.parentElement.style.setProperty('--aspect', width / height);
+  above.parentElement.classList.toggle('page-heavy', isHeavy);
+  document.querySelector('.page-bar').hidden = false;
+  return above;
+}
+
 function measure() {
   // A stage that is squeezed to nothing shows nothing.
   if (stage.clientWidth > 0 && stage.clientHeight > 0) {
@@ -389,16 +399,6 @@ function measure() {
   }
 }
 
-// The furniture gets a layer of its own, above that of the map.
-function separated() {
-  const above = svg.cloneNode(false);
-  above.append(svg.querySelector('#furniture') ?? '');
-  svg.after(above);
-  return above;
-}
-
-sheet.classList.toggle('page-heavy', isHeavy);
-document.querySelector('.page-bar').hidden = false;
 measure();
 show(viewOfAddress());
 new ResizeObserver(measure).observe(stage);
