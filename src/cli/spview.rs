@@ -102,6 +102,10 @@ pub struct Flags {
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = "315,45", allow_hyphen_values = true)]
     light: [f64; 2],
 
+    /// The elevations that colours are for; those beyond have the colours of the ends [default: all that there are]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
+    range: Option<[f64; 2]>,
+
     /// Colours of two sorts, for elevations below and above this one
     #[arg(long, value_name = "Z", allow_negative_numbers = true)]
     middle: Option<f64>,
@@ -199,6 +203,9 @@ impl Flags {
         if self.middle.is_some_and(|middle| !middle.is_finite()) {
             return Err(Error::usage("--middle takes an elevation"));
         }
+        if self.range.is_some_and(|[low, high]| !(low < high && low.is_finite() && high.is_finite())) {
+            return Err(Error::usage("--range takes the least elevation and the greatest"));
+        }
         let name = Path::new(&self.input).file_name().map(|name| name.to_string_lossy().into_owned());
         let [azimuth, altitude] = self.light;
         let defaults = Options::new(name.filter(|name| name != "-").unwrap_or("stdin".to_string()));
@@ -225,6 +232,7 @@ impl Flags {
             bounds: self.bounds.map(window_of).transpose()?,
             oblique: self.oblique,
             light: Light::from(azimuth, altitude),
+            range: self.range,
             middle: self.middle,
             order: self.order.map(usize::from),
             set: self.set.clone(),

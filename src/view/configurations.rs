@@ -130,12 +130,13 @@ impl Scene<'_> {
             Mark { shape: Shape::Line, colour: LINK, words: "its link" },
             Mark { shape: Shape::Area, colour: INSIDE, words: "the triangles of its link" },
         ];
+        let words = &words[..if inside.is_empty() { 2 } else { 3 }];
         let kind = match (link.is_null(), link.is_infinite()) {
             (true, _) => ", which is null",
             (_, true) => ", which goes through the faraway point",
             _ => "",
         };
-        Ok(self.finish(map, knots, &chosen, &words, format!("link of the set {names}{kind}")))
+        Ok(self.finish(map, knots, &chosen, words, format!("link of the set {names}{kind}")))
     }
 
     /// Puts knots on a map, and its furniture around it.
@@ -171,7 +172,7 @@ impl Scene<'_> {
         let mut text = format!("<g id=\"numbers\" fill=\"{}\">\n", hex(KNOT));
         for (number, &at) in knots.iter().enumerate() {
             let [x, y, _] = self.stage.view.place(at);
-            text += &svg::text([x + 5.0, y - 5.0], 11, Anchor::Start, &number.to_string());
+            text += &svg::text([x + 6.0, y - 6.0], 11, Anchor::Start, &number.to_string());
         }
         text + "</g>\n"
     }

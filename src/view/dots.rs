@@ -52,7 +52,9 @@ fn radius(count: usize) -> f64 {
 pub(super) fn vectors(dots: &[Dot], stage: &Stage, look: &Look, colours: Option<&Colours>) -> String {
     let fill = look.point_fill();
     let colours = colours.filter(|_| fill != Fill::None);
-    let mut text = "<g id=\"points\" fill=\"#24292f\">\n".to_string();
+    // Dark dots stand on cells of any colour.
+    let rim = if colours.is_none() { " stroke=\"#fff\" stroke-width=\"0.4\"" } else { "" };
+    let mut text = format!("<g id=\"points\" fill=\"#24292f\"{rim}>\n");
     let radius = radius(dots.len());
     for dot in dots {
         let [x, y, _] = stage.view.place(dot.at);

@@ -8,16 +8,17 @@ use super::front::Front;
 use super::layer::Layer;
 use super::look::{Colours, Look};
 use super::picture::Picture;
+use super::projection::PAD;
 use super::ramp::Colour;
+use super::request;
 use super::sheet::{Furniture, Legend, Mark, Shape};
 use super::stage::Stage;
 use super::triangles::{self, Triangle};
-use super::view::PAD;
 use super::{Fill, Moments, Options, configurations, svg, ticks};
 use crate::bounds::{Bounds, Point};
 use crate::cells::CellCode;
 use crate::configgen::read::ConfigurationSet;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::stream::{Coordinates, Event, Header, Kind, Patch, StreamReader};
 
 /// Vertices that are live, points of a residual.
@@ -55,7 +56,7 @@ pub fn draw<R: Read>(
     mut progress: impl FnMut(u64),
 ) -> Result<()> {
     let header = reader.header().clone();
-    check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
+    request::check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
     if header.kind.has_knots() {
         let set = ConfigurationSet::read(reader)?;
         return take(&configurations::picture(&set, header.coordinates, options)?);
@@ -66,55 +67,6 @@ pub fn draw<R: Read>(
         progress(reader.totals().points.max(reader.totals().vertices));
     }
     drawing.end(take)
-}
-
-/// Whether a stream can be drawn, and so.
-fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
-    let kind = header.kind;
-    let refuse = |what: String| Err(Error::usage(what));
-    if kind.is_4d() {
-        return refuse(format!(
-            "{} cannot be seen from above: dd4 --slice makes a mesh of a moment",
-            kind.name()
-        ));
-    }
-    if kind.vertices_per_simplex() == 4 {
-        return refuse(format!(
-            "a {} hides itself if seen from above: spconvert makes a VTU of it, which other programs draw in space",
-            kind.name()
-        ));
-    }
-    if kind.has_knots() {
-        if moments.at.is_some() || moments.every.is_some() || options.oblique || options.fill.is_some() {
-            let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, \
-                        --snapshot, --oblique and --fill";
-            return refuse(what.to_string());
-        }
-        return Ok(());
-    }
-    if options.order.is_some() || options.set.is_some() {
-        return refuse(format!(
-            "--order and --set are for configurations, this is a stream of kind {}",
-            kind.name()
-        ));
-    }
-    let has_z = header.dims == 3 || header.has_elevation;
-    if !has_z && (options.oblique || !matches!(options.fill, None | Some(Fill::None | Fill::Time))) {
-        return refuse(
-            "points have no elevation: give points x y z to spfinalize, or take --fill time".to_string(),
-        );
-    }
-    if kind == Kind::Points
-        && (options.oblique || matches!(options.fill, Some(Fill::Hillshade | Fill::Relief)))
-    {
-        return refuse(
-            "points are no surface: make one with spdelaunay2d, or take --fill elevation".to_string(),
-        );
-    }
-    if options.oblique && options.bounds.is_some() {
-        return refuse("--bounds is for what is seen from above: leave out --oblique".to_string());
-    }
-    Ok(())
 }
 
 /// For what lies in a box of the world.

@@ -56,8 +56,9 @@ pub(super) fn back_to_front(
                 open.insert([a, b], 3 * number + side);
                 continue;
             };
-            // The triangle is on the left of its edge: behind it, if that goes to the right.
-            let is_behind = places[number][to][0] > places[number][from][0];
+            // The triangle is on the left of its edge: behind it, if that goes to the right. An edge straight away from the eye hides
+            // nothing, and is seen as if the eye were a little to one side.
+            let is_behind = places[number][to] > places[number][from];
             let [first, second] =
                 if is_behind { [3 * number + side, other] } else { [other, 3 * number + side] };
             frees[first / 3][first % 3] = second / 3;

@@ -16,6 +16,7 @@ pub(super) struct Look {
     fill: Option<Fill>,
     edges: When,
     light: Light,
+    range: Option<[f64; 2]>,
     middle: Option<f64>,
     /// Whether vertices have elevations.
     has_elevation: bool,
@@ -37,8 +38,8 @@ pub(super) struct Colours {
 
 impl Look {
     pub(super) fn of(options: &Options, has_elevation: bool, unit: &'static str) -> Look {
-        let Options { fill, edges, light, middle, .. } = *options;
-        Look { fill, edges, light, middle, has_elevation, unit }
+        let Options { fill, edges, light, range, middle, .. } = *options;
+        Look { fill, edges, light, range, middle, has_elevation, unit }
     }
 
     /// What triangles show: their relief, if they have one; otherwise their edges, if these can be seen.
@@ -83,6 +84,7 @@ impl Look {
 
     /// Colours for elevations of a range, after so many triangles or points.
     pub(super) fn colours(&self, fill: Fill, elevations: [f64; 2], count: u64) -> Colours {
+        let elevations = self.range.unwrap_or(elevations);
         let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief);
         let (ramp, range) = match self.middle {
             _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64]),

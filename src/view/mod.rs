@@ -1,7 +1,8 @@
 //! `spview`: pictures of streams.
 //!
-//! A picture is SVG; PNG is that SVG, rendered, and `page` puts it on a page that pans and zooms. `drawing` goes from events to pictures. `stage` says what is seen: `sheet` has what
-//! stands around the map, `view` how the world comes on it, and `frame` where it is in the world. `look` says what triangles and
+//! A picture is SVG; PNG is that SVG, rendered, and `page` puts it on a page that pans and zooms. `request` says what can be asked of which stream, `drawing` goes from
+//! events to pictures. `stage` says what is seen: `sheet` has what
+//! stands around the map, `projection` how the world comes on it, and `frame` where it is in the world. `look` says what triangles and
 //! points look like, with the colours of `ramp`. `layer` keeps those that are few, for `triangles` and `dots` to draw, and paints
 //! others on the pixels of `canvas`. `hiding` puts triangles in order that are seen from one side. `front` has the vertices that are live, `cells` those of a finalization, and
 //! `configurations` draws what its name says.
@@ -21,14 +22,14 @@ mod layer;
 mod look;
 mod page;
 mod picture;
+mod projection;
 mod ramp;
+mod request;
 mod sheet;
 mod stage;
 mod svg;
 mod ticks;
 mod triangles;
-#[allow(clippy::module_inception)]
-mod view;
 
 use std::io::Read;
 
@@ -100,6 +101,8 @@ pub struct Options {
     pub oblique: bool,
     /// Light of shades.
     pub light: Light,
+    /// The elevations that colours are for; all that there are if `None`.
+    pub range: Option<[f64; 2]>,
     /// The elevation that colours of two sorts meet at.
     pub middle: Option<f64>,
     /// The order of the centroid triangulation of configurations; the greatest if `None`.
@@ -123,6 +126,7 @@ impl Options {
             surveyed: None,
             oblique: false,
             light: Light::from(315.0, 45.0),
+            range: None,
             middle: None,
             order: None,
             set: None,

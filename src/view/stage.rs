@@ -1,7 +1,7 @@
 //! What a picture shows of the world, and from where.
 
+use super::projection::View;
 use super::sheet::Sheet;
-use super::view::View;
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
 use crate::raster::Window;

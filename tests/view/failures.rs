@@ -25,6 +25,7 @@ fn each_failure_has_its_exit_code() {
         (&with(&["--bounds", "3,0,1,1"]), &mesh, 2, "bounds 3,0,1,1 are empty"),
         (&with(&["--light", "0,inf"]), &mesh, 2, "two angles"),
         (&with(&["--middle", "nan"]), &mesh, 2, "takes an elevation"),
+        (&with(&["--range", "3,3"]), &mesh, 2, "the least elevation and the greatest"),
         (&with(&["--vector", "--raster"]), &mesh, 2, "cannot be used with"),
         (&with(&["--at", "1.5"]), &mesh, 2, "neither a part"),
         (&with(&["--at", "-1"]), &mesh, 2, "-1"),
@@ -103,9 +104,10 @@ fn damaged_streams_leave_no_file() {
 
 #[test]
 fn closed_pipes_are_silent_and_full_disks_are_not() {
-    let (folder, mesh) = (Folder::new(), mesh_of(&grid(60)));
+    // More than a pipe holds.
+    let (folder, mesh) = (Folder::new(), mesh_of(&grid(180)));
     let name = folder.write("mesh.spm", &mesh);
-    assert_silent_without_reader("spview", &["-q", &name]);
+    assert_silent_without_reader("spview", &["-q", "--vector", &name]);
     assert_silent_without_reader("spview", &["-q", "--tee", "-o", "/dev/null", &name]);
     if !std::path::Path::new("/dev/full").exists() {
         eprintln!("SKIPPED: there is no /dev/full");

@@ -50,3 +50,10 @@ fn grid(side: u64) -> String {
     let point = |i: u64| (i % side * 100 + i * 37 % 23, i / side * 100 + i * 53 % 29, i * 71 % 97);
     (0..side * side).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()
 }
+
+/// Number of triangles of a mesh.
+fn triangles(stream: &[u8]) -> u64 {
+    let mut reader = StreamReader::new(stream, "mesh").unwrap();
+    while reader.next_event().unwrap().is_some() {}
+    reader.totals().simplices
+}

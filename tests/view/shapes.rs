@@ -78,6 +78,10 @@ fn colours_are_in_the_order_of_what_they_mean() {
         .collect();
     lights.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert!(lights.windows(2).all(|pair| pair[0].1 <= pair[1].1 + 0.9), "{lights:?}");
+    // Beyond a range that is given, all have the colour of its end.
+    let low = Options { range: Some([-9.0, -1.0]), ..options(Fill::Elevation) };
+    let elements = parse(&picture(&stream, &low).svg);
+    assert!(triangles(&elements).iter().all(|path| path.attributes["color"] == "#faccfa"));
 }
 
 #[test]
@@ -192,7 +196,8 @@ fn the_furniture_says_what_is_shown() {
     let words: Vec<&str> =
         within(&elements, "furniture", "text").iter().map(|element| &element.text[..]).collect();
     assert!(words.contains(&"Elevation") && words.iter().any(|text| text.ends_with(" units")), "{words:?}");
-    assert_eq!(picture.title, "a<b>&\"c\".spm: 392 triangles, 225 vertices");
+    let count = super::triangles(&mesh);
+    assert_eq!(picture.title, format!("a<b>&\"c\".spm: {count} triangles, 225 vertices"));
     let numbers: Vec<f64> = words.iter().filter_map(|text| text.parse().ok()).collect();
     assert!(numbers.len() >= 3 && numbers.windows(2).all(|pair| pair[0] < pair[1]), "{words:?}");
     assert!(named(&elements, "map").is_some() && named(&elements, "scale").is_some());

@@ -1,0 +1,55 @@
+//! What can be asked of which stream.
+
+use super::{Fill, Moments, Options};
+use crate::error::{Error, Result};
+use crate::stream::{Header, Kind};
+
+/// Checks that a stream can be drawn, and so.
+///
+/// # Errors
+/// Usage, if it has nothing that could be seen from above, or lacks what options ask for.
+pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
+    let kind = header.kind;
+    let refuse = |what: String| Err(Error::usage(what));
+    if kind.is_4d() {
+        let name = kind.name();
+        return refuse(format!(
+            "{name} cannot be seen from above: dd4 --slice makes a mesh of one moment of them"
+        ));
+    }
+    if kind.vertices_per_simplex() == 4 {
+        let name = kind.name();
+        return refuse(format!(
+            "a {name} hides itself if seen from above: spconvert makes a VTU of it, which other programs draw in space"
+        ));
+    }
+    if kind.has_knots() {
+        return check_of_knots(options, moments);
+    }
+    if options.order.is_some() || options.set.is_some() {
+        let name = kind.name();
+        return refuse(format!("--order and --set are for configurations, this is a stream of kind {name}"));
+    }
+    let has_elevation = header.dims == 3 || header.has_elevation;
+    let fill = options.fill;
+    let what = if !has_elevation && (options.oblique || !matches!(fill, None | Some(Fill::None | Fill::Time)))
+    {
+        "points have no elevation: give points x y z to spfinalize, or take --fill time"
+    } else if kind == Kind::Points
+        && (options.oblique || matches!(fill, Some(Fill::Hillshade | Fill::Relief)))
+    {
+        "points are no surface: make one with spdelaunay2d, or take --fill elevation"
+    } else if options.oblique && options.bounds.is_some() {
+        "--bounds is for what is seen from above: leave out --oblique"
+    } else {
+        return Ok(());
+    };
+    refuse(what.to_string())
+}
+
+fn check_of_knots(options: &Options, moments: &Moments) -> Result<()> {
+    let is_plain = *moments == Moments::default() && !options.oblique && options.fill.is_none();
+    let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, --snapshot, --oblique \
+                and --fill";
+    if is_plain { Ok(()) } else { Err(Error::usage(what)) }
+}
