@@ -2,7 +2,7 @@
 
 mod drawing;
 mod failures;
-pub(crate) mod pipelines;
+pub mod pipelines;
 mod tiles;
 
 use std::io::Cursor;
@@ -18,28 +18,28 @@ use crate::reference::sets::Random;
 
 /// A triangle mesh with stored coordinates.
 #[derive(Clone)]
-pub(crate) struct Mesh {
-    pub(crate) points: Vec<[f64; 3]>,
-    pub(crate) triangles: Vec<[u32; 3]>,
+pub struct Mesh {
+    pub points: Vec<[f64; 3]>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
     /// The Delaunay triangulation of integer points, with random elevations from 0 to 999.
-    fn of(random: &mut Random, points: &[[i64; 2]]) -> Mesh {
+    pub fn of(random: &mut Random, points: &[[i64; 2]]) -> Mesh {
         let triangles = incremental::triangles(points);
         let point = |&[x, y]: &[i64; 2]| [x as f64, y as f64, random.integer(0, 999) as f64];
         Mesh { points: points.iter().map(point).collect(), triangles }
     }
 
     /// The same with triangles in random order, each starting with any of its corners.
-    pub(crate) fn shuffled(&self, random: &mut Random) -> Mesh {
+    pub fn shuffled(&self, random: &mut Random) -> Mesh {
         let mut mesh = self.clone();
         random.shuffle(&mut mesh.triangles);
         mesh.triangles.iter_mut().for_each(|triangle| triangle.rotate_left(random.integer(0, 2) as usize));
         mesh
     }
 
-    pub(crate) fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
+    pub fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
         let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
         header.bounds = Bounds::of_points(&self.points);
         let (mut output, at) = (Vec::new(), |vertex: u32| self.points[vertex as usize]);
