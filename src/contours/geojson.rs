@@ -93,9 +93,13 @@ impl<W: Write> LineWriter<W> {
         self.output.flush().map_err(write_error)
     }
 
-    /// The shortest decimal that reads back as the same number; zero has no sign.
+    /// The shortest decimal that reads back as the same number; zero has no sign. Domain: finite numbers.
     fn number(&mut self, value: f64) -> Result<()> {
-        write!(self.text, "{}", value + 0.0).map_err(write_error)
+        serde_json::to_writer(&mut self.text, &(value + 0.0)).map_err(|cause| write_error(cause.into()))?;
+        if self.text.ends_with(b".0") {
+            self.text.truncate(self.text.len() - 2);
+        }
+        Ok(())
     }
 
     fn hand_over(&mut self, len: usize) -> Result<()> {

@@ -4,7 +4,7 @@ mod drawing;
 mod failures;
 mod files;
 mod pieces;
-pub(crate) mod pipelines;
+pub mod pipelines;
 mod tiles;
 
 use std::io::Cursor;
@@ -20,9 +20,9 @@ use crate::reference::sets::Random;
 
 /// A triangle mesh with stored coordinates.
 #[derive(Clone)]
-pub(crate) struct Mesh {
-    pub(crate) points: Vec<[f64; 3]>,
-    pub(crate) triangles: Vec<[u32; 3]>,
+pub struct Mesh {
+    pub points: Vec<[f64; 3]>,
+    pub triangles: Vec<[u32; 3]>,
 }
 
 impl Mesh {
@@ -34,14 +34,14 @@ impl Mesh {
     }
 
     /// The same with triangles in random order, each starting with any of its corners.
-    pub(crate) fn shuffled(&self, random: &mut Random) -> Mesh {
+    pub fn shuffled(&self, random: &mut Random) -> Mesh {
         let mut mesh = self.clone();
         random.shuffle(&mut mesh.triangles);
         mesh.triangles.iter_mut().for_each(|triangle| triangle.rotate_left(random.integer(0, 2) as usize));
         mesh
     }
 
-    pub(crate) fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
+    pub fn stream(&self, coordinates: Coordinates) -> Vec<u8> {
         let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
         header.bounds = Bounds::of_points(&self.points);
         let (mut output, at) = (Vec::new(), |vertex: u32| self.points[vertex as usize]);

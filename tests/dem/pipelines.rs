@@ -11,7 +11,7 @@ use super::values;
 use crate::programs::{Folder, outcome, run, sample};
 
 /// A real tile as a mesh stream.
-pub(crate) fn mesh() -> Vec<u8> {
+pub fn mesh() -> Vec<u8> {
     let points = run("spfinalize", &["--cell-points", "3000", &sample("lareunion.laz")], &[]);
     assert!(points.status.success(), "{:?}", outcome(&points));
     let mesh = run("spdelaunay2d", &["--duplicates", "lowest"], &points.stdout);
@@ -20,7 +20,7 @@ pub(crate) fn mesh() -> Vec<u8> {
 }
 
 /// Corners of triangles in world coordinates, from the OBJ of a mesh.
-pub(crate) fn triangles(mesh: &[u8]) -> Vec<[[f64; 3]; 3]> {
+pub fn triangles(mesh: &[u8]) -> Vec<[[f64; 3]; 3]> {
     let obj = String::from_utf8(run("spconvert", &["--to", "obj"], mesh).stdout).unwrap();
     let numbers =
         |line: &str| -> Vec<f64> { line.split(' ').skip(1).map(|word| word.parse().unwrap()).collect() };

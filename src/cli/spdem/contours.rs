@@ -28,7 +28,7 @@ pub(super) struct ContourFlags {
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["step", "columns", "rows", "bounds", "kind", "light", "memory", "temp_dir", "align", "like", "fill", "no_data", "cog"]
+        conflicts_with_all = ["CellFlags", "kind", "light", "memory", "fill", "no_data", "cog", "temp_dir"]
     )]
     contours: Option<f64>,
 
