@@ -121,7 +121,7 @@ fn windows_leave_out_what_cannot_be_seen() {
 }
 
 #[test]
-fn seen_from_one_side_all_triangles_are_there_the_far_ones_first() {
+fn seen_from_one_side_all_triangles_are_on_the_sheet() {
     let mesh = random_mesh(120, 600);
     let options = Options { oblique: true, ..options(Fill::Elevation) };
     let picture = picture(&mesh.stream(Coordinates::F64), &options);
