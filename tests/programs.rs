@@ -57,6 +57,29 @@ pub fn assert_silent_without_reader(name: &str, arguments: &[&str]) {
     assert_eq!((code, &message[..]), (Some(141), ""), "{name} {arguments:?}");
 }
 
+/// Asserts that a tool refuses a stream that is cut or damaged anywhere, and leaves neither a new file nor a change in an old one;
+/// `names` are those of an old and a new output.
+pub fn assert_damage_leaves_no_file(name: &str, arguments: &[&str], names: [&str; 2], stream: &[u8]) {
+    let folder = Folder::new();
+    folder.file(names[0], "old");
+    let check = |bytes: &[u8], place: usize| {
+        for output in names {
+            let (code, message) =
+                outcome(&run(name, &[arguments, &["-o", &folder.path(output)]].concat(), bytes));
+            assert_eq!(code, Some(3), "{name} with {output}, at {place}: {message}");
+            assert!(message.contains("stdin: ") && !message.contains("panicked"), "{message}");
+        }
+        assert_eq!(folder.names(""), names[..1], "{name}, at {place}");
+    };
+    for place in (0..stream.len()).step_by(stream.len() / 7) {
+        check(&stream[..place], place);
+        let mut damaged = stream.to_vec();
+        damaged[(place + 9).min(stream.len() - 1)] ^= 4;
+        check(&damaged, place);
+    }
+    assert_eq!(fs::read_to_string(folder.path(names[0])).expect("a file"), "old");
+}
+
 /// A small file that comes with the tests.
 pub fn sample(name: &str) -> String {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", name].iter().collect();

@@ -4,12 +4,23 @@ use std::time::Duration;
 
 use serde_json::{Map, Value};
 
+use super::{StatsFormat, say};
+
 /// A label for people, a key for programs, the value.
 pub(super) type Row<T> = (&'static str, &'static str, T);
 
 /// Times in seconds.
 pub(super) fn seconds(rows: impl IntoIterator<Item = Row<Duration>>) -> Vec<Row<f64>> {
     rows.into_iter().map(|(label, key, time)| (label, key, time.as_secs_f64())).collect()
+}
+
+/// Says how long a run took, and counts.
+pub(super) fn print(format: StatsFormat, time: Duration, counts: impl IntoIterator<Item = Row<u64>>) {
+    let times = seconds([("time (s)", "seconds", time)]);
+    match format {
+        StatsFormat::Text => say(&lines(&times, counts)),
+        StatsFormat::Json => say(&format!("{}\n", Value::Object(entries(&times, counts)))),
+    }
 }
 
 /// Lines of times, then lines of counts.

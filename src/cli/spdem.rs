@@ -3,16 +3,15 @@
 mod contours;
 
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
-use serde_json::Value;
 
 use super::cells::{self, CellFlags, RasterFlags};
 use super::progress::Progress;
 use super::reduction::open_stream;
-use super::rows::{Row, entries, lines, seconds};
-use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, say};
+use super::rows::{self, Row};
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
 use crate::dem::{self, Attribute, Options, Stats};
 use crate::error::{Error, ErrorKind};
 use crate::raster::{Light, RasterFormat};
@@ -162,7 +161,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     output.commit()?;
     notice(TOOL, &flags.common, &cells::summary(&grid, stats.cells - stats.known));
     if let Some(format) = flags.stats {
-        print(format, &stats, output_bytes, started.elapsed());
+        rows::print(format, started.elapsed(), counts(&stats, output_bytes));
     }
     Ok(())
 }
@@ -205,15 +204,6 @@ impl Flags {
             }
             _ => Err(Error::usage("GeoJSON holds lines, not rasters: add --contours D")),
         }
-    }
-}
-
-fn print(format: StatsFormat, stats: &Stats, output_bytes: u64, time: Duration) {
-    let times = seconds([("time (s)", "seconds", time)]);
-    let counts = counts(stats, output_bytes);
-    match format {
-        StatsFormat::Text => say(&lines(&times, counts)),
-        StatsFormat::Json => say(&format!("{}\n", Value::Object(entries(&times, counts)))),
     }
 }
 

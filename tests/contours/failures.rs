@@ -1,6 +1,8 @@
 //! Wrong usage, streams that are no mesh in the plane, damaged input, and outputs that cannot be written.
 
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run};
+use crate::programs::{
+    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+};
 
 fn mesh() -> Vec<u8> {
     let points = run("spfinalize", &["-"], cloud(3_000).as_bytes());
@@ -79,21 +81,7 @@ fn other_streams_are_refused() {
 
 #[test]
 fn damaged_streams_leave_no_file() {
-    let (folder, mesh) = (Folder::new(), mesh());
-    folder.file("old.geojson", "old");
-    let check = |bytes: &[u8], place: usize| {
-        for name in ["old.geojson", "new.ndjson"] {
-            check(&["--contours", "10", "-o", &folder.path(name)], bytes, 3, "stdin: ");
-        }
-        assert_eq!(folder.names(""), ["old.geojson"], "{place}");
-    };
-    for place in (0..mesh.len()).step_by(mesh.len() / 6) {
-        check(&mesh[..place], place);
-        let mut damaged = mesh.clone();
-        damaged[(place + 9).min(mesh.len() - 1)] ^= 4;
-        check(&damaged, place);
-    }
-    assert_eq!(std::fs::read_to_string(folder.path("old.geojson")).unwrap(), "old");
+    assert_damage_leaves_no_file("spdem", &["--contours", "10"], ["old.geojson", "new.ndjson"], &mesh());
 }
 
 #[test]

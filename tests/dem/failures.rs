@@ -5,7 +5,9 @@ use spmesh::raster::{Grid, RasterFormat};
 use spmesh::stream::Coordinates;
 
 use super::{Mesh, file, options};
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run};
+use crate::programs::{
+    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+};
 
 /// A mesh of scattered points.
 fn mesh() -> Vec<u8> {
@@ -128,23 +130,7 @@ fn numbers_that_cells_cannot_hold_are_refused() {
 
 #[test]
 fn damaged_streams_leave_no_file() {
-    let (folder, mesh) = (Folder::new(), mesh());
-    folder.file("old.tif", "old");
-    let check = |bytes: &[u8], place: usize| {
-        for name in ["old.tif", "new.asc"] {
-            let (code, message) =
-                outcome(&run("spdem", &["--step", "1000", "-o", &folder.path(name)], bytes));
-            assert_eq!(code, Some(3), "{place}: {message}");
-        }
-    };
-    for place in (0..mesh.len()).step_by(mesh.len() / 8) {
-        check(&mesh[..place], place);
-        let mut damaged = mesh.clone();
-        damaged[(place + 9).min(mesh.len() - 1)] ^= 4;
-        check(&damaged, place);
-    }
-    assert_eq!(std::fs::read_to_string(folder.path("old.tif")).unwrap(), "old");
-    assert_eq!(folder.names(""), ["old.tif"]);
+    assert_damage_leaves_no_file("spdem", &["--step", "1000"], ["old.tif", "new.asc"], &mesh());
 }
 
 #[test]

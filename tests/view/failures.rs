@@ -1,7 +1,9 @@
 //! Wrong usage, streams that cannot be seen from above, damaged input, and outputs that cannot be written.
 
 use super::{grid, mesh_of, output};
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run};
+use crate::programs::{
+    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+};
 
 fn check(cases: &[(&[&str], &[u8], i32, &str)]) {
     for (arguments, input, code, part) in cases {
@@ -84,22 +86,7 @@ fn long_pipes_that_do_not_say_where_they_are_need_bounds() {
 
 #[test]
 fn damaged_streams_leave_no_file() {
-    let (folder, mesh) = (Folder::new(), mesh_of(&grid(12)));
-    folder.file("old.png", "old");
-    let check = |bytes: &[u8], place: usize| {
-        for name in ["old.png", "new.svg"] {
-            let (code, message) = outcome(&run("spview", &["-o", &folder.path(name)], bytes));
-            assert_eq!(code, Some(3), "{place}: {message}");
-        }
-    };
-    for place in (0..mesh.len()).step_by(mesh.len() / 6) {
-        check(&mesh[..place], place);
-        let mut damaged = mesh.clone();
-        damaged[(place + 9).min(mesh.len() - 1)] ^= 4;
-        check(&damaged, place);
-    }
-    assert_eq!(std::fs::read_to_string(folder.path("old.png")).unwrap(), "old");
-    assert_eq!(folder.names(""), ["old.png"]);
+    assert_damage_leaves_no_file("spview", &[], ["old.png", "new.svg"], &mesh_of(&grid(12)));
 }
 
 #[test]

@@ -1,16 +1,15 @@
 //! `spdem --contours`: flags, and the figures of `--stats`.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::Args;
-use serde_json::Value;
 
 use super::{Flags, FormatFlag, TOOL};
 use crate::cli::progress::Progress;
 use crate::cli::reduction::open_stream;
-use crate::cli::rows::{Row, entries, lines, seconds};
-use crate::cli::{StatsFormat, cells, notice, peak_memory, say};
+use crate::cli::rows::{self, Row};
+use crate::cli::{cells, notice, peak_memory};
 use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
 use crate::error::{Error, Result};
 use crate::output::Output;
@@ -85,7 +84,7 @@ pub(super) fn run(flags: &Flags, options: &Options, started: Instant) -> anyhow:
         notice(TOOL, &flags.common, &message);
     }
     if let Some(format) = flags.stats {
-        print(format, &stats, output_bytes, started.elapsed());
+        rows::print(format, started.elapsed(), counts(&stats, output_bytes));
     }
     Ok(())
 }
@@ -124,15 +123,6 @@ fn about_crs(format: LineFormat, crs: &Crs) -> String {
             )
         }
         (_, None) => "the stream states no EPSG code: programs will take coordinates for degrees".to_string(),
-    }
-}
-
-fn print(format: StatsFormat, stats: &Stats, output_bytes: u64, time: Duration) {
-    let times = seconds([("time (s)", "seconds", time)]);
-    let counts = counts(stats, output_bytes);
-    match format {
-        StatsFormat::Text => say(&lines(&times, counts)),
-        StatsFormat::Json => say(&format!("{}\n", Value::Object(entries(&times, counts)))),
     }
 }
 

@@ -111,18 +111,8 @@ pub fn write_tiles<W: Write + Seek>(
     tiles.store_all()?;
     let Tiles { mut levels, store, .. } = tiles;
     // The least image first, as cloud-optimised files have it.
-    let counts: Vec<([u32; 2], usize)> = levels.iter().map(|level| (level.size, level.tiles.len())).collect();
-    let mut order: Vec<&mut Extent> = levels.iter_mut().rev().flat_map(|level| &mut level.tiles).collect();
-    store.finish(&mut order, head_len, |order| {
-        let mut extents = order.iter().map(|extent| **extent);
-        let level = |&(size, count): &([u32; 2], usize)| Level {
-            size,
-            tiles: extents.by_ref().take(count).collect(),
-        };
-        let mut levels: Vec<Level> = counts.iter().rev().map(level).collect();
-        levels.reverse();
-        directory::encode(&directories(file, &levels), size)
-    })
+    let staged = store.arrange(levels.iter_mut().rev().flat_map(|level| &mut level.tiles), head_len);
+    store.finish(&directory::encode(&directories(file, &levels), size), &staged)
 }
 
 impl Level {

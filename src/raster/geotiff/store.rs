@@ -82,36 +82,42 @@ impl<'a> Store<'a> {
         Ok(())
     }
 
-    /// Writes what stands before the pieces, and those that were staged, in an order: `head` is told where each piece of `extents`
-    /// is going to be, and the length of what it makes does not depend on that.
+    /// Says where pieces are going to be in the output, after so many bytes: where they are, or, if they were staged, in the order of
+    /// `extents`. Gives where staged ones are now.
+    pub(super) fn arrange<'b>(
+        &self,
+        extents: impl Iterator<Item = &'b mut Extent>,
+        head_len: u64,
+    ) -> Vec<Extent> {
+        let Store::Staged { .. } = self else { return Vec::new() };
+        let mut end = head_len;
+        let mut place = |extent: &mut Extent| {
+            let staged = *extent;
+            extent[0] = end;
+            end += staged[1];
+            staged
+        };
+        extents.filter(|[_, len]| *len > 0).map(&mut place).collect()
+    }
+
+    /// Writes what stands before the pieces, and those that are staged.
     ///
     /// # Errors
     /// If writing or the temporary file fails.
-    pub(super) fn finish(
-        self,
-        order: &mut [&mut Extent],
-        head_len: u64,
-        head: impl FnOnce(&[&mut Extent]) -> Vec<u8>,
-    ) -> Result<()> {
+    pub(super) fn finish(self, head: &[u8], staged: &[Extent]) -> Result<()> {
         match self {
             Store::Direct { output, .. } => {
                 output.rewind().map_err(write_error)?;
-                output.write_all(&head(order)).map_err(write_error)?;
+                output.write_all(head).map_err(write_error)?;
                 output.seek(SeekFrom::End(0)).map_err(write_error)?;
                 output.flush().map_err(write_error)
             }
             Store::Staged { output, file, .. } => {
-                let staged: Vec<Extent> = order.iter().map(|extent| **extent).collect();
-                let mut end = head_len;
-                for extent in order.iter_mut().filter(|extent| extent[1] > 0) {
-                    extent[0] = end;
-                    end += extent[1];
-                }
-                output.write_all(&head(order)).map_err(write_error)?;
+                output.write_all(head).map_err(write_error)?;
                 let mut bytes = Vec::new();
                 for [offset, len] in staged {
-                    bytes.resize(len as usize, 0);
-                    file.read_at(READING, &mut bytes, offset)?;
+                    bytes.resize(*len as usize, 0);
+                    file.read_at(READING, &mut bytes, *offset)?;
                     output.write_all(&bytes).map_err(write_error)?;
                 }
                 output.flush().map_err(write_error)
