@@ -71,7 +71,7 @@ fn other_streams_are_refused() {
     check(lines, &points, 2, "triangulate them with spdelaunay2d");
     check(lines, &flat, 2, "no elevation");
     check(lines, b"1 2 3\n", 3, "not those of a spmesh stream");
-    check(lines, &line, 0, "no lines");
+    check(lines, &line, 0, "no lines: there are no triangles");
     let output = run("spdem", &["--contours", "5", "-q"], &line);
     assert_eq!(
         String::from_utf8(output.stdout).unwrap(),

@@ -103,7 +103,7 @@ fn format(flags: &Flags) -> Result<LineFormat> {
 /// What was written, for a notice.
 fn summary(stats: &Stats) -> String {
     match stats.elevations {
-        None => "no lines: there are no triangles".to_string(),
+        _ if stats.triangles == 0 => "no lines: there are no triangles".to_string(),
         Some([least, greatest]) if stats.lines == 0 => {
             format!("no lines: elevations are from {least} to {greatest}")
         }
