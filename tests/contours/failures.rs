@@ -33,9 +33,13 @@ fn each_failure_has_its_exit_code() {
         ["--light", "0,90"],
         ["--memory", "1G"],
         ["--temp-dir", "/tmp"],
+        ["--fill", "3"],
+        ["--no-data", "0"],
+        ["--like", "x.tif"],
     ] {
         lines(&flags, 2, "cannot be used with");
     }
+    lines(&["--cog"], 2, "cannot be used with");
     lines(&["--format", "tif"], 2, "write them to NAME.geojson");
     lines(&["--contour-base", "nan"], 2, "must be finite");
     lines(&["--contour-points", "1"], 2, "1 is not in 2..");

@@ -27,7 +27,7 @@ pub(super) struct ContourFlags {
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["CellFlags", "kind", "light", "memory", "fill", "no_data", "cog", "temp_dir"]
+        conflicts_with_all = ["CellFlags", "RasterFlags", "kind", "light", "fill", "memory"]
     )]
     contours: Option<f64>,
 
