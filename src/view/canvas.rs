@@ -111,13 +111,13 @@ impl Canvas {
         }
     }
 
-    /// Paints a point: the pixel that is nearest to it.
+    /// Paints a point: a square around it, two pixels wide, so that a single one is seen.
     pub(super) fn point(&mut self, at: Point2, value: f64) {
         let [x, y, _] = self.to_samples([at[0], at[1], 0.0]);
-        for (row, column) in [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)] {
-            let (x, y) = (x + column, y + row);
-            if x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64 {
-                self.values[y as usize * self.columns + x as usize] = value;
+        let reach = SAMPLES as f64;
+        for row in among(y - reach, y + reach, self.rows) {
+            for column in among(x - reach, x + reach, self.columns) {
+                self.values[row * self.columns + column] = value;
             }
         }
     }

@@ -137,9 +137,9 @@ impl Cells {
             return None;
         }
         let [[left, lower, _], [right, upper, _]] = [min, max].map(|corner| stage.view.place(corner));
-        // Of a cell that reaches beyond the map, the part on it is all that has points.
-        let ([x, y], [width, height]) = (stage.sheet.corner, stage.sheet.size.map(|size| size as f64));
-        let sides = [left.max(x), upper.max(y), right.min(x + width), lower.min(y + height)];
+        // Of a cell that reaches beyond the points, the part with points is all that matters.
+        let [x, y, end_x, end_y] = stage.sides();
+        let sides = [left.max(x), upper.max(y), right.min(end_x), lower.min(end_y)];
         (sides[0] < sides[2] && sides[1] < sides[3]).then_some(sides)
     }
 }

@@ -80,8 +80,16 @@ impl Scene<'_> {
             &[]
         } else {
             &[
-                Mark { shape: Shape::Area, colour: UPPER, words: "one knot of the boundary in turn" },
-                Mark { shape: Shape::Area, colour: LOWER, words: "two knots of the boundary in turn" },
+                Mark {
+                    shape: Shape::Area,
+                    colour: UPPER,
+                    words: "interior set and one knot of the boundary",
+                },
+                Mark {
+                    shape: Shape::Area,
+                    colour: LOWER,
+                    words: "interior set and two knots of the boundary",
+                },
             ]
         };
         let what = if order == 1 {

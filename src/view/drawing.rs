@@ -86,6 +86,8 @@ struct Drawing<'a> {
     coordinates: Coordinates,
     look: Look,
     stage: Option<Stage>,
+    /// How many points there are, if the header says it: then colours of time are the same in all pictures.
+    count: Option<u64>,
     /// Elevations, if the header says them.
     stated: Option<[f64; 2]>,
     triangles: Layer<Triangle>,
@@ -126,6 +128,7 @@ impl<'a> Drawing<'a> {
             kind: header.kind,
             coordinates,
             stage,
+            count: header.points.filter(|_| !is_mesh),
             stated: stated.filter(|_| has_elevation).map(|bounds| [bounds.min[2], bounds.max[2]]),
             triangles: Layer::new(options.form),
             points: Layer::new(options.form),
@@ -252,7 +255,9 @@ impl<'a> Drawing<'a> {
             return ticks::counted(done, "point", "points");
         }
         let vertices = ticks::counted(self.front.count(), "vertex", "vertices");
-        format!("{}, {vertices}", ticks::counted(done, "triangle", "triangles"))
+        // A hillshade has no legend that says what it is.
+        let shade = if self.options.fill == Some(Fill::Hillshade) { ", hillshade" } else { "" };
+        format!("{}, {vertices}{shade}", ticks::counted(done, "triangle", "triangles"))
     }
 
     fn map_of_mesh(&self, stage: &Stage) -> Result<(String, Option<Legend>)> {
@@ -276,7 +281,7 @@ impl<'a> Drawing<'a> {
         let (layer, fill) = (&self.points, self.look.point_fill());
         let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
         let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
-        let colours = self.look.colours(fill, elevations, self.done);
+        let colours = self.look.colours(fill, elevations, self.count.unwrap_or(self.done));
         let painted = layer.painted(stage, &self.look);
         let map = match (&self.cells, layer.canvas.as_ref().or(painted.as_ref())) {
             (Some(cells), _) => {

@@ -55,8 +55,9 @@ impl Ramp {
     /// The colour of a part between zero and one; beyond, that of the end.
     pub(super) fn at(&self, part: f64) -> Colour {
         let steps = self.0.len() - 1;
-        let place = part.clamp(0.0, 1.0) * steps as f64;
         // What is no number has the colour of the least.
+        let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
+        let place = part * steps as f64;
         let first = (place as usize).min(steps - 1);
         mix(self.0[first], self.0[first + 1], place - first as f64)
     }

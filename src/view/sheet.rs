@@ -169,7 +169,7 @@ impl Sheet {
         let fits = |(places, tick): &(Vec<f64>, f64)| {
             let widest =
                 places.iter().map(|&at| svg::text_width(LABEL - 1, &words(at, *tick))).fold(0.0, f64::max);
-            widest * places.len() as f64 <= across
+            1.15 * widest * places.len() as f64 <= across
         };
         let some = (1..=6).rev().map(|count| ticks::ticks(legend.range, count)).find(fits);
         let (places, tick) = some.unwrap_or((vec![low], 0.0));

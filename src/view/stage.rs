@@ -1,6 +1,6 @@
 //! What a picture shows of the world, and from where.
 
-use super::projection::View;
+use super::projection::{PAD, View};
 use super::sheet::Sheet;
 use crate::bounds::{Bounds, Point};
 use crate::error::Result;
@@ -13,6 +13,8 @@ pub(super) struct Stage {
     pub(super) view: View,
     /// What of the plane is seen, if not all of it.
     window: Option<Window>,
+    /// What is left free around all that is seen. Units: those of the picture.
+    pad: f64,
 }
 
 impl Stage {
@@ -22,11 +24,9 @@ impl Stage {
     /// Usage, if coordinates are out of the range of numbers.
     pub(super) fn plan(bounds: &Bounds, window: Option<Window>, pad: f64, width: u32) -> Result<Stage> {
         let [min, max] = [bounds.min, bounds.max].map(|[x, y, _]| [x, y]);
-        let (sheet, view) = match window {
-            Some(Window { min, max }) => View::plan(min, max, 0.0, width)?,
-            None => View::plan(min, max, pad, width)?,
-        };
-        Ok(Stage { sheet, view, window })
+        let (min, max, pad) = window.map_or((min, max, pad), |Window { min, max }| (min, max, 0.0));
+        let (sheet, view) = View::plan(min, max, pad, width)?;
+        Ok(Stage { sheet, view, window, pad })
     }
 
     /// For what lies in a box of the world, seen from one side, wherever in the box it is.
@@ -50,7 +50,13 @@ impl Stage {
         width: u32,
     ) -> Result<Stage> {
         let (sheet, view) = View::oblique(bounds, points, width)?;
-        Ok(Stage { sheet, view, window: None })
+        Ok(Stage { sheet, view, window: None, pad: PAD })
+    }
+
+    /// Left, upper, right and lower side of where things are on the sheet.
+    pub(super) fn sides(&self) -> [f64; 4] {
+        let ([x, y], [width, height]) = (self.sheet.corner, self.sheet.size.map(|size| size as f64));
+        [x + self.pad, y + self.pad, x + width - self.pad, y + height - self.pad]
     }
 
     /// Whether something with these corners may be seen.

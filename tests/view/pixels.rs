@@ -176,3 +176,37 @@ fn degenerate_streams_have_pictures() {
         pixels(&of_mesh);
     }
 }
+
+#[test]
+fn many_points_are_all_painted() {
+    // But for a square amid them.
+    let is_amid = |line: &&str| {
+        let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().unwrap()).collect();
+        numbers[..2].iter().all(|number| (30_000.0..60_000.0).contains(number))
+    };
+    let text: String =
+        cloud(26_000).lines().filter(|line| !is_amid(line)).map(|line| format!("{line}\n")).collect();
+    let stream = super::output("spfinalize", &["-"], text.as_bytes());
+    let options = Options { cells: false, width: 640, ..Options::new("points") };
+    let picture = picture(&stream, &options);
+    assert!(picture.svg.contains("data:image/png;base64,"), "painted, not drawn");
+    let (pixmap, frame, [left, upper, right, lower]) =
+        (pixels(&picture), picture.frame.unwrap(), map(&picture));
+    let mut near = vec![false; pixmap.pixels().len()];
+    for line in text.lines() {
+        let mut numbers = line.split(' ').map(|number| number.parse::<f64>().unwrap());
+        let [x, y] = frame.place([numbers.next().unwrap(), numbers.next().unwrap()]);
+        assert_ne!(colour(&pixmap, x as u32, y as u32), [255; 3], "{line}");
+        for (column, row) in (-2..=2).flat_map(|row| (-2..=2).map(move |column| (column, row))) {
+            near[(y as i64 + row) as usize * pixmap.width() as usize + (x as i64 + column) as usize] = true;
+        }
+    }
+    let mut far = 0;
+    for (column, row) in (upper..lower).flat_map(|row| (left..right).map(move |column| (column, row))) {
+        if !near[(row * pixmap.width() + column) as usize] {
+            assert_eq!(colour(&pixmap, column, row), [255; 3], "{column}, {row}");
+            far += 1;
+        }
+    }
+    assert!(far > 1_000, "{far}");
+}
