@@ -47,6 +47,20 @@ impl Bounds {
         self
     }
 
+    /// The box of what of it can be in a region, if anything can; `are_whole` says that coordinates are whole numbers.
+    #[must_use]
+    pub fn within<const D: usize>(&self, region: &Region<D>, are_whole: bool) -> Option<Bounds> {
+        let mut bounds = *self;
+        for axis in 0..D {
+            // The first coordinate that is not below the region, and the last one that is.
+            let (min, max) = (region.min[axis], region.max[axis]);
+            let (min, max) = if are_whole { (min.ceil(), max.ceil() - 1.0) } else { (min, max.next_down()) };
+            bounds.min[axis] = bounds.min[axis].max(min);
+            bounds.max[axis] = bounds.max[axis].min(max);
+        }
+        (0..D).all(|axis| bounds.min[axis] <= bounds.max[axis]).then_some(bounds)
+    }
+
     /// Whether `point` lies in the closed box.
     #[must_use]
     pub fn contains(&self, point: Point) -> bool {
@@ -113,5 +127,25 @@ impl<const D: usize> Region<D> {
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_are_cut_to_what_a_region_can_hold() {
+        let all = Bounds { min: [-5.0, 0.0, 1.0], max: [5.0, 9.0, 2.0] };
+        assert_eq!(all.within(&Region::PLANE, true), Some(all));
+        let part = Region { min: [-0.5, f64::NEG_INFINITY], max: [3.0, 4.25] };
+        let expected = Bounds { min: [0.0, 0.0, 1.0], max: [2.0, 4.0, 2.0] };
+        assert_eq!(all.within(&part, true), Some(expected));
+        let expected = Bounds { min: [-0.5, 0.0, 1.0], max: [3f64.next_down(), 4.25f64.next_down(), 2.0] };
+        assert_eq!(all.within(&part, false), Some(expected));
+        let beside = Region { min: [5.0, f64::NEG_INFINITY], max: [f64::INFINITY; 2] };
+        assert_eq!(all.within(&beside, true).map(|found| found.min[0]), Some(5.0));
+        let between = Region { min: [0.25, 0.0], max: [0.75, 9.0] };
+        assert_eq!(all.within(&between, true), None);
     }
 }

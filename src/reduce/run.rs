@@ -17,11 +17,11 @@ use super::sequencer::Sequencer;
 use super::space::Space;
 use super::stats::Stats;
 use super::worker::Worker;
-use crate::bounds::{Bounds, Region};
+use crate::bounds::Region;
 use crate::cells::CellCode;
 use crate::error::{Error, ErrorKind, Result};
 use crate::predicates::PredicateCounts;
-use crate::stream::{Header, Kind, PatchBlocks, StreamReader, StreamWriter};
+use crate::stream::{Coordinates, Header, Kind, PatchBlocks, StreamReader, StreamWriter};
 
 /// How a run triangulates.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -139,9 +139,9 @@ fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
 fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<D>>) -> Header {
     let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
     let mut header = Header::new(kind, points.coordinates, points.dims, points.has_elevation);
-    let inside =
-        |bounds: &Bounds, region: &Region<D>| region.contains(bounds.min) && region.contains(bounds.max);
-    header.bounds = points.bounds.filter(|bounds| part.as_ref().is_none_or(|region| inside(bounds, region)));
+    let are_whole = matches!(points.coordinates, Coordinates::I32 { .. });
+    let outer = part.unwrap_or(Region::EVERYTHING);
+    header.bounds = points.bounds.and_then(|bounds| bounds.within(&outer, are_whole));
     header.region = part.map(|region| region.in_space());
     header.crs = points.crs.clone();
     header
