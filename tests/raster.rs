@@ -42,7 +42,8 @@ fn file(grid: &Grid, format: RasterFormat) -> Vec<u8> {
 }
 
 fn of<'a>(grid: &Grid, options: &'a RasterOptions) -> RasterFile<'a> {
-    RasterFile { options, grid: *grid, crs: &Crs::Unknown, reduction: Reduction::Mean, is_staged: false }
+    let (grid, crs, reduction) = (*grid, &Crs::Unknown, Reduction::Mean);
+    RasterFile { options, grid, crs, are_elevations: true, reduction, is_staged: false }
 }
 
 fn decoded(bytes: &[u8]) -> (Decoder<Cursor<&[u8]>>, Vec<f32>) {
@@ -233,7 +234,15 @@ fn grids_are_read_from_files() {
     let folder = crate::programs::Folder::new();
     let path = folder.write("a.tif", file(&GRID, RasterFormat::GeoTiff));
     assert_eq!(Grid::of_file(path.as_ref()).unwrap(), GRID);
+    // The same with the place of a centre instead of a corner.
+    let mut bytes = file(&GRID, RasterFormat::GeoTiff);
+    let key = [1025u16, 0, 1, 1].map(u16::to_le_bytes);
+    let place = bytes.windows(8).position(|window| window == key.as_flattened()).unwrap();
+    bytes[place + 6] = 2;
+    let path = folder.write("points.tif", bytes);
+    let shifted = Grid { left: GRID.left - 0.25, top: GRID.top + 0.25, ..GRID };
+    assert_eq!(Grid::of_file(path.as_ref()).unwrap(), shifted);
     let text = folder.write("a.asc", file(&GRID, RasterFormat::Ascii));
     let message = Grid::of_file(text.as_ref()).unwrap_err().to_string();
-    assert!(message.contains("a.asc") && message.contains("this is no TIFF"), "{message}");
+    assert!(message.contains("a.asc") && message.contains("cannot be read as TIFF"), "{message}");
 }

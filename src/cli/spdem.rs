@@ -47,7 +47,7 @@ Examples:
 const NOTES: &str = "
 A cell has what the triangle has at its centre; there is no data (-9999) outside of the mesh. Triangles are drawn as they arrive, and \
 tiles of 256 by 256 cells are written when they are full, so that memory is that of tiles that are begun. Beyond --memory these wait \
-in a temporary file. ESRI grids are written from the top, when all triangles have come.
+in a temporary file. ESRI grids are written from the top, when all triangles have come, with 256 rows in memory.
 
 Slopes are angles in degrees, aspects directions of steepest descent in degrees clockwise from north; level triangles have no \
 aspect. Elevations and coordinates are taken to be in the same unit.
@@ -96,7 +96,7 @@ pub struct Flags {
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     kill: Option<f64>,
 
-    /// Fill cells without data from data in eight directions, at most so many cells away
+    /// Fill cells without data from data in eight directions, at most so many sides of cells away (1 to 256)
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
     fill: Option<u32>,
 

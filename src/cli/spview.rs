@@ -48,7 +48,7 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-Up to 20,000 triangles or points are drawn one by one; more are painted as pixels, in memory that depends on the size of the picture. \
+Up to 20,000 triangles or points are drawn one by one; more are painted as pixels, in memory that depends on the size of the picture: some 64 bytes for each of its pixels. \
 What the header says of where the stream lies is used; a file that does not say it is read twice, a pipe needs --bounds if it is long.
 
 Streams in the plane and points in space are seen from above. Colours of time go by the position in the stream; those of a cell show \
@@ -189,7 +189,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     drop(progress);
     drawn?;
     drop(reader);
-    if let Some(summary) = outputs.finish() {
+    if let Some(summary) = outputs.finish()? {
         notice(TOOL, &flags.common, &summary);
     }
     Ok(())

@@ -128,6 +128,11 @@ impl Canvas {
         self.spare = Some(tile);
     }
 
+    /// Whether no triangle has been drawn on a tile.
+    pub(super) fn is_blank(&self, at: TilePlace) -> bool {
+        self.states[self.number(at)] == State::Blank
+    }
+
     /// Whether a tile was complete and handed on.
     pub(super) fn is_handed_on(&self, at: TilePlace) -> bool {
         self.states[self.number(at)] == State::Complete

@@ -1,7 +1,7 @@
 //! What tiles have when all triangles are drawn.
 
 use super::canvas::{Canvas, TilePlace};
-use super::fill::Filler;
+use super::fill::{Filler, around};
 use crate::error::Result;
 use crate::raster::TILE;
 
@@ -37,6 +37,9 @@ impl<'a> Ending<'a> {
         values: &mut [f32],
     ) -> Result<bool> {
         let (tiles, inside) = (self.canvas.tiles(), self.canvas.inside(at));
+        if around(at, tiles).all(|near| self.canvas.is_blank(near)) {
+            return Ok(false);
+        }
         let mut read = |at: TilePlace, values: &mut [f32]| {
             if self.canvas.is_handed_on(at) { handed_on(at, values) } else { self.canvas.read(at, values) }
         };

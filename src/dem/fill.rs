@@ -67,12 +67,10 @@ impl Filler {
     ) -> Result<bool> {
         self.window.fill(f32::NAN);
         let mut has_data = false;
-        for y in row.saturating_sub(1)..(row + 2).min(tiles[1]) {
-            for x in column.saturating_sub(1)..(column + 2).min(tiles[0]) {
-                if read([x, y], &mut self.neighbor)? {
-                    has_data = true;
-                    self.place([x + 1 - column, y + 1 - row]);
-                }
+        for [x, y] in around([column, row], tiles) {
+            if read([x, y], &mut self.neighbor)? {
+                has_data = true;
+                self.place([x + 1 - column, y + 1 - row]);
             }
         }
         if has_data {
@@ -144,6 +142,13 @@ impl Filler {
             std::mem::swap(&mut above, &mut next);
         }
     }
+}
+
+/// A tile and those next to it, of so many in a row and in a column.
+pub(super) fn around([column, row]: TilePlace, tiles: [usize; 2]) -> impl Iterator<Item = TilePlace> {
+    let columns = column.saturating_sub(1)..(column + 2).min(tiles[0]);
+    let rows = row.saturating_sub(1)..(row + 2).min(tiles[1]);
+    rows.flat_map(move |y| columns.clone().map(move |x| [x, y]))
 }
 
 /// Adds data that are seen, if they are within reach.

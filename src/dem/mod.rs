@@ -218,8 +218,10 @@ impl Options {
             Attribute::Aspect => Reduction::First,
             _ => Reduction::Mean,
         };
+        let are_elevations = self.attribute == Attribute::Elevation;
         // Holes are filled from tiles that have been written.
-        RasterFile { options: &self.raster, grid, crs, reduction, is_staged: self.fill.is_some() }
+        let is_staged = self.fill.is_some();
+        RasterFile { options: &self.raster, grid, crs, are_elevations, reduction, is_staged }
     }
 }
 

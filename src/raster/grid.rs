@@ -5,6 +5,8 @@ use crate::predicates::Point2;
 
 /// Most cells of a row, and of a column.
 const CELLS_MAX: f64 = (1u32 << 31) as f64;
+/// Most steps from a corner of cells that is given: more would not be counted exactly.
+const STEPS_MAX: f64 = (1u64 << 48) as f64;
 /// Cells along the longer side of a grid, if nothing is said.
 const CELLS_DEFAULT: f64 = 1_000.0;
 
@@ -77,7 +79,11 @@ impl Grid {
     /// # Errors
     /// Usage, if the step is not above zero, numbers are not finite, or there are too many cells.
     pub fn covering(window: Window, step: f64, anchor: Point2) -> Result<Grid> {
-        let numbers = [window.min, window.max, anchor];
+        if !anchor.iter().all(|number| number.is_finite()) {
+            let [x, y] = anchor;
+            return Err(Error::usage(format!("a corner of cells at {x}, {y}: both must be finite")));
+        }
+        let numbers = [window.min, window.max];
         if !(step > 0.0 && step.is_finite() && numbers.as_flattened().iter().all(|number| number.is_finite()))
         {
             return Err(Error::usage(format!(
@@ -86,6 +92,12 @@ impl Grid {
         }
         let [first, last] =
             [window.min, window.max].map(|corner| [0, 1].map(|axis| (corner[axis] - anchor[axis]) / step));
+        if anchor != [0.0; 2] && first.iter().chain(&last).any(|count| count.abs() > STEPS_MAX) {
+            let [x, y] = anchor;
+            return Err(Error::usage(format!(
+                "a corner of cells at {x}, {y} is too far away: take one nearer"
+            )));
+        }
         let (low, high) = (first.map(f64::floor), last.map(f64::ceil));
         // A window without width has one column.
         let counts = [0, 1].map(|axis| (high[axis] - low[axis]).max(1.0));

@@ -8,7 +8,7 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use super::Grid;
-use super::geotiff::{PIXEL_SCALE, TIEPOINT};
+use super::geotiff::{KEY_DIRECTORY, PIXEL_SCALE, TIEPOINT, is_of_points};
 use crate::error::{Error, Result};
 
 impl Grid {
@@ -23,7 +23,8 @@ impl Grid {
 
 fn read(path: &Path) -> Result<Grid> {
     let file = File::open(path).map_err(|e| Error::io("opening", e))?;
-    let malformed = |error: tiff::TiffError| Error::malformed(format!("this is no TIFF: {error}"));
+    let malformed =
+        |error: tiff::TiffError| Error::malformed(format!("this cannot be read as TIFF: {error}"));
     let mut decoder = Decoder::new(BufReader::new(file)).map_err(malformed)?;
     let (columns, rows) = decoder.dimensions().map_err(malformed)?;
     let mut numbers = |tag: u16| decoder.get_tag_f64_vec(Tag::Unknown(tag)).unwrap_or_default();
@@ -36,8 +37,11 @@ fn read(path: &Path) -> Result<Grid> {
     if !(width > 0.0 && width.is_finite() && [column, row, x, y].iter().all(|number| number.is_finite())) {
         return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
     }
+    let keys = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
+    // A place may be that of a centre instead of a corner.
+    let half = if is_of_points(&keys) { 0.5 * width } else { 0.0 };
     if width != height {
         return Err(Error::usage(format!("its cells are {width} by {height}, ours are square")));
     }
-    Ok(Grid { left: x - column * width, top: y + row * width, step: width, columns, rows })
+    Ok(Grid { left: x - column * width - half, top: y + row * width + half, step: width, columns, rows })
 }

@@ -54,6 +54,8 @@ pub struct RasterFile<'a> {
     pub grid: Grid,
     /// Where on the earth these are.
     pub crs: &'a Crs,
+    /// Whether cells have elevations, which the system may say the unit of.
+    pub are_elevations: bool,
     /// How overviews are made.
     pub reduction: Reduction,
     /// Tiles wait in a temporary file until all have come, as they do for overviews, and for outputs that cannot be sought: they can

@@ -6,10 +6,15 @@ pub fn slope([p, q]: [f64; 2]) -> f64 {
     p.hypot(q).atan().to_degrees()
 }
 
-/// The direction of steepest descent, in degrees clockwise from north, from 0 to 360; not a number where the surface is level.
+/// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; not a number where the surface is level.
 #[must_use]
 pub fn aspect([p, q]: [f64; 2]) -> f64 {
-    if p == 0.0 && q == 0.0 { f64::NAN } else { (-p).atan2(-q).to_degrees().rem_euclid(360.0) }
+    if p == 0.0 && q == 0.0 {
+        return f64::NAN;
+    }
+    let degrees = (-p).atan2(-q).to_degrees().rem_euclid(360.0);
+    // A full turn is none, also if only 32 bits make it one.
+    if degrees as f32 == 360.0 { 0.0 } else { degrees.abs() }
 }
 
 /// Parallel light.

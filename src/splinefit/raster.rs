@@ -45,7 +45,8 @@ pub fn write_raster<W: Write + Seek>(
     let mut unknown = 0;
     let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
     let crs = &spline.layout.frame.crs;
-    let file = RasterFile { options, grid: *grid, crs, reduction, is_staged: false };
+    let are_elevations = attribute == Attribute::Value;
+    let file = RasterFile { options, grid: *grid, crs, are_elevations, reduction, is_staged: false };
     raster::write_rows(output, &file, |row, values| {
         for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
             *value = found as f32;

@@ -25,8 +25,9 @@ pub(super) struct Outputs {
 }
 
 enum Target {
-    /// For one picture: opened before the work, because what cannot be written is better known then.
-    One(Option<Output>),
+    /// For one picture: opened before the work, because what cannot be written is better known then. It gets its name at the end,
+    /// when it is known that the stream is whole.
+    One { output: Output, is_written: bool },
     /// For several, with names of these parts before and after the number, which has so many digits at least.
     Numbered { before: String, digits: usize, after: String },
 }
@@ -55,7 +56,7 @@ impl Outputs {
             }
             pattern(path)?
         } else {
-            Target::One(Some(Output::create(path, format == Format::Png)?))
+            Target::One { output: Output::create(path, format == Format::Png)?, is_written: false }
         };
         Ok(Outputs { format, target, pictures: 0 })
     }
@@ -66,31 +67,41 @@ impl Outputs {
     /// If it cannot be rendered or written.
     pub(super) fn put(&mut self, picture: &Picture) -> Result<()> {
         self.pictures += 1;
-        let output = match &mut self.target {
-            Target::One(output) => output.take(),
+        match &mut self.target {
+            Target::One { is_written: true, .. } => Ok(()),
+            Target::One { output, is_written } => {
+                *is_written = true;
+                write(self.format, picture, output)
+            }
             Target::Numbered { before, digits, after } => {
                 let number = self.pictures;
                 let path = PathBuf::from(format!("{before}{number:0digits$}{after}"));
-                Some(Output::create(&path, self.format == Format::Png)?)
+                let mut output = Output::create(&path, self.format == Format::Png)?;
+                write(self.format, picture, &mut output)?;
+                output.commit()
             }
-        };
-        let Some(mut output) = output else { return Ok(()) };
-        let failed = |error| Error::io("writing the picture", error);
-        match self.format {
-            Format::Svg => output.write_all(picture.svg.as_bytes()).map_err(failed)?,
-            Format::Png => output.write_all(&picture.png()?).map_err(failed)?,
-            Format::Html => picture.html(&mut output)?,
         }
-        output.commit()
     }
 
-    /// What is to be said at the end.
-    pub(super) fn finish(self) -> Option<String> {
+    /// Completes a single picture, when the stream has been read; what is to be said.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub(super) fn finish(self) -> Result<Option<String>> {
         match self.target {
-            Target::One(_) => None,
-            Target::Numbered { .. } if self.pictures == 1 => Some("1 picture".to_string()),
-            Target::Numbered { .. } => Some(format!("{} pictures", self.pictures)),
+            Target::One { output, .. } => output.commit().map(|()| None),
+            Target::Numbered { .. } if self.pictures == 1 => Ok(Some("1 picture".to_string())),
+            Target::Numbered { .. } => Ok(Some(format!("{} pictures", self.pictures))),
         }
+    }
+}
+
+fn write(format: Format, picture: &Picture, output: &mut Output) -> Result<()> {
+    let failed = |error| Error::io("writing the picture", error);
+    match format {
+        Format::Svg => output.write_all(picture.svg.as_bytes()).map_err(failed),
+        Format::Png => output.write_all(&picture.png()?).map_err(failed),
+        Format::Html => picture.html(output),
     }
 }
 

@@ -16,6 +16,9 @@ const PROJECTED_TYPE: u16 = 3072;
 const PROJECTED: u16 = 1;
 const GEOGRAPHIC: u16 = 2;
 const PIXEL_IS_AREA: u16 = 1;
+const PIXEL_IS_POINT: u16 = 2;
+/// Numbers of keys that say what elevations are.
+const OF_ELEVATIONS: std::ops::RangeInclusive<u16> = 4096..=4099;
 /// Where the text of a key is.
 const TEXTS_TAG: u16 = 34737;
 /// The first numbers of a directory: version and revision of keys.
@@ -31,15 +34,18 @@ pub(super) struct GeoKeys {
 }
 
 impl GeoKeys {
-    /// Keys of a LAS file as they are, but for the type of raster; of well-known text its EPSG code, or else its name.
-    pub(super) fn of(crs: &Crs) -> GeoKeys {
+    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have none; of well-known text
+    /// its EPSG code, or else its name.
+    pub(super) fn of(crs: &Crs, are_elevations: bool) -> GeoKeys {
         match crs {
             Crs::Unknown => GeoKeys::new(&[]),
             Crs::Wkt(text) => GeoKeys::of_text(text, crs),
             Crs::GeoKeys { directory, doubles, ascii } => {
                 let numbers: Vec<u16> = directory.chunks_exact(2).map(LE::read_u16).collect();
                 let keys = numbers.get(4..).unwrap_or_default().chunks_exact(4);
-                let keys: Vec<[u16; 4]> = keys.map(|key| [key[0], key[1], key[2], key[3]]).collect();
+                let keys = keys.map(|key| [key[0], key[1], key[2], key[3]]);
+                let keys: Vec<[u16; 4]> =
+                    keys.filter(|key| are_elevations || !OF_ELEVATIONS.contains(&key[0])).collect();
                 GeoKeys {
                     doubles: doubles.chunks_exact(8).map(LE::read_f64).collect(),
                     texts: String::from_utf8_lossy(ascii).trim_end_matches('\0').to_string(),
@@ -76,13 +82,18 @@ impl GeoKeys {
     }
 }
 
+/// Whether a directory of keys says that places are those of the centres of cells.
+pub(in crate::raster) fn is_of_points(directory: &[u16]) -> bool {
+    directory.chunks_exact(4).skip(1).any(|key| key == [RASTER_TYPE, 0, 1, PIXEL_IS_POINT])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn text_with_a_code_is_its_code() {
-        let keys = |text: &str| GeoKeys::of(&Crs::Wkt(text.into()));
+        let keys = |text: &str| GeoKeys::of(&Crs::Wkt(text.into()), true);
         let utm = keys(r#"PROJCS["UTM",GEOGCS["x",AUTHORITY["EPSG","4326"]],AUTHORITY["EPSG","32633"]]"#);
         assert_eq!(utm.directory, [1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633]);
         let plain = keys(r#"GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]]"#);
@@ -95,17 +106,15 @@ mod tests {
     fn keys_of_files_stay() {
         let directory: Vec<u8> =
             [1u16, 1, 0, 2, 1025, 0, 1, 2, 3072, 0, 1, 26910].iter().flat_map(|n| n.to_le_bytes()).collect();
-        let keys = GeoKeys::of(&Crs::GeoKeys {
-            directory,
-            doubles: 2.5f64.to_le_bytes().into(),
-            ascii: b"a|\0".into(),
-        });
+        assert!(is_of_points(&[1, 1, 0, 1, 1025, 0, 1, 2]) && !is_of_points(&[1, 1, 0, 1, 1025, 0, 1, 1]));
+        let crs = Crs::GeoKeys { directory, doubles: 2.5f64.to_le_bytes().into(), ascii: b"a|\0".into() };
+        let keys = GeoKeys::of(&crs, true);
         let expected = GeoKeys {
             directory: vec![1, 1, 0, 2, 1025, 0, 1, 1, 3072, 0, 1, 26910],
             doubles: vec![2.5],
             texts: "a|".into(),
         };
         assert_eq!(keys, expected);
-        assert_eq!(GeoKeys::of(&Crs::Unknown).directory, [1, 1, 0, 1, 1025, 0, 1, 1]);
+        assert_eq!(GeoKeys::of(&Crs::Unknown, true).directory, [1, 1, 0, 1, 1025, 0, 1, 1]);
     }
 }

@@ -16,6 +16,7 @@ use std::io::{Seek, Write};
 use compressor::{Compressed, Compressor};
 use directory::{Directory, Size, Values};
 use geo_keys::GeoKeys;
+pub(super) use geo_keys::is_of_points;
 pub use overviews::Reduction;
 use overviews::{Overviews, TileName, level_sizes, tiles_of};
 use store::{Extent, Store};
@@ -52,7 +53,7 @@ const SAMPLE_FORMAT: u16 = 339;
 /// Tags of GeoTIFF, and of GDAL for cells without value.
 pub(super) const PIXEL_SCALE: u16 = 33550;
 pub(super) const TIEPOINT: u16 = 33922;
-const KEY_DIRECTORY: u16 = 34735;
+pub(super) const KEY_DIRECTORY: u16 = 34735;
 const KEY_DOUBLES: u16 = 34736;
 const KEY_TEXTS: u16 = 34737;
 const GDAL_NO_DATA: u16 = 42113;
@@ -227,7 +228,7 @@ impl Tiles<'_> {
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     let mut directories: Vec<Directory> =
         levels.iter().map(|level| describe(level, file.options.no_data)).collect();
-    directories[0].extend(refer(&file.grid, &GeoKeys::of(file.crs)));
+    directories[0].extend(refer(&file.grid, &GeoKeys::of(file.crs, file.are_elevations)));
     let overviews = directories.iter_mut().skip(1);
     overviews.for_each(|directory| directory.push((NEW_SUBFILE_TYPE, Values::Longs(vec![REDUCED_IMAGE]))));
     directories
