@@ -57,6 +57,13 @@ pub fn assert_silent_without_reader(name: &str, arguments: &[&str]) {
     assert_eq!((code, &message[..]), (Some(141), ""), "{name} {arguments:?}");
 }
 
+/// Asserts how a tool ends with some arguments and input, and that it says a part of what it should, without a panic.
+pub fn assert_outcome(name: &str, arguments: &[&str], input: &[u8], code: i32, part: &str) {
+    let (found, message) = outcome(&run(name, arguments, input));
+    assert_eq!(found, Some(code), "{arguments:?}: {message}");
+    assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
+}
+
 /// Asserts that a tool refuses a stream that is cut or damaged anywhere, and leaves neither a new file nor a change in an old one;
 /// `names` are those of an old and a new output.
 pub fn assert_damage_leaves_no_file(name: &str, arguments: &[&str], names: [&str; 2], stream: &[u8]) {
@@ -90,6 +97,14 @@ pub fn sample(name: &str) -> String {
 pub fn cloud(count: u64) -> String {
     let point = |i: u64| (i * 7919 % 100_003, i * 104_729 % 99_991, i % 97);
     (0..count).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()
+}
+
+/// The mesh stream of a cloud of `count` points.
+pub fn mesh_of_cloud(count: u64) -> Vec<u8> {
+    let points = run("spfinalize", &["-"], cloud(count).as_bytes());
+    let mesh = run("spdelaunay2d", &[], &points.stdout);
+    assert!(mesh.status.success(), "{:?}", outcome(&mesh));
+    mesh.stdout
 }
 
 /// Files that last as long as a test.

@@ -1,20 +1,16 @@
 //! Wrong usage, streams that are no mesh in the plane, damaged input, and outputs that cannot be written.
 
 use crate::programs::{
-    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+    Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, mesh_of_cloud,
+    run,
 };
 
 fn mesh() -> Vec<u8> {
-    let points = run("spfinalize", &["-"], cloud(3_000).as_bytes());
-    let mesh = run("spdelaunay2d", &[], &points.stdout);
-    assert!(mesh.status.success(), "{:?}", outcome(&mesh));
-    mesh.stdout
+    mesh_of_cloud(3_000)
 }
 
 fn check(arguments: &[&str], input: &[u8], code: i32, part: &str) {
-    let (found, message) = outcome(&run("spdem", arguments, input));
-    assert_eq!(found, Some(code), "{arguments:?}: {message}");
-    assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
+    assert_outcome("spdem", arguments, input, code, part);
 }
 
 #[test]

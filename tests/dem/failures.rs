@@ -6,23 +6,19 @@ use spmesh::stream::Coordinates;
 
 use super::{Mesh, file, options};
 use crate::programs::{
-    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+    Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, mesh_of_cloud,
+    run,
 };
 
 /// A mesh of scattered points.
 fn mesh() -> Vec<u8> {
-    let points = run("spfinalize", &["-"], cloud(3_000).as_bytes());
-    let mesh = run("spdelaunay2d", &[], &points.stdout);
-    assert!(mesh.status.success(), "{:?}", outcome(&mesh));
-    mesh.stdout
+    mesh_of_cloud(3_000)
 }
 
 fn check(cases: &[(&[&str], &[u8], i32, &str)]) {
-    for (arguments, input, code, part) in cases {
-        let (found, message) = outcome(&run("spdem", arguments, input));
-        assert_eq!(found, Some(*code), "{arguments:?}: {message}");
-        assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
-    }
+    cases
+        .iter()
+        .for_each(|(arguments, input, code, part)| assert_outcome("spdem", arguments, input, *code, part));
 }
 
 #[test]

@@ -2,15 +2,13 @@
 
 use super::{grid, mesh_of, output};
 use crate::programs::{
-    Folder, assert_damage_leaves_no_file, assert_silent_without_reader, cloud, outcome, run,
+    Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud,
 };
 
 fn check(cases: &[(&[&str], &[u8], i32, &str)]) {
-    for (arguments, input, code, part) in cases {
-        let (found, message) = outcome(&run("spview", arguments, input));
-        assert_eq!(found, Some(*code), "{arguments:?}: {message}");
-        assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
-    }
+    cases
+        .iter()
+        .for_each(|(arguments, input, code, part)| assert_outcome("spview", arguments, input, *code, part));
 }
 
 #[test]
