@@ -1,7 +1,7 @@
 //! What a stream of configurations holds, in numbers.
 
-use crate::config::{FARAWAY, Standing};
-use crate::stream::ConfigurationBlock;
+use spmesh_geometry::configurations::{FARAWAY, Standing};
+use spmesh_stream::ConfigurationBlock;
 
 /// Figures of the configurations of one degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use super::configurations::{ConfigurationBlock, check_degree};
 use super::kind::Kind;
-use crate::config::{FARAWAY, Standing};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::configurations::{FARAWAY, Standing};
 
 /// What later blocks are compared with.
 #[derive(Debug, Default)]

@@ -2,9 +2,9 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
-use crate::config::Standing;
-use crate::error::{Error, Result};
-use crate::limits::CONFIGURATION_DEGREE_MAX;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CONFIGURATION_DEGREE_MAX;
+use spmesh_model::configurations::Standing;
 
 /// Length of degree, standing and number of groups, in bytes.
 const FIXED_LEN: usize = 12;
@@ -14,12 +14,12 @@ const STANDINGS: [(Standing, &str); 3] =
     [(Standing::Any, "any"), (Standing::Delaunay, "delaunay"), (Standing::Lifted, "lifted")];
 
 /// The name of a standing in text twins.
-pub(crate) fn standing_name(standing: Standing) -> &'static str {
+pub fn standing_name(standing: Standing) -> &'static str {
     STANDINGS.iter().find(|(known, _)| *known == standing).expect("every standing has its name").1
 }
 
 /// The standing of this name, if there is one.
-pub(crate) fn standing_from_name(name: &[u8]) -> Option<Standing> {
+pub fn standing_from_name(name: &[u8]) -> Option<Standing> {
     STANDINGS.iter().find(|(_, known)| known.as_bytes() == name).map(|(standing, _)| *standing)
 }
 
@@ -36,7 +36,7 @@ pub struct ConfigurationBlock {
     pub interiors: Vec<u32>,
     /// Number of configurations of each group.
     pub counts: Vec<u32>,
-    /// Boundaries, group by group; [`crate::config::FARAWAY`] is in the last place of infinite ones.
+    /// Boundaries, group by group; [`spmesh_model::configurations::FARAWAY`] is in the last place of infinite ones.
     pub boundaries: Vec<[u32; 3]>,
 }
 
@@ -92,7 +92,7 @@ impl ConfigurationBlock {
     }
 
     /// Words of the payload.
-    pub(crate) fn words(&self) -> usize {
+    pub fn words(&self) -> usize {
         3 + self.interiors.len() + self.counts.len() + 3 * self.boundaries.len()
     }
 
@@ -148,7 +148,7 @@ impl ConfigurationBlock {
 }
 
 /// That a degree is one that streams may have.
-pub(crate) fn check_degree(degree: u32) -> Result<()> {
+pub fn check_degree(degree: u32) -> Result<()> {
     if degree <= CONFIGURATION_DEGREE_MAX {
         return Ok(());
     }

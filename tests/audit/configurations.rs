@@ -1,14 +1,14 @@
 //! The audit of streams of configurations.
 
 use serde_json::{Value, json};
-use spmesh::audit::config::{Proof, Violation, check};
-use spmesh::config::{self, Configurations, Knots, Rule, Standing};
-use spmesh::configgen::read::ConfigurationSet;
-use spmesh::configgen::write::write_configurations;
+use spmesh_audit::config::{Proof, Violation, check};
+use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Standing};
+use spmesh_stream::ConfigurationSet;
+use spmesh_stream::write_configurations;
 
 use crate::programs::{outcome, run};
-use crate::reference::sets::Random;
 use crate::vectors::load;
+use spmesh_reference::sets::Random;
 
 /// Knots on a small grid: on lines, on circles, and some at one place.
 fn knots(random: &mut Random, count: usize, side: i64) -> Knots {
@@ -19,22 +19,25 @@ fn knots(random: &mut Random, count: usize, side: i64) -> Knots {
 }
 
 fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Configurations> {
-    let mut start = config::Start::delaunay(knots).unwrap();
+    let mut start = configurations::Start::delaunay(knots).unwrap();
     start.flip_random(knots, flips, 3);
-    config::generate(knots, start.configurations(), rule, degree).unwrap()
+    configurations::generate(knots, start.configurations(), rule, degree).unwrap()
 }
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
-    check(&ConfigurationSet {
-        knots: knots.clone(),
-        degrees: degrees.to_vec(),
-        ..ConfigurationSet::default()
-    })
+    check(
+        knots,
+        &ConfigurationSet {
+            points: knots.points().to_vec(),
+            degrees: degrees.to_vec(),
+            ..ConfigurationSet::default()
+        },
+    )
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_configurations(knots, degrees, &mut bytes).unwrap();
+    write_configurations(knots.points(), degrees, &mut bytes).unwrap();
     bytes
 }
 
@@ -73,7 +76,7 @@ fn what_rules_make_passes() {
             verdict(&knots, &degrees).unwrap_or_else(|violation| panic!("round {round}: {violation:?}"));
         assert_eq!(proof.degrees.len(), degrees.len());
         let is_delaunay = flips == 0;
-        let complete = |degree: &spmesh::audit::config::DegreeProof| {
+        let complete = |degree: &spmesh_audit::config::DegreeProof| {
             degree.facets.is_some() && degree.is_counted && degree.has_circles == is_delaunay
         };
         assert!(proof.degrees.iter().all(complete), "round {round}: {proof:?}");
@@ -159,7 +162,7 @@ fn a_degree_alone_must_have_its_orientation_and_its_border() {
     let [a, b, c] = only.iter().next().unwrap().0;
     let violation = verdict(&knots, &[changed(&only, 0, Some([a, c, b]))]).expect_err("clockwise");
     assert!(violation.message.contains("not counterclockwise"), "{violation:?}");
-    let is_infinite = |group: &config::Group| !group.infinite.is_empty();
+    let is_infinite = |group: &configurations::Group| !group.infinite.is_empty();
     let before = only.groups().take_while(|group| !is_infinite(group));
     let at: usize = before.map(|group| group.triangles.len()).sum();
     let group = only.groups().find(is_infinite).unwrap();

@@ -6,10 +6,10 @@ use num_bigint::BigInt;
 
 use super::disk::Disk;
 use super::tree::Tree;
-use crate::audit::exact::dyadic::integers;
-use crate::audit::exact::plane::{in_circle, in_raised_circle, orientation};
-use crate::config::{Configurations, Knots};
-use crate::error::{Error, ErrorKind, Result};
+use crate::exact::dyadic::integers;
+use crate::exact::plane::{in_circle, in_raised_circle, orientation};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_geometry::configurations::{Configurations, Knots};
 
 /// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken as the canonical
 /// triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for a small number e.

@@ -5,7 +5,7 @@
 //! edge is a facet (F, J): it joins J with either knot of F. So triangles are counterclockwise if boundaries are; and if
 //! facets match ([`super::check_facets`]), then every edge has a triangle on each side, but for those that an infinite
 //! configuration of degree k has. If these make one convex polygon that goes around once, the triangles tile it: the
-//! argument is that of [`crate::audit`].
+//! argument is that of [`crate`].
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -13,8 +13,8 @@ use std::collections::HashMap;
 use num_bigint::BigInt;
 
 use super::circles::{moved, turn};
-use crate::config::{Configurations, FARAWAY, Knots};
-use crate::error::{Error, ErrorKind, Result};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_geometry::configurations::{Configurations, FARAWAY, Knots};
 
 /// A directed edge of the border, from the set `interior` + `from` to `interior` + `to`.
 #[derive(Debug)]

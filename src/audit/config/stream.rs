@@ -1,14 +1,13 @@
 //! The audit of a stream of configurations: everything in it is held, and proved when it is complete.
 
 use super::{FacetCounts, check_centroids, check_circles, check_facets, check_start};
-use crate::config::{Configurations, Knots, Standing};
-use crate::configgen::read::{Collector, ConfigurationSet};
-use crate::error::{Error, ErrorKind, Result};
-use crate::stream::{Event, Header};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_geometry::configurations::{Configurations, Knots, Standing};
+use spmesh_stream::{Collector, ConfigurationSet, Event, Header};
 
 /// Audit of one stream of configurations: give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
 ///
 /// Memory: what the stream holds; and for facets, 4 (k + 4) bytes for each of three facets of each configuration of two degrees.
 #[derive(Debug)]
@@ -78,8 +77,9 @@ impl StreamAudit {
     /// # Errors
     /// The first violation (kind [`ErrorKind::Audit`]), or that there are too many knots.
     pub fn prove(&mut self) -> Result<()> {
-        let set = std::mem::take(&mut self.collector).finish()?;
-        let proof = check(&set);
+        let set = std::mem::take(&mut self.collector).finish();
+        let knots = Knots::new(set.points.clone())?;
+        let proof = check(&knots, &set);
         let failure = proof.as_ref().err().map(|Violation { claim, degree, message }| {
             Error::new(ErrorKind::Audit, format!("degree {degree}: {claim} check failed: {message}"))
         });
@@ -98,8 +98,7 @@ impl StreamAudit {
 ///
 /// # Errors
 /// The first violation.
-pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
-    let knots = &set.knots;
+pub fn check(knots: &Knots, set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
     let ranks = || (0..knots.len() as u32).map(|id| knots.rank(id));
     let mut proof = Proof {
         knots: knots.len(),

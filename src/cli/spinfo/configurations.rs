@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::DegreeSurvey;
-use crate::audit::config::{DegreeProof, Proof, Violation};
-use crate::error::Error;
-use crate::stream::standing_name;
+use spmesh_audit::DegreeSurvey;
+pub use spmesh_audit::config::{DegreeProof, Proof, Violation};
+use spmesh_core::error::Error;
+use spmesh_stream::standing_name;
 
 type Verdict = Result<Proof, Violation>;
 

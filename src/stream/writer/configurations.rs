@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
-use crate::error::Result;
-use crate::stream::ConfigurationBlock;
+use crate::ConfigurationBlock;
+use spmesh_core::error::Result;
 
 /// Words from which a block takes no further configuration.
 const WORDS: usize = POINTS_PAYLOAD / 4;
