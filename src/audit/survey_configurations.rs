@@ -1,6 +1,6 @@
 //! What a stream of configurations holds, in numbers.
 
-use crate::config::{FARAWAY, Standing};
+use super::config::{FARAWAY, Standing};
 use crate::stream::ConfigurationBlock;
 
 /// Figures of the configurations of one degree.

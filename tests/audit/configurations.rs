@@ -1,11 +1,11 @@
 //! The audit of streams of configurations.
 
 use serde_json::{Value, json};
-use spmesh::audit::config::{Proof, Violation, check};
+use spmesh::audit::config::{ConfigurationSet, Proof, Violation, check};
 use spmesh::config::{self, Configurations, Knots, Rule, Standing};
-use spmesh::configgen::read::ConfigurationSet;
 use spmesh::configgen::write::write_configurations;
 
+use super::held;
 use crate::programs::{outcome, run};
 use crate::reference::sets::Random;
 use crate::vectors::load;
@@ -25,11 +25,8 @@ fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Con
 }
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
-    check(&ConfigurationSet {
-        knots: knots.clone(),
-        degrees: degrees.to_vec(),
-        ..ConfigurationSet::default()
-    })
+    let degrees = degrees.iter().map(held::configurations).collect();
+    check(&ConfigurationSet { knots: held::knots(knots), degrees })
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {

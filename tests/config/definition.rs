@@ -1,9 +1,8 @@
 //! The rule `delaunay` and the direct definition.
 
-use super::{delaunay, knots, listed};
+use super::{check_circles, delaunay, knots, listed};
 use crate::reference::configurations::{by_definition, lines};
 use crate::reference::sets::{self, Random};
-use spmesh::audit::config::check_circles;
 use spmesh::config::{self, Rule};
 use spmesh::error::ErrorKind;
 

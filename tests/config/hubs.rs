@@ -1,8 +1,7 @@
 //! Links with many vertices, by their definition: a knot that is near to all others, places with many copies.
 
-use super::{delaunay, knots, listed};
+use super::{check_circles, check_facets, delaunay, knots, listed};
 use crate::reference::configurations::by_definition;
-use spmesh::audit::config::{check_circles, check_facets};
 use spmesh::config;
 
 /// Compares degrees up to 2, and returns the number of vertices of the largest link on the way.

@@ -1,10 +1,9 @@
 //! Projective configurations, and convex sets of points in space.
 
-use super::{knots, listed};
+use super::{check_facets, knots, listed};
 use crate::reference::configurations::Configuration;
 use crate::reference::normalised;
 use crate::reference::sets::Random;
-use spmesh::audit::config::check_facets;
 use spmesh::config::{self, Lift, Rule, Start};
 
 type Point = [i64; 3];

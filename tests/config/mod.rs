@@ -10,8 +10,11 @@ mod special_boxes;
 mod special_features;
 mod spline;
 
+use spmesh::audit::config::{self as audit, FacetCounts};
 use spmesh::config::{self, Configurations, Knots, Rule};
+use spmesh::error::Result;
 
+use crate::audit::held;
 use crate::reference::configurations::Configuration;
 use crate::reference::normalised;
 
@@ -36,4 +39,14 @@ fn listed(configurations: &Configurations) -> Vec<Configuration> {
         all.sort_unstable();
     }
     all
+}
+
+/// Checks with the audit that facets match.
+fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<FacetCounts> {
+    audit::check_facets(&held::configurations(lower), &held::configurations(upper))
+}
+
+/// Checks with the audit that circles are right.
+fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<()> {
+    audit::check_circles(&held::knots(knots), &held::configurations(configurations))
 }

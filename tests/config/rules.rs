@@ -1,9 +1,9 @@
 //! Link triangulation by every rule, from any triangulation: assertions hold, and facets match.
 
-use super::knots;
+use super::{check_circles, check_facets, knots};
 use crate::reference::configurations::lines;
 use crate::reference::sets::Random;
-use spmesh::audit::config::{FacetCounts, check_circles, check_facets};
+use spmesh::audit::config::FacetCounts;
 use spmesh::config::{self, Configurations, Knots, Rule, Start};
 
 /// What one run went through.

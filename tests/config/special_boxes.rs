@@ -1,9 +1,8 @@
 //! ZP configurations of grids: null links, and theorem 8.2.4 against box splines.
 
-use super::knots;
 use super::spline::b_spline;
+use super::{check_facets, knots};
 use crate::reference::sets::Random;
-use spmesh::audit::config::check_facets;
 use spmesh::config::special::{self, Function, FunctionKind, Patch, Special, ZpSplit};
 use spmesh::config::{self, Links, Rule};
 

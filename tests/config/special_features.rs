@@ -1,9 +1,8 @@
 //! Sharp corners, creases and linear elements, by the values of splines.
 
-use super::knots;
 use super::spline::{area, b_spline};
+use super::{check_facets, knots};
 use crate::reference::sets::Random;
-use spmesh::audit::config::check_facets;
 use spmesh::config::special::{self, Crease, Features, Function, FunctionKind, Special};
 use spmesh::config::{self, Knots, Links, Rule};
 
