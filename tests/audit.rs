@@ -12,6 +12,10 @@ pub mod diagram;
 mod diagram_damage;
 #[path = "audit/exhaustive.rs"]
 mod exhaustive;
+#[path = "audit/held.rs"]
+pub mod held;
+#[path = "audit/knots.rs"]
+mod knots;
 #[path = "audit/mesh.rs"]
 mod mesh;
 #[path = "audit/mutations.rs"]

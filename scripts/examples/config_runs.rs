@@ -4,7 +4,7 @@
 //! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
 //! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
 
-use spmesh_audit::config::check_facets;
+use spmesh_audit::config as audit;
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::special::{self, ZpSplit};
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
@@ -125,6 +125,17 @@ fn runs(count: u64, degree: usize, seed: u64) {
     }
 }
 
+/// The same configurations, as the audit holds them.
+fn held(of: &Configurations) -> Result<audit::Configurations> {
+    let mut held = audit::Configurations::new(of.degree(), of.standing());
+    for group in of.groups() {
+        for boundaries in [group.triangles, group.infinite].into_iter().filter(|all| !all.is_empty()) {
+            held.extend(group.interior, boundaries)?;
+        }
+    }
+    Ok(held)
+}
+
 /// One degree more.
 fn step(knots: &Knots, lower: &Configurations, rule: &Rule, row: &mut Row) -> Result<Configurations> {
     row.runs += 1;
@@ -135,7 +146,7 @@ fn step(knots: &Knots, lower: &Configurations, rule: &Rule, row: &mut Row) -> Re
         row.largest = row.largest.max(link.polygon.len());
     }
     let upper = configurations::link_triangulate(knots, lower, rule)?;
-    check_facets(lower, &upper)?;
+    audit::check_facets(&held(lower)?, &held(&upper)?)?;
     row.configurations += upper.len();
     Ok(upper)
 }

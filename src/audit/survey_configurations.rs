@@ -1,6 +1,6 @@
 //! What a stream of configurations holds, in numbers.
 
-use spmesh_geometry::configurations::{FARAWAY, Standing};
+use super::config::{FARAWAY, Standing};
 use spmesh_stream::ConfigurationBlock;
 
 /// Figures of the configurations of one degree.

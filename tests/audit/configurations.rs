@@ -1,11 +1,11 @@
 //! The audit of streams of configurations.
 
 use serde_json::{Value, json};
-use spmesh_audit::config::{Proof, Violation, check};
+use spmesh_audit::config::{ConfigurationSet, Proof, Violation, check};
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Standing};
-use spmesh_stream::ConfigurationSet;
 use spmesh_stream::write_configurations;
 
+use super::held;
 use crate::programs::{outcome, run};
 use crate::vectors::load;
 use spmesh_reference::sets::Random;
@@ -25,14 +25,8 @@ fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Con
 }
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
-    check(
-        knots,
-        &ConfigurationSet {
-            points: knots.points().to_vec(),
-            degrees: degrees.to_vec(),
-            ..ConfigurationSet::default()
-        },
-    )
+    let degrees = degrees.iter().map(held::configurations).collect();
+    check(&ConfigurationSet { knots: held::knots(knots), degrees })
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {

@@ -1,16 +1,17 @@
 //! The audit of a stream of configurations: everything in it is held, and proved when it is complete.
 
-use super::{FacetCounts, check_centroids, check_circles, check_facets, check_start};
+use super::set::Collector;
+use super::{ConfigurationSet, Configurations, FacetCounts, Knots, Standing};
+use super::{check_centroids, check_circles, check_facets, check_start};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_geometry::configurations::{Configurations, Knots, Standing};
-use spmesh_stream::{Collector, ConfigurationSet, Event, Header};
+use spmesh_stream::Event;
 
-/// Audit of one stream of configurations: give it every event, and ask for the proof.
+/// Audit of one stream of configurations: begin with the default, give it every event, and ask for the proof.
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
 ///
 /// Memory: what the stream holds; and for facets, 4 (k + 4) bytes for each of three facets of each configuration of two degrees.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct StreamAudit {
     collector: Collector,
     proof: Option<std::result::Result<Proof, Violation>>,
@@ -58,12 +59,6 @@ pub struct Violation {
 }
 
 impl StreamAudit {
-    /// An audit of a stream with this header.
-    #[must_use]
-    pub fn new(header: &Header) -> Self {
-        StreamAudit { collector: Collector::new(header), proof: None }
-    }
-
     /// Takes what the next event holds.
     ///
     /// # Errors
@@ -77,9 +72,8 @@ impl StreamAudit {
     /// # Errors
     /// The first violation (kind [`ErrorKind::Audit`]), or that there are too many knots.
     pub fn prove(&mut self) -> Result<()> {
-        let set = std::mem::take(&mut self.collector).finish();
-        let knots = Knots::new(set.points.clone())?;
-        let proof = check(&knots, &set);
+        let set = std::mem::take(&mut self.collector).finish()?;
+        let proof = check(&set);
         let failure = proof.as_ref().err().map(|Violation { claim, degree, message }| {
             Error::new(ErrorKind::Audit, format!("degree {degree}: {claim} check failed: {message}"))
         });
@@ -98,7 +92,8 @@ impl StreamAudit {
 ///
 /// # Errors
 /// The first violation.
-pub fn check(knots: &Knots, set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
+pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
+    let knots = &set.knots;
     let ranks = || (0..knots.len() as u32).map(|id| knots.rank(id));
     let mut proof = Proof {
         knots: knots.len(),
@@ -128,7 +123,7 @@ pub fn check(knots: &Knots, set: &ConfigurationSet) -> std::result::Result<Proof
         if let Some(lines) = lines {
             check_count(knots, upper, lines).map_err(violation("counts"))?;
         }
-        let (finite, infinite, is_counted) = (upper.len(), upper.infinite_len(), lines.is_some());
+        let (finite, infinite, is_counted) = (upper.finite_len(), upper.infinite_len(), lines.is_some());
         proof.degrees.push(DegreeProof { degree, finite, infinite, has_circles, facets, is_counted });
         lower = Some(upper);
     }
@@ -139,7 +134,7 @@ pub fn check(knots: &Knots, set: &ConfigurationSet) -> std::result::Result<Proof
 /// degrees up to k. It follows from Euler's relation of all centroid triangulations, whatever the rule (D. T. Lee's count of
 /// Voronoi vertices of order k is the Delaunay case).
 fn check_count(knots: &Knots, configurations: &Configurations, lines: usize) -> Result<()> {
-    let (next, count) = (configurations.degree() as i128 + 1, configurations.len() as i128);
+    let (next, count) = (configurations.degree() as i128 + 1, configurations.finite_len() as i128);
     let expected = 2 * next * knots.len() as i128 - next * (next + 1) - lines as i128;
     if count == expected {
         return Ok(());

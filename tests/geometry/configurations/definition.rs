@@ -1,7 +1,6 @@
 //! The rule `delaunay` and the direct definition.
 
-use super::{delaunay, knots, listed};
-use spmesh_audit::config::check_circles;
+use super::{check_circles, delaunay, knots, listed};
 use spmesh_core::error::ErrorKind;
 use spmesh_geometry::configurations::{self, Rule};
 use spmesh_reference::configurations::{by_definition, lines};

@@ -1,7 +1,6 @@
 //! Links with many vertices, by their definition: a knot that is near to all others, places with many copies.
 
-use super::{delaunay, knots, listed};
-use spmesh_audit::config::{check_circles, check_facets};
+use super::{check_circles, check_facets, delaunay, knots, listed};
 use spmesh_geometry::configurations;
 use spmesh_reference::configurations::by_definition;
 

@@ -1,7 +1,6 @@
 //! Projective configurations, and convex sets of points in space.
 
-use super::{knots, listed};
-use spmesh_audit::config::check_facets;
+use super::{check_facets, knots, listed};
 use spmesh_geometry::configurations::{self, Lift, Rule, Start};
 use spmesh_reference::configurations::Configuration;
 use spmesh_reference::normalised;

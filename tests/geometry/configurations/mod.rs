@@ -3,6 +3,8 @@
 mod borders;
 mod centroids;
 mod definition;
+#[path = "../../audit/held.rs"]
+mod held;
 mod hubs;
 mod lifted;
 mod rules;
@@ -10,6 +12,8 @@ mod special_boxes;
 mod special_features;
 mod spline;
 
+use spmesh_audit::config::{self as audit, FacetCounts};
+use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule};
 
 use spmesh_reference::configurations::Configuration;
@@ -36,4 +40,14 @@ fn listed(configurations: &Configurations) -> Vec<Configuration> {
         all.sort_unstable();
     }
     all
+}
+
+/// Checks with the audit that facets match.
+fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<FacetCounts> {
+    audit::check_facets(&held::configurations(lower), &held::configurations(upper))
+}
+
+/// Checks with the audit that circles are right.
+fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<()> {
+    audit::check_circles(&held::knots(knots), &held::configurations(configurations))
 }

@@ -1,8 +1,7 @@
 //! ZP configurations of grids: null links, and theorem 8.2.4 against box splines.
 
-use super::knots;
 use super::spline::b_spline;
-use spmesh_audit::config::check_facets;
+use super::{check_facets, knots};
 use spmesh_geometry::configurations::special::{self, Function, FunctionKind, Patch, Special, ZpSplit};
 use spmesh_geometry::configurations::{self, Links, Rule};
 use spmesh_reference::sets::Random;

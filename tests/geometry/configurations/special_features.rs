@@ -1,8 +1,7 @@
 //! Sharp corners, creases and linear elements, by the values of splines.
 
-use super::knots;
 use super::spline::{area, b_spline};
-use spmesh_audit::config::check_facets;
+use super::{check_facets, knots};
 use spmesh_geometry::configurations::special::{self, Crease, Features, Function, FunctionKind, Special};
 use spmesh_geometry::configurations::{self, Knots, Links, Rule};
 use spmesh_reference::sets::Random;
