@@ -127,7 +127,7 @@ fn runs(count: u64, degree: usize, seed: u64) {
 
 /// The same configurations, as the audit holds them.
 fn held(of: &Configurations) -> Result<audit::Configurations> {
-    let mut held = audit::Configurations::new(of.degree(), of.standing());
+    let mut held = audit::Configurations::new(of.degree(), of.claim());
     for group in of.groups() {
         for boundaries in [group.triangles, group.infinite].into_iter().filter(|all| !all.is_empty()) {
             held.extend(group.interior, boundaries)?;

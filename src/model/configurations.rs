@@ -7,7 +7,7 @@ pub const FARAWAY: u32 = u32::MAX;
 
 /// By which lift configurations are those of the lower side of a k-set polytope; nothing is known of others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
+pub enum Claim {
     /// Delaunay configurations.
     Delaunay,
     /// Projective configurations of the lift of the rule.
@@ -28,7 +28,7 @@ pub enum Standing {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Configurations {
     degree: usize,
-    standing: Standing,
+    claim: Claim,
     /// Interior sets, one after the other.
     interiors: Vec<u32>,
     /// For each group its first configuration; at the end their number.
@@ -50,19 +50,19 @@ pub struct Group<'a> {
 }
 
 impl Configurations {
-    fn empty(degree: usize, standing: Standing) -> Configurations {
+    fn empty(degree: usize, claim: Claim) -> Configurations {
         let offsets = vec![0];
-        Configurations { degree, standing, interiors: Vec::new(), offsets, boundaries: Vec::new(), finite: 0 }
+        Configurations { degree, claim, interiors: Vec::new(), offsets, boundaries: Vec::new(), finite: 0 }
     }
 
     /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. What is near in it should be near
     /// in the plane: so it is not sorted.
-    pub fn of_triangles(standing: Standing, mut triangles: Vec<[u32; 3]>) -> Configurations {
+    pub fn of_triangles(claim: Claim, mut triangles: Vec<[u32; 3]>) -> Configurations {
         triangles.iter_mut().for_each(|triangle| *triangle = normalised(*triangle));
         triangles.sort_by_key(|triangle| triangle[2] == FARAWAY);
         let finite = triangles.partition_point(|triangle| triangle[2] != FARAWAY);
         let offsets = vec![0, triangles.len() as u32];
-        Configurations { degree: 0, standing, interiors: Vec::new(), offsets, boundaries: triangles, finite }
+        Configurations { degree: 0, claim, interiors: Vec::new(), offsets, boundaries: triangles, finite }
     }
 
     /// Puts groups in order that came by the knots of `order`, their least. Domain: a degree above 0.
@@ -76,7 +76,7 @@ impl Configurations {
             }
             *count += 1;
         }
-        let mut sorted = Configurations::empty(self.degree, self.standing);
+        let mut sorted = Configurations::empty(self.degree, self.claim);
         sorted.interiors.reserve_exact(self.interiors.len());
         sorted.offsets.reserve_exact(self.offsets.len());
         sorted.boundaries.reserve_exact(self.boundaries.len());
@@ -133,8 +133,8 @@ impl Configurations {
 
     /// No configurations, to be given with [`Configurations::extend`].
     #[must_use]
-    pub fn new(degree: usize, standing: Standing) -> Configurations {
-        Configurations::empty(degree, standing)
+    pub fn new(degree: usize, claim: Claim) -> Configurations {
+        Configurations::empty(degree, claim)
     }
 
     /// Appends configurations with one interior set, to the last group if that has the same set.
@@ -162,8 +162,8 @@ impl Configurations {
 
     /// What the configurations are by the way they were made.
     #[must_use]
-    pub fn standing(&self) -> Standing {
-        self.standing
+    pub fn claim(&self) -> Claim {
+        self.claim
     }
 
     /// The degree k: the size of interior sets.

@@ -28,7 +28,7 @@ mod writer;
 
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
-pub use configurations::{check_degree, standing_from_name, standing_name};
+pub use configurations::{check_degree, claim_from_name, claim_name};
 pub use diagram4::Diagram4;
 pub use ending::ends_with_end;
 pub use event::{Event, Patch, Totals};

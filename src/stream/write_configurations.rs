@@ -97,7 +97,7 @@ fn write_degree<W: Write>(writer: &mut StreamWriter<W>, configurations: &Configu
             configurations.degree()
         )));
     };
-    let empty = ConfigurationBlock::new(degree, configurations.standing());
+    let empty = ConfigurationBlock::new(degree, configurations.claim());
     let mut block = empty.clone();
     // At least one block, so that a degree without configurations is there.
     for group in configurations.groups() {

@@ -67,7 +67,7 @@ impl Scene<'_> {
         let order = self.options.order.unwrap_or(last.degree() + 1);
         let upper = self.degree(order.wrapping_sub(1))?;
         // A stream may have one degree alone; then there is nothing in the place of the triangles of the lower one.
-        let missing = (order > 1).then(|| Configurations::new(order - 2, upper.standing()));
+        let missing = (order > 1).then(|| Configurations::new(order - 2, upper.claim()));
         let lower = self.find(order.wrapping_sub(2)).or(missing.as_ref());
         let mesh = CentroidMesh::of(&self.knots, lower, upper)?;
         let places: Vec<Point> =

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use spmesh_audit::config::{ConfigurationSet, Proof, Violation, check};
-use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Standing};
+use spmesh_geometry::configurations::{self, Claim, Configurations, Knots, Rule};
 use spmesh_stream::write_configurations;
 
 use super::held;
@@ -37,7 +37,7 @@ fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
 
 /// The same configurations with one boundary replaced, or left out.
 fn changed(of: &Configurations, at: usize, replacement: Option<[u32; 3]>) -> Configurations {
-    let mut result = Configurations::new(of.degree(), of.standing());
+    let mut result = Configurations::new(of.degree(), of.claim());
     let mut number = 0;
     for group in of.groups() {
         for &boundary in group.triangles.iter().chain(group.infinite) {
@@ -49,8 +49,8 @@ fn changed(of: &Configurations, at: usize, replacement: Option<[u32; 3]>) -> Con
     result
 }
 
-fn relabelled(of: &Configurations, standing: Standing) -> Configurations {
-    let mut result = Configurations::new(of.degree(), standing);
+fn relabelled(of: &Configurations, claim: Claim) -> Configurations {
+    let mut result = Configurations::new(of.degree(), claim);
     for group in of.groups() {
         result.extend(group.interior, &[group.triangles, group.infinite].concat()).unwrap();
     }
@@ -104,7 +104,7 @@ fn configurations_of_another_rule_are_not_delaunay() {
     let knots = knots(&mut Random::new(2), 14, 1 << 16);
     for degree in 0..3 {
         let mut degrees = generated(&knots, &Rule::Random(4), 8, 2);
-        degrees[degree] = relabelled(&degrees[degree], Standing::Delaunay);
+        degrees[degree] = relabelled(&degrees[degree], Claim::Delaunay);
         let violation = verdict(&knots, &degrees).expect_err("it is not Delaunay");
         assert_eq!((violation.claim, violation.degree), ("circles", degree), "{violation:?}");
     }
@@ -132,7 +132,7 @@ fn every_exchanged_knot_is_noticed() {
     for degree in 0..degrees.len() {
         let mut number = 0;
         let plain: Vec<Configurations> =
-            degrees.iter().map(|degree| relabelled(degree, Standing::Any)).collect();
+            degrees.iter().map(|degree| relabelled(degree, Claim::Any)).collect();
         for group in degrees[degree].groups() {
             for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
                 let others =
@@ -151,7 +151,7 @@ fn every_exchanged_knot_is_noticed() {
 #[test]
 fn a_degree_alone_must_have_its_orientation_and_its_border() {
     let knots = knots(&mut Random::new(6), 9, 1 << 10);
-    let only = relabelled(&generated(&knots, &Rule::Delaunay, 0, 2)[2], Standing::Any);
+    let only = relabelled(&generated(&knots, &Rule::Delaunay, 0, 2)[2], Claim::Any);
     assert!(verdict(&knots, std::slice::from_ref(&only)).is_ok());
     let [a, b, c] = only.iter().next().unwrap().0;
     let violation = verdict(&knots, &[changed(&only, 0, Some([a, c, b]))]).expect_err("clockwise");

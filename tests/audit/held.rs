@@ -10,7 +10,7 @@ pub fn knots(knots: &Knots) -> audit::Knots {
 
 /// The same configurations.
 pub fn configurations(of: &Configurations) -> audit::Configurations {
-    let mut held = audit::Configurations::new(of.degree(), of.standing());
+    let mut held = audit::Configurations::new(of.degree(), of.claim());
     for group in of.groups() {
         for boundaries in [group.triangles, group.infinite].into_iter().filter(|all| !all.is_empty()) {
             held.extend(group.interior, boundaries).expect("few configurations");

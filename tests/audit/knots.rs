@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use spmesh_audit::config::{ConfigurationSet, Configurations, Knots, Proof, Violation, check};
-use spmesh_geometry::configurations::{FARAWAY, Standing};
+use spmesh_geometry::configurations::{Claim, FARAWAY};
 
 use spmesh_reference::configurations::{by_definition, lines};
 use spmesh_reference::sets::Random;
@@ -26,9 +26,9 @@ fn reference(points: &[[f64; 2]]) -> Vec<Boundaries> {
     degrees.collect()
 }
 
-fn verdict(points: &[[f64; 2]], degrees: &[Boundaries], standing: Standing) -> Result<Proof, Violation> {
+fn verdict(points: &[[f64; 2]], degrees: &[Boundaries], claim: Claim) -> Result<Proof, Violation> {
     let hold = |(degree, groups): (usize, &Boundaries)| {
-        let mut held = Configurations::new(degree, standing);
+        let mut held = Configurations::new(degree, claim);
         groups.iter().for_each(|(interior, boundaries)| held.extend(interior, boundaries).unwrap());
         held
     };
@@ -92,7 +92,7 @@ fn copies(points: &[[f64; 2]]) -> Vec<[u32; 2]> {
 fn configurations_by_definition_pass() {
     for seed in 0..150 {
         let points = repeated(&mut Random::new(seed));
-        let proof = verdict(&points, &reference(&points), Standing::Delaunay)
+        let proof = verdict(&points, &reference(&points), Claim::Delaunay)
             .unwrap_or_else(|violation| panic!("seed {seed}: {violation:?}"));
         let at_place = |p: &[f64; 2]| points.iter().filter(|q| *q == p).count();
         let first = |id: usize| !points[..id].contains(&points[id]);
@@ -116,10 +116,10 @@ fn configurations_with_other_ranks_are_refused() {
             if other == sorted(&degrees) {
                 continue;
             }
-            let violation = verdict(&points, &other, Standing::Delaunay).expect_err("the ranks are wrong");
+            let violation = verdict(&points, &other, Claim::Delaunay).expect_err("the ranks are wrong");
             assert_eq!(violation.claim, "circles", "seed {seed}, {pair:?}: {violation:?}");
             // A boundary that has both copies turns the other way; what has them by any rule is not planar.
-            refused += usize::from(verdict(&points, &other, Standing::Any).is_err());
+            refused += usize::from(verdict(&points, &other, Claim::Any).is_err());
         }
     }
     assert!(refused > 50, "without circles, only {refused} were refused");

@@ -3,7 +3,7 @@
 use spmesh_convert::Format;
 use spmesh_core::error::ErrorKind;
 use spmesh_geometry::configurations::special::{Function, FunctionKind};
-use spmesh_geometry::configurations::{self, Configurations, FARAWAY, Knots, Rule, Standing, Start};
+use spmesh_geometry::configurations::{self, Claim, Configurations, FARAWAY, Knots, Rule, Start};
 use spmesh_stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
 use spmesh_stream::{ConfigurationSet, Content, configurations_header, write_configurations, write_content};
 
@@ -139,7 +139,7 @@ fn the_writer_refuses_what_no_reader_accepts() {
         error.kind() == ErrorKind::Usage && error.to_string().contains("degree 0 after degree 1"),
         "{error}"
     );
-    let too_high = Configurations::new(4097, Standing::Any);
+    let too_high = Configurations::new(4097, Claim::Any);
     let error = write_configurations(knots.points(), &[too_high], Vec::new()).expect_err("degree 4097");
     assert!(error.to_string().contains("cannot write degree 4097"), "{error}");
     let few = Knots::new(knots.points()[..3].to_vec()).unwrap();
@@ -149,7 +149,7 @@ fn the_writer_refuses_what_no_reader_accepts() {
     let mut writer =
         StreamWriter::new(Vec::new(), Header::new(Kind::Configurations, Coordinates::F64, 2, false)).unwrap();
     writer.points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
-    let mut block = ConfigurationBlock::new(0, Standing::Any);
+    let mut block = ConfigurationBlock::new(0, Claim::Any);
     block.push(&[], &[[0, 1, FARAWAY], [0, 1, 2]]);
     let error = writer.configurations(&block).expect_err("an infinite one first");
     assert!(error.to_string().contains("does not follow"), "{error}");

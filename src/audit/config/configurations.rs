@@ -1,6 +1,6 @@
 //! Configurations as the audit holds them: flat arrays, as they came.
 
-use super::{FARAWAY, Standing};
+use super::{Claim, FARAWAY};
 use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// The configurations (B, I) of one degree, grouped by I. In infinite ones, the last knot of B is [`FARAWAY`].
@@ -9,7 +9,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 #[derive(Debug, Clone)]
 pub struct Configurations {
     degree: usize,
-    standing: Standing,
+    claim: Claim,
     /// Interior sets, one after the other.
     interiors: Vec<u32>,
     /// For each group, the number of boundaries up to its last.
@@ -29,9 +29,9 @@ pub(super) struct Group<'a> {
 impl Configurations {
     /// No configurations, to be given with [`Configurations::extend`].
     #[must_use]
-    pub fn new(degree: usize, standing: Standing) -> Configurations {
+    pub fn new(degree: usize, claim: Claim) -> Configurations {
         let (interiors, ends, boundaries) = (Vec::new(), Vec::new(), Vec::new());
-        Configurations { degree, standing, interiors, ends, boundaries, infinite: 0 }
+        Configurations { degree, claim, interiors, ends, boundaries, infinite: 0 }
     }
 
     /// Appends configurations with one interior set, to the last group if that has the same set.
@@ -64,8 +64,8 @@ impl Configurations {
     }
 
     /// What the configurations claim to be.
-    pub(super) fn standing(&self) -> Standing {
-        self.standing
+    pub(super) fn claim(&self) -> Claim {
+        self.claim
     }
 
     /// Number of configurations of three knots.

@@ -23,4 +23,4 @@ pub use set::ConfigurationSet;
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
 
 // Two terms of the stream format, which are data and not code.
-pub(super) use spmesh_model::configurations::{FARAWAY, Standing};
+pub(super) use spmesh_model::configurations::{Claim, FARAWAY};

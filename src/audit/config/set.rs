@@ -32,7 +32,7 @@ impl Collector {
             Event::Configurations(block) => {
                 let degree = block.degree as usize;
                 if self.degrees.last().is_none_or(|last| last.degree() != degree) {
-                    self.degrees.push(Configurations::new(degree, block.standing));
+                    self.degrees.push(Configurations::new(degree, block.claim));
                 }
                 if let Some(last) = self.degrees.last_mut() {
                     block

@@ -1,7 +1,7 @@
 //! The audit of a stream of configurations: everything in it is held, and proved when it is complete.
 
 use super::set::Collector;
-use super::{ConfigurationSet, Configurations, FacetCounts, Knots, Standing};
+use super::{Claim, ConfigurationSet, Configurations, FacetCounts, Knots};
 use super::{check_centroids, check_circles, check_facets, check_start};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_stream::Event;
@@ -107,7 +107,7 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
     for upper in &set.degrees {
         let degree = upper.degree();
         let violation = |claim| move |error: Error| Violation { claim, degree, message: error.to_string() };
-        let has_circles = upper.standing() == Standing::Delaunay;
+        let has_circles = upper.claim() == Claim::Delaunay;
         if has_circles {
             check_circles(knots, upper).map_err(violation("circles"))?;
         }

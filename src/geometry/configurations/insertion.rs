@@ -147,7 +147,7 @@ mod tests {
     use crate::configurations::{Lift, Start, generate};
     use crate::predicates::TotalPredicates;
     use spmesh_model::configurations::FARAWAY;
-    use spmesh_model::configurations::{Configurations, Standing};
+    use spmesh_model::configurations::{Claim, Configurations};
 
     /// The triangles that one of the ways gives, in an order of their own.
     fn sorted(out: &[[u32; 3]]) -> Vec<[u32; 3]> {
@@ -162,10 +162,10 @@ mod tests {
 
     /// Triangulates all links that are bounded in both ways; the number of those with more than four vertices.
     fn compare(knots: &Knots, start: Configurations, rule: &Rule, degree: usize) -> usize {
-        let (standing, diagonals) = (start.standing(), Diagonals::default());
+        let (claim, diagonals) = (start.claim(), Diagonals::default());
         let order: Vec<u32> = (0..knots.len() as u32).collect();
         let mut predicates = TotalPredicates::default();
-        let mut triangulator = Triangulator::new(knots, (rule, &diagonals), standing, &mut predicates);
+        let mut triangulator = Triangulator::new(knots, (rule, &diagonals), claim, &mut predicates);
         let mut compared = 0;
         for configurations in generate(knots, start, rule, degree).expect("degrees") {
             let compare = |set: &[u32], link: &[u32]| {
@@ -269,7 +269,7 @@ mod tests {
             let order: Vec<u32> = (0..knots.len() as u32).collect();
             let (mut predicates, diagonals) = (TotalPredicates::default(), Diagonals::default());
             let rule = (&Rule::Delaunay, &diagonals);
-            let mut triangulator = Triangulator::new(&knots, rule, Standing::Delaunay, &mut predicates);
+            let mut triangulator = Triangulator::new(&knots, rule, Claim::Delaunay, &mut predicates);
             let mut largest = 0;
             for_each_link(&knots, &start, &order, |set, link| {
                 largest = largest.max(link.len());

@@ -34,7 +34,7 @@ pub use gathering::links;
 pub use knots::Knots;
 pub use lift::Lift;
 pub use rule::Rule;
-pub use spmesh_model::configurations::{Configurations, FARAWAY, Group, Link, Links, Standing};
+pub use spmesh_model::configurations::{Claim, Configurations, FARAWAY, Group, Link, Links};
 pub use surface::{Start, delaunay};
 pub use union_map::{UnionSource, inverse_union_map, union_map};
 
@@ -117,14 +117,14 @@ impl WithPredicates2 for Step<'_> {
 
     fn with(self, predicates: &mut impl Predicates2) -> Result<Configurations> {
         let Step { knots, configurations, rule, diagonals } = self;
-        let standing = match (configurations.standing(), rule) {
-            _ if !diagonals.is_empty() => Standing::Any,
-            (Standing::Delaunay, Rule::Delaunay) => Standing::Delaunay,
-            (Standing::Lifted, Rule::Lifted(_)) => Standing::Lifted,
-            _ => Standing::Any,
+        let claim = match (configurations.claim(), rule) {
+            _ if !diagonals.is_empty() => Claim::Any,
+            (Claim::Delaunay, Rule::Delaunay) => Claim::Delaunay,
+            (Claim::Lifted, Rule::Lifted(_)) => Claim::Lifted,
+            _ => Claim::Any,
         };
-        let mut next = Configurations::new(configurations.degree() + 1, standing);
-        let mut triangulator = Triangulator::new(knots, (rule, diagonals), standing, predicates);
+        let mut next = Configurations::new(configurations.degree() + 1, claim);
+        let mut triangulator = Triangulator::new(knots, (rule, diagonals), claim, predicates);
         // Along a curve, so that what is near in the plane is near in time: ids may be in any order.
         let mut curve = SpatialOrder::default();
         let order: Vec<u32> =

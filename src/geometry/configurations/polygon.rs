@@ -9,8 +9,8 @@ use super::special::Diagonals;
 use crate::predicates::{Predicates2, Sign};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::LINK_VERTICES_MAX;
+use spmesh_model::configurations::Claim;
 use spmesh_model::configurations::FARAWAY;
-use spmesh_model::configurations::Standing;
 
 /// Triangulates links, with buffers to be used again.
 pub(super) struct Triangulator<'a, P> {
@@ -33,7 +33,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     pub(super) fn new(
         knots: &'a Knots,
         (rule, diagonals): (&'a Rule, &'a Diagonals),
-        standing: Standing,
+        claim: Claim,
         predicates: &'a mut P,
     ) -> Self {
         let lift = if let Rule::Lifted(lift) = rule { Some(lift) } else { None };
@@ -41,7 +41,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
             plane: Plane::new(knots, lift, predicates),
             rule,
             diagonals,
-            is_regular: standing != Standing::Any,
+            is_regular: claim != Claim::Any,
             set: Vec::new(),
             polygon: Vec::new(),
             sight: Vec::new(),

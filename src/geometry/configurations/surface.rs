@@ -9,7 +9,7 @@ use foldhash::HashMap;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::random::Random;
 use spmesh_model::configurations::FARAWAY;
-use spmesh_model::configurations::{Configurations, Standing};
+use spmesh_model::configurations::{Claim, Configurations};
 
 /// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the place.
 pub(super) type Corner = u32;
@@ -20,7 +20,7 @@ pub struct Start {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The half-edge on the other side of each.
     pub(super) across: Vec<[Corner; 3]>,
-    pub(super) standing: Standing,
+    pub(super) claim: Claim,
 }
 
 /// The canonical Delaunay triangulation; of knots at one place only the first is a vertex.
@@ -73,7 +73,7 @@ pub fn delaunay(knots: &Knots) -> Result<Configurations> {
     if knots.has_copies() {
         return Ok(Start::delaunay(knots)?.configurations());
     }
-    Ok(Configurations::of_triangles(Standing::Delaunay, triangles_of(&kernel_mesh(knots)?)))
+    Ok(Configurations::of_triangles(Claim::Delaunay, triangles_of(&kernel_mesh(knots)?)))
 }
 
 impl Start {
@@ -84,7 +84,7 @@ impl Start {
         let mesh = kernel_mesh(knots)?;
         let (triangles, across) = (triangles_of(&mesh), across_of(&mesh));
         drop(mesh);
-        let mut start = Start { triangles, across, standing: Standing::Delaunay };
+        let mut start = Start { triangles, across, claim: Claim::Delaunay };
         if knots.has_copies() {
             start.insert_copies(knots);
         }
@@ -117,7 +117,7 @@ impl Start {
             waiting.extend([3 * t, 3 * t + 1, 3 * t + 2]);
             waiting.extend(u.into_iter().flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
         }
-        start.standing = Standing::Lifted;
+        start.claim = Claim::Lifted;
         Ok(start)
     }
 
@@ -131,21 +131,21 @@ impl Start {
         let mut all = Vec::with_capacity(triangles.len() + border.len());
         all.extend_from_slice(triangles);
         all.extend(border.iter().map(|&[a, b]| [b, a, FARAWAY]));
-        Ok(Start { across: join(&all)?, triangles: all, standing: Standing::Any })
+        Ok(Start { across: join(&all)?, triangles: all, claim: Claim::Any })
     }
 
     /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for constrained Delaunay
     /// triangulations of links, and links of knots that are pulled apart are triangulated as in figure 8.7 of the thesis.
     #[must_use]
     pub fn generalised(mut self) -> Start {
-        self.standing = Standing::Any;
+        self.claim = Claim::Any;
         self
     }
 
     /// The configurations of degree 0.
     #[must_use]
     pub fn configurations(&self) -> Configurations {
-        Configurations::of_triangles(self.standing, self.triangles.clone())
+        Configurations::of_triangles(self.claim, self.triangles.clone())
     }
 
     /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number of flips.
@@ -240,7 +240,7 @@ impl Start {
         {
             self.set_across(here, there);
         }
-        self.standing = Standing::Any;
+        self.claim = Claim::Any;
     }
 
     pub(super) fn set_across(&mut self, here: Corner, there: Corner) {

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::write_error;
 use spmesh_core::error::Result;
 use spmesh_model::configurations::FARAWAY;
-use spmesh_stream::{ConfigurationBlock, standing_name};
+use spmesh_stream::{ConfigurationBlock, claim_name};
 
 /// The degree and the interior set that the last lines were of.
 #[derive(Debug, Default)]
@@ -18,8 +18,8 @@ impl OpenGroup {
     /// Lines `degree` and `in` where something new begins, `on` and `line`.
     pub(super) fn write(&mut self, output: &mut impl Write, block: &ConfigurationBlock) -> Result<()> {
         if self.degree != Some(block.degree) {
-            let standing = standing_name(block.standing);
-            writeln!(output, "degree {} {standing}", block.degree).map_err(write_error)?;
+            let claim = claim_name(block.claim);
+            writeln!(output, "degree {} {claim}", block.degree).map_err(write_error)?;
             *self = OpenGroup { degree: Some(block.degree), interior: None };
         }
         for (interior, boundaries) in block.groups() {

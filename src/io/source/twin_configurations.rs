@@ -2,15 +2,15 @@
 
 use super::statements::{expect_no_field, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::configurations::{FARAWAY, Standing};
-use spmesh_stream::{ConfigurationBlock, check_degree, standing_from_name};
+use spmesh_model::configurations::{Claim, FARAWAY};
+use spmesh_stream::{ConfigurationBlock, check_degree, claim_from_name};
 
 /// Words from which an event takes no further line.
 const BATCH_WORDS: usize = 1 << 14;
 
 /// One line, parsed. Knots are counted from 0 here.
 pub(super) enum ConfigurationLine {
-    Degree(u32, Standing),
+    Degree(u32, Claim),
     Interior(Vec<u32>),
     /// The last is [`FARAWAY`] if the line is `line`.
     Boundary([u32; 3]),
@@ -27,10 +27,10 @@ pub(super) fn parse<'a>(
             let degree = u32::try_from(parse_integer(field)?).map_err(|_| unexpected(field, "a degree"))?;
             check_degree(degree)?;
             let name = next_field(fields)?;
-            let standing = standing_from_name(name);
+            let claim = claim_from_name(name);
             ConfigurationLine::Degree(
                 degree,
-                standing.ok_or_else(|| unexpected(name, "any, delaunay or lifted"))?,
+                claim.ok_or_else(|| unexpected(name, "any, delaunay or lifted"))?,
             )
         }
         b"in" => ConfigurationLine::Interior(fields.map(parse_knot).collect::<Result<_>>()?),
@@ -57,7 +57,7 @@ pub(super) fn parse_knot(field: &[u8]) -> Result<u32> {
 /// What lines go on with, over all events.
 #[derive(Default)]
 pub(super) struct OpenLines {
-    degree: Option<(u32, Standing)>,
+    degree: Option<(u32, Claim)>,
     interior: Option<Vec<u32>>,
     /// Whether the interior set waits for its first configuration.
     is_bare: bool,
@@ -71,7 +71,7 @@ impl OpenLines {
 
     /// The empty event that `line` starts; none if it cannot start one.
     pub(super) fn start(&mut self, line: &ConfigurationLine) -> Result<Option<ConfigurationBlock>> {
-        if let &ConfigurationLine::Degree(degree, standing) = line {
+        if let &ConfigurationLine::Degree(degree, claim) = line {
             self.check_closed()?;
             if let Some((last, _)) = self.degree
                 && degree <= last
@@ -80,9 +80,9 @@ impl OpenLines {
                     "configurations of degree {degree} after those of {last}"
                 )));
             }
-            *self = OpenLines { degree: Some((degree, standing)), ..OpenLines::default() };
+            *self = OpenLines { degree: Some((degree, claim)), ..OpenLines::default() };
         }
-        Ok(self.degree.map(|(degree, standing)| ConfigurationBlock::new(degree, standing)))
+        Ok(self.degree.map(|(degree, claim)| ConfigurationBlock::new(degree, claim)))
     }
 
     /// Adds a line, which is not one of a degree, to an event.

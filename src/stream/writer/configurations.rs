@@ -28,7 +28,7 @@ impl<W: Write> StreamWriter<W> {
         self.configuration_rules.block(block, self.totals.points)?;
         if self.waiting.as_ref().is_none_or(|waiting| waiting.block.degree != block.degree) {
             self.flush_configurations()?;
-            let empty = ConfigurationBlock::new(block.degree, block.standing);
+            let empty = ConfigurationBlock::new(block.degree, block.claim);
             self.waiting = Some(Waiting { block: empty, is_news: true });
         }
         for (interior, boundaries) in block.groups() {
