@@ -1,5 +1,5 @@
 //! Delaunay configurations of any degree, and their generalisation.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::configgen::run)
+    spmesh_cli::main(spmesh_cli::configgen::run)
 }

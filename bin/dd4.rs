@@ -1,5 +1,5 @@
 //! Exact Delaunay diagrams in four dimensions.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::dd4::run)
+    spmesh_cli::main(spmesh_cli::dd4::run)
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    spmesh::cli::main(spmesh::cli::spconvert::run)
+    spmesh_cli::main(spmesh_cli::spconvert::run)
 }

@@ -1,5 +1,5 @@
 //! Streaming Delaunay triangulation in the plane.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::spdelaunay2d::run)
+    spmesh_cli::main(spmesh_cli::spdelaunay2d::run)
 }

@@ -1,5 +1,5 @@
 //! Streaming Delaunay tetrahedralization in space.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::spdelaunay3d::run)
+    spmesh_cli::main(spmesh_cli::spdelaunay3d::run)
 }

@@ -1,5 +1,5 @@
 //! Rasters of triangle meshes.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::spdem::run)
+    spmesh_cli::main(spmesh_cli::spdem::run)
 }

@@ -1,5 +1,5 @@
 //! Bivariate splines fitted to scattered points.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::splinefit::run)
+    spmesh_cli::main(spmesh_cli::splinefit::run)
 }

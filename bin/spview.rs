@@ -1,5 +1,5 @@
 //! Pictures of streams.
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::spview::run)
+    spmesh_cli::main(spmesh_cli::spview::run)
 }

@@ -2,8 +2,8 @@
 
 /// Counts what each file of a sweep takes.
 #[global_allocator]
-static HEAP: spmesh::tess3::heap::CountingHeap = spmesh::tess3::heap::CountingHeap;
+static HEAP: spmesh_cli::tess3::CountingHeap = spmesh_cli::tess3::CountingHeap;
 
 fn main() -> std::process::ExitCode {
-    spmesh::cli::main(spmesh::cli::tess3::run)
+    spmesh_cli::main(spmesh_cli::tess3::run)
 }

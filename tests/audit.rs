@@ -12,6 +12,10 @@ pub mod diagram;
 mod diagram_damage;
 #[path = "audit/exhaustive.rs"]
 mod exhaustive;
+#[path = "audit/held.rs"]
+pub mod held;
+#[path = "audit/knots.rs"]
+mod knots;
 #[path = "audit/mesh.rs"]
 mod mesh;
 #[path = "audit/mutations.rs"]
@@ -39,10 +43,10 @@ mod tetrahedralized;
 #[path = "audit/winding.rs"]
 mod winding;
 
-use spmesh::audit::{Audit, PointSet, Report, Standard, Violation};
-use spmesh::bounds::Point;
-use spmesh::error::ErrorKind;
-use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
+use spmesh_audit::{Audit, PointSet, Report, Standard, Violation};
+use spmesh_core::error::ErrorKind;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
 
 /// Audits a whole stream; the violation of one that is not even well formed has no vertices.
 fn audit(stream: &[u8], standard: Standard, given: Option<PointSet>) -> Result<Report, Verdict> {
@@ -150,7 +154,7 @@ fn point(&[x, y]: &[i32; 2]) -> Point {
 
 /// Asserts that a stream was refused by `check`, with these ids.
 #[track_caller]
-fn assert_violates(result: Result<Report, Verdict>, check: spmesh::audit::Check, ids: &[u64]) -> Violation {
+fn assert_violates(result: Result<Report, Verdict>, check: spmesh_audit::Check, ids: &[u64]) -> Violation {
     match result {
         Err(Verdict::Violation(violation)) => {
             let found: Vec<u64> = violation.vertices.iter().filter_map(|(id, _)| *id).collect();

@@ -1,8 +1,8 @@
 //! Cells computed for batches are those computed for single points, on borders too.
 
-use spmesh::bounds::{Bounds, Point};
-use spmesh::cell_grid::CellGrid;
-use spmesh::cells::CellTree;
+use spmesh_finalize::cell_grid::CellGrid;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::cells::CellTree;
 
 /// SplitMix64 by Steele, Lea and Flood.
 struct Random(u64);

@@ -12,8 +12,8 @@ mod volume;
 
 use std::io::Cursor;
 
-use spmesh::convert::{Format, Options, convert};
-use spmesh::error::{ErrorKind, Result};
+use spmesh_convert::{Format, Options, convert};
+use spmesh_core::error::{ErrorKind, Result};
 
 use crate::vectors::load;
 

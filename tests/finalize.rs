@@ -5,10 +5,10 @@ mod promises;
 mod sets;
 mod spool;
 
-use spmesh::bounds::{Bounds, Point};
-use spmesh::error::{Error, ErrorKind, Result};
-use spmesh::finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
-use spmesh::stream::{Coordinates, StreamReader};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Coordinates, StreamReader};
 
 use crate::programs::{outcome, run as run_tool, sample};
 use memory::*;

@@ -2,10 +2,10 @@
 
 use std::io::Cursor;
 
-use spmesh::raster::{
+use spmesh_io::raster::{
     Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, TILE, write_rows, write_tiles,
 };
-use spmesh::stream::Crs;
+use spmesh_stream::Crs;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
@@ -23,7 +23,7 @@ fn value(column: u32, row: u32) -> f32 {
     }
 }
 
-fn row(number: u32, values: &mut [f32]) -> spmesh::error::Result<()> {
+fn row(number: u32, values: &mut [f32]) -> spmesh_core::error::Result<()> {
     (0..).zip(values).for_each(|(column, cell)| *cell = value(column, number));
     Ok(())
 }
@@ -127,7 +127,7 @@ fn texts_have_rows_from_the_top() {
 #[test]
 fn failures_stop_the_file() {
     let failing = |number: u32, _: &mut [f32]| match number {
-        5 => Err(spmesh::error::Error::usage("no more")),
+        5 => Err(spmesh_core::error::Error::usage("no more")),
         _ => Ok(()),
     };
     for format in [RasterFormat::Ascii, RasterFormat::GeoTiff] {

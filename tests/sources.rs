@@ -18,9 +18,9 @@ mod vtk_xml;
 
 use std::path::{Path, PathBuf};
 
-use spmesh::bounds::Point;
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::{Input, SourceOptions};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::{Input, SourceOptions};
+use spmesh_model::bounds::Point;
 
 use crate::programs::Folder;
 

@@ -4,10 +4,10 @@ mod meshes;
 mod simplices;
 mod values;
 
-use spmesh::cells4::Point4;
-use spmesh::diagram4::{Diagram, diagram};
+use spmesh_geometry::diagram4::{Diagram, diagram};
+use spmesh_model::cells4::Point4;
 
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 /// The diagram of points with values.
 pub fn with_values(points: Vec<Point4>, value: impl Fn(Point4) -> f64) -> Diagram {

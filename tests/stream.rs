@@ -4,10 +4,10 @@ mod configurations;
 mod four;
 mod tools4;
 
-use spmesh::bounds::{Bounds, Point, Region};
-use spmesh::cells::{CellCode, CellTree};
-use spmesh::error::{ErrorKind, Result};
-use spmesh::stream::{Coordinates, Crs, Event, Header, Kind, Patch, StreamReader, StreamWriter};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use crate::allocation::largest_during;
 use crate::vectors::{load, run_python, verify};
@@ -430,7 +430,7 @@ fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
     let input_points = points.len() as u64 + merged;
     header.points = random.coin().then_some(input_points);
     header.bounds = if random.coin() { Bounds::of_points(&points) } else { None };
-    let end = spmesh::stream::Totals { points: input_points, merged, ..Default::default() };
+    let end = spmesh_stream::Totals { points: input_points, merged, ..Default::default() };
     let all = [&events[..], &[Event::End(end)]].concat();
     let bytes = write(&header, &all).unwrap();
     (header, events, bytes)

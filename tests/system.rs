@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::AsRawFd;
 
-use spmesh::system::widen_pipe;
+use spmesh_core::system::widen_pipe;
 
 use crate::programs::{run, start};
 

@@ -4,9 +4,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use spmesh::bounds::Point;
-use spmesh::error::{Error, ErrorKind, Result};
-use spmesh::stream::{Event, FinalizedCells, Header, LiveVertices, StreamReader};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, StreamReader};
 
 /// One vector: its name, its bytes, and what is expected (text twin, or words of the error).
 pub struct Vector {

@@ -4,10 +4,10 @@
 //! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
 //! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
 
-use spmesh::audit::config::check_facets;
-use spmesh::config::special::{self, ZpSplit};
-use spmesh::config::{self, Configurations, Knots, Rule, Start};
-use spmesh::error::Result;
+use spmesh_audit::config as audit;
+use spmesh_core::error::Result;
+use spmesh_geometry::configurations::special::{self, ZpSplit};
+use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 
 /// SplitMix64.
 struct Random(u64);
@@ -52,7 +52,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
                 Some(("random", count)) => {
                     let knots = Knots::new(points(&mut Random::new(seed), count.parse()?, 0))?;
                     let start = flipped(&knots, count.parse::<usize>()? / 3, seed)?;
-                    print(&knots, &config::generate(&knots, start, &Rule::Random(seed), degree)?);
+                    print(&knots, &configurations::generate(&knots, start, &Rule::Random(seed), degree)?);
                 }
                 Some(("zp", side)) => {
                     let side: u32 = side.parse()?;
@@ -125,17 +125,28 @@ fn runs(count: u64, degree: usize, seed: u64) {
     }
 }
 
+/// The same configurations, as the audit holds them.
+fn held(of: &Configurations) -> Result<audit::Configurations> {
+    let mut held = audit::Configurations::new(of.degree(), of.claim());
+    for group in of.groups() {
+        for boundaries in [group.triangles, group.infinite].into_iter().filter(|all| !all.is_empty()) {
+            held.extend(group.interior, boundaries)?;
+        }
+    }
+    Ok(held)
+}
+
 /// One degree more.
 fn step(knots: &Knots, lower: &Configurations, rule: &Rule, row: &mut Row) -> Result<Configurations> {
     row.runs += 1;
-    for link in config::links(knots, lower)?.iter() {
+    for link in configurations::links(knots, lower)?.iter() {
         row.links += 1;
         row.null += usize::from(link.is_null());
         row.infinite += usize::from(link.is_infinite());
         row.largest = row.largest.max(link.polygon.len());
     }
-    let upper = config::link_triangulate(knots, lower, rule)?;
-    check_facets(lower, &upper)?;
+    let upper = configurations::link_triangulate(knots, lower, rule)?;
+    audit::check_facets(&held(lower)?, &held(&upper)?)?;
     row.configurations += upper.len();
     Ok(upper)
 }

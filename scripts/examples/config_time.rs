@@ -10,8 +10,8 @@ mod files;
 use std::path::PathBuf;
 
 use files::{Paths, timed};
-use spmesh::config::{self, Knots, Rule};
-use spmesh::delaunay2::{Kernel, Triangulation};
+use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_geometry::delaunay2::{Kernel, Triangulation};
 
 const ROUNDS: usize = 3;
 
@@ -33,11 +33,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let copy = points.clone();
         let (result, seconds) = timed(|| {
             let knots = Knots::new(copy)?;
-            config::generate(&knots, config::delaunay(&knots)?, &Rule::Delaunay, degree)
+            configurations::generate(&knots, configurations::delaunay(&knots)?, &Rule::Delaunay, degree)
         });
         config_seconds = seconds.min(config_seconds);
         let all = result?;
-        bytes = all.iter().map(config::Configurations::bytes).sum();
+        bytes = all.iter().map(configurations::Configurations::bytes).sum();
         count = all[degree].len();
     }
     let micros = |seconds: f64| seconds * 1e6 / points.len() as f64;

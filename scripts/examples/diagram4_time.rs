@@ -11,8 +11,8 @@ use std::error::Error;
 use std::fs::File;
 
 use files::{read_tuples, timed};
-use spmesh::cells4::Cells4;
-use spmesh::diagram4::{Diagram, Route, Stats, diagram_by};
+use spmesh_geometry::diagram4::{Diagram, Route, Stats, diagram_by};
+use spmesh_model::cells4::Cells4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (diagram, stats) = result?;
     report(&diagram, &stats, seconds);
     if has("--audit") {
-        println!("{:?}", spmesh::audit::diagram::check(&diagram.points, &diagram.cells));
+        println!("{:?}", spmesh_audit::diagram::check(&diagram.points, &diagram.cells));
     }
     Ok(())
 }

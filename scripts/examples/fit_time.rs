@@ -4,8 +4,8 @@
 //! in a moved grid for about as many functions, and prints seconds of the configurations and the basis, of the normal equations,
 //! of the energy of a thin plate, and of the solution, with the greatest residual and the peak of memory.
 
-use spmesh::error::Result;
-use spmesh::fit::{
+use spmesh_core::error::Result;
+use spmesh_splines::fitting::{
     Cover, Equations, Normal, Observation, ObservationReader, Observations, summarise, thin_plate,
 };
 use std::num::NonZeroUsize;

@@ -7,11 +7,8 @@
 //!
 //! The same seed gives the same sets. Set `I` of a seed alone: `--set I`. A few large sets with large cavities: `--large`.
 
-#[path = "../../tests/kernel3/promises.rs"]
+#[path = "../../tests/geometry/kernel3/promises.rs"]
 mod promises;
-#[path = "../../tests/reference/mod.rs"]
-#[allow(dead_code, missing_docs)]
-mod reference;
 
 mod fuzzing;
 
@@ -21,11 +18,11 @@ use std::time::Instant;
 
 use clap::Parser;
 use fuzzing::{Fuzzing, Trial};
-use reference::clouds::{self, Family};
-use reference::sets::Random;
-use reference::space::{Point, Space, distinct};
-use spmesh::delaunay3::{Kernel, Tetrahedralization};
-use spmesh::order::{Curve, Sequence};
+use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_geometry::order::{Curve, Sequence};
+use spmesh_reference::clouds::{self, Family};
+use spmesh_reference::sets::Random;
+use spmesh_reference::space::{Point, Space, distinct};
 
 /// Fuzzes the 3D kernel.
 #[derive(Debug, Parser)]
@@ -80,7 +77,7 @@ impl Trial<3> for Meshes {
             let place =
                 |i: u32| kept.iter().position(|p| *p == points[first[i as usize]]).unwrap_or_default() as u32;
             let found = promises::tetrahedra(mesh).into_iter().map(|t| t.map(place));
-            if reference::tetrahedra::as_set(found) != Space::new(&kept).tetrahedra() {
+            if spmesh_reference::tetrahedra::as_set(found) != Space::new(&kept).tetrahedra() {
                 return Err("these are not the tetrahedra by definition".into());
             }
         }

@@ -7,18 +7,14 @@
 //!
 //! Set `I` of a seed alone: `--set I`. A set that fails is made as small as possible and written to a file.
 
-#[path = "../../tests/reference/sets.rs"]
-#[allow(dead_code, missing_docs)]
-mod sets;
-
 mod fuzzing;
 
 use clap::Parser;
 use fuzzing::{Fuzzing, Trial};
-use sets::Random;
-use spmesh::audit::diagram::check;
-use spmesh::cells4::Point4;
-use spmesh::diagram4::{Diagram, Route, diagram_by};
+use spmesh_audit::diagram::check;
+use spmesh_geometry::diagram4::{Diagram, Route, diagram_by};
+use spmesh_model::cells4::Point4;
+use spmesh_reference::sets::Random;
 
 /// Fuzzes the 4D engine.
 #[derive(Debug, Parser)]

@@ -13,7 +13,7 @@ use std::error::Error;
 use std::fs::File;
 
 use files::{read_tuples, timed};
-use spmesh::delaunay3::{Kernel, Stats, Tetrahedralization};
+use spmesh_geometry::delaunay3::{Kernel, Stats, Tetrahedralization};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();

@@ -9,7 +9,7 @@
 mod files;
 
 use files::{Paths, timed};
-use spmesh::delaunay2::{Kernel, Triangulation};
+use spmesh_geometry::delaunay2::{Kernel, Triangulation};
 
 const LEAF_POINTS: usize = 20_000;
 

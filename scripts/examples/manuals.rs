@@ -5,7 +5,7 @@ use std::path::Path;
 
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
-use spmesh::cli::{
+use spmesh_cli::{
     configgen, dd4, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize, spinfo, splinefit, spview,
     tess3,
 };

@@ -4,8 +4,8 @@
 //! least of three rounds: seconds for the basis; microseconds for each point of a million at random and along a curve, values and
 //! derivatives; nanoseconds for each pixel of a raster of 2000 x 2000.
 
-use spmesh::config::{self, Knots, Rule};
-use spmesh::spline::{Basis, Raster, Scratch};
+use spmesh_geometry::configurations::{self, Knots, Rule};
+use spmesh_splines::bases::{Basis, Raster, Scratch};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -20,7 +20,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => return Err("usage: spline_time uniform:N|clustered:N|grid:N [DEGREE]".into()),
     };
     let knots = Knots::new(read(source)?)?.clamped(degree - 1)?;
-    let below = config::generate(&knots, config::delaunay(&knots)?, &Rule::Delaunay, degree - 1)?;
+    let below =
+        configurations::generate(&knots, configurations::delaunay(&knots)?, &Rule::Delaunay, degree - 1)?;
     let (basis, seconds) = least(|| Basis::new(&knots, &below[degree - 1]));
     let basis = basis?;
     let mut unit = units(7);

@@ -6,8 +6,8 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::bounds::Point;
-use crate::cells::{CellCode, CellTree};
+use spmesh_model::bounds::Point;
+use spmesh_model::cells::{CellCode, CellTree};
 
 /// Disjoint, not adjacent intervals of codes. Memory: their number.
 #[derive(Debug, Default)]

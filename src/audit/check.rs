@@ -1,8 +1,8 @@
 //! What an audit checks, how often it did, and what it found.
 
-use crate::bounds::Point;
-use crate::error::{Error, ErrorKind};
-use crate::stream::Header;
+use spmesh_core::error::{Error, ErrorKind};
+use spmesh_model::bounds::Point;
+use spmesh_stream::Header;
 
 /// One kind of claim that an audit proves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -202,7 +202,7 @@ impl Violation {
 }
 
 /// A world coordinate without the noise that scale and offset leave in its last digits.
-pub(crate) fn shortest(world: f64) -> String {
+pub fn shortest(world: f64) -> String {
     let rounded = (world * 1e6).round() / 1e6;
     let is_noise = (rounded - world).abs() <= 2.0 * f64::EPSILON * world.abs();
     if is_noise { rounded } else { world }.to_string()

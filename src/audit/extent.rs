@@ -1,8 +1,8 @@
 //! Whether the bounding box of the header holds the points.
 
 use super::check::{Check, Ledger, Violation};
-use crate::bounds::{Bounds, Point};
-use crate::stream::Header;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::Header;
 
 /// The box that a header states and the box of the points so far.
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use super::totals::check_points;
 use super::triangles::{Corner, Fans, Standard, Triangles};
 use super::unused::Unused;
 use super::vertices::Vertex;
-use crate::stream::{Header, Patch, Totals};
+use spmesh_stream::{Header, Patch, Totals};
 
 /// State of the audit of a triangle mesh.
 pub(super) struct MeshAudit {

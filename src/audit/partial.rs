@@ -14,8 +14,8 @@ use super::corner::Corner;
 use super::facets::OpenFacets;
 use super::triangles::Standard;
 use super::vertices::Vertices;
-use crate::bounds::{Point, Region};
-use crate::stream::{Event, Header, Patch, Totals};
+use spmesh_model::bounds::{Point, Region};
+use spmesh_stream::{Event, Header, Patch, Totals};
 
 /// What can be proved of final simplices one by one, with the vertices that are live and the facets that are open.
 pub(super) trait FinalSimplices<const D: usize> {

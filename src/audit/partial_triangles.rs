@@ -5,7 +5,7 @@ use super::facets::OpenFacets;
 use super::partial::FinalSimplices;
 use super::triangles::{Corner, Fans, Standard, Triangles};
 use super::vertices::{Vertex, Vertices};
-use crate::stream::Patch;
+use spmesh_stream::Patch;
 
 impl FinalSimplices<2> for Triangles {
     const NAMES: [&'static str; 2] = ["triangle", "edge"];

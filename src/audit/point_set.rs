@@ -1,9 +1,9 @@
 //! Whether the vertices of a mesh are exactly the positions of given points.
 
 use super::check::{Check, Ledger, Violation};
-use crate::bounds::Point;
-use crate::error::{Error, Result};
-use crate::stream::Coordinates;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
 
 /// The distinct positions of points, in the plane or in space, and which of them a mesh has.
 ///

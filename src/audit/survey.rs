@@ -2,9 +2,9 @@
 
 use super::survey_configurations::ConfigurationSurvey;
 use super::survey4::Survey4;
-use crate::bounds::{Bounds, Point};
-use crate::error::Result;
-use crate::stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 
 /// Figures of a stream, gathered event by event. It verifies what the reader of the container has no memory
 /// for: that nothing finalized comes again.
@@ -64,7 +64,7 @@ impl Survey {
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news, or a
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news, or a
     /// vertex is used after its finalization.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {

@@ -1,7 +1,7 @@
 //! What a stream of four dimensions holds, in numbers.
 
-use crate::cells4::Point4;
-use crate::stream::Event;
+use spmesh_model::cells4::Point4;
+use spmesh_stream::Event;
 
 /// Figures of a stream of four dimensions, gathered event by event.
 #[derive(Debug, Default)]

@@ -1,7 +1,7 @@
 //! What a stream of configurations holds, in numbers.
 
-use crate::config::{FARAWAY, Standing};
-use crate::stream::ConfigurationBlock;
+use super::config::{Claim, FARAWAY};
+use spmesh_stream::ConfigurationBlock;
 
 /// Figures of the configurations of one degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct DegreeSurvey {
     /// The degree.
     pub degree: u32,
     /// What they claim to be.
-    pub standing: Standing,
+    pub claim: Claim,
     /// Interior sets.
     pub groups: u64,
     /// Configurations of three knots.
@@ -35,8 +35,8 @@ impl ConfigurationSurvey {
     /// Adds a block.
     pub(super) fn block(&mut self, block: &ConfigurationBlock) {
         if self.degrees.last().is_none_or(|last| last.degree != block.degree) {
-            let (degree, standing) = (block.degree, block.standing);
-            self.degrees.push(DegreeSurvey { degree, standing, groups: 0, finite: 0, infinite: 0 });
+            let (degree, claim) = (block.degree, block.claim);
+            self.degrees.push(DegreeSurvey { degree, claim, groups: 0, finite: 0, infinite: 0 });
             self.last = None;
         }
         let Some(survey) = self.degrees.last_mut() else { return };

@@ -1,7 +1,7 @@
 //! Whether END accounts for all points of the input.
 
 use super::check::{Check, Ledger, Violation};
-use crate::stream::Totals;
+use spmesh_stream::Totals;
 
 /// Proves that the vertices of a whole mesh and the points merged into them are all points.
 pub(super) fn check_points(vertices: u64, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {

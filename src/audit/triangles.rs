@@ -9,7 +9,7 @@ use super::exact::plane::{in_circle, in_raised_circle, orientation};
 use super::facets::{Meeting, OpenFacets};
 use super::vertices::{Vertex, Vertices};
 use super::winding::{Winding, corner_of};
-use crate::stream::Patch;
+use spmesh_stream::Patch;
 
 /// A vertex of a triangle.
 pub(super) type Corner = corner::Corner<2>;

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 
 use super::check::{Check, Ledger, Violation};
-use crate::bounds::Point;
-use crate::stream::Patch;
+use spmesh_model::bounds::Point;
+use spmesh_stream::Patch;
 
 /// A vertex with what is known of its star, the simplices that have it.
 #[derive(Debug, Clone, Copy)]

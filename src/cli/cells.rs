@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::parse_numbers;
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_io::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
 
 /// Which cells a raster has.
 #[derive(Debug, Clone, Args)]

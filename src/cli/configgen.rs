@@ -9,11 +9,12 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
-use crate::configgen::{self, Border, BoxName, Flips, Made, Options, Places, Purpose, RuleName, Sites};
-use crate::error::{Error, ErrorKind, Result};
-use crate::output::Output;
-use crate::source::{name_of, read_features, read_patches, read_values};
-use crate::system;
+use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, Purpose, RuleName, Sites};
+use spmesh_configgen::{read_features, read_patches};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::output::Output;
+use spmesh_core::system;
+use spmesh_io::source::{name_of, read_values};
 
 const TOOL: &str = "configgen";
 
@@ -148,7 +149,7 @@ enum BorderFlag {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`configgen::read_sites`], [`configgen::make`] and the writers.
+/// As [`spmesh_configgen::read_sites`], [`spmesh_configgen::make`] and the writers.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
@@ -166,7 +167,7 @@ impl Flags {
         drop(progress);
         sites.notices.iter().for_each(|text| self.notice(text));
         let progress = Progress::waiting(&self.common, "configurations");
-        let made = configgen::make(sites, &options)?;
+        let made = spmesh_configgen::make(sites, &options)?;
         let begun = Instant::now();
         self.write(&made, &mut output)?;
         let output_bytes = output.bytes_written();
@@ -225,13 +226,13 @@ impl Flags {
     fn sites(&self, done: impl FnMut(u64)) -> Result<Sites> {
         match (&self.inputs[..], &self.patches) {
             ([], Some(patches)) => Ok(Sites::none(name_of(patches))),
-            _ => configgen::read_sites(&self.inputs(), done),
+            _ => spmesh_configgen::read_sites(&self.inputs(), done),
         }
     }
 
     fn write(&self, made: &Made, output: &mut Output) -> Result<()> {
         if self.centroids {
-            return configgen::write_centroids(&made.knots, &made.frame, &made.centroids()?, output);
+            return spmesh_configgen::write_centroids(&made.knots, &made.frame, &made.centroids()?, output);
         }
         made.write(output)
     }

@@ -10,11 +10,11 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, progress::Progress};
-use crate::dd4::{self, Options, Quantum};
-use crate::diagram4::Route;
-use crate::error::{Error, ErrorKind, Result};
-use crate::output::Output;
-use crate::system;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::output::Output;
+use spmesh_core::system;
+use spmesh_dd4::{Options, Quantum};
+use spmesh_geometry::diagram4::Route;
 
 pub use product::{EXAMPLES as PRODUCT_EXAMPLES, ProductFlags};
 pub use source::{EXAMPLES as SOURCE_EXAMPLES, SourceFlags};
@@ -95,7 +95,7 @@ impl From<RouteFlag> for Route {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`SourceFlags::read`], [`dd4::make`] and [`dd4::Product::write`].
+/// As [`SourceFlags::read`], [`spmesh_dd4::make`] and [`spmesh_dd4::Product::write`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     Ok(flags.run()?)
 }
@@ -121,7 +121,7 @@ impl Flags {
             self.notice(&format!("{}: {warning}", points.name));
         }
         let progress = Progress::waiting(&self.common, "triangulating");
-        let (diagram, mut report) = dd4::make(points, &product, &options)?;
+        let (diagram, mut report) = spmesh_dd4::make(points, &product, &options)?;
         let begun = Instant::now();
         let notices = product.write(&diagram, &mut output)?;
         report.output_bytes = output.bytes_written();

@@ -10,12 +10,12 @@ use clap::Args;
 
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, open_input, threads};
-use crate::bounds::Region;
-use crate::error::Error;
-use crate::output::Output;
-use crate::reduce::{Duplicates, Options, Part, Stats};
-use crate::stream::StreamReader;
 use report::Report;
+use spmesh_core::error::Error;
+use spmesh_core::output::Output;
+use spmesh_model::bounds::Region;
+use spmesh_reduce::{Duplicates, Options, Part, Stats};
+use spmesh_stream::StreamReader;
 
 /// The flags of both.
 #[derive(Debug, Args)]

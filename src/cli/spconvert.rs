@@ -7,9 +7,9 @@ use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::{Common, notice, open_input, progress::Progress};
-use crate::convert::{Format, Options, convert};
-use crate::error::Error;
-use crate::output::Output;
+use spmesh_convert::{Format, Options, convert};
+use spmesh_core::error::Error;
+use spmesh_core::output::Output;
 
 const EXAMPLES: &str = "\
 Formats:

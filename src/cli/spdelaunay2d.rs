@@ -3,7 +3,7 @@
 use clap::Parser;
 
 use super::reduction::{Shared, Tool};
-use crate::reduce::{self, Duplicates};
+use spmesh_reduce::Duplicates;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -64,14 +64,14 @@ const TOOL: Tool<2> = Tool {
     verb: "triangulating",
     simplices: "triangles",
     reasons: ["fewer than three different points", "all points on a line"],
-    reduce: |reader, output, options, done| reduce::triangulate(reader, output, options, done),
-    merge: |readers, output, part, done| reduce::merge_triangles(readers, output, part, done),
+    reduce: |reader, output, options, done| spmesh_reduce::triangulate(reader, output, options, done),
+    merge: |readers, output, part, done| spmesh_reduce::merge_triangles(readers, output, part, done),
 };
 
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`reduce::triangulate`] and [`reduce::merge_triangles`], and if an input or the output cannot be opened.
+/// As [`spmesh_reduce::triangulate`] and [`spmesh_reduce::merge_triangles`], and if an input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     TOOL.run(&flags.shared, flags.duplicates.into())
 }

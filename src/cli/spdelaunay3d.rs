@@ -3,8 +3,8 @@
 use clap::Parser;
 
 use super::reduction::{Shared, Tool};
-use crate::reduce::{self, Duplicates};
-use crate::system;
+use spmesh_core::system;
+use spmesh_reduce::Duplicates;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -60,14 +60,14 @@ const TOOL: Tool<3> = Tool {
     verb: "tetrahedralizing",
     simplices: "tetrahedra",
     reasons: ["fewer than four different points", "all points in a plane"],
-    reduce: |reader, output, options, done| reduce::tetrahedralize(reader, output, options, done),
-    merge: |readers, output, part, done| reduce::merge_tetrahedra(readers, output, part, done),
+    reduce: |reader, output, options, done| spmesh_reduce::tetrahedralize(reader, output, options, done),
+    merge: |readers, output, part, done| spmesh_reduce::merge_tetrahedra(readers, output, part, done),
 };
 
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`reduce::tetrahedralize`] and [`reduce::merge_tetrahedra`], and if an input or the output cannot be opened.
+/// As [`spmesh_reduce::tetrahedralize`] and [`spmesh_reduce::merge_tetrahedra`], and if an input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
     TOOL.run(&flags.shared, flags.duplicates.into())

@@ -12,11 +12,11 @@ use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
-use crate::dem::{self, Attribute, Options, Stats};
-use crate::error::{Error, ErrorKind};
-use crate::raster::{Light, RasterFormat};
-use crate::system;
 use contours::ContourFlags;
+use spmesh_core::error::{Error, ErrorKind};
+use spmesh_core::system;
+use spmesh_io::raster::{Light, RasterFormat};
+use spmesh_terrain::dem::{self, Attribute, Options, Stats};
 
 const TOOL: &str = "spdem";
 
@@ -141,7 +141,7 @@ enum FormatFlag {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`dem::rasterize`] or [`crate::contours::contour`], and if the input or the output cannot be opened.
+/// As [`dem::rasterize`] or [`spmesh_terrain::contours::contour`], and if the input or the output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
     if let Some(options) = flags.contours.options(flags.kill()?)? {

@@ -8,11 +8,11 @@ use clap::Parser;
 
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory};
-use crate::bounds::Bounds;
-use crate::error::Error;
-use crate::finalize::{self, Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
-use crate::output::Output;
-use crate::source::{Input, RawType, SourceOptions};
+use spmesh_core::error::Error;
+use spmesh_core::output::Output;
+use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
+use spmesh_io::source::{Input, RawType, SourceOptions};
+use spmesh_model::bounds::Bounds;
 
 const TOOL: &str = "spfinalize";
 
@@ -154,7 +154,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let mut output = Output::create(&flags.output, true)?;
     let mut watch = Watch { common: &flags.common, progress: None };
-    let stats = finalize::run(&input, &options, &mut watch, &mut output)?;
+    let stats = spmesh_finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
     if stats.points == 0 {

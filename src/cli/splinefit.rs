@@ -12,8 +12,8 @@ use std::path::Path;
 use clap::{Args, Parser, Subcommand};
 
 use super::{Common, notice, threads};
-use crate::error::{Error, ErrorKind, Result};
-use crate::system;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::system;
 
 const TOOL: &str = "splinefit";
 
@@ -81,7 +81,7 @@ enum Action {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`crate::splinefit`].
+/// As [`spmesh_splinefit`].
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     Ok(match &flags.action {

@@ -13,14 +13,14 @@ use clap::{Parser, ValueEnum};
 use super::cells::window_of;
 use super::progress::Progress;
 use super::{Common, notice, open_input, parse_numbers};
-use crate::error::{Error, ErrorKind, Result};
-use crate::raster::Light;
-use crate::source::name_of;
-use crate::stream::{Kind, StreamReader};
-use crate::system;
-use crate::view::{self, Fill, Form, Moments, Options, Picture, Survey, When};
 use moment::{Every, Moment};
 use outputs::{Format, Outputs};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::system;
+use spmesh_io::raster::Light;
+use spmesh_io::source::name_of;
+use spmesh_stream::{Kind, StreamReader};
+use spmesh_view::{Fill, Form, Moments, Options, Picture, Survey, When};
 use tee::Tee;
 
 const TOOL: &str = "spview";
@@ -171,7 +171,7 @@ enum WhenFlag {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`view::draw`], and if the input or an output cannot be opened.
+/// As [`spmesh_view::draw`], and if the input or an output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let mut options = flags.options()?;
@@ -185,7 +185,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Moments { at: flags.moment(&reader, survey)?, every: flags.snapshot.map(|Every(count)| count) };
     let mut progress = Progress::new(&flags.common, "drawing", reader.header().points);
     let mut take = |picture: &Picture| outputs.put(picture);
-    let drawn = view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
+    let drawn = spmesh_view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
     drop(progress);
     drawn?;
     drop(reader);
@@ -258,7 +258,7 @@ impl Flags {
         let name = name_of(&self.input);
         let file = File::open(&self.input).map_err(|error| Error::io("opening", error).of_input(&name))?;
         let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, file), name)?;
-        view::survey(&mut reader).map(Some)
+        spmesh_view::survey(&mut reader).map(Some)
     }
 
     /// The number of triangles or points that `--at` means.

@@ -4,6 +4,8 @@ mod method;
 mod report;
 mod selection;
 
+pub use spmesh_tess3::heap::CountingHeap;
+
 use std::ffi::OsStr;
 use std::io::{BufRead, BufReader};
 use std::os::unix::ffi::OsStrExt;
@@ -13,13 +15,13 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
-use crate::error::{Error, ErrorKind, Result};
-use crate::output::Output;
-use crate::source::structure::{Format, Structure, read_structure};
-use crate::tess3::sweep::{News, Outcome, Sweep, sweep};
-use crate::tess3::{self, Options, Product, Radius, Stats};
 use method::MethodFlags;
 use selection::SelectionFlags;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::output::Output;
+use spmesh_io::source::structure::{Format, Structure, read_structure};
+use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
+use spmesh_tess3::{Options, Product, Radius, Stats};
 
 const SUMMARY_NAME: &str = "summary.tsv";
 
@@ -153,7 +155,7 @@ impl From<FormatFlag> for Format {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`tess3::run`] and [`sweep`]; and if files of a sweep failed.
+/// As [`spmesh_tess3::run`] and [`sweep`]; and if files of a sweep failed.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
     let stats = match &flags.out_dir {
@@ -188,7 +190,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
     let is_binary = options.product == Product::Mesh;
-    let reports = tess3::run(structure, &options, &mut |_| Output::create(&flags.output, is_binary))?;
+    let reports = spmesh_tess3::run(structure, &options, &mut |_| Output::create(&flags.output, is_binary))?;
     let mut stats = Stats::default();
     for report in &reports {
         report::degeneracy(report, reports.len()).into_iter().for_each(|text| flags.notice(&text));

@@ -4,9 +4,9 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::payload::whole_records;
 use super::rules4::check_cell;
-use crate::cells4::{Cell4, Cells4};
-use crate::error::{Error, Result};
-use crate::limits::CELL_WORDS_MAX;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CELL_WORDS_MAX;
+use spmesh_model::cells4::{Cell4, Cells4};
 
 /// Marks an infinite cell in the word that counts its vertices.
 pub(super) const INFINITE: u32 = 1 << 31;

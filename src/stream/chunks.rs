@@ -1,8 +1,8 @@
 //! The promise of a chunked points stream: the points between two tags lie in one cell of the next tag.
 
-use crate::bounds::Bounds;
-use crate::cells::{CellCode, CellTree};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Bounds;
+use spmesh_model::cells::{CellCode, CellTree};
 
 /// Checks the promise with the bounding box of the points since the last tag.
 #[derive(Debug)]

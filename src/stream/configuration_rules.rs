@@ -4,13 +4,13 @@ use std::cmp::Ordering;
 
 use super::configurations::{ConfigurationBlock, check_degree};
 use super::kind::Kind;
-use crate::config::{FARAWAY, Standing};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::configurations::{Claim, FARAWAY};
 
 /// What later blocks are compared with.
 #[derive(Debug, Default)]
 pub(super) struct ConfigurationRules {
-    degree: Option<(u32, Standing)>,
+    degree: Option<(u32, Claim)>,
     /// Whether there may be one degree only.
     is_alone: bool,
     /// The last group of the degree.
@@ -31,7 +31,7 @@ impl ConfigurationRules {
 
     /// The rules of the next block; `knots` came before.
     pub(super) fn block(&mut self, block: &ConfigurationBlock, knots: u64) -> Result<()> {
-        self.degree(block.degree, block.standing)?;
+        self.degree(block.degree, block.claim)?;
         for (number, (interior, boundaries)) in block.groups().enumerate() {
             self.group(interior, number == 0, knots)?;
             if boundaries.is_empty() {
@@ -42,7 +42,7 @@ impl ConfigurationRules {
         Ok(())
     }
 
-    fn degree(&mut self, degree: u32, standing: Standing) -> Result<()> {
+    fn degree(&mut self, degree: u32, claim: Claim) -> Result<()> {
         check_degree(degree)?;
         match self.degree {
             Some((last, _)) if degree < last => {
@@ -50,7 +50,7 @@ impl ConfigurationRules {
                     "configurations of degree {degree} after those of {last}"
                 )));
             }
-            Some((last, known)) if degree == last && standing != known => {
+            Some((last, known)) if degree == last && claim != known => {
                 return Err(Error::malformed(format!(
                     "the configurations of degree {degree} change their standing"
                 )));
@@ -63,7 +63,7 @@ impl ConfigurationRules {
             }
             _ => self.group = None,
         }
-        self.degree = Some((degree, standing));
+        self.degree = Some((degree, claim));
         Ok(())
     }
 

@@ -2,25 +2,25 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
-use crate::config::Standing;
-use crate::error::{Error, Result};
-use crate::limits::CONFIGURATION_DEGREE_MAX;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CONFIGURATION_DEGREE_MAX;
+use spmesh_model::configurations::Claim;
 
-/// Length of degree, standing and number of groups, in bytes.
+/// Length of degree, claim and number of groups, in bytes.
 const FIXED_LEN: usize = 12;
 
-/// Standings by their codes, with their names in text twins.
-const STANDINGS: [(Standing, &str); 3] =
-    [(Standing::Any, "any"), (Standing::Delaunay, "delaunay"), (Standing::Lifted, "lifted")];
+/// Claims by their codes, with their names in text twins.
+const CLAIMS: [(Claim, &str); 3] =
+    [(Claim::Any, "any"), (Claim::Delaunay, "delaunay"), (Claim::Lifted, "lifted")];
 
-/// The name of a standing in text twins.
-pub(crate) fn standing_name(standing: Standing) -> &'static str {
-    STANDINGS.iter().find(|(known, _)| *known == standing).expect("every standing has its name").1
+/// The name of a claim in text twins.
+pub fn claim_name(claim: Claim) -> &'static str {
+    CLAIMS.iter().find(|(known, _)| *known == claim).expect("every standing has its name").1
 }
 
-/// The standing of this name, if there is one.
-pub(crate) fn standing_from_name(name: &[u8]) -> Option<Standing> {
-    STANDINGS.iter().find(|(_, known)| known.as_bytes() == name).map(|(standing, _)| *standing)
+/// The claim of this name, if there is one.
+pub fn claim_from_name(name: &[u8]) -> Option<Claim> {
+    CLAIMS.iter().find(|(_, known)| known.as_bytes() == name).map(|(claim, _)| *claim)
 }
 
 /// Configurations of one degree that follow each other, in groups of one interior set each.
@@ -31,22 +31,22 @@ pub struct ConfigurationBlock {
     /// The size of interior sets.
     pub degree: u32,
     /// What the degree claims to be.
-    pub standing: Standing,
+    pub claim: Claim,
     /// Interior sets, one after the other, each sorted.
     pub interiors: Vec<u32>,
     /// Number of configurations of each group.
     pub counts: Vec<u32>,
-    /// Boundaries, group by group; [`crate::config::FARAWAY`] is in the last place of infinite ones.
+    /// Boundaries, group by group; [`spmesh_model::configurations::FARAWAY`] is in the last place of infinite ones.
     pub boundaries: Vec<[u32; 3]>,
 }
 
 impl ConfigurationBlock {
     /// No configurations of this degree.
     #[must_use]
-    pub fn new(degree: u32, standing: Standing) -> Self {
+    pub fn new(degree: u32, claim: Claim) -> Self {
         ConfigurationBlock {
             degree,
-            standing,
+            claim,
             interiors: Vec::new(),
             counts: Vec::new(),
             boundaries: Vec::new(),
@@ -92,7 +92,7 @@ impl ConfigurationBlock {
     }
 
     /// Words of the payload.
-    pub(crate) fn words(&self) -> usize {
+    pub fn words(&self) -> usize {
         3 + self.interiors.len() + self.counts.len() + 3 * self.boundaries.len()
     }
 
@@ -105,9 +105,9 @@ impl ConfigurationBlock {
 
     /// Appends the payload.
     pub(super) fn encode(&self, payload: &mut Vec<u8>) {
-        let standing = STANDINGS.iter().position(|(standing, _)| *standing == self.standing);
+        let claim = CLAIMS.iter().position(|(claim, _)| *claim == self.claim);
         let head =
-            [self.degree, standing.expect("every standing has its code") as u32, self.counts.len() as u32];
+            [self.degree, claim.expect("every standing has its code") as u32, self.counts.len() as u32];
         let words =
             head.iter().chain(&self.interiors).chain(&self.counts).chain(self.boundaries.as_flattened());
         words.for_each(|word| payload.extend_from_slice(&word.to_le_bytes()));
@@ -121,12 +121,10 @@ impl ConfigurationBlock {
                 payload.len()
             )));
         };
-        let [degree, standing, groups] = [0, 4, 8].map(|at| LE::read_u32(&head[at..]));
+        let [degree, claim, groups] = [0, 4, 8].map(|at| LE::read_u32(&head[at..]));
         check_degree(degree)?;
-        let Some(&(standing, _)) = STANDINGS.get(standing as usize) else {
-            return Err(Error::malformed(format!(
-                "configurations of standing {standing}, expected 0, 1 or 2"
-            )));
+        let Some(&(claim, _)) = CLAIMS.get(claim as usize) else {
+            return Err(Error::malformed(format!("configurations of standing {claim}, expected 0, 1 or 2")));
         };
         let unfit =
             || Error::malformed("the counts of the configurations do not add up to the block's length");
@@ -143,12 +141,12 @@ impl ConfigurationBlock {
         }
         let triple = |bytes: &[u8]| [0, 4, 8].map(|at| LE::read_u32(&bytes[at..]));
         let boundaries = boundaries.chunks_exact(12).map(triple).collect();
-        Ok(ConfigurationBlock { degree, standing, interiors: numbers(interiors), counts, boundaries })
+        Ok(ConfigurationBlock { degree, claim, interiors: numbers(interiors), counts, boundaries })
     }
 }
 
 /// That a degree is one that streams may have.
-pub(crate) fn check_degree(degree: u32) -> Result<()> {
+pub fn check_degree(degree: u32) -> Result<()> {
     if degree <= CONFIGURATION_DEGREE_MAX {
         return Ok(());
     }

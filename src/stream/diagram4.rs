@@ -5,8 +5,8 @@ use std::io::Read;
 use super::event::Event;
 use super::kind::Kind;
 use super::reader::StreamReader;
-use crate::cells4::{Cell4, Cells4, Point4};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::cells4::{Cell4, Cells4, Point4};
 
 /// Points of four dimensions and the cells between them, as a stream holds them.
 #[derive(Debug, Clone, Default)]
@@ -46,7 +46,7 @@ impl Diagram4 {
     }
 
     /// Takes what a block holds; `words` counts those of cells.
-    pub(crate) fn event(&mut self, event: &Event, words: &mut u64) -> Result<()> {
+    pub fn event(&mut self, event: &Event, words: &mut u64) -> Result<()> {
         match event {
             Event::Points4(block) => {
                 self.points.extend_from_slice(&block.points);

@@ -2,11 +2,11 @@
 
 use super::configurations::ConfigurationBlock;
 use super::points4::Points4;
-use crate::bounds::Point;
-use crate::cells::CellCode;
-use crate::cells4::Cells4;
-use crate::config::special::Function;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_model::cells::CellCode;
+use spmesh_model::cells4::Cells4;
+use spmesh_model::functions::Function;
 
 /// One block of a stream, decoded and checked.
 #[derive(Debug, Clone, PartialEq)]

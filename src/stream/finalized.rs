@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::bounds::{Bounds, Point};
-use crate::cells::{CellCode, CellTree};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::cells::{CellCode, CellTree};
 
 /// The part of a finalization tree that is final.
 ///
@@ -70,7 +70,7 @@ impl FinalizedCells {
     /// Makes `cell` final. Parts of it may be final already, but not all of it.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final already:
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final already:
     /// itself, an ancestor, or all of its parts.
     pub fn finalize(&mut self, cell: CellCode) -> Result<()> {
         if !self.tree.is_valid(cell) {
@@ -128,7 +128,7 @@ impl FinalizedCells {
     /// Checks that a point may still come.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's cube.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's cube.
     #[inline]
     pub fn check_point(&mut self, point: Point) -> Result<()> {
         if self.open.contains(point, self.tree.dims()) { Ok(()) } else { self.look_up(point) }
@@ -146,7 +146,7 @@ impl FinalizedCells {
     ///
     /// # Errors
     /// As [`FinalizedCells::check_point`], for the first point that may not.
-    pub(crate) fn check_points_in(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
+    pub fn check_points_in(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
         let Some(&first) = points.first() else { return Ok(()) };
         self.check_point(first)?;
         let dims = self.tree.dims();

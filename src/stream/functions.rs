@@ -3,8 +3,8 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::event::Totals;
-use crate::config::special::{Function, FunctionKind};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::functions::{Function, FunctionKind};
 
 /// Length of the least function in bytes: kind, number of terms, one knot, one term.
 const LEAST_LEN: usize = 4 + 4 + 4 + TERM_LEN;
@@ -15,19 +15,19 @@ const TERM_LEN: usize = 16;
 const KINDS: [(&str, usize); 5] = [("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4)];
 
 /// The name of a kind in text twins, and its knots.
-pub(crate) fn kind_parts(kind: &FunctionKind) -> (&'static str, &[u32]) {
+pub fn kind_parts(kind: &FunctionKind) -> (&'static str, &[u32]) {
     let (code, knots) = parts(kind);
     (KINDS[code].0, knots)
 }
 
 /// The code of the kind with this name, if there is one, and the number of its knots.
-pub(crate) fn kind_of_name(name: &[u8]) -> Option<(usize, usize)> {
+pub fn kind_of_name(name: &[u8]) -> Option<(usize, usize)> {
     let code = KINDS.iter().position(|(known, _)| known.as_bytes() == name)?;
     Some((code, KINDS[code].1))
 }
 
 /// The kind with a code and as many knots as it has.
-pub(crate) fn kind_of(code: usize, knots: &[u32]) -> Option<FunctionKind> {
+pub fn kind_of(code: usize, knots: &[u32]) -> Option<FunctionKind> {
     Some(match (code, knots) {
         (0, &[p, q]) => FunctionKind::Edge([p, q]),
         (1, &[p]) => FunctionKind::Vertex(p),

@@ -6,10 +6,10 @@ use std::ops::Range;
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::kind::Kind;
-use crate::bounds::{Bounds, Point, Region};
-use crate::cells::CellTree;
-use crate::error::{Error, Result};
-use crate::limits::HEADER_BODY_MAX;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::HEADER_BODY_MAX;
+use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::cells::CellTree;
 
 /// First bytes of every stream. The first is not ASCII, and the line ends show damage by text-mode transfer.
 pub(super) const MAGIC: [u8; 8] = *b"\x89SPM\r\n\x1a\n";
@@ -165,7 +165,7 @@ impl Header {
     /// The header as bytes, checksum included.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Usage`] if it breaks a rule of the format or is too long.
+    /// [`spmesh_core::error::ErrorKind::Usage`] if it breaks a rule of the format or is too long.
     pub(super) fn encode(&self) -> Result<Vec<u8>> {
         self.check().map_err(|reason| Error::usage(format!("cannot write the header: {reason}")))?;
         let (crs_code, crs) = encode_crs(&self.crs);
@@ -280,7 +280,7 @@ impl Header {
     }
 
     /// The rules that hold between the fields, for writer and reader alike.
-    pub(crate) fn check(&self) -> std::result::Result<(), String> {
+    pub fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
         }

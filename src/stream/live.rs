@@ -3,8 +3,8 @@
 use foldhash::{HashMap, HashMapExt};
 
 use super::event::Patch;
-use crate::bounds::Point;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
 
 /// Vertices between their patch and their finalization, with a value `T` that the consumer keeps for each.
 ///
@@ -27,7 +27,7 @@ impl<T: Copy> LiveVertices<T> {
     /// then forgets the vertices that the patch finalizes.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
     pub fn enter(&mut self, patch: &Patch, mut value_of: impl FnMut(u64, Point) -> T) -> Result<&[(u64, T)]> {
         self.local.clear();
         for (&point, id) in patch.new.iter().zip(patch.first_id..) {
@@ -54,7 +54,7 @@ impl<T: Copy> LiveVertices<T> {
     /// The value of a live vertex that a residual point names, and forgets the vertex: no patch follows.
     ///
     /// # Errors
-    /// [`crate::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named before.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named before.
     pub fn retire(&mut self, id: u64) -> Result<T> {
         self.live
             .remove(&id)

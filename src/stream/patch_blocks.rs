@@ -5,19 +5,21 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::header::{Coordinates, Header};
 use super::payload::PATCH_FIXED_LEN;
-use crate::bounds::Point;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
 
 /// How points and simplices are encoded: what [`PatchBlocks`] needs of the header of a mesh.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PointCode {
+pub struct PointCode {
     coordinates: Coordinates,
     per_point: usize,
     per_simplex: usize,
 }
 
 impl PointCode {
-    pub(crate) fn of(header: &Header) -> Self {
+    /// As the header says.
+    #[must_use]
+    pub fn of(header: &Header) -> Self {
         PointCode {
             coordinates: header.coordinates,
             per_point: header.coordinates_per_point(),
@@ -32,7 +34,7 @@ impl PointCode {
 ///
 /// Buffers are kept by [`PatchBlocks::clear`]: no patch is allocated.
 #[derive(Debug, Default)]
-pub(crate) struct PatchBlocks {
+pub struct PatchBlocks {
     /// Frame and payload of each patch, but for its finalized vertices. Longer than `used` after a use.
     bytes: Vec<u8>,
     used: usize,
@@ -56,19 +58,20 @@ struct Place {
 
 impl PatchBlocks {
     /// Forgets the patches.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.used = 0;
         self.finalized.clear();
         self.patches.clear();
     }
 
     /// Bytes that the patches have room for, but for their finalized vertices.
-    pub(crate) fn capacity(&self) -> usize {
+    pub fn capacity(&self) -> usize {
         self.bytes.capacity()
     }
 
     /// Number of patches.
-    pub(crate) fn len(&self) -> usize {
+    #[must_use]
+    pub fn count(&self) -> usize {
         self.patches.len()
     }
 
@@ -76,7 +79,7 @@ impl PatchBlocks {
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding.
-    pub(crate) fn push(
+    pub fn push(
         &mut self,
         code: PointCode,
         new: impl ExactSizeIterator<Item = Point>,
@@ -109,7 +112,7 @@ impl PatchBlocks {
 
     /// Says which local vertices patch number `patch` finalizes, increasing. To be called for one patch after the
     /// other, when all are there.
-    pub(crate) fn finalize(&mut self, patch: usize, locals: impl Iterator<Item = u32>) {
+    pub fn finalize(&mut self, patch: usize, locals: impl Iterator<Item = u32>) {
         let before = self.finalized.len();
         locals.for_each(|local| self.finalized.extend_from_slice(&local.to_le_bytes()));
         let place = &mut self.patches[patch];
@@ -197,7 +200,7 @@ fn encode<const WIDTH: usize, const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Event, Kind, Patch, StreamReader, StreamWriter};
+    use crate::{Event, Kind, Patch, StreamReader, StreamWriter};
 
     #[test]
     fn tetrahedra_that_are_encoded_ahead_are_those_that_are_read() {

@@ -4,9 +4,9 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
-use crate::bounds::{Bounds, Point};
-use crate::cells::CellCode;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::cells::CellCode;
 
 /// Id in a residual record that says: not yet a vertex.
 const NO_VERTEX: u64 = u64::MAX;
@@ -184,7 +184,7 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
 }
 
 /// Appends points that this process encoded with [`super::encode_points`]: nothing is checked.
-pub(crate) fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) {
+pub fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) {
     let axes = header.coordinates_per_point();
     let records = bytes.chunks_exact(header.point_len());
     let decode = |record: &[u8], width: usize, value: fn(&[u8]) -> f64| {
@@ -208,7 +208,7 @@ fn check_point(header: &Header, point: Point) -> Result<()> {
 }
 
 /// That a point lies where the header says that all points lie.
-pub(crate) fn check_place(header: &Header, point: Point) -> Result<()> {
+pub fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
         "the header's bounding box"
     } else if header.tree.is_some_and(|tree| !tree.contains(point)) {

@@ -4,8 +4,8 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::header::Header;
 use super::payload::whole_records;
-use crate::cells4::Point4;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::cells4::Point4;
 
 /// Points of four dimensions, each with a value, or none with one.
 #[derive(Debug, Clone, Default)]
@@ -49,7 +49,7 @@ impl Points4 {
 }
 
 /// That a value is finite, or the one NaN that says that it is not known.
-pub(crate) fn check_value(value: f64) -> Result<()> {
+pub fn check_value(value: f64) -> Result<()> {
     if value.is_finite() || value.to_bits() == f64::NAN.to_bits() {
         return Ok(());
     }

@@ -15,13 +15,13 @@ use super::kind::Kind;
 use super::payload;
 use super::points4::{self, Points4};
 use super::tally::Tally;
-use crate::bounds::{Bounds, Point};
-use crate::error::{Error, ErrorKind, Result};
-use crate::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
+use spmesh_model::bounds::{Bounds, Point};
 
 /// Reads one stream.
 ///
-/// Every error is [`crate::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
+/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
 /// Memory: one block, and its decoded event; of a cell of four dimensions that goes on in later blocks, what of it has
 /// arrived.
 pub struct StreamReader<R: Read> {

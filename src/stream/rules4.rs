@@ -3,8 +3,8 @@
 use super::event::Totals;
 use super::kind::Kind;
 use super::points4::Points4;
-use crate::cells4::{Cell4, Cells4, Point4};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::cells4::{Cell4, Cells4, Point4};
 
 /// What later blocks are compared with. Of a stream of another kind nothing is checked.
 #[derive(Debug)]

@@ -7,12 +7,12 @@ use super::functions::{self, FunctionRules};
 use super::header::Header;
 use super::kind::Kind;
 use super::rules4::Rules4;
-use crate::bounds::Bounds;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Bounds;
 
 /// What was read so far of a stream, in whatever form it is written, with the rules that span its events.
 #[derive(Debug)]
-pub(crate) struct Tally {
+pub struct Tally {
     totals: Totals,
     labels: u64,
     finalized: u64,
@@ -27,7 +27,9 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    pub(crate) fn new(header: &Header) -> Self {
+    /// Nothing counted yet of a stream with this header.
+    #[must_use]
+    pub fn new(header: &Header) -> Self {
         let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
         let per_simplex = header.kind.vertices_per_simplex();
         let totals = Totals::default();
@@ -47,7 +49,7 @@ impl Tally {
     }
 
     /// What was counted. A mesh has no count of points before its end.
-    pub(crate) fn totals(&self) -> &Totals {
+    pub fn totals(&self) -> &Totals {
         &self.totals
     }
 
@@ -56,7 +58,7 @@ impl Tally {
     /// # Errors
     /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or what is of
     /// four dimensions, configurations, or functions break a rule.
-    pub(crate) fn count(&mut self, event: &Event) -> Result<()> {
+    pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
                 let bounds = self.chunks.as_ref().and_then(|_| Bounds::of_points(points));
@@ -129,7 +131,7 @@ impl Tally {
     ///
     /// # Errors
     /// If they are not, if vertices are neither final nor in the residual, or if some have a label and others none.
-    pub(crate) fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
+    pub fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         let mut counted = self.totals;
         if self.has_vertices {
             counted.merged = stated.merged;

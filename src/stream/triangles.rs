@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::{Header, Patch, StreamWriter};
-use crate::bounds::Point;
-use crate::error::Result;
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
 
 /// Triangles per patch. With three vertices of its own each, a triangle takes at most 3 * (4 + 24 + 4) bytes, so a patch
 /// stays below the maximum of a block.

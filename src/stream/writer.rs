@@ -14,10 +14,10 @@ use super::header::{Coordinates, Header};
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
-use crate::bounds::Point;
-use crate::cells::CellCode;
-use crate::error::{Error, Result};
-use crate::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
+use spmesh_model::bounds::Point;
+use spmesh_model::cells::CellCode;
 
 /// Payload from which a block of points is closed, in bytes: far below the maximum, so that a consumer can
 /// start early, and large enough that the frame does not count.
@@ -104,7 +104,7 @@ impl<W: Write> StreamWriter<W> {
     ///
     /// # Errors
     /// If writing fails.
-    pub(crate) fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
+    pub fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
         let point_len = self.header.point_len();
         debug_assert!(bytes.len().is_multiple_of(point_len));
         let mut rest = bytes;
@@ -173,13 +173,13 @@ impl<W: Write> StreamWriter<W> {
     ///
     /// # Errors
     /// If a patch is longer than a block, or writing fails.
-    pub(crate) fn patches(
+    pub fn patches(
         &mut self,
         blocks: &mut PatchBlocks,
         id_of: impl Fn(u64) -> u64,
         mut count: impl FnMut(u64, u64),
     ) -> Result<()> {
-        for number in 0..blocks.len() {
+        for number in 0..blocks.count() {
             self.start_block(Tag::Patch);
             let patch = blocks.complete(number, self.totals.vertices, self.sequence, &id_of);
             check_len(patch.payload_len())?;
@@ -328,7 +328,7 @@ fn write_error(cause: std::io::Error) -> Error {
 /// Appends the stored form of `point`.
 ///
 /// # Errors
-/// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
 fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()> {
     for &value in &point[..header.coordinates_per_point()] {
         if !header.coordinates.can_store(value) {
@@ -345,8 +345,8 @@ fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()
 /// Appends the stored form of all `points`, as `encode_point` does it for one.
 ///
 /// # Errors
-/// [`crate::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
-pub(crate) fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
+/// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
+pub fn encode_points(header: &Header, points: &[Point], bytes: &mut Vec<u8>) -> Result<()> {
     let all_fit = match (header.coordinates, header.coordinates_per_point()) {
         (Coordinates::I32 { .. }, 2) => append::<2, 4>(points, bytes, i32_bytes),
         (Coordinates::I32 { .. }, _) => append::<3, 4>(points, bytes, i32_bytes),

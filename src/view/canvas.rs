@@ -3,8 +3,8 @@
 use resvg::tiny_skia::{ColorU8, Pixmap};
 
 use super::ramp::{Colour, mix};
-use crate::error::{Error, Result};
-use crate::predicates::Point2;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
 
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;

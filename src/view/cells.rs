@@ -6,10 +6,10 @@ use super::look::Colours;
 use super::ramp::hex;
 use super::stage::Stage;
 use super::svg;
-use crate::bounds::Point;
-use crate::cells::{CellCode, CellTree};
-use crate::error::Result;
-use crate::stream::{Coordinates, FinalizedCells};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::{Coordinates, FinalizedCells};
 
 /// Cells are not drawn smaller. Units: lengths of the picture.
 const SIDE_MIN: f64 = 8.0;

@@ -7,11 +7,10 @@ use super::sheet::{Furniture, Mark, Shape};
 use super::stage::Stage;
 use super::svg::{self, Anchor};
 use super::{Options, ticks};
-use crate::bounds::{Bounds, Point};
-use crate::config::{self, CentroidMesh, Configurations, FARAWAY};
-use crate::configgen::read::ConfigurationSet;
-use crate::error::{Error, Result};
-use crate::stream::Coordinates;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{ConfigurationSet, Coordinates};
 
 /// Triangles from the lower degree, the link, its inside, and the set.
 const LOWER: Colour = [184, 222, 190];
@@ -33,6 +32,7 @@ const EDGES_MAX: usize = 40_000;
 /// What of a stream of configurations is drawn.
 struct Scene<'a> {
     set: &'a ConfigurationSet,
+    knots: Knots,
     coordinates: Coordinates,
     stage: Stage,
     options: &'a Options,
@@ -47,11 +47,11 @@ pub(super) fn picture(
     coordinates: Coordinates,
     options: &Options,
 ) -> Result<Picture> {
-    let knots = set.knots.points().iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
+    let knots = set.points.iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
     let knots: Vec<Point> = knots.collect();
     let bounds = Bounds::of_points(&knots).unwrap_or(Bounds::of_point([0.0; 3]));
     let stage = Stage::plan(&bounds, options.bounds, PAD, options.width)?;
-    let scene = Scene { set, coordinates, stage, options };
+    let scene = Scene { set, knots: Knots::new(set.points.clone())?, coordinates, stage, options };
     match &options.set {
         Some(chosen) => scene.link(chosen, &knots),
         None => scene.centroids(&knots),
@@ -67,9 +67,9 @@ impl Scene<'_> {
         let order = self.options.order.unwrap_or(last.degree() + 1);
         let upper = self.degree(order.wrapping_sub(1))?;
         // A stream may have one degree alone; then there is nothing in the place of the triangles of the lower one.
-        let missing = (order > 1).then(|| Configurations::new(order - 2, upper.standing()));
+        let missing = (order > 1).then(|| Configurations::new(order - 2, upper.claim()));
         let lower = self.find(order.wrapping_sub(2)).or(missing.as_ref());
-        let mesh = CentroidMesh::of(&self.set.knots, lower, upper)?;
+        let mesh = CentroidMesh::of(&self.knots, lower, upper)?;
         let places: Vec<Point> =
             mesh.vertices.iter().map(|&[x, y]| self.coordinates.to_world([x, y, 0.0])).collect();
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| places[vertex as usize]);
@@ -113,7 +113,7 @@ impl Scene<'_> {
         }
         let names: Vec<String> = chosen.iter().map(u32::to_string).collect();
         let names = names.join(",");
-        let links = config::links(&self.set.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
+        let links = configurations::links(&self.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
         let Some(link) = links.find(&chosen).map(|index| links.link(index)) else {
             return Err(Error::usage(format!("the set {names} has no link")));
         };

@@ -9,7 +9,7 @@ use super::look::{Colours, Look};
 use super::ramp::{Colour, hex};
 use super::stage::Stage;
 use super::svg;
-use crate::bounds::Point;
+use spmesh_model::bounds::Point;
 
 /// Dots of marks are not drawn nearer to each other. Units: lengths of the picture.
 const APART: f64 = 2.0;

@@ -15,11 +15,10 @@ use super::sheet::{Furniture, Legend, Mark, Shape};
 use super::stage::Stage;
 use super::triangles::{self, Triangle};
 use super::{Fill, Moments, Options, configurations, svg, ticks};
-use crate::bounds::{Bounds, Point};
-use crate::cells::CellCode;
-use crate::configgen::read::ConfigurationSet;
-use crate::error::Result;
-use crate::stream::{Coordinates, Event, Header, Kind, Patch, StreamReader};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::cells::CellCode;
+use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};
 
 /// Vertices that are live, points of a residual.
 const LIVE: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "live vertices" };
@@ -59,7 +58,8 @@ pub fn draw<R: Read>(
     request::check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
     if header.kind.has_knots() {
         let set = ConfigurationSet::read(reader)?;
-        return take(&configurations::picture(&set, header.coordinates, options)?);
+        let picture = configurations::picture(&set, header.coordinates, options);
+        return take(&picture?);
     }
     let mut drawing = Drawing::new(&header, options, moments)?;
     while let Some(event) = reader.next_event()? {

@@ -1,6 +1,6 @@
 //! Where a picture is in the world.
 
-use crate::predicates::Point2;
+use spmesh_geometry::predicates::Point2;
 
 /// From places of a picture to world coordinates: `x = left + unit * across`, `y = top - unit * down`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,9 +3,9 @@
 use foldhash::{HashMap, HashMapExt};
 
 use super::triangles::Triangle;
-use crate::bounds::Point;
-use crate::error::Result;
-use crate::stream::{LiveVertices, Patch};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{LiveVertices, Patch};
 
 /// Vertices between their patch and their finalization, and edges that have one triangle so far.
 ///

@@ -4,8 +4,8 @@ use super::Form;
 use super::canvas::Canvas;
 use super::look::Look;
 use super::stage::Stage;
-use crate::bounds::{Bounds, Point};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point};
 
 /// More triangles or points than these are painted, unless it is said how: an SVG of as many triangles has 2 MB.
 const VECTORS_MAX: usize = 20_000;

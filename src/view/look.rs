@@ -4,8 +4,8 @@ use super::canvas::Paint;
 use super::ramp::{self, BATLOW, Colour, Ramp, VIK, VIRIDIS};
 use super::sheet::Legend;
 use super::{Fill, Options, When};
-use crate::bounds::Point;
-use crate::raster::Light;
+use spmesh_io::raster::Light;
+use spmesh_model::bounds::Point;
 
 /// Of triangles and points that show nothing.
 const BARE: Colour = [255; 3];

@@ -5,7 +5,7 @@ use std::io::Write;
 use quick_xml::escape::escape;
 
 use super::frame::Frame;
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
 
 /// A picture, and what its page says of it.
 pub(super) struct Page<'a> {
@@ -42,9 +42,9 @@ pub(super) fn write(output: &mut impl Write, page: &Page) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::ErrorKind;
     use data_encoding::BASE64;
     use sha2::{Digest, Sha256};
+    use spmesh_core::error::ErrorKind;
 
     const SVG: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 10"><g id="map"></g></svg>"#;
 

@@ -9,7 +9,7 @@ use resvg::usvg::{self, fontdb};
 use super::canvas::too_large;
 use super::frame::Frame;
 use super::page::{self, Page};
-use crate::error::{Error, Result};
+use spmesh_core::error::{Error, Result};
 
 /// The font of pictures, so that they look the same everywhere: Latin letters of DejaVu Sans.
 const FONT: &[u8] = include_bytes!("DejaVuSans-latin.ttf");

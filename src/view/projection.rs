@@ -2,9 +2,9 @@
 
 use super::frame::Frame;
 use super::sheet::Sheet;
-use crate::bounds::{Bounds, Point};
-use crate::error::Result;
-use crate::predicates::Point2;
+use spmesh_core::error::Result;
+use spmesh_geometry::predicates::Point2;
+use spmesh_model::bounds::{Bounds, Point};
 
 /// How far what is seen from one side is turned, and how far above the horizon the eye is. Units: radians.
 const TURN: f64 = 0.5;

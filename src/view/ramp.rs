@@ -1,6 +1,6 @@
 //! Colours of numbers: ramps of which equal steps look equal, and lightness tells the order.
 
-use crate::raster::Light;
+use spmesh_io::raster::Light;
 
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];

@@ -1,8 +1,8 @@
 //! What can be asked of which stream.
 
 use super::{Fill, Moments, Options};
-use crate::error::{Error, Result};
-use crate::stream::{Header, Kind};
+use spmesh_core::error::{Error, Result};
+use spmesh_stream::{Header, Kind};
 
 /// Checks that a stream can be drawn, and so.
 ///

@@ -4,8 +4,8 @@ use super::frame::Frame;
 use super::ramp::{Colour, Ramp, hex};
 use super::svg::{self, Anchor};
 use super::ticks;
-use crate::error::{Error, Result};
-use crate::predicates::Point2;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
 
 /// Around everything. Units: those of the picture, as all lengths here.
 const MARGIN: f64 = 16.0;

@@ -2,9 +2,9 @@
 
 use super::projection::{PAD, View};
 use super::sheet::Sheet;
-use crate::bounds::{Bounds, Point};
-use crate::error::Result;
-use crate::raster::Window;
+use spmesh_core::error::Result;
+use spmesh_io::raster::Window;
+use spmesh_model::bounds::{Bounds, Point};
 
 /// The sheet, and the view of the world on it.
 #[derive(Debug, Clone, Copy)]

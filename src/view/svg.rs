@@ -1,8 +1,8 @@
 //! Pieces of SVG.
 
 use super::canvas::Pixels;
-use crate::predicates::Point2;
 use data_encoding::BASE64;
+use spmesh_geometry::predicates::Point2;
 
 /// Text as XML has it; characters that XML cannot have are left out.
 pub(super) fn escape(text: &str) -> String {

@@ -10,7 +10,7 @@ use super::look::{Colours, Look};
 use super::ramp::hex;
 use super::stage::Stage;
 use super::svg;
-use crate::bounds::Point;
+use spmesh_model::bounds::Point;
 
 /// A triangle of a stream.
 #[derive(Debug, Clone, Copy)]

@@ -2,14 +2,14 @@
 
 use num_bigint::BigInt;
 use serde_json::Value;
-use spmesh::audit::{Census, Faults, Figures, Standard};
-use spmesh::stream::StreamReader;
+use spmesh_audit::{Census, Faults, Figures, Standard};
+use spmesh_stream::StreamReader;
 
 use super::reference::Random;
 use super::solid::{Solid, cubic, position};
 use super::tetrahedra_mutations::{distinct, has_repeated_vertex, mutate, positive_tetrahedra};
-use crate::reference::exact3::{insphere, orientation};
-use crate::reference::tetrahedra::exact_points;
+use spmesh_reference::exact3::{insphere, orientation};
+use spmesh_reference::tetrahedra::exact_points;
 
 const SEED: u64 = 31;
 

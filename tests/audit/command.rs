@@ -3,7 +3,7 @@
 use std::process::Output;
 
 use serde_json::Value;
-use spmesh::stream::{Crs, Header, Kind, StreamWriter};
+use spmesh_stream::{Crs, Header, Kind, StreamWriter};
 
 use super::solid::{self, Solid, cubic};
 use super::{Mesh, grid, point};

@@ -1,14 +1,14 @@
 //! The audit of streams of configurations.
 
 use serde_json::{Value, json};
-use spmesh::audit::config::{Proof, Violation, check};
-use spmesh::config::{self, Configurations, Knots, Rule, Standing};
-use spmesh::configgen::read::ConfigurationSet;
-use spmesh::configgen::write::write_configurations;
+use spmesh_audit::config::{ConfigurationSet, Proof, Violation, check};
+use spmesh_geometry::configurations::{self, Claim, Configurations, Knots, Rule};
+use spmesh_stream::write_configurations;
 
+use super::held;
 use crate::programs::{outcome, run};
-use crate::reference::sets::Random;
 use crate::vectors::load;
+use spmesh_reference::sets::Random;
 
 /// Knots on a small grid: on lines, on circles, and some at one place.
 fn knots(random: &mut Random, count: usize, side: i64) -> Knots {
@@ -19,28 +19,25 @@ fn knots(random: &mut Random, count: usize, side: i64) -> Knots {
 }
 
 fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Configurations> {
-    let mut start = config::Start::delaunay(knots).unwrap();
+    let mut start = configurations::Start::delaunay(knots).unwrap();
     start.flip_random(knots, flips, 3);
-    config::generate(knots, start.configurations(), rule, degree).unwrap()
+    configurations::generate(knots, start.configurations(), rule, degree).unwrap()
 }
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
-    check(&ConfigurationSet {
-        knots: knots.clone(),
-        degrees: degrees.to_vec(),
-        ..ConfigurationSet::default()
-    })
+    let degrees = degrees.iter().map(held::configurations).collect();
+    check(&ConfigurationSet { knots: held::knots(knots), degrees })
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_configurations(knots, degrees, &mut bytes).unwrap();
+    write_configurations(knots.points(), degrees, &mut bytes).unwrap();
     bytes
 }
 
 /// The same configurations with one boundary replaced, or left out.
 fn changed(of: &Configurations, at: usize, replacement: Option<[u32; 3]>) -> Configurations {
-    let mut result = Configurations::new(of.degree(), of.standing());
+    let mut result = Configurations::new(of.degree(), of.claim());
     let mut number = 0;
     for group in of.groups() {
         for &boundary in group.triangles.iter().chain(group.infinite) {
@@ -52,8 +49,8 @@ fn changed(of: &Configurations, at: usize, replacement: Option<[u32; 3]>) -> Con
     result
 }
 
-fn relabelled(of: &Configurations, standing: Standing) -> Configurations {
-    let mut result = Configurations::new(of.degree(), standing);
+fn relabelled(of: &Configurations, claim: Claim) -> Configurations {
+    let mut result = Configurations::new(of.degree(), claim);
     for group in of.groups() {
         result.extend(group.interior, &[group.triangles, group.infinite].concat()).unwrap();
     }
@@ -73,7 +70,7 @@ fn what_rules_make_passes() {
             verdict(&knots, &degrees).unwrap_or_else(|violation| panic!("round {round}: {violation:?}"));
         assert_eq!(proof.degrees.len(), degrees.len());
         let is_delaunay = flips == 0;
-        let complete = |degree: &spmesh::audit::config::DegreeProof| {
+        let complete = |degree: &spmesh_audit::config::DegreeProof| {
             degree.facets.is_some() && degree.is_counted && degree.has_circles == is_delaunay
         };
         assert!(proof.degrees.iter().all(complete), "round {round}: {proof:?}");
@@ -107,7 +104,7 @@ fn configurations_of_another_rule_are_not_delaunay() {
     let knots = knots(&mut Random::new(2), 14, 1 << 16);
     for degree in 0..3 {
         let mut degrees = generated(&knots, &Rule::Random(4), 8, 2);
-        degrees[degree] = relabelled(&degrees[degree], Standing::Delaunay);
+        degrees[degree] = relabelled(&degrees[degree], Claim::Delaunay);
         let violation = verdict(&knots, &degrees).expect_err("it is not Delaunay");
         assert_eq!((violation.claim, violation.degree), ("circles", degree), "{violation:?}");
     }
@@ -135,7 +132,7 @@ fn every_exchanged_knot_is_noticed() {
     for degree in 0..degrees.len() {
         let mut number = 0;
         let plain: Vec<Configurations> =
-            degrees.iter().map(|degree| relabelled(degree, Standing::Any)).collect();
+            degrees.iter().map(|degree| relabelled(degree, Claim::Any)).collect();
         for group in degrees[degree].groups() {
             for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
                 let others =
@@ -154,12 +151,12 @@ fn every_exchanged_knot_is_noticed() {
 #[test]
 fn a_degree_alone_must_have_its_orientation_and_its_border() {
     let knots = knots(&mut Random::new(6), 9, 1 << 10);
-    let only = relabelled(&generated(&knots, &Rule::Delaunay, 0, 2)[2], Standing::Any);
+    let only = relabelled(&generated(&knots, &Rule::Delaunay, 0, 2)[2], Claim::Any);
     assert!(verdict(&knots, std::slice::from_ref(&only)).is_ok());
     let [a, b, c] = only.iter().next().unwrap().0;
     let violation = verdict(&knots, &[changed(&only, 0, Some([a, c, b]))]).expect_err("clockwise");
     assert!(violation.message.contains("not counterclockwise"), "{violation:?}");
-    let is_infinite = |group: &config::Group| !group.infinite.is_empty();
+    let is_infinite = |group: &configurations::Group| !group.infinite.is_empty();
     let before = only.groups().take_while(|group| !is_infinite(group));
     let at: usize = before.map(|group| group.triangles.len()).sum();
     let group = only.groups().find(is_infinite).unwrap();

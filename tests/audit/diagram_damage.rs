@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use spmesh::audit::diagram::{Claim, check};
+use spmesh_audit::diagram::{Claim, check};
 
-use super::diagram::{audit, cells4, families, floats, grid, random_points};
-use crate::reference::diagram4::{Cell, Point, diagram, sorted};
-use crate::reference::sets::Random;
+use super::diagram::audit;
+use spmesh_reference::diagram4::{Cell, Point, diagram, sorted};
+use spmesh_reference::sets::Random;
+use spmesh_reference::sets4::{cells4, families, floats, grid, random_points};
 
 const SEED: u64 = 20_260_405;
 

@@ -1,6 +1,6 @@
 //! Every set of triangles over a few points: the canonical triangulation passes and nothing else.
 
-use spmesh::audit::Standard;
+use spmesh_audit::Standard;
 
 use super::Mesh;
 use super::reference::{Random, canonical_triangulation, orient};

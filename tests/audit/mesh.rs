@@ -1,9 +1,9 @@
 //! Whole meshes by hand: each kind of fault is found and named.
 
-use spmesh::audit::{Audit, Check, PointSet, Standard};
-use spmesh::bounds::Bounds;
-use spmesh::error::ErrorKind;
-use spmesh::stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
+use spmesh_audit::{Audit, Check, PointSet, Standard};
+use spmesh_core::error::ErrorKind;
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::reference::Random;
 use super::{Mesh, Verdict, assert_violates, audit, grid, mesh_header, point};

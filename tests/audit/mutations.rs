@@ -46,7 +46,7 @@ fn what_passes_is_the_triangulation_of_its_vertices() {
         for _ in 0..=random.below(2) {
             mutate(&mut mesh, &mut random);
         }
-        if !has_repeated_vertex(&mesh) && mesh.audit(spmesh::audit::Standard::Canonical).is_ok() {
+        if !has_repeated_vertex(&mesh) && mesh.audit(spmesh_audit::Standard::Canonical).is_ok() {
             let expected = Mesh { triangles: canonical_triangulation(&mesh.points), ..mesh.clone() };
             assert_eq!(triangle_set(&mesh), triangle_set(&expected), "seed {SEED}, round {round}");
         }

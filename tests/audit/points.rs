@@ -1,9 +1,9 @@
 //! Points streams: tags, chunks and boxes.
 
-use spmesh::audit::{Audit, Check, Report, Standard, Violation};
-use spmesh::bounds::{Bounds, Point};
-use spmesh::cells::{CellCode, CellTree};
-use spmesh::stream::{Coordinates, Event, Header, Kind, StreamWriter, Totals};
+use spmesh_audit::{Audit, Check, Report, Standard, Violation};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::{Coordinates, Event, Header, Kind, StreamWriter, Totals};
 
 use super::{Verdict, assert_violates, audit};
 

@@ -1,11 +1,11 @@
 //! Tetrahedral meshes to be audited, and the ways to make them.
 
-use spmesh::audit::{PointSet, Report, Standard};
-use spmesh::bounds::Point;
-use spmesh::stream::{Coordinates, Header, Kind, Patch, StreamWriter};
+use spmesh_audit::{PointSet, Report, Standard};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamWriter};
 
 use super::{Verdict, audit};
-use crate::reference::tetrahedra;
+use spmesh_reference::tetrahedra;
 
 /// Two tetrahedra on a triangle, whose apexes see each other through it.
 pub const BIPYRAMID: [[i32; 3]; 5] = [[0, 0, -30], [20, 0, 0], [-10, 17, 0], [-10, -17, 0], [0, 1, 31]];

@@ -3,14 +3,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use spmesh::audit::{Report, Standard};
-use spmesh::bounds::Point;
-use spmesh::stream::{Header, Patch, StreamWriter};
+use spmesh_audit::{Report, Standard};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Header, Patch, StreamWriter};
 
 use super::reference::canonical_triangulation;
 use super::solid::solid_header;
 use super::{Verdict, audit, mesh_header};
-use crate::reference::tetrahedra::tetrahedra;
+use spmesh_reference::tetrahedra::tetrahedra;
 
 /// Points in D dimensions and simplices of N = D + 1 corners, as numbers of points.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 //! Streams that are damaged, in the plane and in space: the audit refuses them if and only if what is left is not the
 //! canonical triangulation of distinct points, found by trying all simplices.
 
-use spmesh::audit::{Check, Report};
-use spmesh::stream::Patch;
+use spmesh_audit::{Check, Report};
+use spmesh_stream::Patch;
 
 use super::reference::Random;
 use super::solid::cubic;
@@ -201,9 +201,9 @@ fn duplicates_are_no_vertices() {
     for points in [vec![[0, 0], [9, 3], [3, 1]], vec![[0, 0], [9, 3], [3, 2], [4, 7]]] {
         let mut mesh = Mesh::canonical(&points);
         mesh.merged = 2;
-        mesh.audit(spmesh::audit::Standard::Canonical).unwrap();
+        mesh.audit(spmesh_audit::Standard::Canonical).unwrap();
         mesh.points.push(points[1]);
-        assert_eq!(check_of(mesh.audit(spmesh::audit::Standard::Canonical)), Check::Vertices);
+        assert_eq!(check_of(mesh.audit(spmesh_audit::Standard::Canonical)), Check::Vertices);
     }
 }
 

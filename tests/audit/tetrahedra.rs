@@ -1,6 +1,6 @@
 //! Whole tetrahedral meshes by hand: each kind of fault is found and named.
 
-use spmesh::audit::{Check, Standard};
+use spmesh_audit::{Check, Standard};
 
 use super::reference::Random;
 use super::solid::{BIPYRAMID, Solid, TWO, cubic, solid_header};
@@ -8,7 +8,7 @@ use super::{Verdict, assert_violates};
 
 const CANONICAL: Standard = Standard::Canonical;
 
-fn check_of(result: Result<spmesh::audit::Report, Verdict>) -> Check {
+fn check_of(result: Result<spmesh_audit::Report, Verdict>) -> Check {
     match result {
         Err(Verdict::Violation(violation)) => violation.check,
         other => panic!("expected a violation, found {other:?}"),

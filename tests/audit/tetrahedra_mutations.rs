@@ -1,6 +1,6 @@
 //! Correct tetrahedral meshes changed at random: whatever changes the set of tetrahedra is refused.
 
-use spmesh::audit::{Check, Standard};
+use spmesh_audit::{Check, Standard};
 
 use super::Verdict;
 use super::reference::Random;

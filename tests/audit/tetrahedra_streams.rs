@@ -1,8 +1,8 @@
 //! What a stream of tetrahedra promises besides its geometry: finalization, points, labels, counts, memory.
 
-use spmesh::audit::{Audit, Check, PointSet, Standard};
-use spmesh::bounds::Bounds;
-use spmesh::stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
+use spmesh_audit::{Audit, Check, PointSet, Standard};
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, StreamWriter, Totals};
 
 use super::solid::{BIPYRAMID, Solid, TWO, cubic, grid, position, solid_header};
 use super::{assert_violates, audit};

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use spmesh::audit::Standard;
-use spmesh::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_audit::Standard;
+use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
 
 use super::reference::Random;
 use super::solid::{Solid, cubic, position};

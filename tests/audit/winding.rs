@@ -1,6 +1,6 @@
 //! Vertices whose simplices go around them twice: found when they are finalized, wherever the boundary is.
 
-use spmesh::audit::Check;
+use spmesh_audit::Check;
 
 use super::assert_violates;
 use super::streamed::{Flat, Solid};

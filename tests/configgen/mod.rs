@@ -7,8 +7,8 @@ mod streams;
 use serde_json::Value;
 
 use crate::programs::{outcome, run};
-use crate::reference::configurations::by_definition;
-use crate::reference::sets::{self, Random};
+use spmesh_reference::configurations::by_definition;
+use spmesh_reference::sets::{self, Random};
 
 /// What `configgen` writes; it must succeed.
 fn output(arguments: &[&str], input: &[u8]) -> Vec<u8> {

@@ -1,7 +1,7 @@
 //! Plateaus, single points, meshes of one triangle or none, and numbers at the ends of their range.
 
-use spmesh::contours::Options;
-use spmesh::stream::Coordinates;
+use spmesh_stream::Coordinates;
+use spmesh_terrain::contours::Options;
 
 use super::{Line, WHOLE, lines, options, try_lines};
 use crate::dem::Mesh;

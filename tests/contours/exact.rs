@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{Line, WHOLE, lines, options};
 use crate::dem::Mesh;
-use crate::reference::incremental;
-use crate::reference::sets::{Random, degenerate, uniform};
+use spmesh_reference::incremental;
+use spmesh_reference::sets::{Random, degenerate, uniform};
 
 /// Twice the least common multiple of the numbers up to 12.
 const UNIT: i64 = 2 * 27_720;
@@ -178,7 +178,7 @@ fn lines_that_are_cut_have_the_same_segments() {
         let stream = mesh.shuffled(&mut random).stream(WHOLE);
         let whole = sorted(&lines(&stream, &options(1.0, 0.5)));
         for points in [2, 3, 7] {
-            let options = spmesh::contours::Options { points: Some(points), ..options(1.0, 0.5) };
+            let options = spmesh_terrain::contours::Options { points: Some(points), ..options(1.0, 0.5) };
             let parts = lines(&stream, &options);
             assert_eq!(sorted(&parts), whole);
             // Two lines with one point less may meet.

@@ -1,10 +1,10 @@
 //! What is held: lines that are over are written while triangles come, and joining takes any order.
 
-use spmesh::contours::Options;
+use spmesh_terrain::contours::Options;
 
 use super::{WHOLE, options, try_lines};
 use crate::dem::Mesh;
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 /// Two rows of vertices, one step apart, of which the upper one is higher; from left to right.
 fn strip(columns: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {

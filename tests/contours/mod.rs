@@ -7,9 +7,9 @@ mod memory;
 mod pipelines;
 
 use serde_json::Value;
-use spmesh::contours::{Levels, LineFormat, Options, Stats, contour};
-use spmesh::error::Result;
-use spmesh::stream::{Coordinates, StreamReader};
+use spmesh_core::error::Result;
+use spmesh_stream::{Coordinates, StreamReader};
+use spmesh_terrain::contours::{Levels, LineFormat, Options, Stats, contour};
 
 /// Whole coordinates that are those of the world.
 const WHOLE: Coordinates = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use serde_json::Value;
-use spmesh::contours::LineFormat;
+use spmesh_terrain::contours::LineFormat;
 
 use super::{Line, parse};
 use crate::dem::pipelines::{mesh, triangles};

@@ -1,7 +1,7 @@
 //! Damaged inputs of every format: an error or an equal mesh, never a panic.
 
-use spmesh::convert::Format;
-use spmesh::error::ErrorKind;
+use spmesh_convert::Format;
+use spmesh_core::error::ErrorKind;
 
 use super::samples::{self, Random};
 use super::{converted, text_of};

@@ -2,8 +2,8 @@
 
 use std::io::Cursor;
 
-use spmesh::convert::{Format, Options, convert};
-use spmesh::error::ErrorKind;
+use spmesh_convert::{Format, Options, convert};
+use spmesh_core::error::ErrorKind;
 
 use super::independent::{obj, ply};
 use super::{converted, samples, text_of, with_notices};

@@ -1,8 +1,8 @@
 //! Small streams of every kind.
 
-use spmesh::bounds::{Bounds, Point, Region};
-use spmesh::cells::{CellCode, CellTree};
-use spmesh::stream::{Coordinates, Crs, Header, Kind, Patch, StreamWriter};
+use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, Patch, StreamWriter};
 
 pub const SIDE: u64 = 12;
 

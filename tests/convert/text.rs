@@ -1,6 +1,6 @@
 //! The text twin loses nothing.
 
-use spmesh::convert::Format;
+use spmesh_convert::Format;
 
 use super::{assert_cuts_are_refused, assert_refused, converted, samples, text_of};
 use crate::vectors::load;

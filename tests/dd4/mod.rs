@@ -8,7 +8,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::programs::{outcome, run, sample};
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 /// What `dd4` writes of an input; it must succeed.
 fn diagram(arguments: &[&str], input: &[u8]) -> Vec<u8> {

@@ -1,12 +1,12 @@
 //! Each cell against all triangles, in integers: which one its centre is in, and what it has there.
 
-use spmesh::dem::{Attribute, Options};
-use spmesh::raster::{Cells, Grid, RasterFormat, Window};
-use spmesh::stream::Coordinates;
+use spmesh_io::raster::{Cells, Grid, RasterFormat, Window};
+use spmesh_stream::Coordinates;
+use spmesh_terrain::dem::{Attribute, Options};
 
 use super::{Mesh, file, is_same, options, raster, values};
-use crate::reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};
-use crate::reference::{exhaustive, incremental};
+use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};
+use spmesh_reference::{exhaustive, incremental};
 
 /// A number in units of a power of two, of which it must be a multiple.
 fn units(value: f64, bits: i32) -> i128 {

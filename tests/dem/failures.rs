@@ -1,8 +1,8 @@
 //! Wrong usage, streams that are no mesh in the plane, damaged input, and outputs that cannot be written.
 
-use spmesh::dem::Attribute;
-use spmesh::raster::{Grid, RasterFormat};
-use spmesh::stream::Coordinates;
+use spmesh_io::raster::{Grid, RasterFormat};
+use spmesh_stream::Coordinates;
+use spmesh_terrain::dem::Attribute;
 
 use super::{Mesh, file, options};
 use crate::programs::{

@@ -2,8 +2,8 @@
 
 use std::io::Cursor;
 
-use spmesh::dem::{Attribute, Options};
-use spmesh::raster::{NoData, RasterFormat, RasterOptions, TILE};
+use spmesh_io::raster::{NoData, RasterFormat, RasterOptions, TILE};
+use spmesh_terrain::dem::{Attribute, Options};
 use tiff::decoder::Decoder;
 
 use super::tiles::{mesh_and_grid, tiff_values};
@@ -64,8 +64,8 @@ fn complete_tiles_are_sources_for_their_neighbours() {
     // A square that covers the first of two tiles in a row, and a bit of the second one.
     let points = vec![[0.0, 0.0, 5.0], [300.0, 0.0, 5.0], [300.0, 256.0, 5.0], [0.0, 256.0, 5.0]];
     let mesh = super::Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
-    let stream = mesh.stream(spmesh::stream::Coordinates::F64);
-    let grid = spmesh::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
+    let stream = mesh.stream(spmesh_stream::Coordinates::F64);
+    let grid = spmesh_io::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
     let options = Options { fill: Some(100), ..options(Attribute::Elevation) };
     let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
     assert_eq!((stats.known, stats.filled), (400 * 256, 100 * 256));
@@ -106,7 +106,7 @@ fn grids_fit_those_of_other_files() {
         let path = folder.path(name);
         let (code, message) = outcome(&run("spdem", &[arguments, &["-o", &path]].concat(), &mesh));
         assert_eq!(code, Some(0), "{message}");
-        (spmesh::raster::Grid::of_file(path.as_ref()).unwrap(), std::fs::read(&path).unwrap())
+        (spmesh_io::raster::Grid::of_file(path.as_ref()).unwrap(), std::fs::read(&path).unwrap())
     };
     let (grid, bytes) = raster("a.tif", &["--step", "1000", "--align", "17,-5"]);
     assert_eq!([(grid.left - 17.0) % 1000.0, (grid.top + 5.0) % 1000.0], [0.0, 0.0]);

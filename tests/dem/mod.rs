@@ -9,14 +9,14 @@ mod tiles;
 
 use std::io::Cursor;
 
-use spmesh::bounds::Bounds;
-use spmesh::dem::{Attribute, Options, Stats, rasterize};
-use spmesh::error::Result;
-use spmesh::raster::{Grid, RasterFormat, RasterOptions};
-use spmesh::stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
+use spmesh_core::error::Result;
+use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
+use spmesh_terrain::dem::{Attribute, Options, Stats, rasterize};
 
-use crate::reference::incremental;
-use crate::reference::sets::Random;
+use spmesh_reference::incremental;
+use spmesh_reference::sets::Random;
 
 /// A triangle mesh with stored coordinates.
 #[derive(Clone)]

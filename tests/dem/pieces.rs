@@ -2,7 +2,7 @@
 
 use super::values;
 use crate::programs::{Folder, outcome, run};
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 /// Points with two decimals, many of them on a grid, so that many are on common circles.
 fn survey() -> Vec<[f64; 3]> {

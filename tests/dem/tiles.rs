@@ -2,14 +2,14 @@
 
 use std::io::Cursor;
 
-use spmesh::dem::{Attribute, Options};
-use spmesh::raster::{Cells, Grid, RasterFormat, TILE, Window};
-use spmesh::stream::Coordinates;
+use spmesh_io::raster::{Cells, Grid, RasterFormat, TILE, Window};
+use spmesh_stream::Coordinates;
+use spmesh_terrain::dem::{Attribute, Options};
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
 use super::{Mesh, file, is_same, options, raster, values};
-use crate::reference::sets::{Random, uniform};
+use spmesh_reference::sets::{Random, uniform};
 
 const SIDE: i64 = 1_000;
 

@@ -2,11 +2,11 @@
 
 use std::cell::Cell;
 
-use spmesh::bounds::Point;
-use spmesh::error::Result;
-use spmesh::finalize::{Observer, Passes};
-use spmesh::source::{Description, PointReader};
-use spmesh::stream::Crs;
+use spmesh_core::error::Result;
+use spmesh_finalize::{Observer, Passes};
+use spmesh_io::source::{Description, PointReader};
+use spmesh_model::bounds::Point;
+use spmesh_stream::Crs;
 
 use super::sets::Set;
 

@@ -1,9 +1,9 @@
 //! Checks every promise of a finalized stream. Cells come from location codes and header alone; no code is
 //! shared with the engine.
 
-use spmesh::bounds::{Bounds, Point};
-use spmesh::finalize::{Options, Order};
-use spmesh::stream::{Crs, Event, Header, StreamReader};
+use spmesh_finalize::{Options, Order};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Crs, Event, Header, StreamReader};
 
 use super::sets::Set;
 

@@ -1,7 +1,7 @@
 //! Point sets to finalize: seeded, of every sort.
 
-use spmesh::bounds::Point;
-use spmesh::stream::Coordinates;
+use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
 
 /// A seeded generator (xorshift64*).
 pub(super) struct Random(pub(super) u64);

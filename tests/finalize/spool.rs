@@ -2,8 +2,8 @@
 
 use std::process::{Command, Output};
 
-use spmesh::error::ErrorKind;
-use spmesh::finalize::{Options, Order, Spooling, run};
+use spmesh_core::error::ErrorKind;
+use spmesh_finalize::{Options, Order, Spooling, run};
 
 use super::*;
 

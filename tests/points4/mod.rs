@@ -11,9 +11,9 @@ mod text;
 use std::io::Write;
 use std::path::Path;
 
-use spmesh::cells4::Point4;
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::points4::{From4, Points4, Request, Selection, Spacing, read_points4};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::points4::{From4, Points4, Request, Selection, Spacing, read_points4};
+use spmesh_model::cells4::Point4;
 
 use crate::programs::Folder;
 

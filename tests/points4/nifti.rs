@@ -1,7 +1,7 @@
 //! NIfTI-1 volumes.
 
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::points4::{From4, Points4, Request, Spacing, read_points4};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::points4::{From4, Points4, Request, Spacing, read_points4};
 
 use super::{all, assert_fails, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;

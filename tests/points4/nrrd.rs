@@ -1,7 +1,7 @@
 //! NRRD volumes.
 
-use spmesh::error::Result;
-use spmesh::source::points4::{From4, Points4, Request, Spacing, read_points4};
+use spmesh_core::error::Result;
+use spmesh_io::source::points4::{From4, Points4, Request, Spacing, read_points4};
 
 use super::{all, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;

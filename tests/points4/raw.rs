@@ -1,7 +1,7 @@
 //! Volumes that are nothing but numbers.
 
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::points4::{From4, Points4, RawLayout, parse_sizes, read_points4};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::points4::{From4, Points4, RawLayout, parse_sizes, read_points4};
 
 use super::{all, assert_fails, gzip};
 use crate::programs::Folder;

@@ -354,8 +354,8 @@ pub fn distinct(points: &[Point]) -> (Vec<Point>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::reference::sets::Random;
-    use crate::reference::{clouds, exact3};
+    use crate::sets::Random;
+    use crate::{clouds, exact3};
 
     #[test]
     fn decisions_are_those_of_integers_without_limit() {

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use spmesh::bounds::{Bounds, Point};
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::{Input, SourceOptions};
-use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::{Input, SourceOptions};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
 use super::las_file::LasFile;
 use super::{assert_fails, flat, pass, points, sample};

@@ -3,11 +3,11 @@
 use std::ffi::CString;
 use std::os::unix::ffi::OsStrExt;
 
-use spmesh::bounds::Bounds;
-use spmesh::error::ErrorKind;
-use spmesh::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
-use spmesh::source::{Input, SourceOptions, crs_name};
-use spmesh::stream::{Coordinates, Crs};
+use spmesh_core::error::ErrorKind;
+use spmesh_core::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
+use spmesh_io::source::{Input, SourceOptions, crs_name};
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Crs};
 
 use super::las_file::{LasFile, Record, geo_keys};
 use super::{assert_fails, flat, pass, points, points_of, sample};

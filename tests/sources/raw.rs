@@ -1,8 +1,8 @@
 //! Points that are nothing but numbers.
 
-use spmesh::bounds::Point;
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::{RawType, SourceOptions};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::{RawType, SourceOptions};
+use spmesh_model::bounds::Point;
 
 use super::{assert_fails, bits, flat, points};
 use crate::programs::{Folder, outcome, run};

@@ -1,7 +1,7 @@
 //! SPA and SPB, from bytes put together by hand after `formats/historical.md`.
 
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::{SpDatatype, SpEvent, SpFinalization, SpReader, SpaReader, SpbReader};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::{SpDatatype, SpEvent, SpFinalization, SpReader, SpaReader, SpbReader};
 
 use super::{assert_fails, points_of};
 

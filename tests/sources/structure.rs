@@ -3,11 +3,11 @@
 use std::io::{Cursor, Write};
 use std::path::Path;
 
-use spmesh::error::{ErrorKind, Result};
-use spmesh::source::structure::{
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::structure::{
     Altlocs, Atom, Format, Models, Selection, Structure, read_structure, read_structure_from,
 };
-use spmesh::stream::{Coordinates, Header, Kind, StreamWriter};
+use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
 use super::{assert_fails, sample};
 use crate::programs::Folder;

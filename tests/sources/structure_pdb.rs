@@ -1,6 +1,6 @@
 //! PDB: what programs write, and what is refused.
 
-use spmesh::error::ErrorKind;
+use spmesh_core::error::ErrorKind;
 
 use super::assert_fails;
 use super::structure::{atoms, read};

@@ -1,7 +1,7 @@
 //! Selections: which atoms are left, and what the points are labelled with.
 
-use spmesh::error::ErrorKind;
-use spmesh::source::structure::{Altlocs, Atoms, Models, Selection, Structure, read_structure};
+use spmesh_core::error::ErrorKind;
+use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selection, Structure, read_structure};
 
 use super::structure::read;
 use super::{assert_fails, sample};

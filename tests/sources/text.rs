@@ -1,7 +1,7 @@
 //! Text: xyz, csv and their kin.
 
-use spmesh::error::ErrorKind;
-use spmesh::source::{Input, SourceOptions};
+use spmesh_core::error::ErrorKind;
+use spmesh_io::source::{Input, SourceOptions};
 
 use super::{assert_fails, flat, pass, points_of};
 use crate::programs::Folder;

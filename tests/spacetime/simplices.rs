@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use spmesh::audit::diagram::check_simplices;
-use spmesh::diagram4::{Diagram, diagram};
-use spmesh::spacetime::{Rule, Subdivision, subdivide};
-use spmesh::stream::{Event, StreamReader};
+use spmesh_audit::diagram::check_simplices;
+use spmesh_geometry::diagram4::{Diagram, diagram};
+use spmesh_geometry::spacetime::{Rule, Subdivision, subdivide};
+use spmesh_stream::{Event, StreamReader};
 
 use super::{sampled, scattered, volume};
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 fn parts(diagram: &Diagram, rule: Rule) -> Subdivision {
     subdivide(&diagram.points, diagram.values.as_deref(), &diagram.cells, rule, |_| true).unwrap()
@@ -97,7 +97,7 @@ fn simplices_go_into_a_stream() {
     let diagram = super::with_values(sampled(&mut Random::new(15), [2, 2, 2, 3], 1.0), |p| p[0] + 3.0 * p[3]);
     let parts = parts(&diagram, Rule::Barycentric);
     let mut bytes = Vec::new();
-    spmesh::dd4::write_simplices(&parts, 7, &mut bytes).unwrap();
+    spmesh_dd4::write_simplices(&parts, 7, &mut bytes).unwrap();
     let mut reader = StreamReader::new(&bytes[..], "memory").unwrap();
     let (mut points, mut simplices) = (0, Vec::new());
     while let Some(event) = reader.next_event().unwrap() {

@@ -1,12 +1,12 @@
 //! Values between points.
 
-use spmesh::cells4::Point4;
-use spmesh::diagram4::diagram;
-use spmesh::error::ErrorKind;
-use spmesh::spacetime::{Interpolator, Locator};
+use spmesh_core::error::ErrorKind;
+use spmesh_geometry::diagram4::diagram;
+use spmesh_geometry::spacetime::{Interpolator, Locator};
+use spmesh_model::cells4::Point4;
 
 use super::{sampled, scattered, with_values};
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 fn affine([x, y, z, t]: Point4) -> f64 {
     2.0 * x - 3.0 * y + 0.5 * z + 7.0 * t - 11.0

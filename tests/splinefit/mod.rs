@@ -10,7 +10,7 @@ mod sources;
 use serde_json::Value;
 
 use crate::programs::{Folder, outcome, run};
-use crate::reference::sets::Random;
+use spmesh_reference::sets::Random;
 
 /// Runs `splinefit`, which must succeed.
 fn output(arguments: &[&str], input: &[u8]) -> Vec<u8> {

@@ -1,12 +1,11 @@
 //! Streams of configurations.
 
-use spmesh::config::special::{Function, FunctionKind};
-use spmesh::config::{self, Configurations, FARAWAY, Knots, Rule, Standing, Start};
-use spmesh::configgen::read::ConfigurationSet;
-use spmesh::configgen::write::{Content, header, write_as, write_configurations};
-use spmesh::convert::Format;
-use spmesh::error::ErrorKind;
-use spmesh::stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
+use spmesh_convert::Format;
+use spmesh_core::error::ErrorKind;
+use spmesh_geometry::configurations::special::{Function, FunctionKind};
+use spmesh_geometry::configurations::{self, Claim, Configurations, FARAWAY, Knots, Rule, Start};
+use spmesh_stream::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamReader, StreamWriter};
+use spmesh_stream::{ConfigurationSet, Content, configurations_header, write_configurations, write_content};
 
 use super::Random;
 use crate::convert::{assert_cut_vectors_are_refused, assert_refused, converted, text_of};
@@ -30,12 +29,12 @@ pub fn random_configurations(random: &mut Random, knots: &Knots, degree: usize) 
         }
         _ => Rule::Ear,
     };
-    config::generate(knots, start.configurations(), &rule, degree).unwrap()
+    configurations::generate(knots, start.configurations(), &rule, degree).unwrap()
 }
 
 pub fn written(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write_configurations(knots, degrees, &mut bytes).unwrap();
+    write_configurations(knots.points(), degrees, &mut bytes).unwrap();
     bytes
 }
 
@@ -55,12 +54,12 @@ fn configurations_come_back_as_they_were_written() {
         }
         let set = read(&written(&knots, &degrees));
         assert_eq!(set.degrees, degrees, "seed {seed}");
-        assert_eq!(set.knots.points(), knots.points(), "seed {seed}");
+        assert_eq!(&set.points, knots.points(), "seed {seed}");
         assert_eq!(set.heights, None);
         for (before, after) in degrees.iter().zip(&set.degrees) {
             assert_eq!(
-                config::links(&set.knots, after).ok(),
-                config::links(&knots, before).ok(),
+                configurations::links(&knots, after).ok(),
+                configurations::links(&knots, before).ok(),
                 "seed {seed}"
             );
         }
@@ -88,8 +87,8 @@ fn large() -> (Knots, Vec<Configurations>) {
     let mut random = Random(5);
     let point = |_| [random.below(1 << 20) as f64, random.below(1 << 20) as f64];
     let knots = Knots::new((0..12_000).map(point).collect()).unwrap();
-    let start = config::delaunay(&knots).unwrap();
-    let degrees = config::generate(&knots, start, &Rule::Delaunay, 2).unwrap();
+    let start = configurations::delaunay(&knots).unwrap();
+    let degrees = configurations::generate(&knots, start, &Rule::Delaunay, 2).unwrap();
     (knots, degrees)
 }
 
@@ -108,44 +107,49 @@ fn degrees_longer_than_a_block_come_back_and_go_through_their_twins() {
 #[test]
 fn grids_heights_and_systems_are_kept() {
     let knots = Knots::new(vec![[0.0, 0.0], [40.0, 0.0], [0.0, 30.0], [-7.0, 12.0]]).unwrap();
-    let degrees = config::generate(&knots, config::delaunay(&knots).unwrap(), &Rule::Delaunay, 1).unwrap();
+    let degrees =
+        configurations::generate(&knots, configurations::delaunay(&knots).unwrap(), &Rule::Delaunay, 1)
+            .unwrap();
     let grid = Coordinates::I32 { scale: [0.5; 3], offset: [1000.0, 0.0, 0.0] };
-    let mut header = header(&knots, grid, Crs::Wkt("a system".into()));
+    let mut header = configurations_header(knots.points(), grid, Crs::Wkt("a system".into()));
     header.has_elevation = true;
     header.bounds = None;
     let heights = [4.0, 3.0, 2.0, 1.0];
     let mut bytes = Vec::new();
-    let content = Content { heights: Some(&heights), ..Content::of(&knots, &degrees) };
-    write_as(header.clone(), content, &mut bytes).unwrap();
+    let content = Content { heights: Some(&heights), ..Content::of(knots.points(), &degrees) };
+    write_content(header.clone(), content, &mut bytes).unwrap();
     assert_eq!(verify(&bytes).unwrap().0, header);
     let set = read(&bytes);
     assert_eq!((set.heights.as_deref(), &set.degrees), (Some(&heights[..]), &degrees));
     assert!(text_of(&bytes).contains("\nv 1020 0 1.5\n"), "{}", text_of(&bytes));
-    let refused = write_as(header, Content::of(&knots, &degrees), Vec::new()).expect_err("no heights");
+    let refused =
+        write_content(header, Content::of(knots.points(), &degrees), Vec::new()).expect_err("no heights");
     assert_eq!(refused.kind(), ErrorKind::Usage);
 }
 
 #[test]
 fn the_writer_refuses_what_no_reader_accepts() {
     let knots = Knots::new(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]).unwrap();
-    let degrees = config::generate(&knots, config::delaunay(&knots).unwrap(), &Rule::Delaunay, 1).unwrap();
+    let degrees =
+        configurations::generate(&knots, configurations::delaunay(&knots).unwrap(), &Rule::Delaunay, 1)
+            .unwrap();
     let reversed: Vec<Configurations> = degrees.iter().rev().cloned().collect();
-    let error = write_configurations(&knots, &reversed, Vec::new()).expect_err("degrees 1, 0");
+    let error = write_configurations(knots.points(), &reversed, Vec::new()).expect_err("degrees 1, 0");
     assert!(
         error.kind() == ErrorKind::Usage && error.to_string().contains("degree 0 after degree 1"),
         "{error}"
     );
-    let too_high = Configurations::new(4097, Standing::Any);
-    let error = write_configurations(&knots, &[too_high], Vec::new()).expect_err("degree 4097");
+    let too_high = Configurations::new(4097, Claim::Any);
+    let error = write_configurations(knots.points(), &[too_high], Vec::new()).expect_err("degree 4097");
     assert!(error.to_string().contains("cannot write degree 4097"), "{error}");
     let few = Knots::new(knots.points()[..3].to_vec()).unwrap();
-    let error = write_configurations(&few, &degrees, Vec::new()).expect_err("a knot is missing");
+    let error = write_configurations(few.points(), &degrees, Vec::new()).expect_err("a knot is missing");
     assert!(error.to_string().contains("numbers of 3 knots"), "{error}");
 
     let mut writer =
         StreamWriter::new(Vec::new(), Header::new(Kind::Configurations, Coordinates::F64, 2, false)).unwrap();
     writer.points(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]).unwrap();
-    let mut block = ConfigurationBlock::new(0, Standing::Any);
+    let mut block = ConfigurationBlock::new(0, Claim::Any);
     block.push(&[], &[[0, 1, FARAWAY], [0, 1, 2]]);
     let error = writer.configurations(&block).expect_err("an infinite one first");
     assert!(error.to_string().contains("does not follow"), "{error}");
@@ -187,12 +191,15 @@ fn splines_come_back_as_they_were_written() {
         let functions = random_functions(&mut random, &knots);
         let coefficients: Vec<f64> =
             functions.iter().map(|_| random.below(1000) as f64 / 7.0 - 50.0).collect();
-        let content =
-            Content { functions: &functions, coefficients: &coefficients, ..Content::of(&knots, degrees) };
-        let mut header = header(&knots, Coordinates::F64, Crs::Unknown);
+        let content = Content {
+            functions: &functions,
+            coefficients: &coefficients,
+            ..Content::of(knots.points(), degrees)
+        };
+        let mut header = configurations_header(knots.points(), Coordinates::F64, Crs::Unknown);
         header.kind = Kind::Splines;
         let mut bytes = Vec::new();
-        write_as(header.clone(), content, &mut bytes).unwrap();
+        write_content(header.clone(), content, &mut bytes).unwrap();
         let set = read(&bytes);
         assert_eq!((&set.functions, &set.coefficients), (&functions, &coefficients), "seed {seed}");
         assert_eq!(set.degrees, degrees);
@@ -203,7 +210,7 @@ fn splines_come_back_as_they_were_written() {
             assert!(twin.is_none_or(|twin| twin.stdout == text.as_bytes()), "seed {seed}");
         }
         let few = Content { coefficients: &coefficients[1..], ..content };
-        let error = write_as(header, few, Vec::new()).expect_err("a coefficient is missing");
+        let error = write_content(header, few, Vec::new()).expect_err("a coefficient is missing");
         assert!(error.to_string().contains("one each is needed"), "{error}");
     }
 }
@@ -215,13 +222,14 @@ fn many_functions_come_in_many_blocks() {
     let function = |pair: &[u32; 2]| Function { kind: FunctionKind::Edge(*pair), terms: vec![(*pair, 1.0)] };
     let functions: Vec<Function> = pairs.iter().map(function).collect();
     let mut bytes = Vec::new();
-    let content = Content { functions: &functions, ..Content::of(&knots, &[]) };
-    write_as(header(&knots, Coordinates::F64, Crs::Unknown), content, &mut bytes).unwrap();
+    let content = Content { functions: &functions, ..Content::of(knots.points(), &[]) };
+    write_content(configurations_header(knots.points(), Coordinates::F64, Crs::Unknown), content, &mut bytes)
+        .unwrap();
     assert_eq!(read(&bytes).functions, functions);
     let mut reader = StreamReader::new(&bytes[..], "many").unwrap();
     let mut blocks = 0;
     while let Some(event) = reader.next_event().unwrap() {
-        blocks += usize::from(matches!(event, spmesh::stream::Event::Functions(_)));
+        blocks += usize::from(matches!(event, spmesh_stream::Event::Functions(_)));
     }
     assert!(blocks > 10, "{blocks}");
 }
@@ -259,7 +267,7 @@ fn other_kinds_are_refused_by_name() {
         let kind = reader.header().kind;
         let read = ConfigurationSet::read(&mut reader);
         if kind.has_knots() {
-            assert_eq!(read.unwrap().knots.len() as u64, reader.totals().points, "{}", vector.name);
+            assert_eq!(read.unwrap().points.len() as u64, reader.totals().points, "{}", vector.name);
             continue;
         }
         let error = read.expect_err(&vector.name);

@@ -1,9 +1,9 @@
 //! Streams of four dimensions.
 
-use spmesh::cells4::{Cell4, Cells4, Point4};
-use spmesh::convert::Format;
-use spmesh::error::{ErrorKind, Result};
-use spmesh::stream::{
+use spmesh_convert::Format;
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_model::cells4::{Cell4, Cells4, Point4};
+use spmesh_stream::{
     Coordinates, Diagram4, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals,
 };
 

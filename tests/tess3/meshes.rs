@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use spmesh::stream::{Coordinates, Event, Kind, StreamReader};
+use spmesh_stream::{Coordinates, Event, Kind, StreamReader};
 
 use super::molecules::{Record, cloud, models, numbers, pdb};
 use crate::programs::{Folder, outcome, run};

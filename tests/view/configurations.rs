@@ -1,9 +1,9 @@
 //! Pictures of configurations: counts of what is drawn against the stream.
 
-use spmesh::config::{CentroidMesh, links};
-use spmesh::configgen::read::ConfigurationSet;
-use spmesh::stream::StreamReader;
-use spmesh::view::Options;
+use spmesh_geometry::configurations::{CentroidMesh, Knots, links};
+use spmesh_stream::ConfigurationSet;
+use spmesh_stream::StreamReader;
+use spmesh_view::Options;
 
 use super::svg::{named, parse, within};
 use super::{grid, output, picture};
@@ -26,7 +26,8 @@ fn centroid_triangulations_of_any_order_are_drawn() {
         let picture = picture(&stream, &options);
         let elements = parse(&picture.svg);
         let lower = (order > 1).then(|| &set.degrees[order - 2]);
-        let mesh = CentroidMesh::of(&set.knots, lower, &set.degrees[order - 1]).unwrap();
+        let mesh = CentroidMesh::of(&Knots::new(set.points.clone()).unwrap(), lower, &set.degrees[order - 1])
+            .unwrap();
         let drawn = |id: &str| named(&elements, id).map_or(0, |path| path.rings().len());
         assert_eq!(drawn("upper"), mesh.from_upper);
         assert_eq!(drawn("upper") + drawn("lower"), mesh.triangles.len());
@@ -47,7 +48,7 @@ fn centroid_triangulations_of_any_order_are_drawn() {
 fn links_of_sets_are_drawn() {
     let stream = stream();
     let set = set(&stream);
-    let links = links(&set.knots, &set.degrees[1]).unwrap();
+    let links = links(&Knots::new(set.points.clone()).unwrap(), &set.degrees[1]).unwrap();
     let link = links.iter().find(|link| !link.is_infinite() && link.polygon.len() > 4).unwrap();
     let options = Options { set: Some(vec![link.set[1], link.set[0]]), ..Options::new("knots") };
     let elements = parse(&picture(&stream, &options).svg);

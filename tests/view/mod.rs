@@ -7,9 +7,9 @@ mod pixels;
 mod shapes;
 mod svg;
 
-use spmesh::error::Result;
-use spmesh::stream::StreamReader;
-use spmesh::view::{Moments, Options, Picture, draw};
+use spmesh_core::error::Result;
+use spmesh_stream::StreamReader;
+use spmesh_view::{Moments, Options, Picture, draw};
 
 use crate::programs::{outcome, run};
 

@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use spmesh::stream::{Event, StreamReader};
-use spmesh::view::{Moments, Options};
+use spmesh_stream::{Event, StreamReader};
+use spmesh_view::{Moments, Options};
 
 use super::svg::{named, parse, within};
 use super::{grid, mesh_of, output, pictures, triangles};

@@ -1,14 +1,14 @@
 //! Pixels against what plain arithmetic says of their places.
 
 use resvg::tiny_skia::Pixmap;
-use spmesh::stream::Coordinates;
-use spmesh::view::{Fill, Form, Moments, Options, Picture};
+use spmesh_stream::Coordinates;
+use spmesh_view::{Fill, Form, Moments, Options, Picture};
 
 use super::svg::{lightness, named, parse};
 use super::{mesh_of, picture, pictures};
 use crate::dem::Mesh;
 use crate::programs::cloud;
-use crate::reference::sets::{Random, uniform};
+use spmesh_reference::sets::{Random, uniform};
 
 /// A picture as pixels.
 fn pixels(picture: &Picture) -> Pixmap {

@@ -6,20 +6,23 @@ use num_bigint::BigInt;
 
 use super::disk::Disk;
 use super::tree::Tree;
-use crate::audit::exact::dyadic::integers;
-use crate::audit::exact::plane::{in_circle, in_raised_circle, orientation};
-use crate::config::{Configurations, Knots};
-use crate::error::{Error, ErrorKind, Result};
+use super::{Configurations, Knots};
+use crate::exact::dyadic::integers;
+use crate::exact::plane::{in_circle, in_raised_circle, orientation};
+use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken as the canonical
 /// triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for a small number e.
 ///
-/// Infinite configurations are not checked. Errors: the first violation (kind [`ErrorKind::Audit`]).
+/// Infinite configurations are not checked.
 ///
 /// Cost: for each configuration, the knots in boxes of a tree that its circle meets.
+///
+/// # Errors
+/// The first violation (kind [`ErrorKind::Audit`]).
 pub fn check_circles(knots: &Knots, configurations: &Configurations) -> Result<()> {
     let tree = Tree::of(knots.points());
-    for (boundary, interior) in configurations.iter() {
+    for (boundary, interior) in configurations.finite() {
         let fail = |what: String| {
             Err(Error::new(ErrorKind::Audit, what).at(format!("configuration {boundary:?}, {interior:?}")))
         };

@@ -1,7 +1,7 @@
 //! Circles of three knots, to tell in plain arithmetic where they certainly are not.
 
-use crate::audit::exact::plane::Xy;
-use crate::config::Knots;
+use super::Knots;
+use crate::exact::plane::Xy;
 
 /// Sizes between which no product underflows or overflows.
 const LEAST: f64 = 1e-70;

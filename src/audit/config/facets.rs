@@ -1,7 +1,7 @@
 //! Facet matching between the configurations of two degrees.
 
-use crate::config::{Configurations, FARAWAY};
-use crate::error::{Error, ErrorKind, Result};
+use super::{Configurations, FARAWAY};
+use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// Facets (F, J) by the three cases of proposition 6.2.1; the number of edge configurations is their sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -24,9 +24,10 @@ struct Rows {
 /// Checks that every facet of `lower` and `upper`, of degrees k and k + 1, has exactly two configurations, in one of the
 /// three ways of proposition 6.2.1. Facets with the faraway point count like others.
 ///
-/// Errors: degrees that do not follow each other; the first facet that violates it (kind [`ErrorKind::Audit`]).
-///
 /// Cost: a sort of 3 (c_k + c_(k+1)) rows of k + 4 words, held in memory.
+///
+/// # Errors
+/// Degrees that do not follow each other; the first facet that violates it (kind [`ErrorKind::Audit`]).
 pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<FacetCounts> {
     if upper.degree() != lower.degree() + 1 {
         let (low, high) = (lower.degree(), upper.degree());
@@ -34,7 +35,7 @@ pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<Fa
     }
     let mut rows = Rows { width: upper.degree() + 3, words: Vec::new() };
     for group in lower.groups() {
-        for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
+        for &[a, b, c] in group.boundaries {
             for [v, p, q] in [[a, b, c], [b, c, a], [c, a, b]] {
                 if v != FARAWAY {
                     rows.push(group.interior, Some(v), [p, q], 0)?;
@@ -48,7 +49,8 @@ pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<Fa
 
 /// Checks the same of degree 0 alone: every edge has a triangle on each side.
 ///
-/// Errors: another degree; the first edge that violates it (kind [`ErrorKind::Audit`]).
+/// # Errors
+/// Another degree; the first edge that violates it (kind [`ErrorKind::Audit`]).
 pub fn check_start(start: &Configurations) -> Result<FacetCounts> {
     if start.degree() != 0 {
         return Err(Error::usage(format!("degree {} is not that of a triangulation", start.degree())));
@@ -61,7 +63,7 @@ pub fn check_start(start: &Configurations) -> Result<FacetCounts> {
 impl Rows {
     fn push_upper(&mut self, upper: &Configurations) -> Result<()> {
         for group in upper.groups() {
-            for &[a, b, c] in group.triangles.iter().chain(group.infinite) {
+            for &[a, b, c] in group.boundaries {
                 for edge in [[a, b], [b, c], [c, a]] {
                     self.push(group.interior, None, edge, 2)?;
                 }

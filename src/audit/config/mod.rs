@@ -1,17 +1,26 @@
-//! Checks of configurations, which know the arrays but none of the code that fills them.
+//! Checks of configurations, with knots, ranks and arrays of their own: none of the code that makes configurations is used.
 //!
 //! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word: what splines need, by whatever rule
 //! the configurations were made. [`check_circles`] is the definition of Delaunay configurations, [`check_centroids`] what
 //! makes centroid triangulations planar. [`StreamAudit`] asks all of it of a stream.
 
 mod circles;
+mod configurations;
 mod disk;
 mod facets;
+mod knots;
 mod planar;
+mod set;
 mod stream;
 mod tree;
 
 pub use circles::check_circles;
+pub use configurations::Configurations;
 pub use facets::{FacetCounts, check_facets, check_start};
+pub use knots::Knots;
 pub use planar::check_centroids;
+pub use set::ConfigurationSet;
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
+
+// Two terms of the stream format, which are data and not code.
+pub(super) use spmesh_model::configurations::{Claim, FARAWAY};

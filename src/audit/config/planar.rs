@@ -5,7 +5,7 @@
 //! edge is a facet (F, J): it joins J with either knot of F. So triangles are counterclockwise if boundaries are; and if
 //! facets match ([`super::check_facets`]), then every edge has a triangle on each side, but for those that an infinite
 //! configuration of degree k has. If these make one convex polygon that goes around once, the triangles tile it: the
-//! argument is that of [`crate::audit`].
+//! argument is that of [`crate`].
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -13,8 +13,8 @@ use std::collections::HashMap;
 use num_bigint::BigInt;
 
 use super::circles::{moved, turn};
-use crate::config::{Configurations, FARAWAY, Knots};
-use crate::error::{Error, ErrorKind, Result};
+use super::{Configurations, Knots};
+use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// A directed edge of the border, from the set `interior` + `from` to `interior` + `to`.
 #[derive(Debug)]
@@ -36,11 +36,12 @@ impl BorderEdge<'_> {
 /// polygon; edges may be in line. With matching facets, and the same of degree k - 1, that triangulation is planar. Copies
 /// of a knot count as the limit that [`Knots`] has.
 ///
-/// Errors: the first violation (kind [`ErrorKind::Audit`]).
-///
 /// Cost: an orientation per configuration, integers without limit for each infinite one.
+///
+/// # Errors
+/// The first violation (kind [`ErrorKind::Audit`]).
 pub fn check_centroids(knots: &Knots, configurations: &Configurations) -> Result<()> {
-    for (boundary, interior) in configurations.iter() {
+    for (boundary, interior) in configurations.finite() {
         let what = format!("configuration {boundary:?}, {interior:?}");
         if boundary.iter().chain(interior).any(|&id| id as usize >= knots.len()) {
             return Err(Error::new(ErrorKind::Audit, "a knot is unknown").at(what));
@@ -57,16 +58,13 @@ pub fn check_centroids(knots: &Knots, configurations: &Configurations) -> Result
 
 fn border<'a>(knots: &Knots, configurations: &'a Configurations) -> Result<Vec<BorderEdge<'a>>> {
     let mut edges = Vec::new();
-    for group in configurations.groups() {
-        for &[from, to, last] in group.infinite {
-            let ids = || [from, to].into_iter().chain(group.interior.iter().copied());
-            if last != FARAWAY || ids().any(|id| id as usize >= knots.len()) {
-                return Err(Error::new(ErrorKind::Audit, "a knot is unknown")
-                    .at(format!("infinite configuration {from}, {to}, {:?}", group.interior)));
-            }
-            // The line has its set to the left and the centroids to the right.
-            edges.push(BorderEdge { interior: group.interior, from: to, to: from });
+    for ([from, to], interior) in configurations.infinite() {
+        if [from, to].iter().chain(interior).any(|&id| id as usize >= knots.len()) {
+            return Err(Error::new(ErrorKind::Audit, "a knot is unknown")
+                .at(format!("infinite configuration {from}, {to}, {interior:?}")));
         }
+        // The line has its set to the left and the centroids to the right.
+        edges.push(BorderEdge { interior, from: to, to: from });
     }
     Ok(edges)
 }

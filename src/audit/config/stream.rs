@@ -1,17 +1,17 @@
 //! The audit of a stream of configurations: everything in it is held, and proved when it is complete.
 
-use super::{FacetCounts, check_centroids, check_circles, check_facets, check_start};
-use crate::config::{Configurations, Knots, Standing};
-use crate::configgen::read::{Collector, ConfigurationSet};
-use crate::error::{Error, ErrorKind, Result};
-use crate::stream::{Event, Header};
+use super::set::Collector;
+use super::{Claim, ConfigurationSet, Configurations, FacetCounts, Knots};
+use super::{check_centroids, check_circles, check_facets, check_start};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_stream::Event;
 
-/// Audit of one stream of configurations: give it every event, and ask for the proof.
+/// Audit of one stream of configurations: begin with the default, give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
 ///
 /// Memory: what the stream holds; and for facets, 4 (k + 4) bytes for each of three facets of each configuration of two degrees.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct StreamAudit {
     collector: Collector,
     proof: Option<std::result::Result<Proof, Violation>>,
@@ -59,12 +59,6 @@ pub struct Violation {
 }
 
 impl StreamAudit {
-    /// An audit of a stream with this header.
-    #[must_use]
-    pub fn new(header: &Header) -> Self {
-        StreamAudit { collector: Collector::new(header), proof: None }
-    }
-
     /// Takes what the next event holds.
     ///
     /// # Errors
@@ -113,7 +107,7 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
     for upper in &set.degrees {
         let degree = upper.degree();
         let violation = |claim| move |error: Error| Violation { claim, degree, message: error.to_string() };
-        let has_circles = upper.standing() == Standing::Delaunay;
+        let has_circles = upper.claim() == Claim::Delaunay;
         if has_circles {
             check_circles(knots, upper).map_err(violation("circles"))?;
         }
@@ -129,7 +123,7 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
         if let Some(lines) = lines {
             check_count(knots, upper, lines).map_err(violation("counts"))?;
         }
-        let (finite, infinite, is_counted) = (upper.len(), upper.infinite_len(), lines.is_some());
+        let (finite, infinite, is_counted) = (upper.finite_len(), upper.infinite_len(), lines.is_some());
         proof.degrees.push(DegreeProof { degree, finite, infinite, has_circles, facets, is_counted });
         lower = Some(upper);
     }
@@ -140,7 +134,7 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
 /// degrees up to k. It follows from Euler's relation of all centroid triangulations, whatever the rule (D. T. Lee's count of
 /// Voronoi vertices of order k is the Delaunay case).
 fn check_count(knots: &Knots, configurations: &Configurations, lines: usize) -> Result<()> {
-    let (next, count) = (configurations.degree() as i128 + 1, configurations.len() as i128);
+    let (next, count) = (configurations.degree() as i128 + 1, configurations.finite_len() as i128);
     let expected = 2 * next * knots.len() as i128 - next * (next + 1) - lines as i128;
     if count == expected {
         return Ok(());

@@ -1,7 +1,7 @@
 //! Points in nested boxes, to find those that a circle may contain.
 
 use super::disk::Disk;
-use crate::audit::exact::plane::Xy;
+use crate::exact::plane::Xy;
 
 /// Most points of a box without boxes inside.
 const LEAF: usize = 16;

@@ -60,8 +60,8 @@ pub use simplices::check_simplices;
 pub use stream::StreamAudit;
 pub use violation::{Claim, Violation};
 
-use crate::cells4::{Cells4, Point4};
 use cells::CellsAudit;
+use spmesh_model::cells4::{Cells4, Point4};
 
 /// What was proved, in figures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -10,7 +10,7 @@ use super::form::{check_finite, check_vertices};
 use super::sites::Sites;
 use super::space::{Facet, Roundness, Separation, Sphere};
 use super::violation::{Claim, Violation};
-use crate::cells4::Point4;
+use spmesh_model::cells4::Point4;
 
 /// Proves that simplices tile the convex hull of points, all of which are vertices, and that their spheres are empty.
 ///

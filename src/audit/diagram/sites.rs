@@ -3,8 +3,8 @@
 use num_bigint::BigInt;
 
 use super::number::{Ball, Number};
-use crate::audit::exact::dyadic::Dyadic;
-use crate::cells4::Point4;
+use crate::exact::dyadic::Dyadic;
+use spmesh_model::cells4::Point4;
 
 /// A question about points relative to one of them.
 pub(super) trait Question {

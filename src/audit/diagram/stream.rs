@@ -1,12 +1,12 @@
 //! The audit of a stream of four dimensions: everything in it is held, and proved when it is complete.
 
 use super::{Proof, Violation, check, check_simplices};
-use crate::error::{Error, Result};
-use crate::stream::{Diagram4, Event, Kind};
+use spmesh_core::error::{Error, Result};
+use spmesh_stream::{Diagram4, Event, Kind};
 
 /// Audit of one stream of cells or simplices: give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`crate::stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
 ///
 /// Memory: what the stream holds, and what [`check`] or [`check_simplices`] needs.
 #[derive(Debug)]

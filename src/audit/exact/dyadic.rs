@@ -43,7 +43,7 @@ fn scaled<const N: usize, const D: usize>(points: &[[f64; D]; N]) -> Option<[[i1
 }
 
 /// The points times a common power of two.
-pub(in crate::audit) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
+pub(crate) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
     let (dyadics, unit) = dyadics(&points);
     dyadics.map(|point| {
         point.map(|value| match value.mantissa {
@@ -63,13 +63,13 @@ pub(super) fn differences<const N: usize, const D: usize>(
 
 /// A finite f64 as `mantissa * 2^exponent`, the mantissa odd or zero.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::audit) struct Dyadic {
-    pub(in crate::audit) mantissa: i64,
-    pub(in crate::audit) exponent: i32,
+pub(crate) struct Dyadic {
+    pub(crate) mantissa: i64,
+    pub(crate) exponent: i32,
 }
 
 impl Dyadic {
-    pub(in crate::audit) fn of(value: f64) -> Self {
+    pub(crate) fn of(value: f64) -> Self {
         let bits = value.to_bits();
         let fraction = (bits & ((1 << 52) - 1)) as i64;
         let (magnitude, exponent) = match (bits >> 52 & 0x7ff) as i32 {

@@ -10,16 +10,16 @@ use super::wide::Wide;
 use super::{Decided, ROUNDING, decide, decided, power_of_two};
 
 /// A position in the plane, in stored coordinates. Both are finite.
-pub(in crate::audit) type Xy = [f64; 2];
+pub(crate) type Xy = [f64; 2];
 
 /// Whether `a`, `b`, `c` turn left (`Greater`), right (`Less`) or lie on a line (`Equal`).
-pub(in crate::audit) fn orientation(a: Xy, b: Xy, c: Xy) -> Decided {
+pub(crate) fn orientation(a: Xy, b: Xy, c: Xy) -> Decided {
     decided(filtered_orientation(a, b, c), || exact_orientation(a, b, c))
 }
 
 /// Whether `d` lies inside (`Greater`), outside (`Less`) or on (`Equal`) the circle of the counterclockwise
 /// triangle `a`, `b`, `c`.
-pub(in crate::audit) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
+pub(crate) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
     decided(filtered_in_circle(a, b, c, d), || exact_in_circle(a, b, c, d))
 }
 
@@ -31,7 +31,7 @@ pub(in crate::audit) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
 /// The in-circle determinant is linear in the lifts, so that the largest point whose coefficient is not zero
 /// decides: the coefficient of a vertex of the triangle is the orientation of the three other points with the
 /// vertex replaced by `d`; that of `d` is minus the orientation of the triangle.
-pub(in crate::audit) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
+pub(crate) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
     let mut by_rank = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
     by_rank.sort_by(|(p, _), (q, _)| lexicographic(*q, *p));
     by_rank
@@ -42,7 +42,7 @@ pub(in crate::audit) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering
 }
 
 /// Order by x, then by y.
-pub(in crate::audit) fn lexicographic(p: Xy, q: Xy) -> Ordering {
+pub(crate) fn lexicographic(p: Xy, q: Xy) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")
 }
 

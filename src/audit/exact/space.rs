@@ -10,17 +10,17 @@ use super::wide::Wide;
 use super::{Decided, ROUNDING, decide, decided, plane, power_of_two};
 
 /// A position in space, in stored coordinates. All three are finite.
-pub(in crate::audit) type Xyz = [f64; 3];
+pub(crate) type Xyz = [f64; 3];
 
 /// Whether det(b - a, c - a, d - a) is positive (`Greater`), negative (`Less`) or zero (`Equal`): seen from `d`, the
 /// triangle `a`, `b`, `c` is counterclockwise, clockwise, or flat.
-pub(in crate::audit) fn orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Decided {
+pub(crate) fn orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Decided {
     decided(filtered_orientation(a, b, c, d), || exact_orientation(a, b, c, d))
 }
 
 /// Whether `e` lies inside (`Greater`), outside (`Less`) or on (`Equal`) the sphere of the positive tetrahedron
 /// `a`, `b`, `c`, `d`.
-pub(in crate::audit) fn in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Decided {
+pub(crate) fn in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Decided {
     decided(filtered_in_sphere(a, b, c, d, e), || exact_in_sphere(a, b, c, d, e))
 }
 
@@ -31,7 +31,7 @@ pub(in crate::audit) fn in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Dec
 /// The in-sphere determinant is linear in the lifts, so that the largest point whose coefficient is not zero
 /// decides: the coefficient of a vertex of the tetrahedron is the orientation of the tetrahedron with the vertex
 /// replaced by `e`; that of `e` is minus the orientation of the tetrahedron, which is not zero.
-pub(in crate::audit) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
+pub(crate) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
     let mut by_rank =
         [(a, [e, b, c, d]), (b, [a, e, c, d]), (c, [a, b, e, d]), (d, [a, b, c, e]), (e, [b, a, c, d])];
     by_rank.sort_by(|(p, _), (q, _)| lexicographic(*q, *p));
@@ -43,13 +43,13 @@ pub(in crate::audit) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz)
 }
 
 /// Whether `a`, `b` and `c` lie on a line: they do in all three projections.
-pub(in crate::audit) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
+pub(crate) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).all(|sign| sign == Ordering::Equal)
 }
 
 /// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is counterclockwise seen from,
 /// for any infinitesimal e: whether the first component of its normal that is not zero is positive.
-pub(in crate::audit) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
+pub(crate) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
 }
 
@@ -62,7 +62,7 @@ fn normal_signs(a: Xyz, b: Xyz, c: Xyz) -> impl Iterator<Item = Ordering> {
 }
 
 /// Order by x, then by y, then by z.
-pub(in crate::audit) fn lexicographic(p: Xyz, q: Xyz) -> Ordering {
+pub(crate) fn lexicographic(p: Xyz, q: Xyz) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")
 }
 
@@ -80,7 +80,7 @@ fn estimated_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> (f64, f64) {
 }
 
 /// The sign of det(b - a, c - a, d - a) that plain f64 arithmetic finds, rounding as it may.
-pub(in crate::audit) fn float_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Ordering {
+pub(crate) fn float_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Ordering {
     sign_of(estimated_orientation(a, b, c, d).0)
 }
 
@@ -129,7 +129,7 @@ fn estimated_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> (f64, f64, f64
 }
 
 /// The sign of the in-sphere determinant that plain f64 arithmetic finds, rounding as it may.
-pub(in crate::audit) fn float_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
+pub(crate) fn float_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
     sign_of(estimated_in_sphere(a, b, c, d, e).0)
 }
 

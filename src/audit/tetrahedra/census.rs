@@ -10,19 +10,17 @@ use super::Corner;
 use super::faces::SeenFaces;
 use super::hull::Hull;
 use super::live::{EDGES, FACETS, edge};
-use crate::audit::Standard;
-use crate::audit::check::{Ledger, Violation};
-use crate::audit::exact::space::{
-    float_in_sphere, float_orientation, in_raised_sphere, in_sphere, orientation,
-};
-use crate::audit::facets::{Meeting, OpenFacets, increasing};
-use crate::audit::unused::Unused;
-use crate::audit::vertices::Vertices;
-use crate::stream::{Event, Patch};
+use crate::Standard;
+use crate::check::{Ledger, Violation};
+use crate::exact::space::{float_in_sphere, float_orientation, in_raised_sphere, in_sphere, orientation};
+use crate::facets::{Meeting, OpenFacets, increasing};
+use crate::unused::Unused;
+use crate::vertices::Vertices;
+use spmesh_stream::{Event, Patch};
 
 /// Counts the faults of a tetrahedral mesh: give it every event, and ask for the figures.
 ///
-/// Domain: the events of a stream of tetrahedra from a [`crate::stream::StreamReader`], however wrong the mesh is.
+/// Domain: the events of a stream of tetrahedra from a [`spmesh_stream::StreamReader`], however wrong the mesh is.
 ///
 /// Memory: as for the audit, the edges and facets between live vertices, and 4 bytes per tetrahedron.
 pub struct Census {

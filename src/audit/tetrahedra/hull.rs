@@ -27,10 +27,10 @@ use std::convert::Infallible;
 use foldhash::fast::RandomState;
 
 use super::Corner;
-use crate::audit::check::{Check, Ledger, Violation};
-use crate::audit::corner::{name_corners, named};
-use crate::audit::exact::plane;
-use crate::audit::exact::space::{Xyz, float_orientation, orientation};
+use crate::check::{Check, Ledger, Violation};
+use crate::corner::{name_corners, named};
+use crate::exact::plane;
+use crate::exact::space::{Xyz, float_orientation, orientation};
 
 /// Corners of the boundary.
 ///

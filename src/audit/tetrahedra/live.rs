@@ -4,14 +4,14 @@ use std::cmp::Ordering;
 
 use super::Corner;
 use super::edges::OpenEdges;
-use crate::audit::Standard;
-use crate::audit::check::{Check, Ledger, Violation};
-use crate::audit::corner::{name_corners, named};
-use crate::audit::exact::space::{faces_ahead, in_raised_sphere, in_sphere, orientation};
-use crate::audit::facets::{Meeting, OpenFacets};
-use crate::audit::vertices::{Vertex, Vertices};
-use crate::audit::winding::{Winding, corner_of};
-use crate::stream::Patch;
+use crate::Standard;
+use crate::check::{Check, Ledger, Violation};
+use crate::corner::{name_corners, named};
+use crate::exact::space::{faces_ahead, in_raised_sphere, in_sphere, orientation};
+use crate::facets::{Meeting, OpenFacets};
+use crate::vertices::{Vertex, Vertices};
+use crate::winding::{Winding, corner_of};
+use spmesh_stream::Patch;
 
 /// The corners of each facet of a positive tetrahedron, counterclockwise seen from outside; the facet opposite to
 /// corner 0 first.
@@ -23,7 +23,7 @@ pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3
 
 /// The tetrahedra around a vertex: the size of its link so far.
 #[derive(Debug, Clone, Copy, Default)]
-pub(in crate::audit) struct Star {
+pub(crate) struct Star {
     /// Tetrahedra that have the vertex.
     pub(super) tetrahedra: u64,
     /// Edges that have it.
@@ -34,7 +34,7 @@ pub(in crate::audit) struct Star {
 }
 
 /// Live vertices, open facets and their edges of the tetrahedra seen so far.
-pub(in crate::audit) struct LiveTetrahedra {
+pub(crate) struct LiveTetrahedra {
     standard: Standard,
     pub(super) vertices: Vertices<Star>,
     pub(super) facets: OpenFacets<3, Corner>,

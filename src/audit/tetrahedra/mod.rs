@@ -56,11 +56,11 @@ use super::extent::Extent;
 use super::totals::check_points;
 use super::unused::Unused;
 use super::vertices::Vertex;
-use crate::stream::{Header, Patch, Totals};
 pub use census::{Census, Faults, Figures};
 use hull::Hull;
 pub(super) use live::LiveTetrahedra;
 use live::Star;
+use spmesh_stream::{Header, Patch, Totals};
 
 /// A vertex of a tetrahedron.
 type Corner = corner::Corner<3>;

@@ -2,12 +2,12 @@
 
 use super::live::{LiveTetrahedra, Star};
 use super::{Corner, check_link};
-use crate::audit::Standard;
-use crate::audit::check::{Check, Ledger, Violation};
-use crate::audit::facets::OpenFacets;
-use crate::audit::partial::FinalSimplices;
-use crate::audit::vertices::{Vertex, Vertices};
-use crate::stream::Patch;
+use crate::Standard;
+use crate::check::{Check, Ledger, Violation};
+use crate::facets::OpenFacets;
+use crate::partial::FinalSimplices;
+use crate::vertices::{Vertex, Vertices};
+use spmesh_stream::Patch;
 
 impl FinalSimplices<3> for LiveTetrahedra {
     const NAMES: [&'static str; 2] = ["tetrahedron", "facet"];

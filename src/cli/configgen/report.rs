@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use crate::cli::rows::{Row, entries, lines, seconds};
-use crate::cli::{StatsFormat, peak_memory, say};
-use crate::configgen::{DegreeCounts, Flips, FunctionCounts, Made, Options, Report, RuleName};
-use crate::error::Result;
+use crate::rows::{Row, entries, lines, seconds};
+use crate::{StatsFormat, peak_memory, say};
+use spmesh_configgen::{DegreeCounts, Flips, FunctionCounts, Made, Options, Report, RuleName};
+use spmesh_core::error::Result;
 
 /// What the parts of a run took that are not in its report.
 pub(super) struct Times {

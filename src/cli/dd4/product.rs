@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::cells4::Point4;
-use crate::convert::Format;
-use crate::dd4::{Form, Product};
-use crate::error::{Error, Result};
-use crate::source::points4::{From4, Request, Selection, Spacing, read_points4};
-use crate::spacetime::Rule;
+use spmesh_convert::Format;
+use spmesh_core::error::{Error, Result};
+use spmesh_dd4::{Form, Product};
+use spmesh_geometry::spacetime::Rule;
+use spmesh_io::source::points4::{From4, Request, Selection, Spacing, read_points4};
+use spmesh_model::cells4::Point4;
 
 /// Examples for the end of the help.
 pub const EXAMPLES: &str = "  Simplices, for programs that take nothing else:

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::cli::rows::{Row, entries, lines, seconds};
-use crate::cli::{StatsFormat, peak_memory, say};
-use crate::dd4::Report;
+use crate::rows::{Row, entries, lines, seconds};
+use crate::{StatsFormat, peak_memory, say};
+use spmesh_dd4::Report;
 
 /// What the user should know of points that coincide.
 pub(super) fn merged(report: &Report) -> Option<String> {

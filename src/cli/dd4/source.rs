@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::open_input;
-use crate::error::{Error, Result};
-use crate::source::points4::{
+use crate::open_input;
+use spmesh_core::error::{Error, Result};
+use spmesh_io::source::points4::{
     Condition, From4, Points4, RawLayout, Request, Selection, Share, Spacing, parse_sizes, read_points4,
 };
 

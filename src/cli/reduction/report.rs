@@ -1,20 +1,20 @@
 //! The figures of `--stats`.
 
-use crate::cli::{StatsFormat, peak_memory, say};
-use crate::reduce::Stats;
+use crate::{StatsFormat, peak_memory, say};
+use spmesh_reduce::Stats;
 
 /// What `--stats` tells.
-pub(in crate::cli) struct Report {
-    pub(in crate::cli) stats: Stats,
-    pub(in crate::cli) output_bytes: u64,
-    pub(in crate::cli) seconds: f64,
+pub(crate) struct Report {
+    pub(crate) stats: Stats,
+    pub(crate) output_bytes: u64,
+    pub(crate) seconds: f64,
     /// What simplices are called.
-    pub(in crate::cli) simplices: &'static str,
+    pub(crate) simplices: &'static str,
 }
 
 impl Report {
     /// Prints the figures on stderr.
-    pub(in crate::cli) fn print(&self, format: StatsFormat) {
+    pub(crate) fn print(&self, format: StatsFormat) {
         match format {
             StatsFormat::Text => say(&text_report(self)),
             StatsFormat::Json => say(&format!("{}\n", json_report(self))),

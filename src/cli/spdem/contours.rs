@@ -6,14 +6,14 @@ use std::time::Instant;
 use clap::Args;
 
 use super::{Flags, FormatFlag, TOOL};
-use crate::cli::progress::Progress;
-use crate::cli::reduction::open_stream;
-use crate::cli::rows::{self, Row};
-use crate::cli::{cells, notice, peak_memory};
-use crate::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::stream::Crs;
+use crate::progress::Progress;
+use crate::reduction::open_stream;
+use crate::rows::{self, Row};
+use crate::{cells, notice, peak_memory};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_stream::Crs;
+use spmesh_terrain::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
 
 /// What is said where memory that is needed cannot be had.
 pub(super) const OUT_OF_MEMORY: &str =

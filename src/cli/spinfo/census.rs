@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::{Faults, Figures};
+use spmesh_audit::{Faults, Figures};
 
 /// A line per kind of fault; those that arithmetic finds with their share, exactly and in plain floating point.
 pub(super) fn text(figures: &Figures) -> String {

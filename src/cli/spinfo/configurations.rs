@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::DegreeSurvey;
-use crate::audit::config::{DegreeProof, Proof, Violation};
-use crate::error::Error;
-use crate::stream::standing_name;
+use spmesh_audit::DegreeSurvey;
+pub use spmesh_audit::config::{DegreeProof, Proof, Violation};
+use spmesh_core::error::Error;
+use spmesh_stream::claim_name;
 
 type Verdict = Result<Proof, Violation>;
 
@@ -13,9 +13,8 @@ type Verdict = Result<Proof, Violation>;
 pub(super) fn figures(degrees: &[DegreeSurvey]) -> impl Iterator<Item = (String, String)> + '_ {
     degrees.iter().map(|degree| {
         let DegreeSurvey { finite, infinite, groups, .. } = degree;
-        let standing = standing_name(degree.standing);
-        let value =
-            format!("{finite} configurations ({standing}), {infinite} infinite, {groups} interior sets");
+        let claim = claim_name(degree.claim);
+        let value = format!("{finite} configurations ({claim}), {infinite} infinite, {groups} interior sets");
         (format!("degree {}", degree.degree), value)
     })
 }
@@ -25,7 +24,7 @@ pub(super) fn figures_json(degrees: &[DegreeSurvey]) -> Value {
     let degrees = degrees.iter().map(|degree| {
         json!({
             "degree": degree.degree,
-            "standing": standing_name(degree.standing),
+            "standing": claim_name(degree.claim),
             "finite": degree.finite,
             "infinite": degree.infinite,
             "interior_sets": degree.groups,

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::audit::diagram::{Proof, Violation};
-use crate::error::Error;
+use spmesh_audit::diagram::{Proof, Violation};
+use spmesh_core::error::Error;
 
 type Verdict = Result<Proof, Violation>;
 

@@ -3,13 +3,12 @@
 use serde_json::{Value, json};
 
 use super::{census, configurations, diagram};
-use crate::audit::config;
-use crate::audit::diagram::{Proof, Violation};
-use crate::audit::{Figures, Report, Survey, shortest};
-use crate::bounds::Point;
-use crate::error::Error;
-use crate::source::crs_name;
-use crate::stream::{Coordinates, Crs, Header, Kind};
+use spmesh_audit::diagram::{Proof, Violation};
+use spmesh_audit::{Figures, Report, Survey, shortest};
+use spmesh_core::error::Error;
+use spmesh_io::source::crs_name;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Crs, Header, Kind};
 
 /// Everything that is known of a stream after it was read.
 pub(super) struct Summary<'a> {
@@ -19,7 +18,7 @@ pub(super) struct Summary<'a> {
     pub(super) audit: Option<Report>,
     pub(super) census: Option<&'a Figures>,
     pub(super) diagram: Option<&'a Result<Proof, Violation>>,
-    pub(super) configurations: Option<&'a Result<config::Proof, config::Violation>>,
+    pub(super) configurations: Option<&'a Result<configurations::Proof, configurations::Violation>>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
 }

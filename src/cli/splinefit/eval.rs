@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, say};
-use crate::cli::cells::{self, CellFlags, RasterFlags};
-use crate::cli::{Common, progress::Progress};
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::raster::RasterFormat;
-use crate::source::{Input, SourceOptions};
-use crate::splinefit::{self, Attribute, Spline};
+use crate::cells::{self, CellFlags, RasterFlags};
+use crate::{Common, progress::Progress};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_io::raster::RasterFormat;
+use spmesh_io::source::{Input, SourceOptions};
+use spmesh_splinefit::{Attribute, Spline};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
@@ -92,9 +92,10 @@ impl Flags {
         let options = SourceOptions { dims: 2, ..SourceOptions::default() };
         let sites = Input::open(&[sites.to_path_buf()], &options)?;
         let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
-        let counts = splinefit::write_values(&spline, self.kind.into(), &sites, &mut output, |count| {
-            progress.set(count);
-        });
+        let counts =
+            spmesh_splinefit::write_values(&spline, self.kind.into(), &sites, &mut output, |count| {
+                progress.set(count);
+            });
         let [count, outside] = counts?;
         output.commit()?;
         drop(progress);
@@ -113,10 +114,18 @@ impl Flags {
         let done = |row| progress.set(row);
         let threads = self.threads.get();
         let outside = match format {
-            None => splinefit::write_table(&spline, attribute, &grid, &mut output, done),
+            None => spmesh_splinefit::write_table(&spline, attribute, &grid, &mut output, done),
             Some(format) => {
                 let options = self.raster.options(format)?;
-                splinefit::write_raster(&spline, attribute, &grid, &options, threads, &mut output, done)
+                spmesh_splinefit::write_raster(
+                    &spline,
+                    attribute,
+                    &grid,
+                    &options,
+                    threads,
+                    &mut output,
+                    done,
+                )
             }
         }?;
         output.commit()?;

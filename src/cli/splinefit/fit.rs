@@ -8,15 +8,15 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, report, say};
-use crate::bounds::Bounds;
-use crate::cli::{Common, StatsFormat, open_input, parse_box, progress::Progress};
-use crate::error::{Error, Result};
-use crate::fit::Loss;
-use crate::output::Output;
-use crate::source::{
+use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_io::source::{
     Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
 };
-use crate::splinefit::{self, Fitted, Options, Points, Smoothing};
+use spmesh_model::bounds::Bounds;
+use spmesh_splinefit::{Fitted, Options, Points, Smoothing};
+use spmesh_splines::fitting::Loss;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
@@ -142,11 +142,14 @@ impl Flags {
         points.notices().iter().for_each(|text| say(common, text));
         let knots = self.knots(common)?;
         let progress = RefCell::new(Progress::new(common, "fitting", None));
-        let fitted = splinefit::fit(&points, knots, &options, &|read| progress.borrow_mut().set(read))?;
+        let fitted =
+            spmesh_splinefit::fit(&points, knots, &options, &|read| progress.borrow_mut().set(read))?;
         drop(progress);
         fitted.spline.write(&mut output)?;
         let output_bytes = output.bytes_written();
-        list(residuals, |list| splinefit::write_residuals(&fitted.spline, &points, options.threads, list))?;
+        list(residuals, |list| {
+            spmesh_splinefit::write_residuals(&fitted.spline, &points, options.threads, list)
+        })?;
         let rejected = list(rejected, |list| fitted.write_rejected(&points, &options, list))?;
         output.commit()?;
         self.report(common, &fitted, rejected, started, output_bytes);

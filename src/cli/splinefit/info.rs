@@ -8,12 +8,12 @@ use serde_json::{Map, Value, json};
 
 use super::report::{outside, residual_rows};
 use super::{Threads, check_stdin, say};
-use crate::cli::Common;
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::raster::Window;
-use crate::source::{SourceOptions, crs_name};
-use crate::splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
+use crate::Common;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_io::raster::Window;
+use spmesh_io::source::{SourceOptions, crs_name};
+use spmesh_splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
 
 /// Folds that are listed for people.
 const LISTED: usize = 5;

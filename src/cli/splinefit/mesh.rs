@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::source::name_of;
-use crate::splinefit::{ControlMesh, Spline};
-use crate::stream::StreamReader;
-use crate::view::{self, Moments, Options, Picture};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_io::source::name_of;
+use spmesh_splinefit::{ControlMesh, Spline};
+use spmesh_stream::StreamReader;
+use spmesh_view::{Moments, Options, Picture};
 
 #[derive(Debug, Clone, Args)]
 pub(super) struct Flags {
@@ -51,6 +51,6 @@ impl Flags {
             let written = output.write_all(picture.svg.as_bytes());
             written.map_err(|error| Error::io("writing the picture", error))
         };
-        view::draw(&mut reader, &options, Moments::default(), &mut take, |_| {})
+        spmesh_view::draw(&mut reader, &options, Moments::default(), &mut take, |_| {})
     }
 }

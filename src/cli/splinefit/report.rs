@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use serde_json::{Map, Value, json};
 
-use crate::cli::rows::{Row, entries, lines, seconds};
-use crate::cli::{StatsFormat, peak_memory, say};
-use crate::splinefit::{Fitted, PERCENTILES, Report, Spline, Statistics};
+use crate::rows::{Row, entries, lines, seconds};
+use crate::{StatsFormat, peak_memory, say};
+use spmesh_splinefit::{Fitted, PERCENTILES, Report, Spline, Statistics};
 
 /// What the user should know.
 pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
@@ -144,7 +144,7 @@ pub(super) fn residual_rows(residuals: &Statistics) -> Vec<Row<f64>> {
 fn details(report: &Report) -> Map<String, Value> {
     let mut details = Map::new();
     if let Some(search) = &report.search {
-        let round = |round: &crate::fit::Round| {
+        let round = |round: &spmesh_splines::fitting::Round| {
             json!({
                 "knots": round.knots, "functions": round.functions, "residual_max": round.greatest,
                 "residual_rms": round.root_mean_square, "above": round.above,
@@ -153,7 +153,8 @@ fn details(report: &Report) -> Map<String, Value> {
         details.insert("rounds".into(), search.rounds.iter().map(round).collect());
     }
     if let Some(choice) = report.chosen.as_ref().and_then(|chosen| chosen.choice.as_ref()) {
-        let trial = |trial: &crate::fit::Trial| json!({"lambda": trial.lambda, "score": trial.score});
+        let trial =
+            |trial: &spmesh_splines::fitting::Trial| json!({"lambda": trial.lambda, "score": trial.score});
         details.insert("trials".into(), choice.trials.iter().map(trial).collect());
     }
     details

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use crate::error::{Error, Result};
-use crate::output::Output;
-use crate::view::Picture;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::output::Output;
+use spmesh_view::Picture;
 
 /// What `--format` can say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -3,8 +3,8 @@
 use std::io::{self, Read, Write};
 use std::path::Path;
 
-use crate::error::Result;
-use crate::output::Output;
+use spmesh_core::error::Result;
+use spmesh_core::output::Output;
 
 /// An input whose bytes go to stdout, too.
 pub(super) struct Tee<R> {

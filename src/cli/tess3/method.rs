@@ -5,9 +5,9 @@ use std::fmt;
 use clap::{Args, ValueEnum};
 
 use super::selection::Switch;
-use crate::error::{Error, Result};
-use crate::order::{Curve, Sequence};
-use crate::tess3::{Arithmetic, Method};
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::order::{Curve, Sequence};
+use spmesh_tess3::{Arithmetic, Method};
 
 /// How the kernel works. With exact arithmetic none of these changes the triangulation.
 #[derive(Debug, Clone, Args)]

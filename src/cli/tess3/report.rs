@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::cli::rows::{Row, entries, lines, seconds};
-use crate::cli::{StatsFormat, peak_memory, say};
-use crate::tess3::{Arithmetic, Method, Report, Stats};
+use crate::rows::{Row, entries, lines, seconds};
+use crate::{StatsFormat, peak_memory, say};
+use spmesh_tess3::{Arithmetic, Method, Report, Stats};
 
 /// What the user should know of a model: nothing, mostly.
 pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {

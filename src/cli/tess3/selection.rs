@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::{Args, ValueEnum};
 
-use crate::source::structure::{Altlocs, Atoms, Models, Selection};
+use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selection};
 
 /// Which atoms are triangulated.
 #[derive(Debug, Clone, Args)]

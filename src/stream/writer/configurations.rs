@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
-use crate::error::Result;
-use crate::stream::ConfigurationBlock;
+use crate::ConfigurationBlock;
+use spmesh_core::error::Result;
 
 /// Words from which a block takes no further configuration.
 const WORDS: usize = POINTS_PAYLOAD / 4;
@@ -28,7 +28,7 @@ impl<W: Write> StreamWriter<W> {
         self.configuration_rules.block(block, self.totals.points)?;
         if self.waiting.as_ref().is_none_or(|waiting| waiting.block.degree != block.degree) {
             self.flush_configurations()?;
-            let empty = ConfigurationBlock::new(block.degree, block.standing);
+            let empty = ConfigurationBlock::new(block.degree, block.claim);
             self.waiting = Some(Waiting { block: empty, is_news: true });
         }
         for (interior, boundaries) in block.groups() {

@@ -3,10 +3,10 @@
 use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
-use crate::cells4::{Cell4, Point4};
-use crate::error::{Error, Result};
-use crate::stream::cell_words::INFINITE;
-use crate::stream::check_value;
+use crate::cell_words::INFINITE;
+use crate::check_value;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::cells4::{Cell4, Point4};
 
 impl<W: Write> StreamWriter<W> {
     /// Appends points of four dimensions, with a value for each if the header says that points have one. Every NaN says

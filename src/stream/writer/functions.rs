@@ -3,9 +3,9 @@
 use std::io::Write;
 
 use super::{POINTS_PAYLOAD, StreamWriter, Tag};
-use crate::config::special::Function;
-use crate::error::Result;
-use crate::stream::functions;
+use crate::functions;
+use spmesh_core::error::Result;
+use spmesh_model::functions::Function;
 
 impl<W: Write> StreamWriter<W> {
     /// Appends functions as sums of B-splines; all configurations must have been written before.

@@ -1,0 +1,55 @@
+//! What a stream of configurations holds, as far as the audit is concerned.
+
+use super::{Configurations, Knots};
+use crate::exact::plane::Xy;
+use spmesh_core::error::Result;
+use spmesh_stream::Event;
+
+/// Knots and their configurations, to be proved by [`super::check`].
+#[derive(Debug, Clone, Default)]
+pub struct ConfigurationSet {
+    /// The knots, in stored coordinates.
+    pub knots: Knots,
+    /// Configurations, by increasing degree.
+    pub degrees: Vec<Configurations>,
+}
+
+/// Gathers knots and configurations from events; what else a stream holds is left out.
+#[derive(Debug, Default)]
+pub(super) struct Collector {
+    points: Vec<Xy>,
+    degrees: Vec<Configurations>,
+}
+
+impl Collector {
+    /// Takes what the next event holds.
+    ///
+    /// # Errors
+    /// If there are too many configurations to hold.
+    pub(super) fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => self.points.extend(points.iter().map(|&[x, y, _]| [x, y])),
+            Event::Configurations(block) => {
+                let degree = block.degree as usize;
+                if self.degrees.last().is_none_or(|last| last.degree() != degree) {
+                    self.degrees.push(Configurations::new(degree, block.claim));
+                }
+                if let Some(last) = self.degrees.last_mut() {
+                    block
+                        .groups()
+                        .try_for_each(|(interior, boundaries)| last.extend(interior, boundaries))?;
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Everything gathered.
+    ///
+    /// # Errors
+    /// As [`Knots::new`].
+    pub(super) fn finish(self) -> Result<ConfigurationSet> {
+        Ok(ConfigurationSet { knots: Knots::new(self.points)?, degrees: self.degrees })
+    }
+}

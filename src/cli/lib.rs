@@ -1,0 +1,189 @@
+//! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
+
+mod cells;
+pub mod configgen;
+pub mod dd4;
+pub mod progress;
+mod reduction;
+mod rows;
+pub mod spconvert;
+pub mod spdelaunay2d;
+pub mod spdelaunay3d;
+pub mod spdem;
+pub mod spfinalize;
+pub mod spinfo;
+#[cfg(feature = "splines")]
+pub mod splinefit;
+#[cfg(feature = "view")]
+pub mod spview;
+pub mod tess3;
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser};
+
+use spmesh_core::error::{Error, ErrorKind};
+use spmesh_core::system;
+use spmesh_model::bounds::Bounds;
+
+/// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
+///
+/// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
+pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
+    let flags = match Flags::try_parse_from(join_stats_format(std::env::args_os())) {
+        Ok(flags) => flags,
+        Err(message) => {
+            let code = match message.print() {
+                Ok(()) => message.exit_code() as u8,
+                Err(error) => Error::io("printing", error).exit_code(),
+            };
+            return ExitCode::from(code);
+        }
+    };
+    system::widen_pipe(&std::io::stdin());
+    system::widen_pipe(&std::io::stdout());
+    let tool = Flags::command().get_name().to_string();
+    match run(flags) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            let code = error.downcast_ref::<Error>().map_or(1, Error::exit_code);
+            if code != ErrorKind::ClosedPipe.exit_code() {
+                say(&format!("{tool}: {error:#}\n"));
+            }
+            ExitCode::from(code)
+        }
+    }
+}
+
+/// Makes `--stats json` one argument. For clap the format must be joined to its flag (`--stats=json`), or
+/// `--stats FILE` would take the file for a format. Behind `--` there are only files.
+fn join_stats_format(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut joined: Vec<OsString> = Vec::new();
+    let mut only_files = false;
+    for argument in arguments {
+        only_files |= argument == "--";
+        let is_format = !only_files && (argument == "text" || argument == "json");
+        match joined.last_mut() {
+            Some(last) if is_format && last == "--stats" => {
+                last.push("=");
+                last.push(argument);
+            }
+            _ => joined.push(argument),
+        }
+    }
+    joined
+}
+
+/// Flags that every tool has.
+#[derive(Debug, Clone, Args)]
+pub struct Common {
+    /// Say nothing on stderr but errors
+    #[arg(short, long, global = true)]
+    pub quiet: bool,
+
+    /// Show progress: on a terminal, never, or as JSON lines on stderr
+    #[arg(long, value_enum, default_value_t = progress::When::Auto, global = true)]
+    pub progress: progress::When,
+}
+
+/// Prints a message for the user on stderr, with the tool's name before it.
+pub fn notice(tool: &str, common: &Common, message: &str) {
+    if !common.quiet {
+        say(&format!("{tool}: {message}\n"));
+    }
+}
+
+/// Prints on stderr. That nobody listens there is no reason to fail, unlike for `eprint!`.
+pub(crate) fn say(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// How `--stats` is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum StatsFormat {
+    /// A table for people.
+    Text,
+    /// One JSON object.
+    Json,
+}
+
+/// A size with a unit, in bytes: `512M`, `2G`, `65536`. K, M and G are powers of 1024.
+///
+/// # Errors
+/// If it is not a positive number with one of the units.
+pub fn parse_size(text: &str) -> Result<u64, String> {
+    let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let unit: u64 = match text[digits.len()..].to_ascii_uppercase().as_str() {
+        "" | "B" => 1,
+        "K" | "KB" | "KIB" => 1 << 10,
+        "M" | "MB" | "MIB" => 1 << 20,
+        "G" | "GB" | "GIB" => 1 << 30,
+        unit => return Err(format!("unknown unit {unit:?}, expected K, M or G")),
+    };
+    let number: f64 = digits.parse().map_err(|_| format!("{text:?} is not a size like 512M"))?;
+    let bytes = number * unit as f64;
+    if (1.0..9e18).contains(&bytes) { Ok(bytes as u64) } else { Err(format!("{text:?} is out of range")) }
+}
+
+/// `N` numbers between commas.
+///
+/// # Errors
+/// If there are others, or something else.
+pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
+    let found = numbers.len();
+    numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
+}
+
+/// A box of space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or one of the plane, MINX,MINY,MAXX,MAXY, which is infinitely high.
+///
+/// # Errors
+/// If the text is anything else.
+pub fn parse_box(text: &str) -> Result<Bounds, String> {
+    if text.split(',').count() == 6 {
+        let [x, y, z, max_x, max_y, max_z] = parse_numbers(text)?;
+        return Ok(Bounds { min: [x, y, z], max: [max_x, max_y, max_z] });
+    }
+    let [x, y, max_x, max_y] =
+        parse_numbers(text).map_err(|message| format!("{message}, or 6 with those of z"))?;
+    Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
+}
+
+/// More threads than these are used if they are asked for only: each costs memory.
+const THREADS_DEFAULT_MAX: usize = 8;
+
+/// The number of threads asked for, or one per core, at most 8.
+fn threads(asked: Option<u16>) -> NonZeroUsize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from).min(THREADS_DEFAULT_MAX);
+    NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)
+}
+
+/// Peak resident memory of this process in bytes; 0 where the system does not tell.
+#[must_use]
+pub fn peak_memory() -> u64 {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return 0 };
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()).unwrap_or(0) * 1024
+}
+
+/// Opens a stream input: stdin for `-`, a file otherwise; with the name that messages use.
+///
+/// # Errors
+/// If the file cannot be opened, or stdin is a terminal.
+pub fn open_input(path: &PathBuf) -> spmesh_core::error::Result<(Box<dyn std::io::Read + Send>, String)> {
+    use std::io::IsTerminal;
+    if path.as_os_str() == "-" {
+        if std::io::stdin().is_terminal() {
+            return Err(Error::usage("stdin is a terminal: give a file or pipe a stream in (see --help)"));
+        }
+        return Ok((Box::new(std::io::stdin()), "stdin".into()));
+    }
+    let name = path.display().to_string();
+    let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
+    Ok((Box::new(file), name))
+}

@@ -1,0 +1,67 @@
+//! Seeded random numbers.
+
+/// A sequence of random numbers that depends on the seed alone (SplitMix64 of Steele, Lea and Flood, 2014).
+#[derive(Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The sequence of a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Random {
+        Random(seed)
+    }
+
+    /// The next 64 bits.
+    #[inline(always)]
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    /// A number below `end`, each as likely as the others (Lemire 2019); `end` must not be 0.
+    pub fn below(&mut self, end: u64) -> u64 {
+        let biased = end.wrapping_neg() % end;
+        loop {
+            let product = u128::from(self.bits()) * u128::from(end);
+            if product as u64 >= biased {
+                return (product >> 64) as u64;
+            }
+        }
+    }
+
+    /// Puts items in random order, each as likely as the others (Fisher and Yates; Durstenfeld, 1964).
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last as u64 + 1) as usize);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_below_the_end_is_about_as_frequent() {
+        let mut random = Random::new(7);
+        let mut counts = [0; 6];
+        (0..6000).for_each(|_| counts[random.below(6) as usize] += 1);
+        assert!(counts.iter().all(|count| (850..1150).contains(count)), "{counts:?}");
+        assert_eq!(Random::new(1).below(1), 0);
+    }
+
+    #[test]
+    fn every_order_is_about_as_frequent() {
+        let mut random = Random::new(3);
+        let mut counts = std::collections::BTreeMap::new();
+        for _ in 0..6000 {
+            let mut items = [0, 1, 2];
+            random.shuffle(&mut items);
+            *counts.entry(items).or_insert(0) += 1;
+        }
+        assert_eq!(counts.len(), 6);
+        assert!(counts.values().all(|count| (850..1150).contains(count)), "{counts:?}");
+    }
+}

@@ -1,0 +1,68 @@
+//! Temporary files.
+
+mod records;
+
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+pub use records::Records;
+
+/// A file without a name, so that nothing is left of it however the process ends.
+#[derive(Debug)]
+pub struct TemporaryFile {
+    file: File,
+    /// What messages call it.
+    name: String,
+}
+
+impl TemporaryFile {
+    /// An empty file in `folder`, or in the system's folder for temporary files.
+    ///
+    /// # Errors
+    /// If it cannot be created.
+    pub fn create(folder: Option<&Path>) -> Result<TemporaryFile> {
+        let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
+        let name = format!("temporary file in {}", folder.display());
+        let file = tempfile::tempfile_in(&folder).map_err(|e| Error::io("creating it", e).of_input(&name))?;
+        Ok(TemporaryFile { file, name })
+    }
+
+    /// The file itself, to be written and read in order.
+    pub fn file(&self) -> &File {
+        &self.file
+    }
+
+    /// What messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The file without its name.
+    pub fn into_file(self) -> File {
+        self.file
+    }
+
+    /// Writes bytes at a place; `what` is being done then, for messages.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_at(&self, what: &str, bytes: &[u8], offset: u64) -> Result<()> {
+        self.file.write_all_at(bytes, offset).map_err(|e| self.error(what, e))
+    }
+
+    /// Reads as many bytes as there is room for from a place; `what` is being done then, for messages.
+    ///
+    /// # Errors
+    /// If it cannot be read, or has not so many.
+    pub fn read_at(&self, what: &str, bytes: &mut [u8], offset: u64) -> Result<()> {
+        self.file.read_exact_at(bytes, offset).map_err(|e| self.error(what, e))
+    }
+
+    /// What failed with the file.
+    pub fn error(&self, what: &str, cause: io::Error) -> Error {
+        Error::io(what, cause).of_input(&self.name)
+    }
+}

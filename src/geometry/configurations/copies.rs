@@ -1,0 +1,134 @@
+//! Copies of knots, inserted one by one into the triangulation of the first knots of all places (Bowyer, 1981; Watson, 1981).
+
+use super::knots::Knots;
+use super::plane::Plane;
+use super::surface::{Corner, Start};
+use crate::predicates::TotalPredicates;
+use foldhash::{HashMap, HashMapExt};
+use spmesh_core::random::Random;
+use std::collections::BTreeMap;
+
+/// Knots at one place that are in the triangulation, by rank.
+type Present = BTreeMap<u32, u32>;
+
+impl Start {
+    /// Inserts all knots of a rank above 0.
+    ///
+    /// The edge to the nearest knot of P(e) will be there, so a triangle around that one is in conflict. Copies come in random
+    /// order: then stars are small on average, those of nearest knots as well, as a knot is nearest to five others at most. In
+    /// the order of ranks, each copy would take over a large part of the star of the one before.
+    ///
+    /// Cost: O(n log n) expected for n knots, whatever the number of places.
+    pub(super) fn insert_copies(&mut self, knots: &Knots) {
+        let mut predicates = TotalPredicates::default();
+        let mut plane = Plane::new(knots, None, &mut predicates);
+        let mut corner_at = self.corners_at(knots.len());
+        let place = |id: u32| knots.at(id).map(|c| if c == 0.0 { 0 } else { c.to_bits() });
+        let mut copies: Vec<u32> = (0..knots.len() as u32).filter(|&id| knots.rank(id) > 0).collect();
+        let mut present: HashMap<[u64; 2], Present> = HashMap::with_capacity(copies.len());
+        for &id in &copies {
+            present.insert(place(id), Present::new());
+        }
+        for id in (0..knots.len() as u32).filter(|&id| knots.rank(id) == 0) {
+            if let Some(present) = present.get_mut(&place(id)) {
+                present.insert(0, id);
+            }
+        }
+        Random::new(copies.len() as u64).shuffle(&mut copies);
+        for id in copies {
+            let Some(present) = present.get_mut(&place(id)) else { continue };
+            let conflict = nearest(present, knots.rank(id)).and_then(|near| {
+                let mut around = self.star(corner_at[near as usize]).map(|corner| corner / 3);
+                around.find(|&t| plane.is_in_conflict(self.triangles[t as usize], id))
+            });
+            debug_assert!(conflict.is_some(), "the edge to the nearest knot is in the triangulation");
+            if let Some(first) = conflict {
+                self.insert(&mut plane, id, first, &mut corner_at);
+            }
+            present.insert(knots.rank(id), id);
+        }
+    }
+
+    /// For each knot a corner at it; `Corner::MAX` if it is not in the triangulation.
+    fn corners_at(&self, count: usize) -> Vec<Corner> {
+        let mut corner_at = vec![Corner::MAX; count];
+        for (t, triangle) in (0..).zip(&self.triangles) {
+            for (i, &v) in (0..).zip(triangle) {
+                if let Some(corner) = corner_at.get_mut(v as usize) {
+                    *corner = 3 * t + i;
+                }
+            }
+        }
+        corner_at
+    }
+
+    /// The corners at the vertex of a corner, counterclockwise.
+    pub(super) fn star(&self, first: Corner) -> impl Iterator<Item = Corner> + '_ {
+        let mut next = Some(first);
+        std::iter::from_fn(move || {
+            let corner = next?;
+            let (t, i) = (corner as usize / 3, corner as usize % 3);
+            // The edge opposite to the following vertex ends at this one; beyond it, this is the vertex after.
+            let beyond = self.across[t][(i + 1) % 3];
+            let after = beyond - beyond % 3 + (beyond % 3 + 1) % 3;
+            next = (after != first).then_some(after);
+            Some(corner)
+        })
+    }
+
+    /// Replaces the triangles in conflict with a knot by a star around it.
+    ///
+    /// All knots stay vertices, so that the cavity has none inside, and its triangles are a tree: none is met twice.
+    fn insert(&mut self, plane: &mut Plane<TotalPredicates>, id: u32, first: u32, corner_at: &mut [Corner]) {
+        let [a, b, c] = self.triangles[first as usize];
+        let [across_a, across_b, across_c] = self.across[first as usize];
+        // Edges to look across, the cavity to the left of them; the last comes first.
+        let mut waiting = vec![(c, a, across_b), (b, c, across_a), (a, b, across_c)];
+        let mut free = vec![first];
+        let mut ring: Option<[u32; 2]> = None;
+        while let Some((from, to, beyond)) = waiting.pop() {
+            let (t, i) = (beyond as usize / 3, beyond as usize % 3);
+            if plane.is_in_conflict(self.triangles[t], id) {
+                let tip = self.triangles[t][i];
+                waiting.push((tip, to, self.across[t][(i + 2) % 3]));
+                waiting.push((from, tip, self.across[t][(i + 1) % 3]));
+                free.push(t as u32);
+                continue;
+            }
+            let fresh = free.pop().unwrap_or_else(|| self.push());
+            self.triangles[fresh as usize] = [id, from, to];
+            self.set_across(3 * fresh, beyond);
+            for (i, v) in [(0, id), (1, from), (2, to)] {
+                if let Some(corner) = corner_at.get_mut(v as usize) {
+                    *corner = 3 * fresh + i;
+                }
+            }
+            if let Some([_, last]) = ring {
+                self.set_across(3 * last + 1, 3 * fresh + 2);
+            }
+            ring = Some([ring.map_or(fresh, |[start, _]| start), fresh]);
+        }
+        debug_assert!(free.is_empty(), "a vertex brings two triangles");
+        if let Some([start, last]) = ring {
+            self.set_across(3 * last + 1, 3 * start + 2);
+        }
+    }
+
+    /// The number of a new triangle.
+    fn push(&mut self) -> u32 {
+        self.triangles.push([0; 3]);
+        self.across.push([0; 3]);
+        self.triangles.len() as u32 - 1
+    }
+}
+
+/// Of the knots at one place that are present, the nearest to that of a rank. A knot of rank j lies at (j, j²), so it is the
+/// next of lesser or the next of greater rank.
+fn nearest(present: &Present, rank: u32) -> Option<u32> {
+    let square = |other: u32| {
+        let (difference, sum) = (u128::from(rank.abs_diff(other)), u128::from(rank) + u128::from(other));
+        difference * difference * (1 + sum * sum)
+    };
+    let neighbours = [present.range(..rank).next_back(), present.range(rank..).next()];
+    neighbours.into_iter().flatten().min_by_key(|&(&other, _)| square(other)).map(|(_, &id)| id)
+}

@@ -1,0 +1,117 @@
+//! Knots: points with ids, of which several may be at one place.
+//!
+//! # Repeated knots
+//!
+//! Configurations are combinatorial: a knot that is there twice is two knots. To tell copies apart, the set is taken as the
+//! limit of P(e) for e > 0 that goes to 0, where the knot of *rank* j is at `p + e (j, j * j)`; the rank is the number of
+//! knots at the same place with lesser ids. For e small enough the knots of P(e) are distinct, and every sign is that of the
+//! first coefficient of a polynomial in e that is not zero (`symbolic`). What is left undecided are knots of P(e) on one
+//! circle or line, as in any set of distinct points, and the canonical perturbation of lifts decides it, by the lexicographic
+//! order of P(e). So the result is what is right for an ordinary set of points, which then moves together: nothing of the
+//! theory has to be redone. Triangles of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
+//!
+//! Copies lie on a parabola, no three on a line; and no four on a circle, which would need abscissae with the sum zero.
+
+use crate::delaunay2::{MAX_POINTS, distinct};
+use crate::predicates::{Point2, Sign, lexicographic};
+use spmesh_core::error::{Error, Result};
+use std::cmp::Ordering;
+
+/// Knots by id. Those at one place differ in rank.
+#[derive(Debug, Clone, Default)]
+pub struct Knots {
+    points: Vec<Point2>,
+    /// Ranks by id; empty if no two knots are at one place.
+    ranks: Vec<u32>,
+}
+
+impl Knots {
+    /// Knots at `points`, with the indices as ids.
+    ///
+    /// Errors: a coordinate that is not finite, more than [`MAX_POINTS`] knots. Cost: a sort.
+    pub fn new(points: Vec<Point2>) -> Result<Knots> {
+        if points.len() > MAX_POINTS {
+            let found = points.len();
+            return Err(Error::usage(format!("{found} knots, at most {MAX_POINTS} can be handled")));
+        }
+        if let Some(bad) = points.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
+            let message = format!("coordinate is not finite: {:?}", points[bad]);
+            return Err(Error::malformed(message).at(format!("knot {bad}")));
+        }
+        let representatives = distinct(&points);
+        let is_copy = |(id, &first): (usize, &u32)| first != id as u32;
+        let mut ranks = Vec::new();
+        if representatives.iter().enumerate().any(is_copy) {
+            let mut copies = vec![0; points.len()];
+            for first in representatives {
+                ranks.push(copies[first as usize]);
+                copies[first as usize] += 1;
+            }
+        }
+        Ok(Knots { points, ranks })
+    }
+
+    /// Positions by id.
+    #[must_use]
+    pub fn points(&self) -> &[Point2] {
+        &self.points
+    }
+
+    /// Number of knots, copies included.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Whether there is no knot.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Whether two knots are at one place.
+    #[must_use]
+    pub fn has_copies(&self) -> bool {
+        !self.ranks.is_empty()
+    }
+
+    /// Number of knots of lesser id at the place of knot `id`.
+    #[inline]
+    #[must_use]
+    pub fn rank(&self, id: u32) -> u32 {
+        self.ranks.get(id as usize).copied().unwrap_or(0)
+    }
+
+    /// Position of knot `id`, which is not [`FARAWAY`].
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, id: u32) -> Point2 {
+        self.points[id as usize]
+    }
+
+    /// Lexicographic order of P(e), as polynomials in e: abscissa, its displacement, ordinate, its displacement.
+    #[must_use]
+    pub fn order(&self, a: u32, b: u32) -> Ordering {
+        let (p, q) = (self.at(a), self.at(b));
+        if !self.has_copies() {
+            return lexicographic(p, q);
+        }
+        lexicographic([p[0]], [q[0]])
+            .then(self.rank(a).cmp(&self.rank(b)))
+            .then_with(|| lexicographic([p[1]], [q[1]]))
+    }
+
+    /// The error of a set of knots that has no triangle.
+    pub(super) fn collinear() -> Error {
+        Error::usage("the knots lie on one line: configurations need three that do not")
+    }
+}
+
+/// The opposite sign.
+pub(super) fn opposite(sign: Sign) -> Sign {
+    match sign {
+        Sign::Negative => Sign::Positive,
+        Sign::Zero => Sign::Zero,
+        Sign::Positive => Sign::Negative,
+    }
+}

@@ -1,0 +1,264 @@
+//! Segments that a triangulation must have as edges: a constrained Delaunay triangulation, by flips.
+//!
+//! Edges that cross a segment are flipped until none is left (Sloan, "A fast algorithm for generating constrained Delaunay
+//! triangulations", Computers & Structures 47, 1993), then what is new is made Delaunay again as far as segments allow.
+
+use crate::configurations::knots::Knots;
+use crate::configurations::plane::Plane;
+use crate::configurations::surface::{Around, Corner, Start};
+use crate::delaunay2::distinct;
+use crate::predicates::{Sign, TotalPredicates};
+use foldhash::{HashSet, HashSetExt};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_model::configurations::FARAWAY;
+use std::collections::VecDeque;
+
+/// A triangulation with edges that stay.
+pub(super) struct Constrained<'a> {
+    start: Start,
+    plane: Plane<'a, TotalPredicates>,
+    /// A corner at each knot.
+    corner_at: Vec<Corner>,
+    /// Edges that stay, the lesser end first.
+    fixed: HashSet<[u32; 2]>,
+}
+
+/// Where a segment leads first: the next knot on it, and the edges that it crosses before, the right end first.
+struct Passage {
+    to: u32,
+    crossed: Vec<[u32; 2]>,
+}
+
+impl<'a> Constrained<'a> {
+    pub(super) fn new(knots: &'a Knots, start: Start, predicates: &'a mut TotalPredicates) -> Self {
+        let plane = Plane::new(knots, None, predicates);
+        let mut all = Constrained { start, plane, corner_at: vec![0; knots.len()], fixed: HashSet::new() };
+        (0..all.start.triangles.len() as u32).for_each(|triangle| all.note(triangle));
+        all
+    }
+
+    /// The triangulation.
+    pub(super) fn into_start(self) -> Start {
+        self.start.generalised()
+    }
+
+    /// Makes the segment between two knots an edge that stays; the knots on the way from `a` to `b`, both included: where
+    /// others lie on the segment, it is several edges.
+    ///
+    /// Errors: a segment that crosses another. Cost: the square of the number of edges it crosses, which is small for all
+    /// segments that one has in mind.
+    pub(super) fn fix(&mut self, a: u32, b: u32) -> Result<Vec<u32>> {
+        let mut path = vec![a];
+        let mut from = a;
+        while from != b {
+            let Some(Passage { to, crossed }) = self.passage(from, b) else {
+                return Err(stuck([a, b]));
+            };
+            if let Some(&[c, d]) = crossed.iter().find(|&&edge| self.is_fixed(edge)) {
+                return Err(self.crossing([a, b], [c, d]));
+            }
+            let fresh = self.clear([from, to], crossed)?;
+            self.fixed.insert([from.min(to), from.max(to)]);
+            self.restore(fresh);
+            path.push(to);
+            from = to;
+        }
+        Ok(path)
+    }
+
+    /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment goes through.
+    /// Of knots at one place it names the first: others may be copies that nobody knows of.
+    #[cold]
+    fn crossing(&self, ends: [u32; 2], edge: [u32; 2]) -> Error {
+        let firsts = distinct(self.plane.knots.points());
+        let [c, d] = edge.map(|id| firsts[id as usize]);
+        let (c, d) = (c.min(d), c.max(d));
+        if c == d {
+            return through(ends, c);
+        }
+        let what = format!("it crosses the one from knot {c} to knot {d}");
+        Error::usage(format!("{what}: add a knot where they cross, or leave one out")).at(segment(ends))
+    }
+
+    /// Whether an edge stays.
+    pub(super) fn is_fixed(&self, [a, b]: [u32; 2]) -> bool {
+        self.fixed.contains(&[a.min(b), a.max(b)])
+    }
+
+    /// The third knot of the triangle to the left of an edge; `None` if there is no such edge, or nothing to the left.
+    pub(super) fn apex(&self, a: u32, b: u32) -> Option<u32> {
+        let corner = self.corner(a, b)? as usize;
+        let apex = self.start.triangles[corner / 3][corner % 3];
+        (apex != FARAWAY).then_some(apex)
+    }
+
+    /// Puts a knot that is no vertex yet on an edge, or next to it; the two knots opposite to the edge, left and right.
+    ///
+    /// Errors: no such edge; an edge on the border; a knot that is too far from the edge.
+    pub(super) fn split(&mut self, [a, b]: [u32; 2], middle: u32) -> Result<[u32; 2]> {
+        let corner = self.corner(a, b).ok_or_else(|| stuck([a, b]))?;
+        let Some([v, _, w, _]) = self.start.quadrilateral(corner) else {
+            let what = "it is on the border of the knots: a crease there needs knots on both sides";
+            return Err(Error::usage(what).at(segment([a, b])));
+        };
+        for [p, q, r] in [[v, a, middle], [w, b, middle], [v, middle, b], [w, middle, a]] {
+            if !self.plane.is_left(p, q, r) {
+                let what = "its triangles are too flat for a knot between its ends";
+                return Err(Error::usage(what).at(segment([a, b])));
+            }
+        }
+        self.start.split(corner, middle);
+        // One of the new triangles, and with it all around the new vertex.
+        self.note(self.start.triangles.len() as u32 - 1);
+        let around: Vec<u32> = self.start.star(self.corner_at[middle as usize]).map(|c| c / 3).collect();
+        around.into_iter().for_each(|triangle| self.note(triangle));
+        self.fixed.remove(&[a.min(b), a.max(b)]);
+        self.fixed.extend([a, b].map(|end| [end.min(middle), end.max(middle)]));
+        Ok([v, w])
+    }
+
+    /// Remembers the corners of a triangle.
+    fn note(&mut self, triangle: u32) {
+        for (place, v) in (0..).zip(self.start.triangles[triangle as usize]) {
+            if let Some(corner) = self.corner_at.get_mut(v as usize) {
+                *corner = 3 * triangle + place;
+            }
+        }
+    }
+
+    /// The corner opposite to the edge from `a` to `b`, to the left of it.
+    fn corner(&self, a: u32, b: u32) -> Option<Corner> {
+        let after = |corner: Corner, steps: u32| corner - corner % 3 + (corner % 3 + steps) % 3;
+        let vertex = |corner: Corner| self.start.triangles[corner as usize / 3][corner as usize % 3];
+        let mut around = self.start.star(self.corner_at[a as usize]);
+        around.find(|&at| vertex(after(at, 1)) == b).map(|at| after(at, 2))
+    }
+
+    /// The way from `a` towards `b`, up to the next knot.
+    fn passage(&mut self, a: u32, b: u32) -> Option<Passage> {
+        let around: Vec<Corner> = self.start.star(self.corner_at[a as usize]).collect();
+        for corner in around {
+            let (t, i) = (corner as usize / 3, corner as usize % 3);
+            let [p, q] = [1, 2].map(|step| self.start.triangles[t][(i + step) % 3]);
+            if p == FARAWAY || q == FARAWAY {
+                continue;
+            }
+            for end in [p, q] {
+                if end == b || self.is_ahead(a, b, end) {
+                    return Some(Passage { to: end, crossed: Vec::new() });
+                }
+            }
+            if self.plane.orient(a, b, p) == Sign::Negative && self.plane.is_left(a, b, q) {
+                return self.walk([a, b], corner, [p, q]);
+            }
+        }
+        None
+    }
+
+    /// Whether a knot is on the ray from `a` through `b`.
+    fn is_ahead(&mut self, a: u32, b: u32, v: u32) -> bool {
+        self.plane.orient(a, b, v) == Sign::Zero && !self.plane.is_between(v, b, a)
+    }
+
+    /// From the triangle of `corner` across the edge from `p` to `q`, and on.
+    fn walk(&mut self, [a, b]: [u32; 2], corner: Corner, [mut p, mut q]: [u32; 2]) -> Option<Passage> {
+        let mut crossed = Vec::new();
+        let mut corner = corner;
+        for _ in 0..self.start.triangles.len() {
+            crossed.push([p, q]);
+            let beyond = self.start.across[corner as usize / 3][corner as usize % 3];
+            let triangle = self.start.triangles[beyond as usize / 3];
+            let v = triangle[beyond as usize % 3];
+            if v == FARAWAY {
+                return None;
+            }
+            let side = if v == b { Sign::Zero } else { self.plane.orient(a, b, v) };
+            let left_behind = match side {
+                Sign::Zero => return Some(Passage { to: v, crossed }),
+                Sign::Positive => std::mem::replace(&mut q, v),
+                Sign::Negative => std::mem::replace(&mut p, v),
+            };
+            let place = (0..).zip(triangle).find(|&(_, other)| other == left_behind)?.0;
+            corner = beyond - beyond % 3 + place;
+        }
+        None
+    }
+
+    /// Flips edges until none crosses the segment; the edges that came of it.
+    fn clear(&mut self, [a, b]: [u32; 2], crossed: Vec<[u32; 2]>) -> Result<Vec<[u32; 2]>> {
+        let mut fresh = Vec::new();
+        let count = crossed.len();
+        // Each round of the queue flips an edge at least, and each pair of crossing edges is made once at most.
+        let mut left = count.saturating_mul(count).saturating_mul(count).saturating_add(8);
+        let mut waiting: VecDeque<[u32; 2]> = crossed.into();
+        while let Some([p, q]) = waiting.pop_front() {
+            left -= 1;
+            let Some(corner) = self.corner(p, q).filter(|_| left > 0) else { return Err(stuck([a, b])) };
+            if !self.start.can_flip(&mut self.plane, corner) {
+                waiting.push_back([p, q]);
+                continue;
+            }
+            let [v, w] = self.flip(corner);
+            let is_apart = ![v, w].iter().any(|end| [a, b].contains(end));
+            if is_apart && self.plane.orient(a, b, v) != self.plane.orient(a, b, w) {
+                waiting.push_back([v, w]);
+            } else {
+                fresh.push([v, w]);
+            }
+        }
+        Ok(fresh)
+    }
+
+    /// Flips the edges given, and what is around them, until all that do not stay are Delaunay.
+    fn restore(&mut self, mut waiting: Vec<[u32; 2]>) {
+        while let Some([p, q]) = waiting.pop() {
+            let Some(corner) = self.corner(p, q).filter(|_| !self.is_fixed([p, q])) else { continue };
+            let Some([v, a, w, b]) = self.start.quadrilateral(corner) else { continue };
+            if self.plane.is_inside([v, a, b], w) && self.start.can_flip(&mut self.plane, corner) {
+                self.flip(corner);
+                waiting.extend([[v, a], [a, w], [w, b], [b, v]]);
+            }
+        }
+    }
+
+    /// The ends of the edge that is new.
+    fn flip(&mut self, corner: Corner) -> [u32; 2] {
+        let beyond = self.start.across[corner as usize / 3][corner as usize % 3];
+        self.start.flip(corner);
+        [corner / 3, beyond / 3].into_iter().for_each(|triangle| self.note(triangle));
+        let [v, _, w] = self.start.triangles[corner as usize / 3];
+        [v, w]
+    }
+}
+
+impl Start {
+    /// Puts a vertex on the edge opposite to a corner: four triangles take the place of two.
+    fn split(&mut self, corner: Corner, middle: u32) {
+        let Around { triangles: [t, u], corners: [v, a, w, b], across: [va, aw, wb, bv] } =
+            self.around(corner);
+        let (m, n) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
+        self.triangles[t as usize] = [v, a, middle];
+        self.triangles[u as usize] = [w, b, middle];
+        self.triangles.extend([[v, middle, b], [w, middle, a]]);
+        self.across.resize(self.triangles.len(), [0; 3]);
+        let inner = [(3 * t, 3 * n), (3 * t + 1, 3 * m + 2), (3 * u, 3 * m), (3 * u + 1, 3 * n + 2)];
+        let outer = [(3 * t + 2, va), (3 * u + 2, wb), (3 * m + 1, bv), (3 * n + 1, aw)];
+        inner.into_iter().chain(outer).for_each(|(here, there)| self.set_across(here, there));
+    }
+}
+
+/// Where in the input a segment is: for error messages.
+pub(super) fn segment([a, b]: [u32; 2]) -> String {
+    format!("segment from knot {a} to knot {b}")
+}
+
+/// The error of a segment with a knot on it.
+#[cold]
+pub(super) fn through(ends: [u32; 2], knot: u32) -> Error {
+    Error::usage(format!("knot {knot} is on it: name it, too, between the two")).at(segment(ends))
+}
+
+#[cold]
+fn stuck(ends: [u32; 2]) -> Error {
+    Error::new(ErrorKind::Audit, "no way leads along it through the triangulation").at(segment(ends))
+}

@@ -1,0 +1,201 @@
+//! A triangulated 3-sphere in a flat array: the tetrahedralization and one vertex at infinity (thesis 4.3).
+
+use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
+use crate::predicates::Point3;
+use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
+use spmesh_core::prefetch::prefetch;
+
+/// First of the words that say what is across.
+const ACROSS: usize = 4;
+
+/// Memory for so many is asked for at first. It costs nothing until it is touched, but to enlarge it would: uniform points
+/// have 6.8, points of a surface up to 9.
+const TETRAHEDRA_PER_VERTEX: usize = 9;
+
+/// In place of the vertices of a tetrahedron that is no longer there.
+pub(super) const DELETED: u32 = u32::MAX;
+
+/// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first vertex.
+pub(super) type Facet = u32;
+
+/// The corners of the facet opposite to each corner, so that det(a - q, b - q, c - q) > 0 for q on the inner side.
+pub(super) const CORNERS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// For a facet that is entered, and which of its [`CORNERS`] is the first one as seen by who enters: the corners in
+/// that order.
+const ENTERED: [[[usize; 3]; 3]; 4] = entered();
+
+const fn entered() -> [[[usize; 3]; 3]; 4] {
+    let mut table = [[[0; 3]; 3]; 4];
+    let mut corner = 0;
+    while corner < 4 {
+        let [f, g, h] = CORNERS[corner];
+        table[corner] = [[f, h, g], [g, f, h], [h, g, f]];
+        corner += 1;
+    }
+    table
+}
+
+/// The tetrahedron of a facet.
+#[inline(always)]
+pub(super) fn tetrahedron_of(facet: Facet) -> u32 {
+    facet & !(WORDS as u32 - 1)
+}
+
+/// Which corner of its tetrahedron a facet is opposite to.
+#[inline(always)]
+pub(super) fn corner(facet: Facet) -> usize {
+    (facet & 3) as usize
+}
+
+/// Vertices and tetrahedra. The last vertex is that at infinity.
+#[derive(Debug)]
+pub(super) struct Complex {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) tetrahedra: Vec<Tetrahedron>,
+    /// Tetrahedra that are not there: to be used before new ones are made.
+    pub(super) free: Vec<u32>,
+}
+
+impl Complex {
+    /// The first tetrahedron, positively oriented, and the four infinite ones around it.
+    pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Complex {
+        let infinite = vertices.len() as u32 - 1;
+        let outer = CORNERS.map(|corners| {
+            let [a, b, c] = corners.map(|i| first[i]);
+            [infinite, a, c, b]
+        });
+        tetrahedra.clear();
+        tetrahedra.reserve_exact(TETRAHEDRA_PER_VERTEX * vertices.len());
+        tetrahedra.push(Tetrahedron { vertices: first, across: [0; 4] });
+        tetrahedra.extend(outer.map(|vertices| Tetrahedron { vertices, across: [0; 4] }));
+        let mut complex = Complex { vertices, tetrahedra, free: Vec::new() };
+        complex.link_all();
+        complex
+    }
+
+    /// Links all facets, comparing each with each: for a few tetrahedra.
+    fn link_all(&mut self) {
+        let facets: Vec<Facet> =
+            self.words_of_tetrahedra().flat_map(|t| (0..4).map(move |i| t + i)).collect();
+        let corners = |facet: Facet| {
+            let vertices = self.corners(tetrahedron_of(facet));
+            let mut corners = CORNERS[corner(facet)].map(|i| vertices[i]);
+            corners.sort_unstable();
+            corners
+        };
+        let is_other = |f: Facet, g: Facet| f != g && corners(f) == corners(g);
+        let other = |f: Facet| facets.iter().copied().find(|&g| is_other(f, g)).expect("a closed complex");
+        let pairs: Vec<[Facet; 2]> = facets.iter().map(|&f| [f, other(f)]).collect();
+        pairs.into_iter().for_each(|[facet, other]| self.set_across(facet, other));
+    }
+
+    #[inline(always)]
+    fn words(&self) -> &[u32] {
+        cast_slice(&self.tetrahedra)
+    }
+
+    #[inline(always)]
+    fn words_mut(&mut self) -> &mut [u32] {
+        cast_slice_mut(&mut self.tetrahedra)
+    }
+
+    /// All tetrahedra, those that are not there among them.
+    pub(super) fn words_of_tetrahedra(&self) -> impl Iterator<Item = u32> + use<> {
+        (0..self.words().len() as u32).step_by(WORDS)
+    }
+
+    /// The vertex at infinity.
+    #[inline(always)]
+    pub(super) fn infinite(&self) -> u32 {
+        self.vertices.len() as u32 - 1
+    }
+
+    /// Where a vertex is.
+    #[inline(always)]
+    pub(super) fn point(&self, vertex: u32) -> Point3 {
+        self.vertices[vertex as usize].at
+    }
+
+    /// The vertices of tetrahedron `t`.
+    #[inline(always)]
+    pub(super) fn corners(&self, t: u32) -> [u32; 4] {
+        self.tetrahedra[t as usize / WORDS].vertices
+    }
+
+    /// The vertex opposite to a facet.
+    #[inline(always)]
+    pub(super) fn opposite(&self, facet: Facet) -> u32 {
+        self.words()[facet as usize]
+    }
+
+    /// Has the neighbours of the tetrahedron of a facet brought into the cache.
+    #[inline(always)]
+    pub(super) fn fetch_neighbours(&self, facet: Facet) {
+        for other in self.tetrahedra[facet as usize / WORDS].across {
+            prefetch(self.words(), other as usize);
+        }
+    }
+
+    /// The facet of the other tetrahedron.
+    #[inline(always)]
+    pub(super) fn across(&self, facet: Facet) -> Facet {
+        self.words()[facet as usize + ACROSS]
+    }
+
+    /// Says which facet of another tetrahedron is across.
+    #[inline(always)]
+    pub(super) fn set_across(&mut self, facet: Facet, other: Facet) {
+        self.words_mut()[facet as usize + ACROSS] = other;
+    }
+
+    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a is
+    /// the given vertex, in the order seen by who enters.
+    #[inline(always)]
+    pub(super) fn beyond(&self, facet: Facet, a: u32) -> [Facet; 3] {
+        let Tetrahedron { vertices, across } = &self.tetrahedra[facet as usize / WORDS];
+        let i = corner(facet);
+        let [_, g, h] = CORNERS[i];
+        let rotation = usize::from(vertices[g] == a) + 2 * usize::from(vertices[h] == a);
+        ENTERED[i][rotation].map(|corner| across[corner])
+    }
+
+    /// Makes a tetrahedron one that is not there; what was across stays.
+    #[inline(always)]
+    pub(super) fn delete(&mut self, t: u32) {
+        self.tetrahedra[t as usize / WORDS].vertices = [DELETED; 4];
+    }
+
+    /// A tetrahedron to be written.
+    #[inline(always)]
+    pub(super) fn room(&mut self) -> u32 {
+        if let Some(slot) = self.free.pop() {
+            return slot;
+        }
+        let slot = self.tetrahedra.len();
+        if slot == self.tetrahedra.capacity() {
+            self.grow();
+        }
+        self.tetrahedra.push(Tetrahedron::zeroed());
+        (slot * WORDS) as u32
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn grow(&mut self) {
+        self.tetrahedra.reserve_exact(self.tetrahedra.len() / 4);
+    }
+
+    /// Writes a tetrahedron.
+    #[inline(always)]
+    pub(super) fn write(&mut self, t: u32, vertices: [u32; 4], across: [Facet; 4]) {
+        self.tetrahedra[t as usize / WORDS] = Tetrahedron { vertices, across };
+    }
+
+    /// The facet of tetrahedron `t` on the hull, if `t` is infinite.
+    #[inline(always)]
+    pub(super) fn hull_facet(&self, t: u32) -> Option<Facet> {
+        let infinite = self.infinite();
+        self.corners(t).iter().position(|&v| v == infinite).map(|i| t + i as u32)
+    }
+}

@@ -1,0 +1,170 @@
+//! The bulk kernel in 3D: the canonical Delaunay tetrahedralization of an array of points.
+//!
+//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
+//! along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small tetrahedra
+//! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
+//! cavity, `star` what takes its place, `extract` what comes out.
+
+mod build;
+mod complex;
+mod corners;
+mod dispatch;
+mod exact;
+mod extract;
+mod insertion;
+mod lanes;
+mod locate;
+mod sight;
+mod star;
+mod stats;
+#[cfg(test)]
+mod tests;
+mod tetrahedralization;
+mod tie;
+
+pub use corners::{CornerParts, Corners};
+pub use stats::Stats;
+pub use tetrahedralization::{Corner, NONE, Tetrahedralization, Tetrahedron, Vertex};
+
+use crate::order::{Curve, Insertions, Sequence, SpatialOrder, Suffixes};
+use crate::predicates::{Arithmetic3, Extent, Point3, PredicateCounts, Predicates3, WithPredicates3};
+use build::{Build, Built};
+use insertion::Cavity;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use std::borrow::Cow;
+use std::time::Instant;
+use tie::EXACT;
+
+/// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32 bits.
+pub const MAX_POINTS: usize = 60_000_000;
+
+/// The kernel with its buffers.
+#[derive(Debug, Default)]
+pub struct Kernel {
+    cavity: Cavity,
+    counts: PredicateCounts,
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first (thesis 3.4.1).
+    pub by_bit_levels: bool,
+    /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
+    pub is_timed: bool,
+    /// Whether only instructions that every processor has are used: for tests.
+    is_portable: bool,
+}
+
+impl Kernel {
+    /// A kernel without buffers yet.
+    #[must_use]
+    pub fn new() -> Kernel {
+        Kernel::default()
+    }
+
+    /// Tetrahedralizes `points` into `mesh`, whose buffers are used again. Points that are given away are freed as soon as
+    /// they are copied.
+    ///
+    /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one of
+    /// least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input of every kind is
+    /// fine: cospherical points are triangulated canonically, and points in a plane give no tetrahedra.
+    ///
+    /// Errors: a coordinate that is not finite, too many points: the mesh is as it was then; too many tetrahedra, which
+    /// not even [`MAX_POINTS`] points have unless they are quite special.
+    ///
+    /// Cost: O(n) for points that are spread evenly in space, about 250 bytes per point.
+    pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
+        if points.len() > MAX_POINTS {
+            let message =
+                format!("{} points in one piece, the kernel takes at most {MAX_POINTS}", points.len());
+            return Err(Error::usage(message));
+        }
+        let extent = Extent::of(&points);
+        if !extent.finite {
+            let bad = points.iter().position(|p| !p.iter().all(|c| c.is_finite())).unwrap_or_default();
+            return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
+                .at(format!("point {bad}")));
+        }
+        mesh.clear();
+        let started = Instant::now();
+        self.take_sorted(points, &extent, mesh);
+        let insertions = self.insertions(&mesh.vertices);
+        mesh.stats.order = started.elapsed();
+        let started = Instant::now();
+        // The vertex at infinity.
+        mesh.vertices.push(Vertex::default());
+        let build = Build {
+            infinite_lift: infinite_lift(&extent, mesh.vertices.len()),
+            vertices: std::mem::take(&mut mesh.vertices),
+            tetrahedra: std::mem::take(&mut mesh.tetrahedra),
+            cavity: &mut self.cavity,
+            stats: &mut mesh.stats,
+            is_timed: self.is_timed,
+            is_portable: self.is_portable,
+            insertions,
+        };
+        (mesh.vertices, mesh.tetrahedra) = match Arithmetic3::of(&extent).run(build, &mut self.counts) {
+            Built::Complex(mut complex) => {
+                mesh.hull_facets = extract::extract(&mut complex);
+                (complex.vertices, complex.tetrahedra)
+            }
+            Built::Flat(mut vertices, tetrahedra) => {
+                vertices.pop();
+                (vertices, tetrahedra)
+            }
+            Built::TooMany => {
+                mesh.clear();
+                let limit = build::TETRAHEDRA_MAX;
+                return Err(Error::new(
+                    ErrorKind::Io,
+                    format!("more than {limit} tetrahedra, the kernel's maximum"),
+                ));
+            }
+        };
+        mesh.stats.insertion = started.elapsed();
+        Ok(())
+    }
+
+    /// Fills the vertices with the distinct points in order along the curve.
+    fn take_sorted(&self, points: Cow<[Point3]>, extent: &Extent<3>, mesh: &mut Tetrahedralization) {
+        let mut order = SpatialOrder::default();
+        mesh.vertices.reserve_exact(points.len() + 1);
+        for index in order.sort(&points, extent, self.curve) {
+            let at = points[index as usize];
+            match mesh.vertices.last() {
+                Some(last) if last.at == at => mesh.duplicates.push([index, last.index]),
+                _ => mesh.vertices.push(Vertex { at, index, local: 0 }),
+            }
+        }
+    }
+
+    fn insertions(&self, vertices: &[Vertex]) -> Insertions {
+        if !self.by_bit_levels {
+            return self.sequence.of(vertices.len());
+        }
+        let points: Vec<Point3> = vertices.iter().map(|vertex| vertex.at).collect();
+        self.sequence.by_levels(&points, Suffixes::MostCommon)
+    }
+
+    /// Decisions of the predicates in all runs of this kernel so far.
+    #[must_use]
+    pub fn counts(&self) -> &PredicateCounts {
+        &self.counts
+    }
+}
+
+impl WithPredicates3 for Build<'_> {
+    type Output = Built;
+
+    fn with(self, predicates: &mut impl Predicates3) -> Built {
+        dispatch::run(self, predicates)
+    }
+}
+
+/// The lift of the vertex at infinity: of about the size of those of neighbours, so that it does not spoil the bound
+/// of the filter.
+fn infinite_lift(extent: &Extent<3>, vertices: usize) -> f64 {
+    let side = (extent.max_difference() / (vertices as f64).powf(0.4)).clamp(1e-75, 1e75);
+    let lift = side * side;
+    if extent.integral { lift.round().clamp(1.0, EXACT / 2.0) } else { lift }
+}

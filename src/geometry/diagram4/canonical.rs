@@ -1,0 +1,54 @@
+//! The order of cells that depends on the diagram only.
+
+use spmesh_model::cells4::{Cell4, Cells4};
+
+/// How far ahead memory is fetched.
+const AHEAD: usize = 8;
+
+/// Finite cells first, both kinds by their vertices; neighbours renumbered.
+///
+/// Domain: vertices in increasing order, neighbours in any.
+pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
+    let order = order(unordered);
+    let mut places = vec![0; order.len()];
+    for (place, &number) in (0u32..).zip(&order) {
+        places[number as usize] = place;
+    }
+    let mut cells = Cells4::with_room(unordered.len(), unordered.numbers());
+    let mut neighbours = Vec::new();
+    for (place, &number) in order.iter().enumerate() {
+        if let Some(&later) = order.get(place + AHEAD) {
+            unordered.fetch(later as usize);
+        }
+        let cell = unordered.get(number as usize);
+        neighbours.clear();
+        neighbours.extend(cell.neighbours.iter().map(|&other| places[other as usize]));
+        neighbours.sort_unstable();
+        cells.push(Cell4 { neighbours: &neighbours, ..cell });
+    }
+    cells
+}
+
+/// The numbers of the cells in order.
+fn order(cells: &Cells4) -> Vec<u32> {
+    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices have room if they
+    // have 21 bits, otherwise two of 31, and what the last bit would tell is left to the cell.
+    let greatest = cells.iter().filter_map(|cell| cell.vertices.last().copied()).max().unwrap_or_default();
+    let is_narrow = greatest < 1 << 21;
+    let key = |number: u32| {
+        let cell = cells.get(number as usize);
+        let vertex = |i: usize| u64::from(cell.vertices[i]);
+        let first = if is_narrow {
+            vertex(0) << 42 | vertex(1) << 21 | vertex(2)
+        } else {
+            vertex(0) << 31 | vertex(1) >> 1
+        };
+        (u64::from(cell.is_infinite) << 63 | first, number)
+    };
+    let mut keys: Vec<(u64, u32)> = (0..cells.len() as u32).map(key).collect();
+    let vertices = |number: u32| cells.get(number as usize).vertices;
+    keys.sort_unstable_by(|&(key, a), &(other, b)| {
+        key.cmp(&other).then_with(|| vertices(a).cmp(vertices(b)))
+    });
+    keys.into_iter().map(|(_, number)| number).collect()
+}

@@ -1,0 +1,87 @@
+//! The numbers that spheres are kept in.
+
+use std::fmt::Debug;
+
+/// A coefficient of a sphere: as narrow as coordinates allow, because memory is what insertions wait for.
+pub(in crate::diagram4) trait Coefficient: Copy + Debug + Default + PartialOrd {
+    /// What the sphere of a simplex that is dead has in the place of the determinant.
+    const DEAD: Self;
+
+    /// A coefficient.
+    fn of(value: f64) -> Self;
+
+    /// The determinant of a simplex, which is positive.
+    fn determinant(value: f64) -> Self;
+
+    /// The coefficient as what in-sphere tests calculate with.
+    fn value(self) -> f64;
+}
+
+impl Coefficient for f64 {
+    const DEAD: f64 = -1.0;
+
+    #[inline(always)]
+    fn of(value: f64) -> f64 {
+        value
+    }
+
+    /// Only of a simplex that is almost flat it is not seen to be positive in rounded arithmetic.
+    #[inline(always)]
+    fn determinant(value: f64) -> f64 {
+        value.max(f64::MIN_POSITIVE)
+    }
+
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+}
+
+/// Exact for [`Exactness::Small`](crate::diagram4::exact::Exactness::Small).
+impl Coefficient for i32 {
+    const DEAD: i32 = -1;
+
+    #[inline(always)]
+    fn of(value: f64) -> i32 {
+        debug_assert!(value as i32 as f64 == value);
+        // Safety: coefficients of small integers are integers of 32 bits.
+        unsafe { value.to_int_unchecked() }
+    }
+
+    #[inline(always)]
+    fn determinant(value: f64) -> i32 {
+        i32::of(value)
+    }
+
+    #[inline(always)]
+    fn value(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagram4::determinant::{difference, dot, lift, sphere};
+    use crate::diagram4::exact::SMALL_MAX;
+    use spmesh_core::random::Random;
+    use spmesh_model::cells4::Point4;
+
+    /// Coefficients are greatest for simplices at the corners of the box.
+    #[test]
+    fn coefficients_of_small_integers_have_32_bits() {
+        let mut random = Random::new(1);
+        let half = SMALL_MAX / 2.0;
+        let mut greatest = 0f64;
+        for _ in 0..200_000 {
+            let corner: [Point4; 5] = std::array::from_fn(|_| {
+                std::array::from_fn(|_| [-half, half, half - 1.0, 0.0][random.below(4) as usize])
+            });
+            let [o, a, b, c, d] = corner;
+            let (n, m) = sphere([a, b, c, d].map(|p| difference(p, &o)));
+            let shifted: Point4 = std::array::from_fn(|axis| n[axis] - 2.0 * m * o[axis]);
+            let s = m * lift(&o) - dot(&n, &o);
+            greatest = [s, m].into_iter().chain(shifted).fold(greatest, |most, x| most.max(x.abs()));
+        }
+        assert!((1e8..f64::from(i32::MAX)).contains(&greatest), "{greatest}");
+    }
+}

@@ -1,0 +1,10 @@
+//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane, of space and of four dimensions.
+
+pub mod configurations;
+pub mod delaunay2;
+pub mod delaunay3;
+pub mod delaunay3_float;
+pub mod diagram4;
+pub mod order;
+pub mod predicates;
+pub mod spacetime;

@@ -1,0 +1,6 @@
+//! Files of other programs: points, meshes, molecules, volumes and rasters, read and written.
+
+mod cell_index;
+pub mod raster;
+pub mod sink;
+pub mod source;

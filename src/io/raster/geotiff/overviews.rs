@@ -1,0 +1,155 @@
+//! Overviews: the same image with half as many cells along each axis, and half of that, until it fits a tile.
+//!
+//! They are made while tiles come: a tile is reduced to a quarter of one of the next level, which waits in a temporary file until all
+//! of its quarters have come. So overviews need no second pass, and no memory to speak of.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::TILE;
+use super::tile_code::LEN;
+use spmesh_core::error::Result;
+use spmesh_core::temporary::Records;
+
+/// Level, column and row of a tile; the image itself is level 0.
+pub(super) type TileName = (usize, [usize; 2]);
+
+/// Cells along a side of a quarter.
+const HALF: usize = TILE / 2;
+/// Bytes of a quarter.
+const QUARTER_LEN: usize = HALF * HALF * LEN;
+
+/// What a cell of an overview has of the four cells that it covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reduction {
+    /// The mean of those that are known.
+    Mean,
+    /// The first one that is known: for values whose mean says nothing, such as directions.
+    First,
+}
+
+/// Number of cells along each axis, for each level.
+pub(super) fn level_sizes(mut size: [u32; 2], has_overviews: bool) -> Vec<[u32; 2]> {
+    let mut sizes = vec![size];
+    while has_overviews && size.iter().any(|&count| count as usize > TILE) {
+        size = size.map(|count| count.div_ceil(2));
+        sizes.push(size);
+    }
+    sizes
+}
+
+/// Number of tiles along each axis for so many cells.
+pub(super) fn tiles_of(size: [u32; 2]) -> [usize; 2] {
+    size.map(|count| (count as usize).div_ceil(TILE))
+}
+
+/// Tiles of overviews some of whose quarters have come.
+#[derive(Debug)]
+pub(super) struct Overviews {
+    reduction: Reduction,
+    sizes: Vec<[u32; 2]>,
+    open: HashMap<TileName, OpenTile>,
+    quarters: Records,
+}
+
+#[derive(Debug)]
+struct OpenTile {
+    record: u32,
+    /// A bit for each quarter that has come.
+    present: u8,
+}
+
+impl Overviews {
+    /// None so far, for levels of some sizes.
+    pub(super) fn new(reduction: Reduction, sizes: Vec<[u32; 2]>, temp_dir: Option<&Path>) -> Overviews {
+        let quarters = Records::new(temp_dir, 4 * QUARTER_LEN as u64);
+        Overviews { reduction, sizes, open: HashMap::new(), quarters }
+    }
+
+    /// Adds a tile to the one of the next level that it is a quarter of, and gives that one, if it is complete.
+    ///
+    /// # Errors
+    /// If the temporary file fails.
+    pub(super) fn add(
+        &mut self,
+        (level, at): TileName,
+        values: &[f32],
+    ) -> Result<Option<(TileName, Vec<f32>)>> {
+        if level + 1 >= self.sizes.len() {
+            return Ok(None);
+        }
+        let quarter = self.quarter(values, self.inside(level, at));
+        let name = (level + 1, at.map(|place| place / 2));
+        let number = at[0] % 2 + 2 * (at[1] % 2);
+        let quarters = &mut self.quarters;
+        let open = self.open.entry(name).or_insert_with(|| OpenTile { record: quarters.add(), present: 0 });
+        open.present |= 1 << number;
+        let (record, present) = (open.record, open.present);
+        let bytes = bytemuck::cast_slice(&quarter);
+        self.quarters.write(KEEPING, record, (number * QUARTER_LEN) as u64, bytes)?;
+        if present == self.expected(level, name.1) { self.take(name).map(Some) } else { Ok(None) }
+    }
+
+    /// The names of tiles of a level that are not complete, and will not become so, in rows.
+    pub(super) fn rest(&self, level: usize) -> Vec<TileName> {
+        let mut names: Vec<TileName> = self.open.keys().copied().filter(|name| name.0 == level).collect();
+        names.sort_unstable_by_key(|(_, [column, row])| [*row, *column]);
+        names
+    }
+
+    /// Takes a tile, whose quarters that have not come are empty.
+    ///
+    /// # Errors
+    /// If the temporary file fails.
+    pub(super) fn take(&mut self, name: TileName) -> Result<(TileName, Vec<f32>)> {
+        let mut values = vec![f32::NAN; TILE * TILE];
+        let Some(OpenTile { record, present }) = self.open.remove(&name) else { return Ok((name, values)) };
+        let mut quarter = vec![0f32; HALF * HALF];
+        for number in (0..4).filter(|number| present & (1 << number) != 0) {
+            let bytes = bytemuck::cast_slice_mut(&mut quarter);
+            self.quarters.read("reading overviews back", record, (number * QUARTER_LEN) as u64, bytes)?;
+            let start = number % 2 * HALF + number / 2 * HALF * TILE;
+            for (into, from) in values[start..].chunks_mut(TILE).zip(quarter.chunks_exact(HALF)) {
+                into[..HALF].copy_from_slice(from);
+            }
+        }
+        self.quarters.forget(record);
+        Ok((name, values))
+    }
+
+    /// Cells of a tile along each axis that are in the image.
+    fn inside(&self, level: usize, at: [usize; 2]) -> [usize; 2] {
+        [0, 1].map(|axis| (self.sizes[level][axis] as usize - at[axis] * TILE).min(TILE))
+    }
+
+    /// The quarters that a tile has, whose parts are tiles of `level`.
+    fn expected(&self, level: usize, [column, row]: [usize; 2]) -> u8 {
+        let [across, down] = tiles_of(self.sizes[level]);
+        let quarters = (0..4).filter(|n| 2 * column + n % 2 < across && 2 * row + n / 2 < down);
+        quarters.map(|number| 1 << number).sum()
+    }
+
+    /// A tile with half as many cells along each axis; `inside` are those that count.
+    fn quarter(&self, values: &[f32], inside: [usize; 2]) -> Vec<f32> {
+        let known = |column: usize, row: usize| {
+            let value = values[row * TILE + column];
+            (column < inside[0] && row < inside[1] && !value.is_nan()).then_some(value)
+        };
+        let reduced = |column: usize, row: usize| {
+            let cells = [[0, 0], [1, 0], [0, 1], [1, 1]];
+            let mut found = cells.iter().filter_map(|[x, y]| known(2 * column + x, 2 * row + y));
+            match self.reduction {
+                Reduction::First => found.next().unwrap_or(f32::NAN),
+                Reduction::Mean => {
+                    let (sum, count) =
+                        found.fold((0.0, 0.0), |(sum, count), value| (sum + f64::from(value), count + 1.0));
+                    (sum / count) as f32
+                }
+            }
+        };
+        (0..HALF * HALF).map(|cell| reduced(cell % HALF, cell / HALF)).collect()
+    }
+}
+
+/// What is being done when writing fails.
+const KEEPING: &str = "keeping overviews";

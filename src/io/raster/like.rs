@@ -1,0 +1,47 @@
+//! The grid of a GeoTIFF that is there already.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use tiff::decoder::Decoder;
+use tiff::tags::Tag;
+
+use super::Grid;
+use super::geotiff::{KEY_DIRECTORY, PIXEL_SCALE, TIEPOINT, is_of_points};
+use spmesh_core::error::{Error, Result};
+
+impl Grid {
+    /// The cells of a GeoTIFF.
+    ///
+    /// # Errors
+    /// If it cannot be read, is no GeoTIFF, or has cells that are not square or not along the axes.
+    pub fn of_file(path: &Path) -> Result<Grid> {
+        read(path).map_err(|error| error.of_input(path.display().to_string()))
+    }
+}
+
+fn read(path: &Path) -> Result<Grid> {
+    let file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let malformed =
+        |error: tiff::TiffError| Error::malformed(format!("this cannot be read as TIFF: {error}"));
+    let mut decoder = Decoder::new(BufReader::new(file)).map_err(malformed)?;
+    let (columns, rows) = decoder.dimensions().map_err(malformed)?;
+    let mut numbers = |tag: u16| decoder.get_tag_f64_vec(Tag::Unknown(tag)).unwrap_or_default();
+    let (scale, tie) = (numbers(PIXEL_SCALE), numbers(TIEPOINT));
+    let (&[width, height, ..], &[column, row, _, x, y, ..]) = (&scale[..], &tie[..]) else {
+        let what =
+            "it does not say where its cells are by their size and one place: warp it to a plain grid first";
+        return Err(Error::malformed(what));
+    };
+    if !(width > 0.0 && width.is_finite() && [column, row, x, y].iter().all(|number| number.is_finite())) {
+        return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
+    }
+    let keys = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
+    // A place may be that of a centre instead of a corner.
+    let half = if is_of_points(&keys) { 0.5 * width } else { 0.0 };
+    if width != height {
+        return Err(Error::usage(format!("its cells are {width} by {height}, ours are square")));
+    }
+    Ok(Grid { left: x - column * width - half, top: y + row * width + half, step: width, columns, rows })
+}

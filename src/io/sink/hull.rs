@@ -1,0 +1,94 @@
+//! The surface of a tetrahedral mesh, for formats that hold surfaces only.
+
+use std::collections::BTreeMap;
+
+use foldhash::{HashMap, HashMapExt};
+
+use super::EventSink;
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};
+
+/// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside.
+const FACETS: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+/// A facet that was met once: counterclockwise seen from outside of its tetrahedron.
+type Facet = [(u64, Point); 3];
+
+/// Hands the facets that belong to one tetrahedron only to a sink of triangle meshes. The vertices are those of these
+/// facets, in the order of their ids in the stream, numbered anew.
+///
+/// Memory: the live vertices and the facets that were met once, at the end those of the hull.
+pub struct HullSink<S> {
+    surface: S,
+    /// What notices call the format of the surface.
+    format: &'static str,
+    live: LiveVertices<Point>,
+    /// By the ids of the vertices, sorted.
+    open: HashMap<[u64; 3], Facet>,
+    facets: usize,
+}
+
+impl<S: EventSink> HullSink<S> {
+    /// A sink of tetrahedral meshes in front of `surface`, which was opened with [`surface_header`].
+    pub fn new(surface: S, format: &'static str) -> Self {
+        HullSink { surface, format, live: LiveVertices::new(), open: HashMap::new(), facets: 0 }
+    }
+
+    fn patch(&mut self, patch: &Patch) -> Result<()> {
+        let local = self.live.enter(patch, |_, point| point)?;
+        for tetrahedron in patch.tetrahedra() {
+            for facet in FACETS {
+                let facet = facet.map(|i| local[tetrahedron[i] as usize]);
+                let mut key = facet.map(|(id, _)| id);
+                key.sort_unstable();
+                if self.open.remove(&key).is_none() {
+                    self.open.insert(key, facet);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn end(&mut self) -> Result<()> {
+        let mut facets: Vec<([u64; 3], Facet)> = self.open.drain().collect();
+        facets.sort_unstable_by_key(|&(key, _)| key);
+        let vertices: BTreeMap<u64, Point> = facets.iter().flat_map(|(_, facet)| *facet).collect();
+        let numbers: HashMap<u64, u32> = vertices.keys().copied().zip(0..).collect();
+        let ids = facets.iter().flat_map(|(_, facet)| facet.map(|(id, _)| id));
+        let patch = Patch {
+            simplices: ids.map(|id| numbers[&id]).collect(),
+            finalized: (0..vertices.len() as u32).collect(),
+            new: vertices.into_values().collect(),
+            ..Patch::default()
+        };
+        self.facets = facets.len();
+        let (vertices, simplices) = (patch.new.len() as u64, facets.len() as u64);
+        self.surface.event(&Event::Patch(patch))?;
+        self.surface.event(&Event::End(Totals { points: vertices, vertices, simplices, ..Totals::default() }))
+    }
+}
+
+/// The header of the surface of the mesh that `header` describes.
+#[must_use]
+pub fn surface_header(header: &Header) -> Header {
+    Header { crs: header.crs.clone(), ..Header::new(Kind::TriangleMesh, header.coordinates, 2, true) }
+}
+
+impl<S: EventSink> EventSink for HullSink<S> {
+    fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Patch(patch) => self.patch(patch),
+            Event::End(_) => self.end(),
+            _ => Ok(()),
+        }
+    }
+
+    fn notices(&self) -> Vec<String> {
+        let mut notices = self.surface.notices();
+        let Self { format, facets, .. } = self;
+        notices
+            .push(format!("{format} holds no tetrahedra: only the {facets} facets of the hull were written"));
+        notices
+    }
+}

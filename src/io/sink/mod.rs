@@ -1,0 +1,96 @@
+//! Writers of every format that a stream can be converted to, fed with the events of a stream.
+
+mod elements;
+mod historical_cells;
+mod hull;
+mod medit;
+mod obj;
+mod ply;
+mod sma;
+mod smb;
+mod spa;
+mod spb;
+mod spm;
+mod spool;
+mod triangles;
+mod twin;
+mod twin4;
+mod twin_configurations;
+mod twin_functions;
+mod volume;
+mod vtu;
+mod world;
+
+pub use hull::{HullSink, surface_header};
+pub use medit::MeditSink;
+pub use obj::ObjSink;
+pub use ply::{PlyEncoding, PlySink};
+pub use sma::SmaSink;
+pub use smb::SmbSink;
+pub use spa::SpaSink;
+pub use spb::SpbSink;
+pub use spm::SpmSink;
+pub use twin::TwinSink;
+pub use volume::write_volume;
+pub use vtu::VtuSink;
+
+use historical_cells::HistoricalCells;
+use spmesh_core::error::{Error, Result};
+use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
+
+/// An output that takes the events of a stream, whatever its format.
+pub trait EventSink {
+    /// Writes an event; the last one is [`Event::End`], with which the output is complete and flushed.
+    ///
+    /// # Errors
+    /// If the event cannot be said in the format, or writing fails.
+    fn event(&mut self, event: &Event) -> Result<()>;
+
+    /// What of the stream was lost, for the user, after the end.
+    fn notices(&self) -> Vec<String>;
+}
+
+fn write_error(cause: std::io::Error) -> Error {
+    Error::io("writing", cause)
+}
+
+/// Refuses a stream of a kind that `format` does not hold.
+fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
+    if kinds.contains(&header.kind) {
+        return Ok(());
+    }
+    let held: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+    Err(Error::usage(format!(
+        "a stream of kind {} cannot be written as {format}, which holds {}",
+        header.kind.name(),
+        held.join(" or ")
+    )))
+}
+
+/// What a format loses that has no room for all of the header.
+fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
+    let crs = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
+    let is_grid = header.coordinates != Coordinates::F64;
+    let grid = is_grid.then(|| {
+        format!(
+            "{format} holds no integer grid: coordinates are rounded to the nearest number of 64 bits or less"
+        )
+    });
+    crs.into_iter().chain(grid).collect()
+}
+
+/// What a historical points format loses.
+fn lost_of_points(header: &Header, format: &str, cells: Option<&HistoricalCells>) -> Vec<String> {
+    let mut lost = lost_of_header(header, format);
+    match cells {
+        None if header.tree.is_some() => {
+            lost.push(format!("{format} cannot say the cells of this tree: finalization tags dropped"));
+        }
+        Some(cells) if cells.skipped() > 0 => lost.push(format!(
+            "{} finalization tags dropped: their cells are too deep for {format}",
+            cells.skipped()
+        )),
+        _ => {}
+    }
+    lost
+}

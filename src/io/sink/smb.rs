@@ -1,0 +1,115 @@
+//! Writes SMB, Isenburg's streaming mesh in binary (`formats/historical_meshes.md`).
+
+use std::io::Write;
+
+use super::elements::ElementBlocks;
+use super::triangles::{Corner, final_corners};
+use super::world::{world_bounds, world_of};
+use super::{EventSink, expect_kind, lost_of_header, write_error};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, Header, Kind, Patch};
+
+/// Version, little-endian, no compression of connectivity and geometry, no comments, unknown counts.
+const START: [u8; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff];
+
+/// Writes a triangle mesh as SMB, little-endian, vertices before their triangles.
+///
+/// SMB has coordinates of 32 bits and vertex numbers of 31 bits, and says that a vertex is final only
+/// at its last use; notices tell what that lost.
+pub struct SmbSink<W> {
+    blocks: ElementBlocks<W>,
+    header: Header,
+    vertices: u64,
+    rounded: u64,
+    open: u64,
+}
+
+impl<W: Write> SmbSink<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// Usage, if SMB does not hold the kind of stream; or if writing fails.
+    pub fn new(mut output: W, header: &Header) -> Result<Self> {
+        expect_kind(header, "SMB", &[Kind::TriangleMesh])?;
+        output.write_all(&START).map_err(write_error)?;
+        let mut bounds = vec![u8::from(header.bounds.is_some())];
+        if let Some(stored) = &header.bounds {
+            let world = world_bounds(header, stored);
+            bounds.extend(encode_point(world.min)?);
+            bounds.extend(encode_point(world.max)?);
+        }
+        output.write_all(&bounds).map_err(write_error)?;
+        let blocks = ElementBlocks::new(output);
+        Ok(SmbSink { blocks, header: header.clone(), vertices: 0, rounded: 0, open: 0 })
+    }
+
+    fn patch(&mut self, patch: &Patch) -> Result<()> {
+        for &point in &patch.new {
+            let world = world_of(&self.header, point);
+            self.rounded += u64::from(world.iter().any(|&x| f64::from(x as f32) != x));
+            self.blocks.push(true, &encode_point(world)?)?;
+        }
+        self.vertices += patch.new.len() as u64;
+        if self.vertices > i32::MAX as u64 {
+            return Err(Error::usage("more than 2^31 - 1 vertices: SMB cannot number them"));
+        }
+        let (triangles, unused) = final_corners(patch);
+        for triangle in triangles {
+            let mut element = [0; 12];
+            for (bytes, corner) in element.chunks_exact_mut(4).zip(triangle) {
+                bytes.copy_from_slice(&self.index(corner).to_le_bytes());
+            }
+            self.blocks.push(false, &element)?;
+        }
+        self.open += unused.len() as u64;
+        Ok(())
+    }
+
+    /// Number of a vertex from 1, or, at its last use, relative to the number of vertices so far.
+    fn index(&self, corner: Corner) -> i32 {
+        match corner.is_final {
+            true => -((self.vertices - corner.id) as i32),
+            false => (corner.id + 1) as i32,
+        }
+    }
+}
+
+impl<W: Write> EventSink for SmbSink<W> {
+    fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Patch(patch) => self.patch(patch),
+            Event::End(_) => self.blocks.end(),
+            _ => Ok(()),
+        }
+    }
+
+    fn notices(&self) -> Vec<String> {
+        let mut notices = lost_of_header(&self.header, "SMB");
+        if self.rounded > 0 {
+            notices.push(format!(
+                "{} of {} vertices were rounded: SMB has coordinates of 32 bits",
+                self.rounded, self.vertices
+            ));
+        }
+        if self.open > 0 {
+            notices.push(format!(
+                "{} vertices are final only at the end: SMB finalizes a vertex with its last triangle",
+                self.open
+            ));
+        }
+        notices
+    }
+}
+
+fn encode_point(world: Point) -> Result<[u8; 12]> {
+    let mut bytes = [0; 12];
+    for (bytes, x) in bytes.chunks_exact_mut(4).zip(world) {
+        let single = x as f32;
+        if single.is_infinite() {
+            return Err(Error::usage(format!("coordinate {x} is out of the range of SMB")));
+        }
+        bytes.copy_from_slice(&single.to_le_bytes());
+    }
+    Ok(bytes)
+}

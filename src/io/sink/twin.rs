@@ -1,0 +1,157 @@
+//! Writes the text twin of a stream (`formats/text.md`).
+
+use std::io::Write;
+
+use super::twin_configurations::OpenGroup;
+use super::world::{world_of, write_numbers};
+use super::{EventSink, twin_functions, twin4, write_error};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals};
+
+/// Writes the text twin.
+pub struct TwinSink<W> {
+    output: W,
+    header: Header,
+    open: OpenGroup,
+}
+
+impl<W: Write> TwinSink<W> {
+    /// Writes the header.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn new(mut output: W, header: &Header) -> Result<Self> {
+        write_header(&mut output, header)?;
+        Ok(TwinSink { output, header: header.clone(), open: OpenGroup::default() })
+    }
+
+    fn point(&mut self, start: &str, point: Point) -> Result<()> {
+        write_numbers(&mut self.output, start, &world_of(&self.header, point))
+    }
+
+    fn line(&mut self, line: std::fmt::Arguments) -> Result<()> {
+        writeln!(self.output, "{line}").map_err(write_error)
+    }
+
+    fn patch(&mut self, patch: &Patch) -> Result<()> {
+        self.line(format_args!("# patch"))?;
+        patch.new.iter().try_for_each(|&point| self.point("v", point))?;
+        if self.header.kind.vertices_per_simplex() == 4 {
+            for tetrahedron in patch.tetrahedra() {
+                let [a, b, c, d] = tetrahedron.map(|local| patch.id(local) + 1);
+                self.line(format_args!("c {a} {b} {c} {d}"))?;
+            }
+        } else {
+            for triangle in patch.triangles() {
+                let [a, b, c] = triangle.map(|local| patch.id(local) + 1);
+                self.line(format_args!("f {a} {b} {c}"))?;
+            }
+        }
+        patch.finalized.iter().try_for_each(|&local| self.line(format_args!("x {}", patch.id(local) + 1)))
+    }
+
+    fn walls(&mut self, walls: &[u32]) -> Result<()> {
+        for wall in walls.chunks_exact(self.header.kind.vertices_per_wall()) {
+            let corners: Vec<String> =
+                wall.iter().map(|&corner| (u64::from(corner) + 1).to_string()).collect();
+            self.line(format_args!("w {}", corners.join(" ")))?;
+        }
+        Ok(())
+    }
+
+    fn end(&mut self, totals: &Totals) -> Result<()> {
+        let Totals { points, cells, vertices, simplices, merged, residual_points, walls } = totals;
+        self.line(format_args!(
+            "# end points {points} cells {cells} vertices {vertices} simplices {simplices} merged {merged} \
+             residual {residual_points} walls {walls}"
+        ))?;
+        self.output.flush().map_err(write_error)
+    }
+}
+
+impl<W: Write> EventSink for TwinSink<W> {
+    fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => points.iter().try_for_each(|&point| self.point("v", point)),
+            Event::Cells(cells) => {
+                cells.iter().try_for_each(|cell| self.line(format_args!("x cell {}", cell.0)))
+            }
+            Event::Patch(patch) => self.patch(patch),
+            Event::Labels(labels) => {
+                labels.iter().try_for_each(|label| self.line(format_args!("label {label}")))
+            }
+            Event::ResidualPoints(points) => points.iter().try_for_each(|&(id, point)| match id {
+                Some(id) => self.point(&format!("r {}", id + 1), point),
+                None => self.point("r -", point),
+            }),
+            Event::Walls(walls) => self.walls(walls),
+            Event::Points4(points) => twin4::points(&mut self.output, points),
+            Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
+            Event::Simplices4(simplices) => twin4::simplices(&mut self.output, simplices),
+            Event::Configurations(block) => self.open.write(&mut self.output, block),
+            Event::Functions(functions) => twin_functions::functions(&mut self.output, functions),
+            Event::Coefficients(coefficients) => twin_functions::coefficients(&mut self.output, coefficients),
+            Event::End(totals) => self.end(totals),
+        }
+    }
+
+    fn notices(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
+    let yes_no = |yes: bool| if yes { "yes" } else { "no" };
+    let mut line = |line: std::fmt::Arguments| writeln!(output, "#spmesh {line}").map_err(write_error);
+    line(format_args!("version 1"))?;
+    line(format_args!("kind {}", header.kind.name()))?;
+    match &header.coordinates {
+        Coordinates::F64 => line(format_args!("coordinates f64"))?,
+        Coordinates::I32 { scale, offset } => {
+            line(format_args!("coordinates i32"))?;
+            line(format_args!("scale {}", numbers(scale)))?;
+            line(format_args!("offset {}", numbers(offset)))?;
+        }
+    }
+    line(format_args!("dims {}", header.dims))?;
+    line(format_args!("elevation {}", yes_no(header.has_elevation)))?;
+    if let Some(bounds) = &header.bounds {
+        line(format_args!("bounds {} {}", numbers(&bounds.min), numbers(&bounds.max)))?;
+    }
+    if let Some(points) = header.points {
+        line(format_args!("points {points}"))?;
+    }
+    if let Some(tree) = &header.tree {
+        line(format_args!("tree {} {} {}", tree.depth(), numbers(&tree.origin()), tree.side()))?;
+    }
+    if let Some(region) = &header.region {
+        let dims = usize::from(header.dims);
+        line(format_args!("region {} {}", numbers(&region.min[..dims]), numbers(&region.max[..dims])))?;
+    }
+    line(format_args!("chunked {}", yes_no(header.chunked)))?;
+    match &header.crs {
+        Crs::Unknown => {}
+        Crs::Wkt(text) => line(format_args!("wkt {}", string(text)))?,
+        Crs::GeoKeys { directory, doubles, ascii } => {
+            line(format_args!("geokeys {} {} {}", hex(directory), hex(doubles), hex(ascii)))?;
+        }
+    }
+    line(format_args!("producer {}", string(&header.producer)))
+}
+
+fn numbers(numbers: &[f64]) -> String {
+    let texts: Vec<String> = numbers.iter().map(f64::to_string).collect();
+    texts.join(" ")
+}
+
+fn string(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    if bytes.is_empty() {
+        return "-".into();
+    }
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

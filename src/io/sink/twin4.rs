@@ -1,0 +1,51 @@
+//! Lines of text twins of four dimensions (`formats/text.md`).
+
+use std::io::Write;
+
+use super::write_error;
+use spmesh_core::error::Result;
+use spmesh_core::limits::TEXT_NUMBERS_MAX;
+use spmesh_model::cells4::Cells4;
+use spmesh_stream::Points4;
+
+/// Lines `v4`.
+pub(super) fn points(output: &mut impl Write, points: &Points4) -> Result<()> {
+    for (number, [x, y, z, t]) in points.points.iter().enumerate() {
+        let written = match points.values.as_ref().map(|values| values[number]) {
+            None => writeln!(output, "v4 {x} {y} {z} {t}"),
+            Some(value) if value.is_nan() => writeln!(output, "v4 {x} {y} {z} {t} nan"),
+            Some(value) => writeln!(output, "v4 {x} {y} {z} {t} {value}"),
+        };
+        written.map_err(write_error)?;
+    }
+    Ok(())
+}
+
+/// Lines `c4` or `i4`, then `n4`, and what is too long for one of them.
+pub(super) fn cells(output: &mut impl Write, cells: &Cells4) -> Result<()> {
+    for cell in cells.iter() {
+        numbers(output, if cell.is_infinite { "i4" } else { "c4" }, cell.vertices)?;
+        numbers(output, "n4", cell.neighbours)?;
+    }
+    Ok(())
+}
+
+/// Lines `s4`.
+pub(super) fn simplices(output: &mut impl Write, simplices: &[[u32; 5]]) -> Result<()> {
+    simplices.iter().try_for_each(|simplex| numbers(output, "s4", simplex))
+}
+
+/// A line of numbers counted from 1, with further lines for those beyond what one line has.
+fn numbers(output: &mut impl Write, word: &str, numbers: &[u32]) -> Result<()> {
+    let (first, _) = numbers.split_at(numbers.len().min(TEXT_NUMBERS_MAX));
+    let rest = numbers[first.len()..].chunks(TEXT_NUMBERS_MAX).map(|numbers| ("+4", numbers));
+    for (word, numbers) in std::iter::once((word, first)).chain(rest) {
+        output.write_all(word.as_bytes()).map_err(write_error)?;
+        numbers
+            .iter()
+            .try_for_each(|&number| write!(output, " {}", u64::from(number) + 1))
+            .map_err(write_error)?;
+        output.write_all(b"\n").map_err(write_error)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,27 @@
+//! Lines of text twins of functions and coefficients of splines (`formats/text.md`).
+
+use std::io::Write;
+
+use super::twin_configurations::numbers;
+use super::write_error;
+use spmesh_core::error::Result;
+use spmesh_model::functions::Function;
+use spmesh_stream::kind_parts;
+
+/// A line `function` for each, and a line `term` for each of its B-splines.
+pub(super) fn functions(output: &mut impl Write, functions: &[Function]) -> Result<()> {
+    for function in functions {
+        let (name, knots) = kind_parts(&function.kind);
+        numbers(output, &format!("function {name}"), knots)?;
+        for ([p, q], factor) in &function.terms {
+            let [p, q] = [*p, *q].map(|knot| u64::from(knot) + 1);
+            writeln!(output, "term {p} {q} {factor}").map_err(write_error)?;
+        }
+    }
+    Ok(())
+}
+
+/// A line each.
+pub(super) fn coefficients(output: &mut impl Write, coefficients: &[f64]) -> Result<()> {
+    coefficients.iter().try_for_each(|number| writeln!(output, "coefficient {number}")).map_err(write_error)
+}

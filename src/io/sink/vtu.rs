@@ -1,0 +1,173 @@
+//! Writes VTU, the XML format of VTK for unstructured grids, with the arrays appended as raw bytes.
+//!
+//! Source: "VTK XML file formats" (docs.vtk.org). An array in the appended data is its length in bytes, here a u64,
+//! and then its values; `offset` counts from behind the underscore that starts them.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::spool::MeshSpool;
+use super::{EventSink, expect_kind, lost_of_header, write_error};
+use spmesh_core::error::Result;
+use spmesh_stream::{Event, Header, Kind, Totals};
+
+const START: &str = "\
+<?xml version=\"1.0\"?>
+<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">
+<UnstructuredGrid>
+";
+
+pub(super) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
+/// Writes points or a mesh as VTU: the vertices with their labels as the point data `label`, the simplices as cells,
+/// points as cells of one vertex. World coordinates as doubles; finalization is not written.
+///
+/// VTU states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers only.
+pub struct VtuSink<W> {
+    output: W,
+    mesh: MeshSpool,
+}
+
+/// What an array holds.
+#[derive(Clone, Copy)]
+pub(super) enum Content {
+    /// What each vertex has: labels or values.
+    Data,
+    Vertices,
+    Connectivity,
+    Offsets,
+    Types,
+}
+
+/// One array of the appended data.
+pub(super) struct Array {
+    pub(super) content: Content,
+    /// Its element, and the one around it.
+    attributes: &'static str,
+    open: &'static str,
+    close: &'static str,
+    /// Length of the values in bytes.
+    pub(super) len: u64,
+}
+
+/// Numbers and sort of the cells.
+pub(super) struct Cells {
+    pub(super) vertices: u64,
+    pub(super) cells: u64,
+    /// Vertices of a cell.
+    pub(super) corners: u64,
+    /// Number that VTK has for the sort of cell.
+    pub(super) code: u8,
+}
+
+/// What each vertex has, 8 bytes of it: the element around its array, and the array's own attributes.
+pub(super) struct Data {
+    pub(super) open: &'static str,
+    pub(super) attributes: &'static str,
+}
+
+const LABELS: Data =
+    Data { open: "<PointData Scalars=\"label\">\n", attributes: "type=\"UInt64\" Name=\"label\"" };
+
+pub(super) const VALUES: Data =
+    Data { open: "<PointData Scalars=\"value\">\n", attributes: "type=\"Float64\" Name=\"value\"" };
+
+impl<W: Write> VtuSink<W> {
+    /// Opens the temporary files, in `temp_dir` or the system's folder for them.
+    ///
+    /// # Errors
+    /// Usage, if VTU does not hold the kind of stream; I/O, if there is no room for temporary files.
+    pub fn new(output: W, header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
+        expect_kind(header, "VTU", &[Kind::Points, Kind::TriangleMesh, Kind::TetrahedralMesh])?;
+        Ok(VtuSink { output, mesh: MeshSpool::new(header, temp_dir)? })
+    }
+
+    fn end(&mut self, totals: &Totals) -> Result<()> {
+        let cells = Cells::of(self.mesh.header().kind, totals);
+        let arrays = arrays(&cells, (self.mesh.label_count > 0).then_some(LABELS));
+        self.put(head(&cells, &arrays).as_bytes())?;
+        for array in &arrays {
+            self.put(&array.len.to_le_bytes())?;
+            self.values(array.content, &cells)?;
+        }
+        self.put(END)?;
+        self.output.flush().map_err(write_error)
+    }
+
+    fn values(&mut self, content: Content, cells: &Cells) -> Result<()> {
+        match content {
+            Content::Data => self.mesh.labels.copy_to(&mut self.output),
+            Content::Vertices => self.mesh.vertices.copy_to(&mut self.output),
+            // The points of a points stream are in no simplex.
+            Content::Connectivity if cells.corners == 1 => {
+                (0..cells.cells).try_for_each(|id| self.put(&id.to_le_bytes()))
+            }
+            Content::Connectivity => self.mesh.corners.copy_to(&mut self.output),
+            Content::Offsets => {
+                (1..=cells.cells).try_for_each(|cell| self.put(&(cell * cells.corners).to_le_bytes()))
+            }
+            Content::Types => (0..cells.cells).try_for_each(|_| self.put(&[cells.code])),
+        }
+    }
+
+    fn put(&mut self, bytes: &[u8]) -> Result<()> {
+        self.output.write_all(bytes).map_err(write_error)
+    }
+}
+
+/// All that stands before the appended data.
+pub(super) fn head(cells: &Cells, arrays: &[Array]) -> String {
+    let Cells { vertices, cells: count, .. } = cells;
+    let mut text = format!("{START}<Piece NumberOfPoints=\"{vertices}\" NumberOfCells=\"{count}\">\n");
+    let mut offset = 0;
+    for Array { attributes, open, close, len, .. } in arrays {
+        text += &format!("{open}<DataArray {attributes} format=\"appended\" offset=\"{offset}\"/>\n{close}");
+        offset += 8 + len;
+    }
+    text + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_"
+}
+
+/// The arrays in the order of the appended data.
+pub(super) fn arrays(cells: &Cells, data: Option<Data>) -> Vec<Array> {
+    let array = |content, attributes, open, close, len| Array { content, attributes, open, close, len };
+    let point = "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"";
+    let corner = "type=\"Int64\" Name=\"connectivity\"";
+    let offset = "type=\"Int64\" Name=\"offsets\"";
+    let code = "type=\"UInt8\" Name=\"types\"";
+    let &Cells { vertices, cells, corners, .. } = cells;
+    let mut arrays = Vec::new();
+    if let Some(Data { open, attributes }) = data {
+        arrays.push(array(Content::Data, attributes, open, "</PointData>\n", 8 * vertices));
+    }
+    arrays.extend([
+        array(Content::Vertices, point, "<Points>\n", "</Points>\n", 24 * vertices),
+        array(Content::Connectivity, corner, "<Cells>\n", "", 8 * cells * corners),
+        array(Content::Offsets, offset, "", "", 8 * cells),
+        array(Content::Types, code, "", "</Cells>\n", cells),
+    ]);
+    arrays
+}
+
+impl Cells {
+    fn of(kind: Kind, totals: &Totals) -> Self {
+        let &Totals { points, vertices, simplices, .. } = totals;
+        match kind {
+            Kind::Points => Cells { vertices: points, cells: points, corners: 1, code: 1 },
+            Kind::TetrahedralMesh => Cells { vertices, cells: simplices, corners: 4, code: 10 },
+            _ => Cells { vertices, cells: simplices, corners: 3, code: 5 },
+        }
+    }
+}
+
+impl<W: Write> EventSink for VtuSink<W> {
+    fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::End(totals) => self.end(totals),
+            event => self.mesh.event(event),
+        }
+    }
+
+    fn notices(&self) -> Vec<String> {
+        lost_of_header(self.mesh.header(), "VTU")
+    }
+}

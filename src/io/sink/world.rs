@@ -1,0 +1,31 @@
+//! World coordinates of stored points, and their text.
+
+use std::io::Write;
+
+use super::write_error;
+use spmesh_core::error::Result;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::Header;
+
+/// World coordinates of a stored point; z is 0 where points have none, whatever scale and offset say.
+pub(super) fn world_of(header: &Header, stored: Point) -> Point {
+    let mut world = header.coordinates.to_world(stored);
+    if header.coordinates_per_point() == 2 {
+        world[2] = 0.0;
+    }
+    world
+}
+
+/// World coordinates of a box of stored points.
+pub(super) fn world_bounds(header: &Header, bounds: &Bounds) -> Bounds {
+    Bounds { min: world_of(header, bounds.min), max: world_of(header, bounds.max) }
+}
+
+/// A line of `start` and numbers, each the shortest decimal that reads back as the same f64.
+pub(super) fn write_numbers(output: &mut impl Write, start: &str, numbers: &[f64]) -> Result<()> {
+    output.write_all(start.as_bytes()).map_err(write_error)?;
+    for number in numbers {
+        write!(output, " {number}").map_err(write_error)?;
+    }
+    output.write_all(b"\n").map_err(write_error)
+}

@@ -1,0 +1,326 @@
+//! The header and variable length records of a LAS file, each length checked against the file before use.
+
+use std::io::BufReader;
+
+use las::raw;
+use laz::LazVlr;
+
+use super::laz_chunks;
+use super::origin::FileView;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::HEADER_BODY_MAX;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Coordinates, Crs};
+
+/// Length of a point record per format, without extra bytes.
+const RECORD_LENS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+
+const VLR_HEADER_LEN: u64 = 54;
+const EVLR_HEADER_LEN: u64 = 60;
+const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
+
+/// Length of the shortest header, that of LAS 1.0 to 1.2.
+const HEADER_LEN_MIN: u16 = 227;
+
+/// What reading the points needs.
+#[derive(Debug, Clone)]
+pub(super) struct LasHeader {
+    /// Point data record format, 0 to 10.
+    pub(super) format: u8,
+    /// Length of a point record in bytes.
+    pub(super) record_len: usize,
+    /// Number of point records.
+    pub(super) points: u64,
+    /// Byte at which point data starts.
+    pub(super) points_start: u64,
+    /// How the points are compressed, if they are.
+    pub(super) laz: Option<Laszip>,
+    /// Scale and offset.
+    pub(super) coordinates: Coordinates,
+    /// Bounding box as stated, in stored coordinates; `None` if it makes no sense.
+    pub(super) bounds: Option<Bounds>,
+    /// Coordinate reference system.
+    pub(super) crs: Crs,
+}
+
+/// The laszip record.
+#[derive(Debug, Clone)]
+pub(super) struct Laszip {
+    /// What the library makes of it.
+    pub(super) vlr: LazVlr,
+    /// Whether the points are in chunks. Old files have them in one piece, without a chunk table.
+    pub(super) is_chunked: bool,
+}
+
+impl LasHeader {
+    /// Reads the header of `file`. What is odd but harmless is told in `notices`.
+    ///
+    /// # Errors
+    /// If the header is damaged, of another version, or states more points than the file can hold.
+    pub(super) fn read(file: &FileView, notices: &mut Vec<String>) -> Result<LasHeader> {
+        let mut input = BufReader::new(file.range(0, file.len()));
+        let raw = raw::Header::read_from(&mut input).map_err(|e| malformed("header at byte 0", &e))?;
+        let version = (raw.version.major, raw.version.minor);
+        if version.0 != 1 || version.1 > 4 {
+            let (major, minor) = version;
+            return Err(Error::malformed(format!("LAS {major}.{minor}, expected 1.0 to 1.4")));
+        }
+        let format = raw.point_data_record_format & 0x3f;
+        let is_compressed = raw.point_data_record_format & 0xc0 != 0;
+        let record_len = usize::from(raw.point_data_record_length);
+        let least = *RECORD_LENS
+            .get(usize::from(format))
+            .ok_or_else(|| Error::malformed(format!("point format {format}, expected 0 to 10")))?;
+        if record_len < least {
+            return Err(Error::malformed(format!(
+                "point records of {record_len} bytes, format {format} needs {least}"
+            )));
+        }
+        if raw.header_size < HEADER_LEN_MIN || raw.offset_to_point_data < u32::from(raw.header_size) {
+            return Err(Error::malformed(format!(
+                "header of {} bytes with points from byte {} on: they overlap",
+                raw.header_size, raw.offset_to_point_data
+            )));
+        }
+        let records = Records::read(file, &raw, notices)?;
+        let coordinates = coordinates(&raw)?;
+        let header = LasHeader {
+            format,
+            record_len,
+            points: count(&raw, format, notices),
+            points_start: u64::from(raw.offset_to_point_data),
+            laz: records.laz(is_compressed)?,
+            coordinates,
+            bounds: stored_bounds(&raw, &coordinates),
+            crs: records.crs(raw.global_encoding & GLOBAL_ENCODING_WKT != 0, notices),
+        };
+        let evlrs_start = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0).map(|e| e.start_of_first_evlr);
+        let points_end = evlrs_start.filter(|&start| start > header.points_start).unwrap_or(u64::MAX);
+        header.check_len(file, points_end.min(file.len()), notices)?;
+        Ok(header)
+    }
+
+    /// Refuses a file that ends before its last stated point, before any of them is used, and tells of bytes
+    /// before `points_end` that could be points, but are not stated.
+    ///
+    /// A header that passes has fewer bytes of records than `u64` can count.
+    fn check_len(&self, file: &FileView, points_end: u64, notices: &mut Vec<String>) -> Result<()> {
+        let room = file.len().saturating_sub(self.points_start);
+        let record_len = self.record_len as u64;
+        let truncated = || {
+            Error::malformed(format!(
+                "truncated: the header states {} points of {record_len} bytes from byte {} on, the file ends at \
+                 byte {}",
+                self.points,
+                self.points_start,
+                file.len()
+            ))
+        };
+        if self.points.checked_mul(record_len).is_none() {
+            return Err(Error::malformed(format!(
+                "the header states {} points of {record_len} bytes, more than any file can hold",
+                self.points
+            )));
+        }
+        if self.points == 0 {
+            let unused = match self.laz {
+                Some(_) => laz_chunks::room(file, self.points_start, points_end)?,
+                None => points_end.saturating_sub(self.points_start),
+            };
+            // Compressed points start with a whole record too.
+            if unused >= record_len {
+                notices.push(format!("the header states no points, although {unused} bytes follow it"));
+            }
+            return Ok(());
+        }
+        if self.laz.is_some() {
+            return if room == 0 { Err(truncated()) } else { Ok(()) };
+        }
+        let whole = room / record_len;
+        if whole < self.points {
+            let position = format!("record {whole} at byte {}", self.points_start + whole * record_len);
+            return Err(truncated().at(position));
+        }
+        Ok(())
+    }
+}
+
+fn malformed(position: &str, error: &las::Error) -> Error {
+    match error {
+        las::Error::Io(cause) if cause.kind() == std::io::ErrorKind::UnexpectedEof => {
+            Error::malformed("truncated: the file ends inside").at(position)
+        }
+        other => Error::malformed(other.to_string()).at(position),
+    }
+}
+
+/// The number of points. Writers of LAS 1.4 fill a 32-bit field too, for older readers; where both are
+/// filled and differ, the formats that older readers know follow the older field, as the standard asks.
+fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
+    let legacy = u64::from(raw.number_of_point_records);
+    let Some(large) = raw.large_file.map(|large| large.number_of_point_records).filter(|&n| n != 0) else {
+        return legacy;
+    };
+    if legacy == 0 || legacy == large {
+        return large;
+    }
+    let chosen = if format < 6 { legacy } else { large };
+    notices.push(format!("the header states both {legacy} and {large} points: reading {chosen}"));
+    chosen
+}
+
+fn coordinates(raw: &raw::Header) -> Result<Coordinates> {
+    let scale = [raw.x_scale_factor, raw.y_scale_factor, raw.z_scale_factor];
+    // Adding zero makes a negative zero, which some writers leave behind, a positive one.
+    let offset = [raw.x_offset, raw.y_offset, raw.z_offset].map(|offset| offset + 0.0);
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        if !(scale[axis] > 0.0 && scale[axis].is_finite()) {
+            return Err(Error::malformed(format!(
+                "header at byte {}: scale of {name} is {}, expected a positive number",
+                131 + 8 * axis,
+                scale[axis]
+            )));
+        }
+        if !offset[axis].is_finite() {
+            return Err(Error::malformed(format!(
+                "header at byte {}: offset of {name} is {}, expected a finite number",
+                155 + 8 * axis,
+                offset[axis]
+            )));
+        }
+    }
+    Ok(Coordinates::I32 { scale, offset })
+}
+
+fn stored_bounds(raw: &raw::Header, coordinates: &Coordinates) -> Option<Bounds> {
+    let min: Point = coordinates.to_stored([raw.min_x, raw.min_y, raw.min_z]);
+    let max: Point = coordinates.to_stored([raw.max_x, raw.max_y, raw.max_z]);
+    let fits = |corner: Point| corner.iter().all(|&value| coordinates.can_store(value));
+    let ordered = (0..3).all(|axis| min[axis] <= max[axis]);
+    (fits(min) && fits(max) && ordered).then_some(Bounds { min, max })
+}
+
+/// The variable length records that matter here; others are passed over unread.
+#[derive(Default)]
+struct Records {
+    laszip: Option<Vec<u8>>,
+    wkt: Option<Vec<u8>>,
+    geo_keys: [Option<Vec<u8>>; 3],
+}
+
+impl Records {
+    fn read(file: &FileView, raw: &raw::Header, notices: &mut Vec<String>) -> Result<Records> {
+        let mut records = Records::default();
+        let points_start = u64::from(raw.offset_to_point_data).min(file.len());
+        let mut at = u64::from(raw.header_size);
+        for index in 0..raw.number_of_variable_length_records {
+            let Some(next) = records.read_one(file, at, points_start, false, notices)? else {
+                notices.push(format!(
+                    "the header states {} variable length records, only {index} fit before the points",
+                    raw.number_of_variable_length_records
+                ));
+                break;
+            };
+            at = next;
+        }
+        let Some(extended) = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0) else { return Ok(records) };
+        let mut at = extended.start_of_first_evlr;
+        for index in 0..extended.number_of_evlrs {
+            let Some(next) = records.read_one(file, at, file.len(), true, notices)? else {
+                notices.push(format!(
+                    "the header states {} extended variable length records, only {index} fit into the file",
+                    extended.number_of_evlrs
+                ));
+                break;
+            };
+            at = next;
+        }
+        Ok(records)
+    }
+
+    /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before `end`.
+    fn read_one(
+        &mut self,
+        file: &FileView,
+        at: u64,
+        end: u64,
+        extended: bool,
+        notices: &mut Vec<String>,
+    ) -> Result<Option<u64>> {
+        let header_len = if extended { EVLR_HEADER_LEN } else { VLR_HEADER_LEN };
+        if at.checked_add(header_len).is_none_or(|after| after > end) {
+            return Ok(None);
+        }
+        let mut header = [0; EVLR_HEADER_LEN as usize];
+        let read = |at: u64, bytes: &mut [u8]| {
+            file.read_at(at, bytes).map_err(|e| Error::io("reading", e).at(format!("record at byte {at}")))
+        };
+        read(at, &mut header[..header_len as usize])?;
+        let len = if extended {
+            u64::from_le_bytes(header[20..28].try_into().expect("eight bytes"))
+        } else {
+            u64::from(u16::from_le_bytes([header[20], header[21]]))
+        };
+        let data = at + header_len;
+        let Some(after) = data.checked_add(len).filter(|&after| after <= end) else { return Ok(None) };
+        let user = header[2..18].split(|&byte| byte == 0).next().unwrap_or_default();
+        let number = u16::from_le_bytes([header[18], header[19]]);
+        let Some(slot) = self.slot(user, number) else { return Ok(Some(after)) };
+        if len > HEADER_BODY_MAX as u64 {
+            notices.push(format!(
+                "record {number} of {} at byte {at} is {len} bytes long, the maximum is {HEADER_BODY_MAX}: \
+                 leaving it out",
+                String::from_utf8_lossy(user)
+            ));
+        } else {
+            let mut bytes = vec![0; len as usize];
+            read(data, &mut bytes)?;
+            slot.get_or_insert(bytes);
+        }
+        Ok(Some(after))
+    }
+
+    fn slot(&mut self, user: &[u8], record: u16) -> Option<&mut Option<Vec<u8>>> {
+        match (user, record) {
+            (b"laszip encoded", 22204) => Some(&mut self.laszip),
+            (b"LASF_Projection", 2112) => Some(&mut self.wkt),
+            (b"LASF_Projection", 34735..=34737) => Some(&mut self.geo_keys[usize::from(record - 34735)]),
+            _ => None,
+        }
+    }
+
+    fn laz(&self, is_compressed: bool) -> Result<Option<Laszip>> {
+        if !is_compressed {
+            return Ok(None);
+        }
+        let bytes = self.laszip.as_ref().ok_or_else(|| {
+            Error::malformed("points are marked as compressed, but the laszip record is missing")
+        })?;
+        let vlr = LazVlr::from_buffer(bytes).map_err(|e| Error::malformed(format!("laszip record: {e}")))?;
+        match bytes[..] {
+            [1, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: false })),
+            [2 | 3, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: true })),
+            _ => Err(Error::malformed(format!("laszip record: compressor {}, expected 1, 2 or 3", bytes[0]))),
+        }
+    }
+
+    /// Well-known text where the header promises it or there is nothing else, otherwise the GeoTIFF keys.
+    fn crs(self, promises_wkt: bool, notices: &mut Vec<String>) -> Crs {
+        let [directory, doubles, ascii] = self.geo_keys.map(Option::unwrap_or_default);
+        let wkt = self.wkt.and_then(|bytes| {
+            let text = String::from_utf8_lossy(&bytes);
+            let text = text.trim_end_matches('\0');
+            (!text.trim().is_empty()).then(|| text.to_string())
+        });
+        // A directory of no more than its own header of four numbers says nothing.
+        let has_keys = directory.len() > 8;
+        if promises_wkt && wkt.is_none() && has_keys {
+            notices.push("the header promises a CRS as text, found GeoTIFF keys only".to_string());
+        }
+        match wkt {
+            Some(wkt) => Crs::Wkt(wkt),
+            None if has_keys => Crs::GeoKeys { directory, doubles, ascii },
+            None => Crs::Unknown,
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Point records of LAZ files: chunks are decompressed on several threads, a few ahead of the reader.
+//! Chunks too long for memory are decompressed as they are read.
+
+use std::io::{BufReader, Seek};
+
+use super::las_header::{LasHeader, Laszip};
+use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
+use super::laz_codec::{Codec, Decompressor, decompression};
+use super::ordered::Ordered;
+use super::origin::FileView;
+use super::panic_guard::guarded;
+use super::records::RecordReader;
+use spmesh_core::error::{Error, Result};
+
+/// Bytes of records that chunks under way decompress to, per thread, and in all.
+const AHEAD_LEN_PER_THREAD: u64 = 2 << 20;
+const AHEAD_LEN_MAX: u64 = 32 << 20;
+
+/// Bytes of records from which chunks make up a job: small ones are decompressed several at a time.
+const JOB_LEN: u64 = 1 << 20;
+
+/// Bytes of records from which a chunk is decompressed as it is read.
+const CHUNK_LEN_MAX: u64 = 32 << 20;
+
+/// Bytes of records that are taken at once from a chunk that is decompressed as it is read.
+const STREAMED_LEN: usize = 1 << 20;
+
+/// Chunks to be decompressed one after the other, and the buffers for it.
+#[derive(Default)]
+struct Job {
+    chunks: Vec<Chunk>,
+    /// Number in the file of the first record.
+    first: u64,
+    compressed: Vec<u8>,
+    records: Vec<u8>,
+}
+
+impl Job {
+    /// Bytes that the job needs about: compressed data may be a little longer than the records, never by much.
+    fn len(&self, record_len: u64) -> u64 {
+        self.chunks.iter().map(|chunk| (chunk.points * record_len).max(chunk.len)).sum()
+    }
+
+    fn run(&mut self, file: &FileView, codec: &Codec) -> Result<()> {
+        let points: u64 = self.chunks.iter().map(|chunk| chunk.points).sum();
+        self.records.resize(points as usize * codec.record_len, 0);
+        let mut rest = &mut self.records[..];
+        let mut first = self.first;
+        for chunk in &self.chunks {
+            let (records, later) = rest.split_at_mut(chunk.points as usize * codec.record_len);
+            rest = later;
+            self.compressed.resize(chunk.len as usize, 0);
+            let read = file.read_at(chunk.start, &mut self.compressed);
+            read.map_err(|e| Error::io("reading compressed points", e).at(chunk.describe(first)))?;
+            codec.decompress(&self.compressed, records).map_err(|e| e.at(chunk.describe(first)))?;
+            first += chunk.points;
+        }
+        Ok(())
+    }
+}
+
+/// Records of a compressed file.
+pub(super) struct LazRecords {
+    file: FileView,
+    codec: Codec,
+    threads: usize,
+    chunks: std::iter::Peekable<std::vec::IntoIter<Chunk>>,
+    decoders: Option<Ordered<Job, Result<Job>>>,
+    /// Jobs that are done, for their buffers, and bytes of those under way.
+    spare: Vec<Job>,
+    ahead_len: u64,
+    streamed: Option<Streamed>,
+    /// Records given out or to decoders so far.
+    done: u64,
+}
+
+impl LazRecords {
+    pub(super) fn new(
+        file: FileView,
+        header: &LasHeader,
+        laszip: &Laszip,
+        threads: usize,
+    ) -> Result<LazRecords> {
+        let codec = Codec::new(laszip.vlr.clone(), header)?;
+        let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
+            Chunks::Table(chunks) => (chunks, None),
+            Chunks::Unknown { start, points_per_chunk } => {
+                let chunk = Chunk { start, len: file.len() - start, points: header.points };
+                (Vec::new(), Some(Streamed::new(&file, &codec, &chunk, Some(points_per_chunk))?))
+            }
+        };
+        let chunks = chunks.into_iter().peekable();
+        let (decoders, spare) = (None, Vec::new());
+        Ok(LazRecords { file, codec, threads, chunks, decoders, spare, ahead_len: 0, streamed, done: 0 })
+    }
+
+    /// Whether the next chunk must be decompressed as it is read; `None` at the end.
+    fn next_is_long(&mut self) -> Result<Option<bool>> {
+        let record_len = self.codec.record_len as u64;
+        let Some(chunk) = self.chunks.peek() else { return Ok(None) };
+        let records_len = chunk.points.checked_mul(record_len).ok_or_else(|| {
+            Error::malformed(format!("more points of {record_len} bytes than any file can hold"))
+                .at(chunk.describe(self.done))
+        })?;
+        Ok(Some(records_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX))
+    }
+
+    /// Takes chunks from the table until they make up a job; `None` if the next one is no job's, or there is none.
+    fn next_job(&mut self) -> Result<Option<Job>> {
+        let record_len = self.codec.record_len as u64;
+        let mut job = self.spare.pop().unwrap_or_default();
+        job.chunks.clear();
+        job.first = self.done;
+        while job.len(record_len) < JOB_LEN && self.next_is_long()? == Some(false) {
+            let chunk = self.chunks.next().expect("it was peeked at");
+            self.done += chunk.points;
+            job.chunks.push(chunk);
+        }
+        Ok((!job.chunks.is_empty()).then_some(job))
+    }
+
+    /// Gives jobs to the decoders until enough are under way.
+    fn decode_ahead(&mut self) -> Result<()> {
+        let ahead_max = (AHEAD_LEN_PER_THREAD * self.threads as u64).min(AHEAD_LEN_MAX);
+        while self.ahead_len < ahead_max {
+            let Some(job) = self.next_job()? else { break };
+            self.ahead_len += job.len(self.codec.record_len as u64);
+            let decoders = match &mut self.decoders {
+                Some(decoders) => decoders,
+                None => {
+                    let (file, codec) = (self.file.clone(), self.codec.clone());
+                    let decode = move |mut job: Job| job.run(&file, &codec).map(|()| job);
+                    self.decoders.insert(Ordered::start(self.threads, decode)?)
+                }
+            };
+            decoders.give(job);
+        }
+        Ok(())
+    }
+}
+
+impl RecordReader for LazRecords {
+    fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()> {
+        records.clear();
+        loop {
+            if let Some(streamed) = &mut self.streamed {
+                let count = streamed.next_records(&self.file, &self.codec, records);
+                self.done += count.map_err(|e| e.at(format!("after record {}", self.done)))?;
+                if !records.is_empty() {
+                    return Ok(());
+                }
+                self.streamed = None;
+            }
+            self.decode_ahead()?;
+            if let Some(decoded) = self.decoders.as_mut().and_then(Ordered::take) {
+                let mut job = decoded?;
+                self.ahead_len -= job.len(self.codec.record_len as u64);
+                std::mem::swap(records, &mut job.records);
+                self.spare.push(job);
+                return Ok(());
+            }
+            if self.next_is_long()?.is_none() {
+                return Ok(());
+            }
+            let chunk = self.chunks.next().expect("it is long");
+            self.streamed = Some(Streamed::new(&self.file, &self.codec, &chunk, None)?);
+        }
+    }
+}
+
+/// Records that are decompressed as they are read: from one chunk, or from chunks that follow each other
+/// without a table.
+struct Streamed {
+    decompressor: Decompressor<BufReader<FileView>>,
+    /// Records left to give out, and those left in the current chunk.
+    left: u64,
+    left_in_chunk: u64,
+    points_per_chunk: PointsPerChunk,
+}
+
+impl Streamed {
+    fn new(file: &FileView, codec: &Codec, chunk: &Chunk, per_chunk: Option<PointsPerChunk>) -> Result<Self> {
+        let input = BufReader::new(file.range(chunk.start, chunk.start + chunk.len));
+        Ok(Streamed {
+            decompressor: codec.decompressor(input)?,
+            left: chunk.points,
+            left_in_chunk: 0,
+            points_per_chunk: per_chunk.unwrap_or(PointsPerChunk::Fixed(chunk.points)),
+        })
+    }
+
+    /// Replaces `records` with the next ones and returns their number.
+    fn next_records(&mut self, file: &FileView, codec: &Codec, records: &mut Vec<u8>) -> Result<u64> {
+        records.clear();
+        if self.left == 0 {
+            return Ok(0);
+        }
+        if self.left_in_chunk == 0 {
+            self.start_chunk(file, codec)?;
+        }
+        let count = self.left_in_chunk.min((STREAMED_LEN / codec.record_len).max(1) as u64);
+        records.resize(count as usize * codec.record_len, 0);
+        let decompressor = &mut self.decompressor;
+        decompression(guarded(|| decompressor.decompress_many(records)))?;
+        self.left -= count;
+        self.left_in_chunk -= count;
+        Ok(count)
+    }
+
+    fn start_chunk(&mut self, file: &FileView, codec: &Codec) -> Result<()> {
+        let mut points = self.left;
+        if codec.layers > 0 {
+            let at = self.decompressor.get_mut().stream_position().map_err(|e| Error::io("reading", e))?;
+            let mut head = vec![0; codec.head_len()];
+            file.read_at(at, &mut head).map_err(|e| Error::io("reading the head of a chunk", e))?;
+            let stated = codec.check_layers(&head, file.len() - at)?;
+            points = points.min(stated);
+            if stated == 0 {
+                return Err(Error::malformed(format!("chunk without points at byte {at}")));
+            }
+        }
+        if let PointsPerChunk::Fixed(fixed) = self.points_per_chunk {
+            points = self.left.min(fixed);
+        }
+        self.left_in_chunk = points;
+        self.decompressor.reset();
+        codec.prepare(&mut *self.decompressor)
+    }
+}

@@ -1,0 +1,160 @@
+//! Where the chunks of a LAZ file are: its chunk table, checked against the file.
+
+use std::io::{BufReader, Seek, SeekFrom};
+
+use laz::laszip::ChunkTable;
+
+use super::las_header::{LasHeader, Laszip};
+use super::origin::FileView;
+use super::panic_guard::guarded;
+use spmesh_core::error::{Error, Result};
+
+/// Length of the position of the chunk table, which precedes the chunks.
+const TABLE_POSITION_LEN: u64 = 8;
+
+/// Records that are compressed together.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chunk {
+    /// First byte in the file.
+    pub(super) start: u64,
+    /// Length in bytes.
+    pub(super) len: u64,
+    /// Number of records.
+    pub(super) points: u64,
+}
+
+impl Chunk {
+    /// Where the chunk is, for messages, if its first record is number `first` of the file.
+    pub(super) fn describe(&self, first: u64) -> String {
+        format!("records {first} to {} at byte {}", first + self.points.saturating_sub(1), self.start)
+    }
+}
+
+/// How many records a chunk has that no table tells of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum PointsPerChunk {
+    /// The same number in each chunk but the last.
+    Fixed(u64),
+    /// As the head of each chunk of layers says.
+    Stated,
+}
+
+/// What is known of the chunks of a file.
+#[derive(Debug)]
+pub(super) enum Chunks {
+    /// All of them, in the order of the file; chunks without points are left out.
+    Table(Vec<Chunk>),
+    /// Where the first one starts. The others follow without a gap.
+    Unknown { start: u64, points_per_chunk: PointsPerChunk },
+}
+
+impl Chunks {
+    /// Reads the chunk table.
+    ///
+    /// # Errors
+    /// If it contradicts the header or the length of the file, or is missing where nothing can be read
+    /// without it. A file without a table was cut off or its writer was, but what is there can be read.
+    pub(super) fn find(file: &FileView, header: &LasHeader, laszip: &Laszip) -> Result<Chunks> {
+        if header.points == 0 {
+            return Ok(Chunks::Table(Vec::new()));
+        }
+        if !laszip.is_chunked {
+            let points_per_chunk = PointsPerChunk::Fixed(header.points);
+            return Ok(Chunks::Unknown { start: header.points_start, points_per_chunk });
+        }
+        let start = header.points_start + TABLE_POSITION_LEN;
+        let Some(table) = table_position(file, header.points_start)? else {
+            let points_per_chunk = match laszip.vlr.uses_variable_size_chunks() {
+                false => PointsPerChunk::Fixed(u64::from(laszip.vlr.chunk_size())),
+                true if header.format >= 6 => PointsPerChunk::Stated,
+                true => {
+                    return Err(Error::malformed(
+                        "the chunk table is missing and the chunks differ in length: the file is truncated, \
+                         or its writer did not finish; write it again from its source",
+                    ));
+                }
+            };
+            return Ok(Chunks::Unknown { start, points_per_chunk });
+        };
+        read_table(file, header, laszip, table)
+            .map(Chunks::Table)
+            .map_err(|e| e.at(format!("chunk table at byte {table}")))
+    }
+}
+
+/// Bytes between the position of the chunk table, which stands at `points_start`, and the table; without a
+/// table, those up to `points_end`.
+pub(super) fn room(file: &FileView, points_start: u64, points_end: u64) -> Result<u64> {
+    let start = points_start.saturating_add(TABLE_POSITION_LEN);
+    if start > file.len() {
+        return Ok(0);
+    }
+    let end = table_position(file, points_start)?.unwrap_or(points_end);
+    Ok(end.saturating_sub(start))
+}
+
+/// The position of the chunk table, from before the points or, if the writer could not go back, from the end
+/// of the file. `None` if neither lies between the points and the end.
+fn table_position(file: &FileView, points_start: u64) -> Result<Option<u64>> {
+    let start = points_start + TABLE_POSITION_LEN;
+    for at in [points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {
+        let mut bytes = [0; TABLE_POSITION_LEN as usize];
+        file.read_at(at, &mut bytes)
+            .map_err(|e| Error::io("reading the position of the chunk table", e).at(format!("byte {at}")))?;
+        let position = i64::from_le_bytes(bytes);
+        if let Ok(position) = u64::try_from(position)
+            && (start..file.len().saturating_sub(7)).contains(&position)
+        {
+            return Ok(Some(position));
+        }
+    }
+    Ok(None)
+}
+
+fn read_table(file: &FileView, header: &LasHeader, laszip: &Laszip, table: u64) -> Result<Vec<Chunk>> {
+    let start = header.points_start + TABLE_POSITION_LEN;
+    let mut head = [0; 8];
+    file.read_at(table, &mut head).map_err(|e| Error::io("reading", e))?;
+    let count = u64::from(u32::from_le_bytes(head[4..8].try_into().expect("four bytes")));
+    // A chunk starts with a record as it is. Without this the library would allocate for any count.
+    let most = (table - start) / header.record_len as u64 + 1;
+    let fixed = (!laszip.vlr.uses_variable_size_chunks()).then(|| u64::from(laszip.vlr.chunk_size()));
+    let needed = fixed.map(|points| header.points.div_ceil(points));
+    if count > most || needed.is_some_and(|needed| needed != count) {
+        return Err(Error::malformed(format!(
+            "{count} chunks for {} points in {} bytes",
+            header.points,
+            table - start
+        )));
+    }
+    let mut input = BufReader::new(file.range(0, file.len()));
+    input.seek(SeekFrom::Start(table)).map_err(|e| Error::io("reading", e))?;
+    let entries = guarded(|| ChunkTable::read(&mut &mut input, fixed.is_none()))
+        .map_err(|panic| Error::malformed(format!("damaged ({panic})")))?
+        .map_err(|e| Error::io("reading", e))?;
+    let mut chunks = Vec::with_capacity(count as usize);
+    let (mut at, mut left) = (start, header.points);
+    for (index, entry) in entries.as_ref().iter().enumerate() {
+        let points = fixed.map_or(entry.point_count, |fixed| fixed.min(left));
+        if points > left || entry.byte_count > table - at {
+            return Err(Error::malformed(format!(
+                "chunk {index} has {points} points and {} bytes, {left} points and {} bytes are left",
+                entry.byte_count,
+                table - at
+            )));
+        }
+        if points > 0 {
+            chunks.push(Chunk { start: at, len: entry.byte_count, points });
+        }
+        at += entry.byte_count;
+        left -= points;
+    }
+    if left > 0 {
+        return Err(Error::malformed(format!(
+            "the header states {} points, the chunks have {}",
+            header.points,
+            header.points - left
+        )));
+    }
+    Ok(chunks)
+}

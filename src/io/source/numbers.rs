@@ -1,0 +1,146 @@
+//! Numbers one after the other, as text or as bytes.
+
+use std::io::{self, BufRead, Read};
+
+use super::byte_order::ByteOrder;
+use super::lines::quote;
+use super::sample_type::SampleType;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::NUMBER_LEN_MAX;
+
+/// How numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Writing {
+    Binary(ByteOrder),
+    /// Decimals with white space or commas between them.
+    Text,
+}
+
+/// Reads as many numbers as there are said to be. Memory: what is asked for at once.
+pub(super) struct NumberReader<R> {
+    input: R,
+    sample: SampleType,
+    writing: Writing,
+    /// Numbers there are said to be, and those that were read.
+    total: u64,
+    done: u64,
+    bytes: Vec<u8>,
+}
+
+impl<R: BufRead> NumberReader<R> {
+    /// The next `total` numbers of `input`.
+    pub(super) fn new(input: R, sample: SampleType, writing: Writing, total: u64) -> Self {
+        NumberReader { input, sample, writing, total, done: 0, bytes: Vec::new() }
+    }
+
+    /// Numbers that were read.
+    pub(super) fn done(&self) -> u64 {
+        self.done
+    }
+
+    /// Appends the next numbers to `numbers`: `most` of them, fewer only at the end. False if there are no more.
+    ///
+    /// # Errors
+    /// If reading fails, the input ends before all numbers, or something is no number of the type.
+    pub(super) fn read(&mut self, most: u64, numbers: &mut Vec<f64>) -> Result<bool> {
+        let wanted = most.min(self.total - self.done);
+        match self.writing {
+            Writing::Binary(order) => self.read_bytes(wanted, order, numbers)?,
+            Writing::Text => (0..wanted).try_for_each(|_| self.read_text(numbers))?,
+        }
+        Ok(wanted > 0)
+    }
+
+    fn read_bytes(&mut self, wanted: u64, order: ByteOrder, numbers: &mut Vec<f64>) -> Result<()> {
+        let len = self.sample.len() as u64;
+        self.bytes.clear();
+        let mut input = (&mut self.input).take(wanted * len);
+        input.read_to_end(&mut self.bytes).map_err(|e| Error::io("reading", e))?;
+        self.sample.decode(&self.bytes, order, numbers);
+        let found = self.bytes.len() as u64 / len;
+        self.done += found;
+        if found < wanted { Err(self.truncated()) } else { Ok(()) }
+    }
+
+    fn read_text(&mut self, numbers: &mut Vec<f64>) -> Result<()> {
+        next_number(&mut self.input, &mut self.bytes)?;
+        if self.bytes.is_empty() {
+            return Err(self.truncated());
+        }
+        numbers.push(self.sample.parse(&self.bytes)?);
+        self.done += 1;
+        Ok(())
+    }
+
+    /// That the input ends behind the numbers.
+    ///
+    /// # Errors
+    /// If it goes on, or reading fails.
+    pub(super) fn expect_end(&mut self) -> Result<()> {
+        let goes_on = match self.writing {
+            Writing::Binary(_) => !fill(&mut self.input)?.is_empty(),
+            Writing::Text => {
+                next_number(&mut self.input, &mut self.bytes)?;
+                !self.bytes.is_empty()
+            }
+        };
+        if goes_on {
+            let message = format!("there is more behind the {} numbers that are stated", self.total);
+            return Err(Error::malformed(message));
+        }
+        Ok(())
+    }
+
+    fn truncated(&self) -> Error {
+        truncated(self.done, self.total)
+    }
+}
+
+/// That there are fewer numbers than stated.
+pub(super) fn truncated(found: u64, expected: u64) -> Error {
+    Error::malformed(format!("truncated: found {found} of {expected} values"))
+}
+
+/// The bytes that come next; none at the end.
+///
+/// # Errors
+/// If reading fails.
+pub(super) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
+    // Interrupted reads are repeated here, since the slice of a failed try cannot be returned from a loop.
+    while let Err(e) = input.fill_buf() {
+        if e.kind() != io::ErrorKind::Interrupted {
+            return Err(Error::io("reading", e));
+        }
+    }
+    input.fill_buf().map_err(|e| Error::io("reading", e))
+}
+
+/// Replaces `number` by what comes next between white space and commas; nothing at the end.
+///
+/// # Errors
+/// If reading fails, or it is longer than numbers are.
+pub(super) fn next_number(input: &mut impl BufRead, number: &mut Vec<u8>) -> Result<()> {
+    number.clear();
+    loop {
+        let bytes = fill(input)?;
+        if bytes.is_empty() {
+            return Ok(());
+        }
+        let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
+        let start =
+            if number.is_empty() { bytes.iter().take_while(|byte| is_between(byte)).count() } else { 0 };
+        let rest = &bytes[start..];
+        let len = rest.iter().position(is_between).unwrap_or(rest.len());
+        if number.len() + len > NUMBER_LEN_MAX {
+            let found = quote(if number.is_empty() { rest } else { number });
+            let message = format!("found {found}, expected a number of at most {NUMBER_LEN_MAX} bytes");
+            return Err(Error::malformed(message));
+        }
+        number.extend_from_slice(&rest[..len]);
+        let is_whole = len < rest.len() && !number.is_empty();
+        input.consume(start + len);
+        if is_whole {
+            return Ok(());
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! Reads OBJ: `v` and `f` lines; other statements of OBJ are passed over.
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use super::events::EventSource;
+use super::mesh_events::{Element, Elements, MeshEvents, resolve};
+use super::patches::Order;
+use super::polygon::fan;
+use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
+use super::vertices::{VertexPoints, Vertices};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Header, Kind};
+
+/// Statements of OBJ that say nothing of vertices and triangles.
+const PASSED_OVER: [&[u8]; 17] = [
+    b"vn",
+    b"vt",
+    b"vp",
+    b"g",
+    b"o",
+    b"s",
+    b"usemtl",
+    b"mtllib",
+    b"l",
+    b"p",
+    b"mg",
+    b"lod",
+    b"bevel",
+    b"usemap",
+    b"maplib",
+    b"shadow_obj",
+    b"trace_obj",
+];
+
+/// Reads OBJ as a triangle mesh; polygons become fans around their first vertex. `name` is what messages call
+/// the input.
+///
+/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line. Memory: one
+/// patch, and the triangles that come before their vertices.
+pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn EventSource> {
+    let lines = Lines::new(input, name);
+    Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
+}
+
+/// Reads the vertices of OBJ as points that have a z; `name` is what messages call the input.
+pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVertices<R>> {
+    let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
+    VertexPoints::new(ObjVertices { lines: Lines::new(input, name) }, header)
+}
+
+/// The vertices of an OBJ.
+pub(super) struct ObjVertices<R> {
+    lines: Lines<R>,
+}
+
+impl<R: Read> Vertices for ObjVertices<R> {
+    fn next_vertex(&mut self) -> Result<Option<Point>> {
+        while let Some(line) = self.lines.next_line()? {
+            let mut fields = fields(line);
+            match fields.next() {
+                Some(b"v") => return parse_decimals(&mut fields).map(Some),
+                None | Some(b"f") => {}
+                Some(other) if other[0] == b'#' || PASSED_OVER.contains(&other) => {}
+                Some(other) => return Err(unexpected(other, "a statement of a polygonal OBJ")),
+            }
+        }
+        Ok(None)
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.lines.locate(error)
+    }
+}
+
+struct ObjElements<R> {
+    lines: Lines<R>,
+    /// The rest of the polygon that was read last.
+    triangles: VecDeque<[u64; 3]>,
+}
+
+impl<R: Read> Elements for ObjElements<R> {
+    fn order(&self) -> Order {
+        Order::AtEnd
+    }
+
+    fn next_element(&mut self, vertices: u64) -> Result<Option<Element>> {
+        loop {
+            if let Some(triangle) = self.triangles.pop_front() {
+                return Ok(Some(Element::Triangle(triangle, [false; 3])));
+            }
+            let Some(line) = self.lines.next_line()? else { return Ok(None) };
+            let mut fields = fields(line);
+            match fields.next() {
+                Some(b"v") => return Ok(Some(Element::Vertex(parse_decimals(&mut fields)?))),
+                Some(b"f") => {
+                    let corners: Result<Vec<u64>> =
+                        fields.map(|field| parse_corner(field, vertices)).collect();
+                    self.triangles = fan(&corners?)?;
+                }
+                None => {}
+                Some(other) if other[0] == b'#' || PASSED_OVER.contains(&other) => {}
+                Some(other) => return Err(unexpected(other, "a statement of a polygonal OBJ")),
+            }
+        }
+    }
+
+    fn check_counts(&self, _: u64, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.lines.locate(error)
+    }
+}
+
+/// The vertex of a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+fn parse_corner(field: &[u8], vertices: u64) -> Result<u64> {
+    let vertex = field.split(|&byte| byte == b'/').next().unwrap_or_default();
+    resolve(parse_signed(vertex)?, vertices)
+}

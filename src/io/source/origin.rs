@@ -1,0 +1,132 @@
+//! Where the bytes of an input are, so that each pass can read them from the start.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+use std::os::fd::AsFd;
+use std::os::unix::fs::FileExt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use spmesh_core::error::{Error, Result};
+use spmesh_core::temporary::TemporaryFile;
+
+/// What messages call an input: its path, or stdin for "-".
+pub fn name_of(path: &Path) -> String {
+    if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() }
+}
+
+/// Bytes that can be read several times.
+#[derive(Debug)]
+pub(super) enum Origin {
+    /// A regular file, opened anew by each pass: an input of many tiles needs no more than one descriptor.
+    Path(PathBuf),
+    /// A file without a name: a spool, or standard input redirected from a file.
+    Open(Arc<File>),
+}
+
+impl Origin {
+    /// The bytes of `path`; "-" is standard input. What cannot be read twice (a pipe, a terminal, a socket)
+    /// is spooled to an unlinked temporary file in `temp_dir`, and a notice says so.
+    pub(super) fn new(path: &Path, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+        if path.as_os_str() == "-" {
+            return Origin::of_stdin(temp_dir, notices).map_err(|e| e.of_input("stdin"));
+        }
+        let name = path.display().to_string();
+        let mut open = || -> Result<Origin> {
+            let file = File::open(path).map_err(|e| Error::io("opening", e))?;
+            let kind = file.metadata().map_err(|e| Error::io("opening", e))?.file_type();
+            if kind.is_dir() {
+                return Err(Error::usage("is a folder, expected a file"));
+            }
+            if kind.is_file() {
+                return Ok(Origin::Path(path.to_path_buf()));
+            }
+            spool(file, &name, temp_dir, notices)
+        };
+        open().map_err(|e| e.of_input(&name))
+    }
+
+    fn of_stdin(temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+        let descriptor = io::stdin().as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
+        let mut file = File::from(descriptor);
+        let is_file = file.metadata().map_err(|e| Error::io("opening", e))?.is_file();
+        if is_file && file.stream_position().is_ok_and(|position| position == 0) {
+            return Ok(Origin::Open(Arc::new(file)));
+        }
+        spool(file, "stdin", temp_dir, notices)
+    }
+
+    /// A view of all the bytes, at their start.
+    pub(super) fn view(&self) -> Result<FileView> {
+        let file = match self {
+            Origin::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
+            Origin::Open(file) => Arc::clone(file),
+        };
+        let end = file.metadata().map_err(|e| Error::io("opening", e))?.len();
+        Ok(FileView { file, position: 0, end })
+    }
+}
+
+fn spool(mut from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+    let place = temp_dir.display();
+    let file = TemporaryFile::create(Some(temp_dir))?;
+    let bytes = io::copy(&mut from, &mut file.file())
+        .map_err(|e| Error::io(format!("spooling to a temporary file in {place}"), e))?;
+    let size =
+        if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
+    notices
+        .push(format!("{name}: spooled {size} to an unlinked temporary file in {place} for the second pass"));
+    Ok(Origin::Open(Arc::new(file.into_file())))
+}
+
+/// A reader with a position of its own over a shared file, so that passes do not disturb each other.
+#[derive(Debug, Clone)]
+pub(super) struct FileView {
+    file: Arc<File>,
+    position: u64,
+    end: u64,
+}
+
+impl FileView {
+    /// Length of the file in bytes.
+    pub(super) fn len(&self) -> u64 {
+        self.end
+    }
+
+    /// Byte that is read next, counted from the start of the file.
+    pub(super) fn position(&self) -> u64 {
+        self.position
+    }
+
+    /// The same bytes from `start` up to `end`, both counted from the start of the file.
+    pub(super) fn range(&self, start: u64, end: u64) -> FileView {
+        FileView { file: Arc::clone(&self.file), position: start, end: end.min(self.end) }
+    }
+
+    /// Fills `buffer` with the bytes from `start` on, without moving.
+    pub(super) fn read_at(&self, start: u64, buffer: &mut [u8]) -> io::Result<()> {
+        self.range(start, self.end).read_exact(buffer)
+    }
+}
+
+impl Read for FileView {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let left = usize::try_from(self.end.saturating_sub(self.position)).unwrap_or(usize::MAX);
+        let wanted = buffer.len().min(left);
+        let read = self.file.read_at(&mut buffer[..wanted], self.position)?;
+        self.position += read as u64;
+        Ok(read)
+    }
+}
+
+impl Seek for FileView {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        let target = match to {
+            SeekFrom::Start(position) => Some(position),
+            SeekFrom::Current(step) => self.position.checked_add_signed(step),
+            SeekFrom::End(step) => self.end.checked_add_signed(step),
+        };
+        self.position = target.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
+        Ok(self.position)
+    }
+}

@@ -1,0 +1,250 @@
+//! Cuts a mesh that comes vertex by vertex and triangle by triangle into patches.
+
+use std::collections::HashMap;
+
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Patch, Totals};
+
+/// Sizes at which a patch is closed. Together they keep it far below the maximum of a block, because each
+/// triangle imports at most three vertices and each finalization one: 24 + 24 * 2048 + 8 * (3 * 4096 + 4096)
+/// + 12 * 4096 + 4 * 4096 bytes are 240 KiB.
+const NEW_MAX: usize = 2048;
+const TRIANGLES_MAX: usize = 4096;
+const FINALIZED_MAX: usize = 4096;
+
+/// When the vertices of an input are final.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Vertices come before their triangles, and the input says when they are final (pre-order).
+    Stated,
+    /// Vertices come after all their triangles, so that they are final when they come (post-order).
+    OnArrival,
+    /// The input says nothing: all are final at its end. Triangles may come before their vertices.
+    AtEnd,
+}
+
+/// A vertex that is not finalized yet.
+#[derive(Debug, Default, Clone, Copy)]
+struct Live {
+    /// Triangles that use it and wait for another vertex.
+    waiting: u32,
+    /// The input said that it is final.
+    closed: bool,
+}
+
+/// Collects elements into patches. Memory: a patch, and the width of the input: live vertices, and
+/// triangles that wait for their vertices. With [`Order::AtEnd`] only the latter.
+pub(super) struct PatchBuilder {
+    order: Order,
+    first_id: u64,
+    new: Vec<Point>,
+    triangles: Vec<[u64; 3]>,
+    finalized: Vec<u64>,
+    live: HashMap<u64, Live>,
+    /// Triangles that wait, with the number of vertices they wait for, under a running number.
+    waiting: HashMap<u64, ([u64; 3], u8)>,
+    /// Triangles that wait for a vertex which has not come.
+    awaited: HashMap<u64, Vec<u64>>,
+    waited: u64,
+    triangles_read: u64,
+    /// Vertices that the end of the input finalizes, decreasing; filled by [`PatchBuilder::end`].
+    remaining: Vec<u64>,
+    /// With [`Order::AtEnd`], how many of the last vertices are still to be finalized.
+    unfinalized: u64,
+}
+
+impl PatchBuilder {
+    pub(super) fn new(order: Order) -> Self {
+        PatchBuilder {
+            order,
+            first_id: 0,
+            new: Vec::new(),
+            triangles: Vec::new(),
+            finalized: Vec::new(),
+            live: HashMap::new(),
+            waiting: HashMap::new(),
+            awaited: HashMap::new(),
+            waited: 0,
+            triangles_read: 0,
+            remaining: Vec::new(),
+            unfinalized: 0,
+        }
+    }
+
+    /// Vertices read so far, which is the id of the next one.
+    pub(super) fn vertices(&self) -> u64 {
+        self.first_id + self.new.len() as u64
+    }
+
+    /// Triangles read so far.
+    pub(super) fn triangles(&self) -> u64 {
+        self.triangles_read
+    }
+
+    /// Adds the next vertex.
+    pub(super) fn vertex(&mut self, point: Point) {
+        let id = self.vertices();
+        self.new.push(point);
+        let waiting = self.awaited.remove(&id).unwrap_or_default();
+        if self.order != Order::AtEnd {
+            let closed = self.order == Order::OnArrival;
+            self.live.insert(id, Live { waiting: waiting.len() as u32, closed });
+        }
+        for number in waiting {
+            let (_, missing) = self.waiting.get_mut(&number).expect("an awaited triangle waits");
+            *missing -= 1;
+            if *missing == 0 {
+                let (triangle, _) = self.waiting.remove(&number).expect("it was just there");
+                self.triangles.push(triangle);
+                triangle.into_iter().for_each(|id| self.release(id));
+            }
+        }
+        self.finalize_if_done(id);
+    }
+
+    /// Adds a triangle of the vertices with these ids.
+    pub(super) fn triangle(&mut self, triangle: [u64; 3]) -> Result<()> {
+        let [a, b, c] = triangle;
+        if a == b || b == c || c == a {
+            return Err(Error::malformed(format!(
+                "triangle {} {} {} uses a vertex twice",
+                a + 1,
+                b + 1,
+                c + 1
+            )));
+        }
+        let vertices = self.vertices();
+        for id in triangle {
+            if id >= vertices && self.order == Order::Stated {
+                return Err(Error::malformed(format!("triangle uses vertex {} of {vertices}", id + 1)));
+            }
+            let is_final = self.order != Order::AtEnd && id < vertices;
+            if is_final && self.live.get(&id).is_none_or(|live| live.closed) {
+                return Err(Error::malformed(format!("vertex {} referenced after finalization", id + 1)));
+            }
+        }
+        self.triangles_read += 1;
+        let missing = triangle.iter().filter(|&&id| id >= vertices).count();
+        if missing == 0 {
+            self.triangles.push(triangle);
+            return Ok(());
+        }
+        for id in triangle {
+            if id >= vertices {
+                self.awaited.entry(id).or_default().push(self.waited);
+            } else if let Some(live) = self.live.get_mut(&id) {
+                live.waiting += 1;
+            }
+        }
+        self.waiting.insert(self.waited, (triangle, missing as u8));
+        self.waited += 1;
+        Ok(())
+    }
+
+    /// Says that no later triangle uses a vertex.
+    pub(super) fn finalize(&mut self, id: u64) -> Result<()> {
+        let vertices = self.vertices();
+        match self.live.get_mut(&id) {
+            Some(live) if !live.closed => live.closed = true,
+            _ if id < vertices => {
+                return Err(Error::malformed(format!("vertex {} finalized twice", id + 1)));
+            }
+            _ => return Err(Error::malformed(format!("vertex {} finalized before it came", id + 1))),
+        }
+        self.finalize_if_done(id);
+        Ok(())
+    }
+
+    /// Whether the patch should be taken before more is added.
+    pub(super) fn is_full(&self) -> bool {
+        self.new.len() >= NEW_MAX
+            || self.triangles.len() >= TRIANGLES_MAX
+            || self.finalized.len() >= FINALIZED_MAX
+    }
+
+    /// Ends the input: what is live is final.
+    ///
+    /// # Errors
+    /// If a triangle waits for a vertex that never came.
+    pub(super) fn end(&mut self) -> Result<()> {
+        if let Some(id) = self.awaited.keys().min() {
+            let vertices = self.vertices();
+            return Err(Error::malformed(format!("a triangle uses vertex {} of {vertices}", id + 1)));
+        }
+        self.remaining = std::mem::take(&mut self.live).into_keys().collect();
+        self.remaining.sort_unstable_by_key(|&id| std::cmp::Reverse(id));
+        self.unfinalized = if self.order == Order::AtEnd { self.vertices() } else { 0 };
+        Ok(())
+    }
+
+    /// The next patch after [`PatchBuilder::end`], until nothing is left.
+    pub(super) fn take_remaining(&mut self) -> Option<Patch> {
+        let room = FINALIZED_MAX.saturating_sub(self.finalized.len());
+        let from_list = self.remaining.len().saturating_sub(room);
+        self.finalized.extend(self.remaining.drain(from_list..));
+        if self.order == Order::AtEnd {
+            let end = self.vertices();
+            let start = end - self.unfinalized;
+            let stop = end.min(start + room as u64);
+            self.finalized.extend(start..stop);
+            self.unfinalized -= stop - start;
+        }
+        let is_empty = self.new.is_empty() && self.triangles.is_empty() && self.finalized.is_empty();
+        (!is_empty).then(|| self.take())
+    }
+
+    /// What the END block says of the input.
+    pub(super) fn totals(&self) -> Totals {
+        let vertices = self.vertices();
+        Totals { points: vertices, vertices, simplices: self.triangles_read, ..Totals::default() }
+    }
+
+    /// The patch so far; a new one starts. One vertex can complete any number of triangles: what is too much
+    /// for a patch stays for the next one, and finalizations wait for the triangles before them.
+    pub(super) fn take(&mut self) -> Patch {
+        let first_id = self.first_id;
+        let new = std::mem::take(&mut self.new);
+        let triangles: Vec<_> = drain_at_most(&mut self.triangles, TRIANGLES_MAX);
+        let finals = if self.triangles.is_empty() { FINALIZED_MAX } else { 0 };
+        let finalized = drain_at_most(&mut self.finalized, finals);
+        self.first_id += new.len() as u64;
+        patch_of_ids(first_id, new, triangles.as_flattened(), &finalized)
+    }
+
+    /// One triangle that used the vertex no longer waits.
+    fn release(&mut self, id: u64) {
+        if let Some(live) = self.live.get_mut(&id) {
+            live.waiting -= 1;
+        }
+        self.finalize_if_done(id);
+    }
+
+    fn finalize_if_done(&mut self, id: u64) {
+        if self.live.get(&id).is_some_and(|live| live.closed && live.waiting == 0) {
+            self.live.remove(&id);
+            self.finalized.push(id);
+        }
+    }
+}
+
+/// The patch of vertices from `first_id` on, with ids below the end of those in simplices, one behind the other, and
+/// in finalizations.
+pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
+    let used = simplices.iter().chain(finalized);
+    let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();
+    imported.sort_unstable();
+    imported.dedup();
+    let local = |id: &u64| match id.checked_sub(first_id) {
+        Some(new) => new as u32,
+        None => (new.len() + imported.binary_search(id).expect("it was collected")) as u32,
+    };
+    let simplices = simplices.iter().map(local).collect();
+    let mut finalized: Vec<u32> = finalized.iter().map(local).collect();
+    finalized.sort_unstable();
+    Patch { first_id, new, imported, simplices, finalized }
+}
+
+fn drain_at_most<T>(items: &mut Vec<T>, most: usize) -> Vec<T> {
+    if items.len() <= most { std::mem::take(items) } else { items.drain(..most).collect() }
+}

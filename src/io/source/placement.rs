@@ -1,0 +1,153 @@
+//! Moves points from the coordinates of their file to those of the whole input, and drops what is not wanted.
+
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::Coordinates;
+
+/// Largest deviation of a ratio of scales from the fraction that it is taken for, relative: 2^-40. Division and
+/// decimal notation of scales cost some 2^-51. Over 32 bits a coordinate moves by 2^-9 of its file's step at most.
+pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Largest factor between steps: stored integers times the factor, and a shift beside them, are exact in f64.
+const FACTOR_MAX: f64 = (1u64 << 21) as f64;
+
+/// Largest deviation of an offset from a whole number of quanta, and of a coordinate from a side of the
+/// bounds filter, in quanta.
+const QUANTA_TOLERANCE: f64 = 1e-6;
+
+/// How the points of one file become points of the input.
+#[derive(Debug)]
+pub(super) struct Placement {
+    step: Step,
+    /// The bounds filter in the file's stored coordinates.
+    bounds: Option<Bounds>,
+    skip_invalid: bool,
+    /// Points dropped so far because a coordinate is not finite.
+    pub(super) invalid: u64,
+}
+
+#[derive(Debug)]
+enum Step {
+    Same,
+    /// Both are integers, of which the file's count whole multiples of the input's. Nothing is rounded, and
+    /// equal points stay equal; where scales are equal but for their notation, the world may move by
+    /// [`RATIO_TOLERANCE`].
+    Integers {
+        factor: Point,
+        shift: Point,
+    },
+    ToWorld(Coordinates),
+    /// To the nearest grid point.
+    ToGrid {
+        from: Coordinates,
+        to: Coordinates,
+    },
+}
+
+impl Placement {
+    pub(super) fn new(
+        from: &Coordinates,
+        to: &Coordinates,
+        bounds: Option<Bounds>,
+        skip_invalid: bool,
+    ) -> Self {
+        let step = if from == to {
+            Step::Same
+        } else if *to == Coordinates::F64 {
+            Step::ToWorld(*from)
+        } else if let Some((factor, shift)) = whole_steps(from, to) {
+            Step::Integers { factor, shift }
+        } else {
+            Step::ToGrid { from: *from, to: *to }
+        };
+        let bounds = bounds.map(|bounds| stored_bounds(from, bounds));
+        Placement { step, bounds, skip_invalid, invalid: 0 }
+    }
+
+    /// Whether points with integer coordinates, which are finite, all stay what they are.
+    pub(super) fn keeps_integers(&self) -> bool {
+        matches!(self.step, Step::Same) && self.bounds.is_none()
+    }
+
+    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless it is to be dropped.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite (and that is not to be skipped), or does not fit the input's grid. The
+    /// caller knows the record and adds it.
+    #[inline]
+    pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<()> {
+        if let Some(bounds) = &self.bounds
+            && !bounds.contains(stored)
+            && stored.iter().all(|value| value.is_finite())
+        {
+            return Ok(());
+        }
+        let placed = match &self.step {
+            Step::Same => stored,
+            Step::Integers { factor, shift } => {
+                std::array::from_fn(|axis| stored[axis] * factor[axis] + shift[axis])
+            }
+            Step::ToWorld(from) => from.to_world(stored),
+            Step::ToGrid { from, to } => to.to_stored(from.to_world(stored)),
+        };
+        if !placed.iter().all(|value| value.is_finite()) {
+            return self.refuse(stored);
+        }
+        if let Step::Integers { .. } | Step::ToGrid { .. } = self.step
+            && !placed.iter().all(|value| f64::from(*value as i32) == *value)
+        {
+            return Err(Error::usage(format!(
+                "coordinates {stored:?} are {placed:?} steps of the common grid, beyond 32 bits: \
+                 give a coarser --scale or another --offset"
+            )));
+        }
+        batch.push(placed);
+        Ok(())
+    }
+
+    #[cold]
+    fn refuse(&mut self, stored: Point) -> Result<()> {
+        if self.skip_invalid {
+            self.invalid += 1;
+            return Ok(());
+        }
+        Err(Error::malformed(format!(
+            "coordinates {stored:?} are not finite (--skip-invalid drops and counts such points)"
+        )))
+    }
+}
+
+/// Factor and shift per axis that turn stored integers of `from` into those of `to`, if there are any. In the
+/// world, a point moves by no more than 2^-9 steps of `from` and 10^-6 steps of `to`.
+pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
+    let (Coordinates::I32 { scale, offset }, Coordinates::I32 { scale: to_scale, offset: to_offset }) =
+        (from, to)
+    else {
+        return None;
+    };
+    let (mut factor, mut shift) = ([0.0; 3], [0.0; 3]);
+    for axis in 0..3 {
+        factor[axis] = whole(scale[axis] / to_scale[axis], RATIO_TOLERANCE * scale[axis] / to_scale[axis])?;
+        shift[axis] = whole((offset[axis] - to_offset[axis]) / to_scale[axis], QUANTA_TOLERANCE)?;
+        if !(1.0..=FACTOR_MAX).contains(&factor[axis]) {
+            return None;
+        }
+    }
+    Some((factor, shift))
+}
+
+fn whole(value: f64, tolerance: f64) -> Option<f64> {
+    let rounded = value.round();
+    ((value - rounded).abs() <= tolerance && rounded.abs() < 2f64.powi(52)).then_some(rounded)
+}
+
+/// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside, however
+/// the products of scale and integer are rounded.
+fn stored_bounds(from: &Coordinates, bounds: Bounds) -> Bounds {
+    let Coordinates::I32 { scale, offset } = from else { return bounds };
+    let steps = |side: Point, axis: usize| (side[axis] - offset[axis]) / scale[axis];
+    Bounds {
+        min: std::array::from_fn(|axis| (steps(bounds.min, axis) - QUANTA_TOLERANCE).ceil()),
+        max: std::array::from_fn(|axis| (steps(bounds.max, axis) + QUANTA_TOLERANCE).floor()),
+    }
+}

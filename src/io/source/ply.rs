@@ -1,0 +1,269 @@
+//! Reads PLY, text and bytes of either order: a triangle mesh if it has faces, else points.
+
+use std::collections::VecDeque;
+use std::io::Read;
+
+use super::byte_order::ByteOrder;
+use super::events::EventSource;
+use super::mesh_events::{Element, Elements, MeshEvents};
+use super::patches::Order;
+use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
+use super::polygon::fan;
+use super::sample_type::SampleType;
+use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
+use super::vertices::{VertexPoints, Vertices};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Header, Kind};
+
+/// Longest list of a row: polygons and strips of any use are shorter, and a damaged length ends here.
+const LIST_MAX: u64 = 1 << 16;
+
+/// Reads PLY: a triangle mesh, in which polygons become fans around their first vertex, or points of `dims`
+/// dimensions; `name` is what messages call the input.
+///
+/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and place. Memory: one
+/// patch or batch, and triangles that come before their vertices.
+///
+/// # Errors
+/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips.
+pub fn open_ply<R: Read + 'static>(
+    input: R,
+    name: impl Into<String>,
+    dims: u8,
+) -> Result<Box<dyn EventSource>> {
+    let rows = Rows::open(input, name)?;
+    if rows.header.rows(Sort::Face) > 0 {
+        return Ok(Box::new(MeshEvents::new(PlyElements { rows, triangles: VecDeque::new() })));
+    }
+    Ok(Box::new(points(rows, dims)))
+}
+
+/// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call the input.
+///
+/// # Errors
+/// If the header is damaged or states no vertices with x, y and z.
+pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> Result<VertexPoints<PlyVertices<R>>> {
+    Ok(points(Rows::open(input, name)?, 3))
+}
+
+fn points<R: Read>(rows: Rows<R>, dims: u8) -> VertexPoints<PlyVertices<R>> {
+    let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
+    header.points = Some(rows.header.rows(Sort::Vertex));
+    VertexPoints::new(PlyVertices { rows }, header)
+}
+
+/// The vertices of a PLY.
+pub(super) struct PlyVertices<R: Read> {
+    rows: Rows<R>,
+}
+
+impl<R: Read> Vertices for PlyVertices<R> {
+    fn next_vertex(&mut self) -> Result<Option<Point>> {
+        loop {
+            match self.rows.next()? {
+                Some(Row::Vertex(point)) => return Ok(Some(point)),
+                Some(Row::Face(_)) => {}
+                None => return Ok(None),
+            }
+        }
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.rows.locate(error)
+    }
+}
+
+struct PlyElements<R: Read> {
+    rows: Rows<R>,
+    /// The rest of the polygon that was read last.
+    triangles: VecDeque<[u64; 3]>,
+}
+
+impl<R: Read> Elements for PlyElements<R> {
+    fn order(&self) -> Order {
+        Order::AtEnd
+    }
+
+    fn next_element(&mut self, _vertices: u64) -> Result<Option<Element>> {
+        loop {
+            if let Some(triangle) = self.triangles.pop_front() {
+                return Ok(Some(Element::Triangle(triangle, [false; 3])));
+            }
+            match self.rows.next()? {
+                None => return Ok(None),
+                Some(Row::Vertex(point)) => return Ok(Some(Element::Vertex(point))),
+                Some(Row::Face(corners)) => {
+                    let vertices = self.rows.header.rows(Sort::Vertex);
+                    if let Some(corner) = corners.iter().find(|&&corner| corner >= vertices) {
+                        return Err(Error::malformed(format!("face with vertex {corner} of {vertices}")));
+                    }
+                    self.triangles = fan(&corners)?;
+                }
+            }
+        }
+    }
+
+    fn check_counts(&self, _: u64, _: u64) -> Result<()> {
+        Ok(())
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.rows.locate(error)
+    }
+}
+
+/// A row that matters here.
+enum Row {
+    Vertex(Point),
+    Face(Vec<u64>),
+}
+
+/// The rows behind the header, in the order of the file.
+struct Rows<R: Read> {
+    lines: Lines<R>,
+    header: PlyHeader,
+    table: usize,
+    row: u64,
+}
+
+impl<R: Read> Rows<R> {
+    /// Reads the header.
+    fn open(input: R, name: impl Into<String>) -> Result<Self> {
+        let mut lines = Lines::new(input, name);
+        let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
+        Ok(Rows { lines, header, table: 0, row: 0 })
+    }
+
+    /// The next vertex or face; rows of other elements are read over.
+    fn next(&mut self) -> Result<Option<Row>> {
+        while let Some(table) = self.header.tables.get(self.table) {
+            if self.row == table.rows {
+                (self.table, self.row) = (self.table + 1, 0);
+                continue;
+            }
+            self.row += 1;
+            let (point, corners) = match self.header.encoding {
+                Encoding::Ascii => read_text_row(&mut self.lines, &table.properties)?,
+                Encoding::Binary(order) => read_binary_row(self.lines.input(), &table.properties, order)?,
+            };
+            match table.sort {
+                Sort::Vertex => return Ok(Some(Row::Vertex(point))),
+                Sort::Face => return Ok(Some(Row::Face(corners))),
+                Sort::Strip | Sort::Other => {}
+            }
+        }
+        self.expect_end_of_input()?;
+        Ok(None)
+    }
+
+    /// That nothing follows: a count that is too low would lose the rest without a word.
+    fn expect_end_of_input(&mut self) -> Result<()> {
+        let goes_on = match self.header.encoding {
+            Encoding::Ascii => loop {
+                match self.lines.next_line()? {
+                    None => break false,
+                    Some(line) if line.trim_ascii().is_empty() => {}
+                    Some(_) => break true,
+                }
+            },
+            Encoding::Binary(_) => {
+                let mut rest = self.lines.input().take(1);
+                std::io::copy(&mut rest, &mut std::io::sink()).map_err(|e| Error::io("reading", e))? > 0
+            }
+        };
+        if goes_on {
+            Err(Error::malformed("the file goes on after the rows that the header states"))
+        } else {
+            Ok(())
+        }
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        match self.header.encoding {
+            Encoding::Ascii => self.lines.locate(error),
+            Encoding::Binary(_) => {
+                self.lines.locate(error.at(format!("element {}, row {}", self.table + 1, self.row)))
+            }
+        }
+    }
+}
+
+/// What a row says, property by property.
+#[derive(Default)]
+struct RowValues {
+    point: Point,
+    corners: Vec<u64>,
+}
+
+impl RowValues {
+    fn add(&mut self, role: Role, value: f64) -> Result<()> {
+        match role {
+            Role::Axis(_) if !value.is_finite() => Err(Error::malformed(format!("coordinate {value}"))),
+            Role::Axis(axis) => {
+                self.point[axis] = value;
+                Ok(())
+            }
+            Role::Corners if value >= 0.0 && value.fract() == 0.0 => {
+                self.corners.push(value as u64);
+                Ok(())
+            }
+            Role::Corners => Err(Error::malformed(format!("vertex number {value}"))),
+            Role::Length | Role::Other => Ok(()),
+        }
+    }
+
+    /// Values of a property, each from `next`.
+    fn property(
+        &mut self,
+        property: &Property,
+        mut next: impl FnMut(Role, SampleType) -> Result<f64>,
+    ) -> Result<()> {
+        let &Property { role, length, scalar } = property;
+        let Some(length) = length else { return self.add(role, next(role, scalar)?) };
+        let length = next(Role::Length, length)?;
+        if !(length >= 0.0 && length <= LIST_MAX as f64 && length.fract() == 0.0) {
+            return Err(Error::malformed(format!("list of {length} values, the maximum is {LIST_MAX}")));
+        }
+        (0..length as u64).try_for_each(|_| self.add(role, next(role, scalar)?))
+    }
+}
+
+fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Result<(Point, Vec<u64>)> {
+    let mut values = RowValues::default();
+    let line = lines.next_line()?.ok_or_else(truncated)?;
+    let mut fields = fields(line);
+    for property in properties {
+        values.property(property, |role, _| match role {
+            // What is read over may be no finite number.
+            Role::Other => next_field(&mut fields).map(|_| 0.0),
+            _ => parse_decimal(next_field(&mut fields)?),
+        })?;
+    }
+    expect_no_field(&mut fields)?;
+    Ok((values.point, values.corners))
+}
+
+fn read_binary_row(
+    input: &mut impl Read,
+    properties: &[Property],
+    order: ByteOrder,
+) -> Result<(Point, Vec<u64>)> {
+    let mut values = RowValues::default();
+    for property in properties {
+        values.property(property, |_, scalar| {
+            let mut bytes = [0; 8];
+            let bytes = &mut bytes[..scalar.len()];
+            input.read_exact(bytes).map_err(|e| match e.kind() {
+                std::io::ErrorKind::UnexpectedEof => truncated(),
+                _ => Error::io("reading", e),
+            })?;
+            Ok(scalar.number(bytes, order))
+        })?;
+    }
+    Ok((values.point, values.corners))
+}
+
+fn truncated() -> Error {
+    Error::malformed("truncated: the header states more rows")
+}

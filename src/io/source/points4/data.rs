@@ -1,0 +1,154 @@
+//! The values of a volume, where they are in one file or several.
+
+use std::io::{self, BufRead, BufReader, Read};
+
+use crate::source::byte_order::ByteOrder;
+use crate::source::gzip::Gunzip;
+use crate::source::numbers::{NumberReader, Writing, fill, truncated};
+use crate::source::origin::Origin;
+use crate::source::sample_type::SampleType;
+use spmesh_core::error::{Error, Result};
+
+/// Values decoded at once.
+const BATCH_VALUES: u64 = 1 << 13;
+
+/// How values are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Raw(ByteOrder),
+    Gzip(ByteOrder),
+    Text,
+}
+
+/// Where the values of a volume are, and how they are written.
+#[derive(Debug)]
+pub(super) struct Data {
+    /// Files, each with as many of the values, in order.
+    pub parts: Vec<Part>,
+    pub sample: SampleType,
+    pub encoding: Encoding,
+    /// Lines of each part before its values, as it is stored.
+    pub line_skip: u64,
+    /// Bytes after those and before the values, decompressed.
+    pub byte_skip: Skip,
+    /// Whether bytes behind the values are an error: the size was not stated by the file.
+    pub is_exact: bool,
+}
+
+/// Bytes before values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Skip {
+    Bytes(u64),
+    /// All but the values, which end the file.
+    ToEnd,
+}
+
+/// A file with values.
+#[derive(Debug)]
+pub(super) struct Part {
+    pub origin: Origin,
+    /// What messages call it, if it is another file than the input.
+    pub name: Option<String>,
+    /// Whether the file is compressed as a whole.
+    pub is_gzip: bool,
+    /// Bytes of the header before the data, decompressed.
+    pub header_len: u64,
+}
+
+impl Data {
+    /// Gives all `total` values to `visit`, in batches.
+    ///
+    /// Memory: a batch. Reads no more than `total` values and a byte, however much a compressed file would give.
+    ///
+    /// # Errors
+    /// If there are fewer values, or one of them is none; or whatever `visit` returns.
+    pub(super) fn scan(&self, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        let share = total / self.parts.len() as u64;
+        for part in &self.parts {
+            let scanned = self.scan_part(part, share, visit);
+            scanned.map_err(|e| part.name.iter().fold(e, |e, name| e.of_input(name)))?;
+        }
+        Ok(())
+    }
+
+    fn scan_part(&self, part: &Part, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+        let writing = match self.encoding {
+            Encoding::Raw(order) | Encoding::Gzip(order) => Writing::Binary(order),
+            Encoding::Text => Writing::Text,
+        };
+        let mut input = self.open(part, total)?;
+        let mut reader = NumberReader::new(&mut input, self.sample, writing, total);
+        let mut values = Vec::new();
+        loop {
+            values.clear();
+            let read = reader.read(BATCH_VALUES, &mut values);
+            if !read.map_err(|e| self.locate(e, reader.done()))? {
+                break;
+            }
+            visit(&values)?;
+        }
+        if self.is_exact && !fill(&mut input)?.is_empty() {
+            let bytes = total * self.sample.len() as u64;
+            let reason = format!("has more than {bytes} bytes: the stated sizes or the type are wrong");
+            return Err(Error::malformed(reason));
+        }
+        Ok(())
+    }
+
+    /// Adds to an error about the value behind `done` others which one it is, where no byte tells.
+    fn locate(&self, error: Error, done: u64) -> Error {
+        match self.encoding {
+            Encoding::Text => error.at(format!("value {}", done + 1)),
+            Encoding::Raw(_) | Encoding::Gzip(_) => error,
+        }
+    }
+
+    /// The data of a part.
+    fn open(&self, part: &Part, total: u64) -> Result<Box<dyn BufRead>> {
+        let view = part.origin.view()?;
+        if self.byte_skip == Skip::ToEnd {
+            let wanted = total.saturating_mul(self.sample.len() as u64);
+            let Some(start) = view.len().checked_sub(wanted) else {
+                return Err(truncated(view.len() / self.sample.len() as u64, total));
+            };
+            return Ok(Box::new(BufReader::new(view.range(start, view.len()))));
+        }
+        let mut input: Box<dyn BufRead> =
+            if part.is_gzip { buffered(Gunzip::new(view)) } else { buffered(view) };
+        skip_bytes(&mut input, part.header_len)?;
+        skip_lines(&mut input, self.line_skip)?;
+        if let Encoding::Gzip(_) = self.encoding {
+            input = buffered(Gunzip::new(input));
+        }
+        if let Skip::Bytes(bytes) = self.byte_skip {
+            skip_bytes(&mut input, bytes)?;
+        }
+        Ok(input)
+    }
+}
+
+fn buffered<'i>(input: impl Read + 'i) -> Box<dyn BufRead + 'i> {
+    Box::new(BufReader::with_capacity(1 << 17, input))
+}
+
+fn skip_bytes(input: &mut dyn BufRead, bytes: u64) -> Result<()> {
+    let skipped = io::copy(&mut input.take(bytes), &mut io::sink()).map_err(|e| Error::io("reading", e))?;
+    if skipped < bytes {
+        return Err(Error::malformed(format!(
+            "ends early: {bytes} bytes are to be skipped, found {skipped}"
+        )));
+    }
+    Ok(())
+}
+
+fn skip_lines(input: &mut dyn BufRead, lines: u64) -> Result<()> {
+    for line in 0..lines {
+        let skipped = input.skip_until(b'\n').map_err(|e| Error::io("reading", e))?;
+        if skipped == 0 {
+            return Err(Error::malformed(format!(
+                "ends early: {lines} lines are to be skipped, found {line}"
+            )));
+        }
+    }
+    Ok(())
+}

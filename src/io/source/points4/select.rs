@@ -1,0 +1,120 @@
+//! Which points of an input are kept.
+
+use super::sample::choose;
+use super::scan::Supply;
+use super::{Points4, Selection, Share, too_many};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::limits::POINTS4_MAX;
+use spmesh_model::cells4::Point4;
+
+/// The points that are wanted, in the order of the input.
+///
+/// # Errors
+/// As [`Supply::scan`]; usage, if the selection does not go with the input or leaves too much of it.
+pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Points4> {
+    check(supply, selection)?;
+    match (supply, selection.share) {
+        (Supply::Grid(lattice), Some(share)) if selection.condition.is_none() => {
+            let sites = lattice.sites();
+            let chosen = choose(sites, share.of(sites)?, selection.seed)?;
+            let points = chosen.into_iter().map(|number| lattice.site(number)).collect();
+            Ok(Points4 { points, values: None, name: String::new(), sites, warnings: Vec::new() })
+        }
+        (_, Some(share)) => select_at_random(supply, selection, share),
+        (_, None) => Ok(Intake::of(supply, selection, |_| true)?.finish(selection)),
+    }
+}
+
+fn check(supply: &Supply, selection: &Selection) -> Result<()> {
+    if supply.has_values() {
+        return Ok(());
+    }
+    if selection.condition.as_ref().is_some_and(|condition| condition.needs_value()) {
+        return Err(Error::usage("points have no values here: --where can only compare x, y, z and t"));
+    }
+    if let (Supply::Grid(lattice), None, None) = (supply, &selection.condition, selection.share)
+        && lattice.sites() > POINTS4_MAX
+    {
+        // Known before any of them is made.
+        return Err(too_many("points", lattice.sites(), POINTS4_MAX, REMEDY));
+    }
+    Ok(())
+}
+
+const REMEDY: &str = "choose some of them with --where, --sample or --count";
+
+/// Two passes: how many points are wanted has to be known before some of them are chosen.
+fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Result<Points4> {
+    let mut wanted = 0;
+    supply.scan(&mut |point, value| {
+        wanted += u64::from(is_wanted(selection, &point, value));
+        Ok(())
+    })?;
+    let mut chosen = choose(wanted, share.of(wanted)?, selection.seed)?.into_iter().peekable();
+    let intake = Intake::of(supply, selection, |number| chosen.next_if_eq(&number).is_some())?;
+    if chosen.peek().is_some() || intake.wanted != wanted {
+        // Only another process can do that.
+        return Err(Error::malformed("has changed while it was read: read it again"));
+    }
+    Ok(intake.finish(selection))
+}
+
+fn is_wanted(selection: &Selection, point: &Point4, value: Option<f64>) -> bool {
+    let holds = |condition: &super::Condition| condition.holds(point, value.unwrap_or(f64::NAN));
+    (selection.keep_nan || !value.is_some_and(f64::is_nan)) && selection.condition.as_ref().is_none_or(holds)
+}
+
+/// Points on their way in.
+struct Intake {
+    points: Vec<Point4>,
+    values: Option<Vec<f64>>,
+    sites: u64,
+    wanted: u64,
+    missing: u64,
+}
+
+impl Intake {
+    /// Keeps the wanted points whose number among the wanted ones `keeps`.
+    fn of(supply: &Supply, selection: &Selection, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
+        let values = supply.has_values().then(Vec::new);
+        let mut intake = Intake { points: Vec::new(), values, sites: 0, wanted: 0, missing: 0 };
+        supply.scan(&mut |point, value| {
+            intake.sites += 1;
+            intake.missing += u64::from(value.is_some_and(f64::is_nan));
+            if !is_wanted(selection, &point, value) {
+                return Ok(());
+            }
+            intake.wanted += 1;
+            if keeps(intake.wanted - 1) { intake.push(point, value) } else { Ok(()) }
+        })?;
+        Ok(intake)
+    }
+
+    fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
+        let count = self.points.len() as u64;
+        if count == POINTS4_MAX {
+            return Err(too_many("points", count + 1, POINTS4_MAX, REMEDY));
+        }
+        let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory for {count} points"));
+        self.points.try_reserve(1).map_err(no_memory)?;
+        self.points.push(point);
+        if let (Some(values), Some(value)) = (&mut self.values, value) {
+            values.try_reserve(1).map_err(no_memory)?;
+            values.push(value);
+        }
+        Ok(())
+    }
+
+    fn finish(self, selection: &Selection) -> Points4 {
+        let Intake { points, values, sites, wanted, missing } = self;
+        let mut warnings = Vec::new();
+        if missing > 0 && !selection.keep_nan {
+            warnings.push(format!("{missing} of {sites} points have no value (NaN) and are left out"));
+        }
+        if points.is_empty() {
+            let why = if wanted == 0 { "none fulfils what is asked for" } else { "too few are chosen" };
+            warnings.push(format!("no point is left of {sites}: {why}"));
+        }
+        Points4 { points, values, name: String::new(), sites, warnings }
+    }
+}

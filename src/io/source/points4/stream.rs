@@ -1,0 +1,83 @@
+//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are read over.
+
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use super::scan::Supply;
+use crate::source::gzip::Plain;
+use crate::source::origin::Origin;
+use crate::source::{EventSource, TwinSource};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::cells4::Point4;
+use spmesh_stream::{Event, StreamReader};
+
+/// First bytes of a stream.
+const MAGIC: &[u8] = b"\x89SPM";
+
+/// First bytes of a text twin.
+const TWIN_MAGIC: &[u8] = b"#spmesh ";
+
+const BUFFER_LEN: usize = 1 << 18;
+
+/// A stream whose header is read.
+#[derive(Debug)]
+pub(super) struct Stream {
+    origin: Origin,
+    name: String,
+    is_twin: bool,
+    pub has_values: bool,
+}
+
+/// Whether these are the first bytes of a stream or of its text twin.
+pub(super) fn is_head(head: &[u8]) -> bool {
+    head.starts_with(MAGIC) || head.starts_with(TWIN_MAGIC)
+}
+
+/// The points of the stream in `origin`, which starts with `head`, for any number of passes.
+///
+/// # Errors
+/// If its header is damaged; usage, if its points have fewer dimensions.
+pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Supply> {
+    let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
+    let is_twin = head.starts_with(TWIN_MAGIC);
+    let mut stream = Stream { origin, name, is_twin, has_values: false };
+    let source = stream.read()?;
+    let header = source.header();
+    if !header.kind.is_4d() {
+        let message = format!(
+            "is a stream of kind {} in {} dimensions, expected points, cells or simplices in 4 dimensions",
+            header.kind.name(),
+            header.dims
+        );
+        return Err(Error::usage(message));
+    }
+    stream.has_values = header.has_elevation;
+    Ok(Supply::Stream(stream))
+}
+
+impl Stream {
+    fn read(&self) -> Result<Box<dyn EventSource>> {
+        let plain = Plain::new(self.origin.view()?).map_err(|e| Error::io("reading", e))?;
+        let input: Box<dyn Read + Send> = Box::new(BufReader::with_capacity(BUFFER_LEN, plain));
+        Ok(match self.is_twin {
+            true => Box::new(TwinSource::new(input, &self.name)?),
+            false => Box::new(StreamReader::new(input, &self.name)?),
+        })
+    }
+
+    /// Gives every point to `visit`; the stream is read to its END.
+    ///
+    /// # Errors
+    /// If the stream is truncated or malformed; or whatever `visit` returns.
+    pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
+        let mut source = self.read()?;
+        while let Some(event) = source.next_event()? {
+            let Event::Points4(block) = event else { continue };
+            for (number, point) in block.points.into_iter().enumerate() {
+                // Adding 0 makes 0 of -0.
+                visit(point.map(|x| x + 0.0), block.values.as_ref().map(|values| values[number]))?;
+            }
+        }
+        Ok(())
+    }
+}

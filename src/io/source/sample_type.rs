@@ -1,0 +1,98 @@
+//! Types of numbers in binary files.
+
+use super::byte_order::ByteOrder;
+use spmesh_core::error::{Error, Result};
+
+/// How a number is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SampleType {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+/// The numbers in `bytes`: a loop for each type and order, so that none asks for them again and again.
+macro_rules! decode {
+    ($type:ty, $bytes:expr, $order:expr, $numbers:expr) => {{
+        let numbers =
+            $bytes.chunks_exact(size_of::<$type>()).map(|bytes| bytes.try_into().expect("its length"));
+        match $order {
+            ByteOrder::Little => $numbers.extend(numbers.map(|bytes| <$type>::from_le_bytes(bytes) as f64)),
+            ByteOrder::Big => $numbers.extend(numbers.map(|bytes| <$type>::from_be_bytes(bytes) as f64)),
+        }
+    }};
+}
+
+/// Takes the last number.
+struct Last(f64);
+
+impl Extend<f64> for Last {
+    fn extend<I: IntoIterator<Item = f64>>(&mut self, numbers: I) {
+        numbers.into_iter().for_each(|number| self.0 = number);
+    }
+}
+
+impl SampleType {
+    /// Bytes of a number.
+    pub(super) fn len(self) -> usize {
+        match self {
+            SampleType::I8 | SampleType::U8 => 1,
+            SampleType::I16 | SampleType::U16 => 2,
+            SampleType::I32 | SampleType::U32 | SampleType::F32 => 4,
+            SampleType::I64 | SampleType::U64 | SampleType::F64 => 8,
+        }
+    }
+
+    /// Appends the numbers in `bytes`. Integers beyond 2^53 are rounded.
+    pub(super) fn decode(self, bytes: &[u8], order: ByteOrder, numbers: &mut impl Extend<f64>) {
+        match self {
+            SampleType::I8 => decode!(i8, bytes, order, numbers),
+            SampleType::U8 => decode!(u8, bytes, order, numbers),
+            SampleType::I16 => decode!(i16, bytes, order, numbers),
+            SampleType::U16 => decode!(u16, bytes, order, numbers),
+            SampleType::I32 => decode!(i32, bytes, order, numbers),
+            SampleType::U32 => decode!(u32, bytes, order, numbers),
+            SampleType::I64 => decode!(i64, bytes, order, numbers),
+            SampleType::U64 => decode!(u64, bytes, order, numbers),
+            SampleType::F32 => decode!(f32, bytes, order, numbers),
+            SampleType::F64 => decode!(f64, bytes, order, numbers),
+        }
+    }
+
+    /// The number in `bytes`, which are as many as it has.
+    pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
+        let mut last = Last(0.0);
+        self.decode(bytes, order, &mut last);
+        last.0
+    }
+
+    /// The value that is written as `text`.
+    ///
+    /// # Errors
+    /// If it is none of this type.
+    pub(super) fn parse(self, text: &[u8]) -> Result<f64> {
+        let text = std::str::from_utf8(text).unwrap_or("");
+        let integer = |least: i128, most: i128| {
+            text.parse().ok().filter(|value| (least..=most).contains(value)).map(|value: i128| value as f64)
+        };
+        let value = match self {
+            SampleType::I8 => integer(i8::MIN.into(), i8::MAX.into()),
+            SampleType::U8 => integer(0, u8::MAX.into()),
+            SampleType::I16 => integer(i16::MIN.into(), i16::MAX.into()),
+            SampleType::U16 => integer(0, u16::MAX.into()),
+            SampleType::I32 => integer(i32::MIN.into(), i32::MAX.into()),
+            SampleType::U32 => integer(0, u32::MAX.into()),
+            SampleType::I64 => integer(i64::MIN.into(), i64::MAX.into()),
+            SampleType::U64 => integer(0, u64::MAX.into()),
+            SampleType::F32 | SampleType::F64 => text.parse().ok(),
+        };
+        value.ok_or_else(|| Error::malformed(format!("found {text:?}, expected a value of type {self:?}")))
+    }
+}

@@ -1,0 +1,115 @@
+//! What the streaming point formats SPA and SPB have in common; `formats/historical.md` describes both.
+
+use super::BATCH_POINTS;
+use super::input::{Pass, Stated};
+use super::placement::Placement;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Coordinates, Crs};
+
+/// How the file stores coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpDatatype {
+    /// 32-bit floating point.
+    Float,
+    /// 32-bit integers.
+    Int,
+    /// 64-bit floating point.
+    Double,
+}
+
+/// Which space partition the cell indices of finalization tags refer to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SpFinalization {
+    /// No tags.
+    None,
+    /// Cells of a quadtree over the bounding box.
+    QuadTree,
+    /// Cells of an octree over the bounding box.
+    OctTree,
+    /// Cells of a coarse triangulation, given in a file of its own.
+    Clarkson2d,
+    /// Cells of a coarse tetrahedralization, given in a file of its own.
+    Clarkson3d,
+}
+
+/// The header of an SPA or SPB file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpHeader {
+    /// Comments of the file.
+    pub comments: Vec<String>,
+    /// How coordinates are stored.
+    pub datatype: SpDatatype,
+    /// What the finalization tags mean.
+    pub finalization: SpFinalization,
+    /// Number of points, if stated.
+    pub points: Option<u64>,
+    /// Bounding box, if stated. SPA rounds it to six digits.
+    pub bounds: Option<Bounds>,
+}
+
+/// What such a file says after its header.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SpEvent {
+    /// A point. Single precision and integers are exact in f64.
+    Point(Point),
+    /// No later point lies in the cell of this index.
+    FinalizedCell(i32),
+}
+
+/// Reads an SPA or SPB file event by event.
+pub trait SpReader {
+    /// The header.
+    fn header(&self) -> &SpHeader;
+
+    /// The next event; `None` at the end.
+    ///
+    /// # Errors
+    /// If reading fails, or the file is damaged or has another number of points than it states. Coordinates
+    /// need not be finite.
+    fn next_event(&mut self) -> Result<Option<SpEvent>>;
+
+    /// Where the event that was read last is, for messages.
+    fn position(&self) -> String;
+}
+
+impl SpHeader {
+    /// Fails if the file ends after another number of points than it states.
+    pub(super) fn check_count(&self, points: u64) -> Result<()> {
+        match self.points {
+            Some(stated) if stated != points => {
+                Err(Error::malformed(format!("the header states {stated} points, the file has {points}")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn state(&self, bounds: Option<Bounds>) -> Stated {
+        let finite = |bounds: &Bounds| bounds.min.iter().chain(&bounds.max).all(|value| value.is_finite());
+        Stated {
+            coordinates: Coordinates::F64,
+            has_z: Some(true),
+            crs: Crs::Unknown,
+            bounds: bounds.filter(finite),
+            points: self.points,
+        }
+    }
+}
+
+/// One pass over the points of such a file; its tags are ignored.
+pub(super) struct SpPass<R>(pub(super) R);
+
+impl<R: SpReader + Send> Pass for SpPass<R> {
+    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
+        for count in 0..BATCH_POINTS {
+            match self.0.next_event()? {
+                Some(SpEvent::Point(point)) => {
+                    placement.put(point, batch).map_err(|e| e.at(self.0.position()))?;
+                }
+                Some(SpEvent::FinalizedCell(_)) => {}
+                None => return Ok(count > 0),
+            }
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,185 @@
+//! Puts atoms together to a structure, as they come from a file.
+
+use super::decimal::{Number, Quantum};
+use super::model::{Atom, Model, Residue, Structure};
+use super::names::Names;
+use spmesh_core::error::{Error, Result};
+
+/// An atom as a file has it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record<'a> {
+    /// Line in which it ends, counted from 1.
+    pub(super) line: u64,
+    /// `None` if the file has none that can be read.
+    pub(super) serial: Option<u64>,
+    pub(super) name: &'a str,
+    pub(super) element: &'a str,
+    pub(super) altloc: &'a str,
+    pub(super) chain: &'a str,
+    pub(super) residue_name: &'a str,
+    pub(super) residue_number: Option<i32>,
+    pub(super) insertion_code: &'a str,
+    pub(super) occupancy: f32,
+    pub(super) is_hetatm: bool,
+    pub(super) place: [Number; 3],
+}
+
+/// Something odd that is counted, and said once at the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Oddity {
+    /// A serial number that cannot be read.
+    Serial,
+    /// A residue number that cannot be read.
+    ResidueNumber,
+    /// An occupancy that is no number.
+    Occupancy,
+    /// A model without a number that can be read, or atoms between models.
+    Model,
+}
+
+const ODDITIES: [(Oddity, &str, &str); 4] = [
+    (Oddity::Serial, "serial numbers cannot be read", "they are counted on from the atom before"),
+    (Oddity::ResidueNumber, "residue numbers cannot be read", "they are left out"),
+    (Oddity::Occupancy, "occupancies are no numbers", "they are taken for 1"),
+    (Oddity::Model, "models have no number, or no MODEL record", "they are counted on from the model before"),
+];
+
+/// A structure that grows. Memory: what it holds.
+#[derive(Debug, Default)]
+pub(super) struct StructureBuilder {
+    quantum: Quantum,
+    models: Vec<Model>,
+    /// Index of the model that atoms go to.
+    model: usize,
+    residues: Vec<Residue>,
+    names: Names,
+    /// First line and number of each oddity.
+    oddities: [(u64, u64); ODDITIES.len()],
+    warnings: Vec<String>,
+    /// Line of the last atom.
+    last_line: u64,
+}
+
+impl StructureBuilder {
+    /// Starts a model.
+    pub(super) fn start_model(&mut self, number: i64) {
+        self.model = self.models.len();
+        self.models.push(Model { number, ..Model::default() });
+    }
+
+    /// Goes on with the last model of this number, or starts one.
+    pub(super) fn resume_model(&mut self, number: i64) {
+        if self.models.get(self.model).is_some_and(|model| model.number == number) {
+            return;
+        }
+        match self.models.iter().rposition(|model| model.number == number) {
+            Some(model) => self.model = model,
+            None => self.start_model(number),
+        }
+    }
+
+    /// Number for a model that has none of its own.
+    pub(super) fn next_model_number(&self) -> i64 {
+        self.models.last().map_or(1, |model| model.number.saturating_add(1))
+    }
+
+    /// Notes something odd in `line`.
+    pub(super) fn note(&mut self, oddity: Oddity, line: u64) {
+        let (first, count) = &mut self.oddities[oddity as usize];
+        if *count == 0 {
+            *first = line;
+        }
+        *count += 1;
+    }
+
+    /// Adds a sentence to the warnings.
+    pub(super) fn warn(&mut self, warning: impl Into<String>) {
+        self.warnings.push(warning.into());
+    }
+
+    /// Notes which line has no line end, if there is one: an atom in it may have lost its last columns.
+    pub(super) fn end(&mut self, unended: Option<u64>) {
+        if unended.is_some_and(|line| line == self.last_line) {
+            self.warn("the last atom's line has no line end: the file may have been cut off there");
+        }
+    }
+
+    /// Adds an atom to the model.
+    ///
+    /// # Errors
+    /// If there are more than 2^32 residues.
+    pub(super) fn push(&mut self, record: &Record) -> Result<()> {
+        if self.models.is_empty() {
+            self.start_model(1);
+        }
+        self.last_line = record.line;
+        let residue = self.residue(record)?;
+        let point = self.quantum.store(record.place, &mut self.models);
+        let model = &mut self.models[self.model];
+        let after_last = || model.atoms.last().map_or(1, |atom| atom.serial.saturating_add(1));
+        let atom = Atom {
+            serial: record.serial.unwrap_or_else(after_last),
+            residue,
+            name: self.names.intern(record.name),
+            element: self.names.intern(record.element),
+            altloc: self.names.intern(record.altloc),
+            occupancy: record.occupancy,
+            is_hetatm: record.is_hetatm,
+        };
+        model.points.push(point);
+        model.atoms.push(atom);
+        Ok(())
+    }
+
+    /// Index of the residue of an atom: that of the atom before, or a new one.
+    fn residue(&mut self, record: &Record) -> Result<u32> {
+        let residue = Residue {
+            chain: self.names.intern(record.chain),
+            name: self.names.intern(record.residue_name),
+            number: record.residue_number,
+            insertion_code: self.names.intern(record.insertion_code),
+        };
+        if self.residues.last() != Some(&residue) {
+            self.residues.push(residue);
+        }
+        u32::try_from(self.residues.len() - 1)
+            .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
+    }
+
+    /// The structure, `name` being what messages call it.
+    ///
+    /// # Errors
+    /// If it has no atom.
+    pub(super) fn finish(mut self, name: &str) -> Result<Structure> {
+        self.models.retain(|model| !model.points.is_empty());
+        if self.models.is_empty() {
+            return Err(Error::malformed("found no atom").of_input(name));
+        }
+        for (oddity, what, remedy) in ODDITIES {
+            let (line, count) = self.oddities[oddity as usize];
+            if count > 0 {
+                self.warnings.push(format!("{count} {what}, the first in line {line}: {remedy}"));
+            }
+        }
+        Ok(Structure {
+            name: name.to_string(),
+            coordinates: self.quantum.coordinates(),
+            models: self.models,
+            residues: self.residues,
+            names: self.names,
+            warnings: self.warnings,
+        })
+    }
+}
+
+/// A name from a file, if it is printable text without line ends and tabs.
+///
+/// # Errors
+/// If it is not; `what` says what it should be.
+pub(super) fn printable<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
+    let is_printable = bytes.iter().all(|&byte| byte >= b' ' && byte != 0x7f);
+    let text = if is_printable { std::str::from_utf8(bytes).ok() } else { None };
+    text.ok_or_else(|| {
+        crate::source::statements::unexpected(bytes, &format!("{what} in printable characters"))
+    })
+}

@@ -1,0 +1,129 @@
+//! Points without names: whatever `spfinalize` reads, and the vertices of meshes.
+
+use std::io::Read;
+use std::path::Path;
+
+use super::model::{Model, Structure};
+use super::names::Names;
+use crate::source::{EventSource, Input, SourceOptions};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::temporary::TemporaryFile;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Coordinates, Event};
+
+/// Reads the points of a file that can be read several times.
+///
+/// # Errors
+/// As [`Input::open`], and if there is no point.
+pub(super) fn read_file(path: &Path) -> Result<Structure> {
+    read_input(&Input::open(&[path.to_path_buf()], &options())?)
+}
+
+/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call it.
+///
+/// # Errors
+/// As [`Input::open`], and if there is no point.
+pub(super) fn read_copy(mut input: impl Read, name: &str) -> Result<Structure> {
+    let file = TemporaryFile::create(None)?;
+    copy(&mut input, &file).map_err(|e| e.of_input(name))?;
+    read_input(&Input::open_file(file.into_file(), name, &options())?)
+}
+
+fn options() -> SourceOptions {
+    SourceOptions { dims: 3, ..SourceOptions::default() }
+}
+
+/// Copies all bytes. What fails is told apart: reading, or writing.
+fn copy(input: &mut impl Read, file: &TemporaryFile) -> Result<()> {
+    use std::io::Write;
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match input.read(&mut buffer) {
+            Ok(0) => return Ok(()),
+            Ok(len) => {
+                file.file().write_all(&buffer[..len]).map_err(|e| file.error("writing to it", e))?;
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(Error::io("reading", e)),
+        }
+    }
+}
+
+fn read_input(input: &Input) -> Result<Structure> {
+    let mut reader = input.read()?;
+    let (mut points, mut batch) = (Vec::new(), Vec::new());
+    loop {
+        reader.next_batch(&mut batch)?;
+        if batch.is_empty() {
+            break;
+        }
+        points.extend_from_slice(&batch);
+    }
+    let coordinates = input.description().coordinates;
+    let mut warnings = input.notices().to_vec();
+    if coordinates == Coordinates::F64
+        && let Some(last) = numbered(&points)
+    {
+        warnings.push(format!(
+            "x is every whole number up to {last} once: if these are numbers of points, cut them off first"
+        ));
+    }
+    structure(points, coordinates, &input.name(), warnings)
+}
+
+/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as those of
+/// points are that stand in a column of their own before the coordinates.
+fn numbered(points: &[Point]) -> Option<usize> {
+    const FEWEST: usize = 8;
+    let first = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);
+    if points.len() < FEWEST || (first != 0.0 && first != 1.0) {
+        return None;
+    }
+    let mut has = vec![false; points.len()];
+    let is_next = |point: &Point| {
+        let place = point[0] - first;
+        place.fract() == 0.0 && has.get_mut(place as usize).is_some_and(|has| !std::mem::replace(has, true))
+    };
+    points.iter().all(is_next).then(|| first as usize + points.len() - 1)
+}
+
+/// Reads the points, or the vertices, of an input that is read as events.
+///
+/// # Errors
+/// If it is malformed or has none.
+pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Result<Structure> {
+    let coordinates = source.header().coordinates;
+    let mut all = Vec::new();
+    while let Some(event) = source.next_event()? {
+        match event {
+            Event::Points(points) => all.extend(points),
+            Event::Patch(patch) => all.extend(patch.new),
+            _ => {}
+        }
+    }
+    // What they notice is about when vertices are final, which does not matter here.
+    structure(all, coordinates, name, Vec::new())
+}
+
+/// A structure of points without names; `name` is what messages call it.
+///
+/// # Errors
+/// If there is no point.
+pub(super) fn structure(
+    points: Vec<Point>,
+    coordinates: Coordinates,
+    name: &str,
+    warnings: Vec<String>,
+) -> Result<Structure> {
+    if points.is_empty() {
+        return Err(Error::malformed("found no point").of_input(name));
+    }
+    Ok(Structure {
+        name: name.to_string(),
+        coordinates,
+        models: vec![Model { number: 1, points, atoms: Vec::new() }],
+        residues: Vec::new(),
+        names: Names::default(),
+        warnings,
+    })
+}

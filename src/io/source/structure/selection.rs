@@ -1,0 +1,287 @@
+//! Which atoms of a structure are wanted, and those atoms.
+
+use std::borrow::Cow;
+use std::collections::HashSet;
+
+use super::conformers::{Preference, one_conformer};
+use super::model::{Atom, AtomView, Model, Residue, Structure};
+use super::names::Name;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::points::Point3;
+
+/// Which models.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Models {
+    /// The first of the file.
+    #[default]
+    First,
+    /// The one of this number.
+    One(i64),
+    /// All of them, as one set of atoms.
+    All,
+}
+
+/// Which of the alternate locations of an atom. Atoms with one location are always wanted.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Altlocs {
+    /// Those of the conformer of each residue that is occupied most, the first of equals.
+    #[default]
+    Best,
+    /// Those of the conformer of each residue that comes first.
+    First,
+    /// Those with this name.
+    Named(String),
+    /// All of them.
+    All,
+}
+
+/// Which atoms of a molecule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Atoms {
+    /// All of them.
+    #[default]
+    All,
+    /// All but hydrogen (and deuterium).
+    Heavy,
+    /// Alpha carbons only.
+    CAlpha,
+}
+
+/// Which atoms are wanted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Selection {
+    /// Which models.
+    pub models: Models,
+    /// Names of chains as the authors call them; all chains if empty.
+    pub chains: Vec<String>,
+    /// Which alternate locations.
+    pub altlocs: Altlocs,
+    /// Whether HETATM records are wanted.
+    pub hetatm: bool,
+    /// Which atoms.
+    pub atoms: Atoms,
+}
+
+impl Default for Selection {
+    fn default() -> Self {
+        Selection {
+            models: Models::default(),
+            chains: Vec::new(),
+            altlocs: Altlocs::default(),
+            hetatm: true,
+            atoms: Atoms::default(),
+        }
+    }
+}
+
+/// The atoms (or points without names) that were selected, in the order of the file.
+#[derive(Debug, Clone)]
+pub struct Selected<'s> {
+    structure: &'s Structure,
+    points: Cow<'s, [Point3]>,
+    members: Members,
+}
+
+/// Where the selected atoms are in the structure.
+#[derive(Debug, Clone)]
+enum Members {
+    /// All of one model.
+    Model(usize),
+    /// Model and index of each.
+    Listed(Vec<[u32; 2]>),
+}
+
+impl Structure {
+    /// The atoms that `selection` wants. To select a whole model costs nothing; points without names are in every
+    /// selection of their model that does not ask for chains or alpha carbons.
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to select by; none
+    /// if no atom is left.
+    pub fn select(&self, selection: &Selection) -> Result<Selected<'_>> {
+        let models = self.models_of(selection)?;
+        let chains = self.chains_of(selection)?;
+        let mut members = Vec::new();
+        for &model in &models {
+            let filter = Filter::new(self, model, selection, &chains);
+            if models.len() == 1 && filter.wants_all() {
+                return Ok(self.whole(model));
+            }
+            let wanted = (0..self.models[model].points.len()).filter(|&atom| filter.wants(atom));
+            members.extend(wanted.map(|atom| [model as u32, atom as u32]));
+        }
+        if let [model] = models[..]
+            && members.len() == self.models[model].points.len()
+        {
+            return Ok(self.whole(model));
+        }
+        let points = members.iter().map(|&[model, atom]| self.models[model as usize].points[atom as usize]);
+        let points = Cow::Owned(points.collect());
+        Ok(Selected { structure: self, points, members: Members::Listed(members) })
+    }
+
+    fn whole(&self, model: usize) -> Selected<'_> {
+        let points = Cow::Borrowed(self.models[model].points.as_slice());
+        Selected { structure: self, points, members: Members::Model(model) }
+    }
+
+    /// Indices of the models that are wanted.
+    fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
+        match selection.models {
+            Models::First => Ok(vec![0]),
+            Models::All => Ok((0..self.models.len()).collect()),
+            Models::One(number) => {
+                let model = self.models.iter().position(|model| model.number == number);
+                let numbers = self.models.iter().map(|model| model.number.to_string());
+                model
+                    .map(|model| vec![model])
+                    .ok_or_else(|| self.lacks("model", &number.to_string(), numbers))
+            }
+        }
+    }
+
+    /// The chains that are wanted; all if none is named.
+    fn chains_of(&self, selection: &Selection) -> Result<Vec<Name>> {
+        let is_nameless = self.models.iter().all(|model| model.atoms.is_empty());
+        if is_nameless && (!selection.chains.is_empty() || selection.atoms == Atoms::CAlpha) {
+            let reason = "has points without names: chains and atoms cannot be selected";
+            return Err(Error::usage(reason).of_input(&self.name));
+        }
+        let find = |chain: &String| {
+            let found = self.names.find(chain);
+            let found = found.filter(|&name| self.residues.iter().any(|residue| residue.chain == name));
+            found.ok_or_else(|| self.lacks("chain", chain, self.chains().into_iter().map(str::to_string)))
+        };
+        selection.chains.iter().map(find).collect()
+    }
+
+    /// The names of all chains, in the order in which they appear.
+    #[must_use]
+    pub fn chains(&self) -> Vec<&str> {
+        let mut seen = HashSet::new();
+        let chains = self.residues.iter().map(|residue| residue.chain);
+        chains.filter(|&chain| seen.insert(chain)).map(|chain| self.names.text(chain)).collect()
+    }
+
+    fn lacks(&self, what: &str, wanted: &str, there: impl Iterator<Item = String>) -> Error {
+        const SHOWN: usize = 20;
+        let mut there: Vec<String> = there.take(SHOWN + 1).collect();
+        if there.len() > SHOWN {
+            there[SHOWN] = "...".to_string();
+        }
+        Error::usage(format!("has no {what} {wanted:?}, only {}", there.join(", "))).of_input(&self.name)
+    }
+}
+
+/// Which atoms of one model are wanted.
+struct Filter<'s> {
+    structure: &'s Structure,
+    model: &'s Model,
+    hetatm: bool,
+    atoms: Atoms,
+    /// Whether each residue is in a chain that is wanted; empty if all are.
+    residues: Vec<bool>,
+    /// Whether each atom is at a location that is wanted; empty if all are.
+    locations: Vec<bool>,
+}
+
+impl<'s> Filter<'s> {
+    fn new(structure: &'s Structure, model: usize, selection: &Selection, chains: &[Name]) -> Self {
+        let model = &structure.models[model];
+        let is_wanted = |residue: &Residue| chains.contains(&residue.chain);
+        let residues =
+            if chains.is_empty() { Vec::new() } else { structure.residues.iter().map(is_wanted).collect() };
+        let locations = match &selection.altlocs {
+            Altlocs::All => Vec::new(),
+            _ if model.atoms.iter().all(|atom| atom.altloc.is_empty()) => Vec::new(),
+            Altlocs::Named(name) => {
+                let name = structure.names.find(name);
+                let is_wanted = |atom: &Atom| atom.altloc.is_empty() || Some(atom.altloc) == name;
+                model.atoms.iter().map(is_wanted).collect()
+            }
+            Altlocs::First => one_conformer(&structure.residues, &model.atoms, Preference::First),
+            Altlocs::Best => one_conformer(&structure.residues, &model.atoms, Preference::MostOccupied),
+        };
+        Filter { structure, model, hetatm: selection.hetatm, atoms: selection.atoms, residues, locations }
+    }
+
+    /// Whether nothing is filtered.
+    fn wants_all(&self) -> bool {
+        let every_kind = self.hetatm && self.atoms == Atoms::All;
+        self.model.atoms.is_empty() || (every_kind && self.residues.is_empty() && self.locations.is_empty())
+    }
+
+    fn wants(&self, index: usize) -> bool {
+        let Some(atom) = self.model.atoms.get(index) else { return true };
+        let is_kind = || match self.atoms {
+            Atoms::All => true,
+            Atoms::Heavy => !self.is_hydrogen(atom),
+            Atoms::CAlpha => self.is_alpha_carbon(atom),
+        };
+        (self.hetatm || !atom.is_hetatm)
+            && self.residues.get(atom.residue as usize).is_none_or(|&wanted| wanted)
+            && self.locations.get(index).is_none_or(|&wanted| wanted)
+            && is_kind()
+    }
+
+    /// By the element; where it is not stated, by the name, digits aside: that of an ion is that of its residue.
+    fn is_hydrogen(&self, atom: &Atom) -> bool {
+        let names = &self.structure.names;
+        match names.text(atom.element) {
+            "" => {
+                let name = names.text(atom.name).trim_start_matches(|c: char| c.is_ascii_digit());
+                name.starts_with(['H', 'h'])
+                    && atom.name != self.structure.residues[atom.residue as usize].name
+            }
+            element => matches!(element, "H" | "h" | "D" | "d"),
+        }
+    }
+
+    /// By name and element; calcium is a residue of its own.
+    fn is_alpha_carbon(&self, atom: &Atom) -> bool {
+        let names = &self.structure.names;
+        let is_calcium = atom.name == self.structure.residues[atom.residue as usize].name;
+        names.text(atom.name).eq_ignore_ascii_case("CA")
+            && matches!(names.text(atom.element), "" | "C" | "c")
+            && !is_calcium
+    }
+}
+
+impl<'s> Selected<'s> {
+    /// Where the atoms are, in the stored coordinates of the structure.
+    #[must_use]
+    pub fn points(&self) -> &[Point3] {
+        &self.points
+    }
+
+    /// The structure they are from.
+    #[must_use]
+    pub fn structure(&self) -> &'s Structure {
+        self.structure
+    }
+
+    /// The label of the point at `index`: the serial number of its atom, or for points without names its number
+    /// in the input, counted from 1.
+    #[must_use]
+    pub fn label(&self, index: usize) -> u64 {
+        let [model, atom] = self.place(index);
+        self.structure.models[model].atoms.get(atom).map_or(atom as u64 + 1, |atom| atom.serial)
+    }
+
+    /// The atom at `index`; `None` for points without names.
+    #[must_use]
+    pub fn atom(&self, index: usize) -> Option<AtomView<'s>> {
+        let [model, atom] = self.place(index);
+        let model = &self.structure.models[model];
+        let point = self.points[index];
+        Some(AtomView { structure: self.structure, model: model.number, atom: model.atoms.get(atom)?, point })
+    }
+
+    /// Indices of model and atom of the point at `index`.
+    fn place(&self, index: usize) -> [usize; 2] {
+        match &self.members {
+            Members::Model(model) => [*model, index],
+            Members::Listed(members) => members[index].map(|index| index as usize),
+        }
+    }
+}

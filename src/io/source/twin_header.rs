@@ -1,0 +1,157 @@
+//! The header lines of a text twin.
+
+use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Region};
+use spmesh_model::cells::CellTree;
+use spmesh_stream::{Coordinates, Crs, Header, Kind};
+
+/// The header so far, as the lines say it.
+#[derive(Default)]
+pub(super) struct TwinHeader {
+    seen: Vec<Vec<u8>>,
+    kind: Option<Kind>,
+    is_i32: bool,
+    scale: Option<[f64; 3]>,
+    offset: Option<[f64; 3]>,
+    dims: Option<u8>,
+    has_elevation: Option<bool>,
+    bounds: Option<[f64; 6]>,
+    points: Option<u64>,
+    tree: Option<(u8, [f64; 4])>,
+    region: Option<Vec<f64>>,
+    chunked: bool,
+    crs: Crs,
+    producer: String,
+}
+
+impl TwinHeader {
+    /// Takes the part of a header line behind `#spmesh `.
+    pub(super) fn line(&mut self, line: &[u8]) -> Result<()> {
+        let key = fields(line).next().unwrap_or_default().to_vec();
+        let rest = line[line.windows(key.len().max(1)).position(|w| w == key).unwrap_or(0) + key.len()..]
+            .trim_ascii();
+        if self.seen.is_empty() != (key == b"version") {
+            return Err(Error::malformed("the header must start with one line \"#spmesh version 1\""));
+        }
+        if self.seen.contains(&key) {
+            return Err(Error::malformed("the header says this twice"));
+        }
+        let mut values = fields(rest);
+        match &key[..] {
+            b"version" => expect_word(rest, &[("1", ())])?,
+            b"kind" => {
+                let kind = std::str::from_utf8(rest).ok().and_then(Kind::from_name);
+                self.kind = Some(kind.ok_or_else(|| unexpected(rest, "a kind of stream"))?);
+            }
+            b"coordinates" => self.is_i32 = expect_word(rest, &[("f64", false), ("i32", true)])?,
+            b"scale" => self.scale = Some(only(parse_decimals(&mut values)?, values)?),
+            b"offset" => self.offset = Some(only(parse_decimals(&mut values)?, values)?),
+            b"dims" => self.dims = Some(expect_word(rest, &[("2", 2), ("3", 3), ("4", 4)])?),
+            b"elevation" => self.has_elevation = Some(expect_word(rest, &YES_NO)?),
+            b"bounds" => self.bounds = Some(only(parse_decimals(&mut values)?, values)?),
+            b"points" => self.points = Some(only(parse_integer(next_field(&mut values)?)?, values)?),
+            b"tree" => {
+                let depth = parse_integer(next_field(&mut values)?)?;
+                let depth = u8::try_from(depth).map_err(|_| Error::malformed("the tree is too deep"))?;
+                self.tree = Some((depth, only(parse_decimals(&mut values)?, values)?));
+            }
+            b"region" => self.region = Some(parse_region(rest)?),
+            b"chunked" => self.chunked = expect_word(rest, &YES_NO)?,
+            b"wkt" => self.crs = Crs::Wkt(parse_string(rest)?),
+            b"geokeys" => self.crs = only(parse_geo_keys(&mut values)?, values)?,
+            b"producer" => self.producer = parse_string(rest)?,
+            _ => return Err(unexpected(&key, "a statement of the header")),
+        }
+        self.seen.push(key);
+        Ok(())
+    }
+
+    /// The header that the lines make.
+    pub(super) fn finish(self) -> Result<Header> {
+        let missing = |what: &str| Error::malformed(format!("the header does not say the {what}"));
+        let kind = self.kind.ok_or_else(|| missing("kind"))?;
+        if !self.seen.iter().any(|key| key == b"coordinates") {
+            return Err(missing("coordinates"));
+        }
+        let coordinates = match (self.is_i32, self.scale, self.offset) {
+            (false, None, None) => Coordinates::F64,
+            (true, Some(scale), Some(offset)) => Coordinates::I32 { scale, offset },
+            _ => {
+                return Err(Error::malformed("scale and offset go with i32 coordinates, and only with them"));
+            }
+        };
+        let dims = self.dims.ok_or_else(|| missing("dims"))?;
+        let tree = self.tree.map(|(depth, [x, y, z, side])| {
+            CellTree::new(dims, depth, [x, y, z], side)
+                .ok_or_else(|| Error::malformed("the finalization tree is out of range or not exact"))
+        });
+        let header = Header {
+            kind,
+            coordinates,
+            dims,
+            has_elevation: self.has_elevation.ok_or_else(|| missing("elevation"))?,
+            bounds: self.bounds.map(|[a, b, c, d, e, f]| Bounds { min: [a, b, c], max: [d, e, f] }),
+            points: self.points,
+            tree: tree.transpose()?,
+            region: self.region.map(|sides| region_of(&sides, dims)).transpose()?,
+            chunked: self.chunked,
+            crs: self.crs,
+            producer: self.producer,
+        };
+        header.check().map_err(Error::malformed)?;
+        Ok(header)
+    }
+}
+
+const YES_NO: [(&str, bool); 2] = [("yes", true), ("no", false)];
+
+fn expect_word<T: Copy>(word: &[u8], words: &[(&str, T)]) -> Result<T> {
+    let found = words.iter().find(|(name, _)| name.as_bytes() == word);
+    found.map(|&(_, value)| value).ok_or_else(|| {
+        let names: Vec<&str> = words.iter().map(|&(name, _)| name).collect();
+        unexpected(word, &names.join(" or "))
+    })
+}
+
+/// `value`, if the line has no field left.
+fn only<'a, T>(value: T, mut rest: impl Iterator<Item = &'a [u8]>) -> Result<T> {
+    expect_no_field(&mut rest)?;
+    Ok(value)
+}
+
+/// Four or six numbers, which may be infinite.
+fn parse_region(text: &[u8]) -> Result<Vec<f64>> {
+    let numbers = fields(text).map(|field| std::str::from_utf8(field).ok()?.parse::<f64>().ok());
+    let sides: Option<Vec<f64>> = numbers.collect();
+    sides.filter(|sides| matches!(sides.len(), 4 | 6)).ok_or_else(|| unexpected(text, "four or six numbers"))
+}
+
+/// The region with the given lower sides, then upper ones.
+fn region_of(sides: &[f64], dims: u8) -> Result<Region<3>> {
+    if sides.len() != 2 * usize::from(dims) {
+        let message = format!("a region of {} numbers in {dims} dimensions", sides.len());
+        return Err(Error::malformed(message));
+    }
+    let (lower, upper) = sides.split_at(sides.len() / 2);
+    Ok(Region::of_sides(lower, upper))
+}
+
+fn parse_string(text: &[u8]) -> Result<String> {
+    serde_json::from_slice(text).map_err(|_| unexpected(text, "a JSON string"))
+}
+
+fn parse_geo_keys<'a>(values: &mut impl Iterator<Item = &'a [u8]>) -> Result<Crs> {
+    let mut record = || parse_hex(next_field(values)?);
+    Ok(Crs::GeoKeys { directory: record()?, doubles: record()?, ascii: record()? })
+}
+
+fn parse_hex(field: &[u8]) -> Result<Vec<u8>> {
+    let digit = |byte: u8| (byte as char).to_digit(16).map(|digit| digit as u8);
+    let pairs = field.chunks(2).map(|pair| match *pair {
+        [high, low] => Some(digit(high)? << 4 | digit(low)?),
+        _ => None,
+    });
+    let bytes: Option<Vec<u8>> = if field == b"-" { Some(Vec::new()) } else { pairs.collect() };
+    bytes.ok_or_else(|| unexpected(field, "pairs of hexadecimal digits, or -"))
+}

@@ -1,0 +1,60 @@
+//! The vertices of mesh files of other programs, as points.
+
+use super::events::EventSource;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, Header, Totals};
+
+/// Points per event.
+const BATCH_POINTS: usize = 1 << 12;
+
+/// Reads vertices one after the other.
+pub(super) trait Vertices {
+    /// The next vertex; whatever is between is passed over.
+    ///
+    /// # Errors
+    /// If reading fails or the file is malformed.
+    fn next_vertex(&mut self) -> Result<Option<Point>>;
+
+    /// Adds the position that was reached to an error.
+    fn locate(&self, error: Error) -> Error;
+}
+
+/// Vertices as a stream of points. Memory: one batch.
+pub(super) struct VertexPoints<V> {
+    vertices: V,
+    header: Header,
+    points: u64,
+    ended: bool,
+}
+
+impl<V: Vertices> VertexPoints<V> {
+    /// The points of `vertices`, of which `header` says what they are.
+    pub(super) fn new(vertices: V, header: Header) -> Self {
+        VertexPoints { vertices, header, points: 0, ended: false }
+    }
+}
+
+impl<V: Vertices> EventSource for VertexPoints<V> {
+    fn header(&self) -> &Header {
+        &self.header
+    }
+
+    fn next_event(&mut self) -> Result<Option<Event>> {
+        let mut batch: Vec<Point> = Vec::new();
+        while batch.len() < BATCH_POINTS {
+            let Some(point) = self.vertices.next_vertex().map_err(|e| self.locate(e))? else { break };
+            batch.push(point);
+        }
+        self.points += batch.len() as u64;
+        if !batch.is_empty() {
+            return Ok(Some(Event::Points(batch)));
+        }
+        let totals = Totals { points: self.points, ..Totals::default() };
+        Ok((!std::mem::replace(&mut self.ended, true)).then_some(Event::End(totals)))
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        self.vertices.locate(error)
+    }
+}

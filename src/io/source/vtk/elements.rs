@@ -1,0 +1,237 @@
+//! The elements of an XML file, one after the other, with texts of any length left where they are.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::ops::Range;
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+
+use crate::source::numbers::fill;
+use crate::source::origin::FileView;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::{XML_DEPTH_MAX, XML_TAG_MAX};
+
+/// Bytes that are read at once.
+const BUFFER_LEN: usize = 1 << 17;
+
+/// Reads elements. Memory: one tag.
+pub(super) struct Elements {
+    reader: Reader<Bounded<BufReader<FileView>>>,
+    /// Byte of the file at which the reader started.
+    start: u64,
+    /// Names of the elements that are open.
+    path: Vec<String>,
+    buffer: Vec<u8>,
+}
+
+/// The start of an element.
+#[derive(Debug)]
+pub(super) struct Tag {
+    pub(super) name: String,
+    attributes: Vec<(String, String)>,
+    /// Byte of the file behind it.
+    pub(super) end: u64,
+}
+
+/// What comes next, but for texts.
+enum Next {
+    Open(Tag),
+    Close,
+    /// A comment, or something else that says nothing.
+    Nothing,
+}
+
+impl Tag {
+    /// The value of an attribute, if it is there.
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        self.attributes.iter().find(|(key, _)| key == name).map(|(_, value)| value.trim())
+    }
+
+    /// That something is wrong with the element.
+    pub(super) fn error(&self, what: &str) -> Error {
+        Error::malformed(format!("element {}: {what}", self.name)).at(format!("byte {}", self.end))
+    }
+}
+
+impl Elements {
+    pub(super) fn new(file: &FileView) -> Result<Self> {
+        let mut mark = Vec::new();
+        file.range(0, 3).read_to_end(&mut mark).map_err(|e| Error::io("reading", e))?;
+        let start = if mark == b"\xef\xbb\xbf" { 3 } else { 0 };
+        let input = BufReader::with_capacity(BUFFER_LEN, file.range(start, file.len()));
+        let mut reader = Reader::from_reader(Bounded { input, left: 0 });
+        reader.config_mut().expand_empty_elements = true;
+        Ok(Elements { reader, start, path: Vec::new(), buffer: Vec::new() })
+    }
+
+    /// The next element within the one that was opened last, or the one of the file; `None` at the end of that. What is
+    /// between does not count. The caller goes to the end of the element before it asks for the next.
+    pub(super) fn child(&mut self) -> Result<Option<Tag>> {
+        loop {
+            self.text()?;
+            match self.next()? {
+                Next::Open(tag) => return Ok(Some(tag)),
+                Next::Close => return Ok(None),
+                Next::Nothing => {}
+            }
+        }
+    }
+
+    /// Goes to the end of the element that was opened last.
+    pub(super) fn skip(&mut self) -> Result<()> {
+        let depth = self.path.len();
+        while self.path.len() >= depth {
+            self.child()?;
+        }
+        Ok(())
+    }
+
+    /// Goes to the end of the element that was opened last, and tells where its text is, between its other elements.
+    pub(super) fn only_text(&mut self) -> Result<Range<u64>> {
+        let mut found = 0..0;
+        loop {
+            let text = self.text()?;
+            if !text.is_empty() && !found.is_empty() {
+                return Err(self.locate(Error::malformed("a second text in one element, expected its end")));
+            }
+            found = if text.is_empty() { found } else { text };
+            match self.next()? {
+                Next::Open(_) => self.skip()?,
+                Next::Close => return Ok(found),
+                Next::Nothing => {}
+            }
+        }
+    }
+
+    /// Where the bytes are that follow an underscore, as those of appended data do.
+    pub(super) fn behind_underscore(&mut self) -> Result<u64> {
+        self.reader.get_mut().left = usize::MAX;
+        let mut stream = self.reader.stream();
+        loop {
+            let bytes = fill(&mut stream)?;
+            let blank = bytes.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+            let next = bytes.get(blank).copied();
+            let is_end = bytes.is_empty();
+            stream.consume(blank);
+            match next {
+                Some(b'_') => return Ok(self.position() + 1),
+                None if !is_end => {}
+                _ => {
+                    return Err(self.locate(Error::malformed("found no underscore before the appended data")));
+                }
+            }
+        }
+    }
+
+    fn position(&self) -> u64 {
+        self.start + self.reader.buffer_position()
+    }
+
+    fn locate(&self, error: Error) -> Error {
+        error.at(format!("byte {}", self.position()))
+    }
+
+    /// Goes to the next tag, and tells where text before it is, without white space before that.
+    fn text(&mut self) -> Result<Range<u64>> {
+        self.reader.get_mut().left = usize::MAX;
+        let (mut start, mut is_blank) = (self.position(), true);
+        let mut stream = self.reader.stream();
+        loop {
+            let bytes = fill(&mut stream)?;
+            if bytes.is_empty() {
+                break;
+            }
+            let tag = memchr::memchr(b'<', bytes);
+            let text = &bytes[..tag.unwrap_or(bytes.len())];
+            if is_blank {
+                let blank = text.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+                start += blank as u64;
+                is_blank = blank == text.len();
+            }
+            let len = text.len();
+            stream.consume(len);
+            if tag.is_some() {
+                break;
+            }
+        }
+        Ok(start..self.position())
+    }
+
+    /// What comes next behind a text.
+    fn next(&mut self) -> Result<Next> {
+        self.buffer.clear();
+        self.reader.get_mut().left = XML_TAG_MAX;
+        let event = self.reader.read_event_into(&mut self.buffer);
+        let end = self.start + self.reader.buffer_position();
+        let found = event.map_err(damaged).and_then(|event| match event {
+            Event::Start(start) => tag_of(&start, end).map(Next::Open),
+            Event::End(_) => Ok(Next::Close),
+            Event::Eof => Err(Error::malformed(match self.path.last() {
+                Some(name) => format!("truncated: the file ends within the element {name}"),
+                None => "truncated: the file has no element".to_string(),
+            })),
+            Event::CData(_) => Err(Error::malformed("found CDATA, expected an element")),
+            _ => Ok(Next::Nothing),
+        });
+        let found = found.map_err(|e| e.at(format!("byte {end}")))?;
+        match &found {
+            Next::Open(tag) if self.path.len() == XML_DEPTH_MAX => {
+                return Err(tag.error(&format!("more than {XML_DEPTH_MAX} elements in each other")));
+            }
+            Next::Open(tag) => self.path.push(tag.name.clone()),
+            Next::Close => drop(self.path.pop()),
+            Next::Nothing => {}
+        }
+        Ok(found)
+    }
+}
+
+fn tag_of(start: &BytesStart, end: u64) -> Result<Tag> {
+    let name = start.name().0.to_string();
+    let mut attributes = Vec::new();
+    for attribute in start.attributes() {
+        let attribute =
+            attribute.map_err(|e| Error::malformed(format!("attributes of element {name}: {e}")))?;
+        attributes.push((attribute.key.0.to_string(), attribute.value.to_string()));
+    }
+    Ok(Tag { name, attributes, end })
+}
+
+fn damaged(error: quick_xml::Error) -> Error {
+    match error {
+        quick_xml::Error::Io(e) => Error::io("reading", io::Error::new(e.kind(), e.to_string())),
+        e => Error::malformed(format!("damaged XML: {e}")),
+    }
+}
+
+/// An input of which only some bytes may be read, so that a tag that does not end is not held in memory.
+struct Bounded<R> {
+    input: R,
+    left: usize,
+}
+
+impl<R: BufRead> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let bytes = self.fill_buf()?;
+        let len = bytes.len().min(buffer.len());
+        buffer[..len].copy_from_slice(&bytes[..len]);
+        self.consume(len);
+        Ok(len)
+    }
+}
+
+impl<R: BufRead> BufRead for Bounded<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        let bytes = self.input.fill_buf()?;
+        if self.left == 0 && !bytes.is_empty() {
+            let message = format!("a tag or comment of more than {XML_TAG_MAX} bytes");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, message));
+        }
+        Ok(&bytes[..bytes.len().min(self.left)])
+    }
+
+    fn consume(&mut self, len: usize) {
+        self.left = self.left.saturating_sub(len);
+        self.input.consume(len);
+    }
+}

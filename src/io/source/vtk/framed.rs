@@ -1,0 +1,126 @@
+//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed blocks.
+
+use std::io::{self, BufReader, Read};
+
+use super::blocks::{Blocks, Compressor};
+use crate::source::base64::Base64Reader;
+use crate::source::byte_order::ByteOrder;
+use crate::source::origin::FileView;
+use crate::source::point_arrays::Numbers;
+use spmesh_core::error::{Error, Result};
+
+/// Bytes that are read at once.
+const BUFFER_LEN: usize = 1 << 17;
+
+/// How lengths are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Lengths {
+    /// Whether they have 8 bytes, or else 4.
+    pub(super) is_wide: bool,
+    pub(super) order: ByteOrder,
+}
+
+impl Lengths {
+    /// Bytes of a length.
+    pub(super) fn len(self) -> u64 {
+        if self.is_wide { 8 } else { 4 }
+    }
+
+    /// The next length.
+    pub(super) fn read(self, input: &mut impl Read) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..self.len() as usize];
+        input.read_exact(bytes)?;
+        Ok(if self.is_wide { self.order.u64(bytes) } else { u64::from(self.order.u32(bytes)) })
+    }
+}
+
+/// Where a binary array is, and how it is packed.
+#[derive(Debug, Clone)]
+pub(in crate::source) struct Framed {
+    /// Bytes of the file that hold it; what follows the array may be there, too.
+    pub(super) start: u64,
+    pub(super) end: u64,
+    pub(super) is_base64: bool,
+    pub(super) lengths: Lengths,
+    pub(super) compressor: Option<Compressor>,
+    /// Bytes of its numbers.
+    pub(super) len: u64,
+}
+
+impl Framed {
+    /// The bytes of the numbers, and maybe others behind them.
+    ///
+    /// Memory: buffers, and for LZ4 one block.
+    ///
+    /// # Errors
+    /// If reading fails, or the stated length is not that of the numbers.
+    pub(in crate::source) fn open(&self, view: &FileView) -> Result<Numbers> {
+        let mut head = self.bytes(view, 0)?;
+        let Some(compressor) = self.compressor else {
+            self.check(self.length(&mut head)?)?;
+            return Ok(head);
+        };
+        let [blocks, block_len, last_len] =
+            [self.length(&mut head)?, self.length(&mut head)?, self.length(&mut head)?];
+        // A last length of zero means that the last block is as long as the others.
+        let full = blocks.saturating_sub(u64::from(last_len > 0));
+        if last_len > block_len || (blocks == 0 && self.len > 0) || (blocks > 0 && block_len == 0) {
+            let message = format!("{blocks} compressed blocks of {block_len} bytes, the last of {last_len}");
+            return Err(Error::malformed(message));
+        }
+        self.check(full.saturating_mul(block_len).saturating_add(last_len))?;
+        let data = self.bytes(view, self.lengths.len().saturating_mul(blocks.saturating_add(3)))?;
+        let blocks =
+            Blocks { sizes: head, lengths: self.lengths, compressor, block_len, left: self.len, number: 0 };
+        Ok(Box::new(BufReader::with_capacity(BUFFER_LEN, blocks.reader(data))))
+    }
+
+    /// Where the numbers themselves start, if they stand in the file as they are.
+    ///
+    /// # Errors
+    /// If the stated length is not that of the numbers, or the file ends within them.
+    pub(super) fn plain_start(&self, view: &FileView) -> Result<Option<u64>> {
+        if self.is_base64 || self.compressor.is_some() {
+            return Ok(None);
+        }
+        self.check(self.length(&mut view.range(self.start, self.end))?)?;
+        let start = self.start + self.lengths.len();
+        if self.end.saturating_sub(start) < self.len {
+            return Err(Error::malformed(format!(
+                "truncated: {} bytes are left of {}",
+                self.end.saturating_sub(start),
+                self.len
+            )));
+        }
+        Ok(Some(start))
+    }
+
+    /// The packed bytes behind the first `skipped`, out of base64.
+    fn bytes(&self, view: &FileView, skipped: u64) -> Result<Numbers> {
+        if !self.is_base64 {
+            let start = self.start.saturating_add(skipped);
+            return Ok(Box::new(BufReader::with_capacity(BUFFER_LEN, view.range(start, self.end))));
+        }
+        let encoded = BufReader::with_capacity(BUFFER_LEN, view.range(self.start, self.end));
+        let mut decoded = Box::new(BufReader::with_capacity(BUFFER_LEN, Base64Reader::new(encoded)));
+        let mut before = (&mut decoded).take(skipped);
+        io::copy(&mut before, &mut io::sink()).map_err(|e| Error::io("reading", e))?;
+        Ok(decoded)
+    }
+
+    fn length(&self, input: &mut impl Read) -> Result<u64> {
+        self.lengths.read(input).map_err(|e| match e.kind() {
+            io::ErrorKind::UnexpectedEof => Error::malformed("truncated: the array ends within its lengths"),
+            _ => Error::io("reading", e),
+        })
+    }
+
+    fn check(&self, found: u64) -> Result<()> {
+        if found == self.len {
+            return Ok(());
+        }
+        let expected = self.len;
+        Err(Error::malformed(format!("array of {found} bytes, its points and type need {expected}")))
+    }
+}

@@ -1,0 +1,35 @@
+//! Words of lines, as small text files of a purpose have them.
+
+use std::io::Read;
+
+use super::lines::{LineReader, number, quote};
+use super::text::without_comment;
+use spmesh_core::error::{Error, Result};
+
+/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not count.
+///
+/// # Errors
+/// If reading fails, and as `found`, with the position.
+pub fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
+    let mut lines = LineReader::new(std::io::BufReader::new(input));
+    let mut count = 0;
+    while let Some(line) = lines.next_line()? {
+        let separators = |byte: &u8| byte.is_ascii_whitespace() || b",;:".contains(byte);
+        let words = without_comment(line).split(separators).filter(|word| !word.is_empty());
+        let words: Vec<&[u8]> = words.collect();
+        if !words.is_empty() {
+            count += 1;
+            found(&words).map_err(|e| e.at(lines.position()))?;
+        }
+    }
+    Ok(count)
+}
+
+/// The finite number that a word is.
+///
+/// # Errors
+/// Malformed, if it is none.
+pub fn finite(word: &[u8]) -> Result<f64> {
+    let finite = number(word).filter(|number| number.is_finite());
+    finite.ok_or_else(|| Error::malformed(format!("found {}, expected a finite number", quote(word))))
+}

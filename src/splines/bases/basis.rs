@@ -1,0 +1,308 @@
+//! Bases of splines: what is alive at a point, with values and derivatives.
+
+mod bends;
+
+use super::approach::Approach;
+use super::domain::Domain;
+use super::elements::{Elements, Share};
+use super::factors::Factors;
+use super::function_sets::FunctionSets;
+use super::jet::Jet;
+use super::simplex;
+use super::tent::{self, Found, Line, Tent};
+use super::tree::Tree;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::prefetch::prefetch;
+use spmesh_geometry::predicates::{Point2, area};
+
+/// Functions of one degree over configurations of knots.
+///
+/// A function is a sum of B-splines with factors, and a B-spline is what configurations collect around a set of k knots, its
+/// *interior set*. On lines through knots, where functions or derivatives may jump, they have the values that they have next
+/// to the line on the side of the middle of the domain: sides are told by exact predicates, so that values at knots, on
+/// lines and on the border are right.
+///
+/// Cost: one way down a tree and a few elements for each point; for degree 2, about four elements and seven functions are
+/// not zero.
+#[derive(Debug, Clone)]
+pub struct Basis {
+    pub(super) degree: usize,
+    pub(super) points: Vec<Point2>,
+    pub(super) sets: FunctionSets,
+    pub(super) greville: Vec<Point2>,
+    pub(super) supports: Vec<[Point2; 2]>,
+    pub(super) elements: Elements,
+    /// Closed forms of the elements, where there are any.
+    pub(super) tents: Vec<Tent>,
+    pub(super) factors: Factors,
+    pub(super) domain: Domain,
+    pub(super) tree: Tree,
+}
+
+/// Buffers for evaluations: one for each thread.
+#[derive(Debug, Clone, Default)]
+pub struct Scratch {
+    values: Vec<(u32, f64)>,
+    jets: Vec<(u32, Jet)>,
+    knots: Vec<Point2>,
+}
+
+impl Basis {
+    /// Number of functions.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.sets.len()
+    }
+
+    /// Whether there is no function.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The degree of the polynomials that functions are made of, and that they reproduce.
+    #[must_use]
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// The interior sets of the B-splines whose sum a function is, each with a factor; for degree 0, the triangle.
+    ///
+    /// Panics if there is no such function, as everything that takes its number.
+    pub fn terms(&self, function: usize) -> impl Iterator<Item = (&[u32], f64)> {
+        self.sets.terms(function)
+    }
+
+    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets by their
+    /// factors; for degree 0, that of the triangle.
+    #[must_use]
+    pub fn greville(&self, function: usize) -> Point2 {
+        self.greville[function]
+    }
+
+    /// The least box that contains the support of a function, from lower left to upper right: nothing for one that is zero.
+    #[must_use]
+    pub fn support(&self, function: usize) -> Option<[Point2; 2]> {
+        let [lower, upper] = self.supports[function];
+        (lower[0] <= upper[0]).then_some([lower, upper])
+    }
+
+    /// Bytes held, without knots, sets and Greville sites.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        let tents = std::mem::size_of_val(&self.tents[..]) + std::mem::size_of_val(&self.factors.all[..]);
+        tents + self.tree.bytes() + self.elements.bytes()
+    }
+
+    /// Whether a point is in the domain: the convex, closed region where functions sum to one, and reproduce polynomials of
+    /// their degree k. It is where every closed half-plane has k knots, copies counted; for degree 0 as for degree 1, that
+    /// is the convex hull.
+    ///
+    /// (A domain that is a segment or a point only, without an inside, is not one where functions sum to one.)
+    #[must_use]
+    pub fn is_in_domain(&self, x: Point2) -> bool {
+        let is_right = |&line: &u32| super::domain::is_right_or_on(self.domain.lines[line as usize], x);
+        self.tree.lines(x).is_some_and(|lines| lines.iter().all(is_right))
+    }
+
+    /// From where functions look at a point.
+    #[must_use]
+    pub fn approach(&self, x: Point2) -> Approach {
+        self.domain.approach(x)
+    }
+
+    /// The functions alive at a point, with their values, in order of their numbers.
+    ///
+    /// Alive are all whose elements have the point inside, as it is approached: a value may still be zero.
+    pub fn at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, f64)] {
+        scratch.values.clear();
+        let elements = self.tree.elements(x);
+        elements.iter().for_each(|&element| self.prefetch(element as usize));
+        for &element in elements {
+            self.add_values(element as usize, x, scratch);
+        }
+        scratch.values.sort_unstable_by_key(|&(function, _)| function);
+        &scratch.values
+    }
+
+    /// The functions alive at a point, with values and derivatives, in order of their numbers: limits from the middle of the
+    /// domain, where there is a jump.
+    ///
+    /// These are the functions of [`Basis::at`].
+    pub fn jets_at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, Jet)] {
+        scratch.jets.clear();
+        for &element in self.tree.elements(x) {
+            self.add_jets(element as usize, x, scratch);
+        }
+        scratch.jets.sort_unstable_by_key(|&(function, _)| function);
+        &scratch.jets
+    }
+
+    /// The spline with the given coefficients, one for each function, at a point.
+    #[must_use]
+    pub fn value(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> f64 {
+        self.at(x, scratch).iter().map(|&(function, value)| coefficients[function as usize] * value).sum()
+    }
+
+    /// The spline with the given coefficients, one for each function, with its derivatives at a point.
+    #[must_use]
+    pub fn jet(&self, coefficients: &[f64], x: Point2, scratch: &mut Scratch) -> Jet {
+        let jets = self.jets_at(x, scratch).iter();
+        jets.fold(Jet::default(), |sum, &(function, jet)| sum + jet * coefficients[function as usize])
+    }
+
+    /// Errors: not one finite coefficient for each function.
+    pub(super) fn check_coefficients(&self, coefficients: &[f64]) -> Result<()> {
+        if coefficients.len() != self.len() {
+            let what = format!(
+                "{} coefficients for {} functions: one each is needed",
+                coefficients.len(),
+                self.len()
+            );
+            return Err(Error::usage(what));
+        }
+        match coefficients.iter().position(|coefficient| !coefficient.is_finite()) {
+            Some(bad) => Err(Error::malformed("coefficient is not finite").at(format!("function {bad}"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Has closed forms brought into the cache: points may come in any order.
+    #[inline(always)]
+    fn prefetch(&self, element: usize) {
+        prefetch(&self.tents, element);
+        if let Some(&start) = self.factors.offsets.get(element) {
+            prefetch(&self.factors.all, start as usize);
+            prefetch(&self.factors.all, start as usize + 2);
+        }
+    }
+
+    /// What an element adds to values at a point.
+    #[inline]
+    fn add_values(&self, element: usize, x: Point2, scratch: &mut Scratch) {
+        let values = &mut scratch.values;
+        self.for_each_share(element, x, &mut scratch.knots, |function, value| add(values, function, value));
+    }
+
+    /// What an element adds to a spline at a point.
+    pub(super) fn value_of_element(
+        &self,
+        element: usize,
+        x: Point2,
+        coefficients: &[f64],
+        scratch: &mut Scratch,
+    ) -> f64 {
+        let mut sum = 0.0;
+        self.for_each_share(element, x, &mut scratch.knots, |function, value| {
+            sum += coefficients[function as usize] * value;
+        });
+        sum
+    }
+
+    /// Calls `take` with functions and what the element adds to their values, if the point is inside.
+    #[inline(always)]
+    fn for_each_share(
+        &self,
+        element: usize,
+        x: Point2,
+        knots: &mut Vec<Point2>,
+        mut take: impl FnMut(u32, f64),
+    ) {
+        if let Some(tent) = self.tents.get(element) {
+            let offset = tent.offset(x);
+            let found = match tent.find(offset) {
+                Found::Outside => return,
+                Found::Unclear(height) => {
+                    if !self.is_inside(element, x) {
+                        return;
+                    }
+                    height
+                }
+                Found::Inside(height) => height,
+            };
+            if tent.is_exact_enough {
+                let factors = self.factors.of_element(element);
+                return factors
+                    .iter()
+                    .for_each(|(function, line)| take(*function, tent::value(line, offset) * found));
+            }
+        }
+        self.for_each_careful_share(element, x, knots, take);
+    }
+
+    /// The same by the recurrence.
+    #[cold]
+    fn for_each_careful_share(
+        &self,
+        element: usize,
+        x: Point2,
+        knots: &mut Vec<Point2>,
+        mut take: impl FnMut(u32, f64),
+    ) {
+        let Some(jet) = self.jet_of_element(element, x, false, knots) else { return };
+        for share in self.elements.shares(element) {
+            take(share.function, self.linear(share, x).value * jet.value);
+        }
+    }
+
+    fn add_jets(&self, element: usize, x: Point2, scratch: &mut Scratch) {
+        if let Some(tent) = self.tents.get(element) {
+            let offset = tent.offset(x);
+            let found = tent.find(offset);
+            if found == Found::Outside {
+                return;
+            }
+            let is_clear = tent.is_exact_enough && matches!(found, Found::Inside(_));
+            if let Some(piece) = tent.piece(offset).filter(|_| is_clear) {
+                let linear = |line: &Line| Jet::linear(tent::value(line, offset), [line[1], line[2]]);
+                let jet = linear(&piece);
+                for (function, line) in self.factors.of_element(element) {
+                    add(&mut scratch.jets, *function, linear(line).product(jet));
+                }
+                return;
+            }
+        }
+        let Some(jet) = self.jet_of_element(element, x, true, &mut scratch.knots) else { return };
+        for share in self.elements.shares(element) {
+            add(&mut scratch.jets, share.function, self.linear(share, x).product(jet));
+        }
+    }
+
+    /// The simplex spline of an element, by the recurrence.
+    fn jet_of_element(
+        &self,
+        element: usize,
+        x: Point2,
+        has_derivatives: bool,
+        knots: &mut Vec<Point2>,
+    ) -> Option<Jet> {
+        self.take_knots(element, knots);
+        simplex::evaluate(&self.approach(x), knots, has_derivatives)
+    }
+
+    #[cold]
+    fn is_inside(&self, element: usize, x: Point2) -> bool {
+        let mut knots = Vec::new();
+        self.take_knots(element, &mut knots);
+        tent::is_inside(&self.approach(x), &knots)
+    }
+
+    fn take_knots(&self, element: usize, knots: &mut Vec<Point2>) {
+        knots.clear();
+        knots.extend(self.elements.knots(element).iter().map(|&id| self.points[id as usize]));
+    }
+
+    fn linear(&self, share: &Share, x: Point2) -> Jet {
+        let [a, b] = share.edge.map(|id| self.points[id as usize]);
+        Jet::linear(area(x, a, b), [0.5 * (a[1] - b[1]), 0.5 * (b[0] - a[0])]) * share.factor
+    }
+}
+
+/// Adds to what is there for a function.
+#[inline(always)]
+fn add<T: std::ops::AddAssign>(all: &mut Vec<(u32, T)>, function: u32, value: T) {
+    match all.iter_mut().find(|(other, _)| *other == function) {
+        Some((_, sum)) => *sum += value,
+        None => all.push((function, value)),
+    }
+}

@@ -1,0 +1,208 @@
+//! From configurations to elements: simplex splines of one degree less, each with a linear factor for some functions.
+//!
+//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis,
+//! equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in
+//! all of them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at
+//! one place, edges of one element cancel, and elements of different knots are the same function: they are merged.
+
+use foldhash::HashMap;
+use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_geometry::delaunay2::distinct;
+use spmesh_geometry::order::{Curve, SpatialOrder};
+use spmesh_geometry::predicates::{Extent, Point2, Predicates2, Sign, TotalPredicates, area};
+
+/// The share of a function in an element: `factor * area(x, a, b)`, for an edge ab.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Share {
+    pub(super) function: u32,
+    pub(super) edge: [u32; 2],
+    pub(super) factor: f64,
+}
+
+/// Simplex splines with their shares, in the order of a curve through the plane: flat arrays.
+#[derive(Debug, Clone)]
+pub(super) struct Elements {
+    /// Number of knots of each.
+    pub(super) size: usize,
+    knots: Vec<u32>,
+    offsets: Vec<u32>,
+    shares: Vec<Share>,
+}
+
+impl Elements {
+    /// Elements of all finite configurations. `functions_of` names the functions, with their factors, that the set of a
+    /// configuration, of which it gets the number, and of one of its corners belongs to. What is zero everywhere is left
+    /// out.
+    pub(super) fn of_configurations(
+        knots: &Knots,
+        configurations: &Configurations,
+        mut functions_of: impl FnMut(u32, u32, &[u32], &mut dyn FnMut(u32, f64)),
+    ) -> Elements {
+        let size = configurations.degree() + 3;
+        let mut gathered = Gathered::new(knots, size);
+        let mut all = Vec::with_capacity(size);
+        for (number, (boundary, interior)) in (0..).zip(configurations.iter()) {
+            all.clear();
+            all.extend(boundary.iter().chain(interior));
+            if is_flat(knots, &all) {
+                continue;
+            }
+            let element = gathered.element(&mut all);
+            for corner in 0..3 {
+                let edge = [boundary[(corner + 1) % 3], boundary[(corner + 2) % 3]];
+                functions_of(number, boundary[corner], interior, &mut |function, factor| {
+                    gathered.add(element, Share { function, edge, factor });
+                });
+            }
+        }
+        gathered.sorted()
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    pub(super) fn knots(&self, element: usize) -> &[u32] {
+        &self.knots[element * self.size..][..self.size]
+    }
+
+    /// The shares, those of one function next to each other, in order.
+    pub(super) fn shares(&self, element: usize) -> &[Share] {
+        &self.shares[self.offsets[element] as usize..self.offsets[element + 1] as usize]
+    }
+
+    /// Bytes held.
+    pub(super) fn bytes(&self) -> usize {
+        4 * (self.knots.len() + self.offsets.len()) + std::mem::size_of_val(&self.shares[..])
+    }
+
+    /// Gives functions new numbers.
+    pub(super) fn renumber(&mut self, numbers: &[u32]) {
+        self.shares.iter_mut().for_each(|share| share.function = numbers[share.function as usize]);
+    }
+}
+
+/// Elements while they are found.
+struct Gathered<'a> {
+    knots: &'a Knots,
+    size: usize,
+    /// The first knots at all places; empty if no knots are at one place.
+    firsts: Vec<u32>,
+    /// Knots of elements, one after the other.
+    all: Vec<u32>,
+    /// Shares with their elements.
+    shares: Vec<(u32, Share)>,
+    /// Elements by their places, where knots are at one place.
+    by_places: HashMap<Vec<u32>, u32>,
+}
+
+impl<'a> Gathered<'a> {
+    fn new(knots: &'a Knots, size: usize) -> Gathered<'a> {
+        let firsts = if knots.has_copies() { distinct(knots.points()) } else { Vec::new() };
+        Gathered { knots, size, firsts, all: Vec::new(), shares: Vec::new(), by_places: HashMap::default() }
+    }
+
+    /// The number of the element of some knots, or of those at the same places.
+    fn element(&mut self, knots: &mut [u32]) -> u32 {
+        let next = (self.all.len() / self.size) as u32;
+        if !self.firsts.is_empty() {
+            knots.iter_mut().for_each(|id| *id = self.firsts[*id as usize]);
+            knots.sort_unstable();
+            match self.by_places.get(&*knots) {
+                Some(&known) => return known,
+                None => self.by_places.insert(knots.to_vec(), next),
+            };
+        }
+        self.all.extend_from_slice(knots);
+        next
+    }
+
+    fn add(&mut self, element: u32, share: Share) {
+        let edge = share.edge.map(|id| self.firsts.get(id as usize).copied().unwrap_or(id));
+        self.shares.push((element, Share { edge, ..share }));
+    }
+
+    /// The elements that are left when opposite edges have cancelled, along a curve.
+    fn sorted(mut self) -> Elements {
+        let Gathered { knots, size, .. } = self;
+        cancel(&mut self.shares);
+        let count = self.all.len() / size;
+        let mut ranges = vec![0..0; count];
+        let mut start = 0;
+        for of_element in self.shares.chunk_by(|a, b| a.0 == b.0) {
+            ranges[of_element[0].0 as usize] = start..start + of_element.len();
+            start += of_element.len();
+        }
+        let middles: Vec<Point2> = self.all.chunks_exact(size).map(|all| middle(knots, all)).collect();
+        let mut curve = SpatialOrder::default();
+        let order = curve.sort(&middles, &Extent::of(&middles), Curve::Hilbert);
+        let mut elements = Elements { size, knots: Vec::new(), offsets: vec![0], shares: Vec::new() };
+        for at in order.map(|at| at as usize).filter(|&at| !ranges[at].is_empty()) {
+            elements.knots.extend_from_slice(&self.all[at * size..][..size]);
+            elements.shares.extend(self.shares[ranges[at].clone()].iter().map(|&(_, share)| share));
+            elements.offsets.push(elements.shares.len() as u32);
+        }
+        elements
+    }
+}
+
+fn middle(knots: &Knots, all: &[u32]) -> Point2 {
+    [0, 1].map(|axis| all.iter().map(|&id| knots.at(id)[axis] / all.len() as f64).sum())
+}
+
+/// Sorts shares by element, function and edge, sums those of one edge, and drops what is zero.
+fn cancel(shares: &mut Vec<(u32, Share)>) {
+    for (_, share) in shares.iter_mut() {
+        if share.edge[0] > share.edge[1] {
+            share.edge.reverse();
+            share.factor = -share.factor;
+        }
+    }
+    let key = |(element, share): &(u32, Share)| (*element, share.function, share.edge);
+    shares.sort_unstable_by_key(key);
+    shares.dedup_by(|next, kept| {
+        let is_same = key(next) == key(kept);
+        if is_same {
+            kept.1.factor += next.1.factor;
+        }
+        is_same
+    });
+    shares.retain(|(_, share)| share.factor != 0.0 && share.edge[0] != share.edge[1]);
+}
+
+/// Whether all knots are on one line.
+fn is_flat(knots: &Knots, all: &[u32]) -> bool {
+    let first = knots.at(all[0]);
+    let Some(second) = all.iter().map(|&id| knots.at(id)).find(|&other| other != first) else { return true };
+    let mut predicates = TotalPredicates::default();
+    all.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
+}
+
+/// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots that are not all on
+/// one line.
+pub(super) fn hull_edges(points: &[Point2]) -> Vec<[Point2; 2]> {
+    let mut predicates = TotalPredicates::default();
+    let mut edges: Vec<[Point2; 2]> = Vec::with_capacity(points.len());
+    for (&p, &q) in points.iter().flat_map(|p| points.iter().map(move |q| (p, q))) {
+        let mut is_outside = |r: Point2| match predicates.orient2d(p, q, r) {
+            Sign::Negative => true,
+            Sign::Zero => !is_between(p, q, r),
+            Sign::Positive => false,
+        };
+        if p != q && !points.iter().any(|&r| is_outside(r)) && !edges.contains(&[p, q]) {
+            edges.push([p, q]);
+        }
+    }
+    edges
+}
+
+/// Whether `r`, on the line through `p` and `q`, is between them, ends included.
+fn is_between(p: Point2, q: Point2, r: Point2) -> bool {
+    (0..2).all(|axis| p[axis].min(q[axis]) <= r[axis] && r[axis] <= p[axis].max(q[axis]))
+}
+
+/// The area of the convex hull.
+pub(super) fn hull_area(edges: &[[Point2; 2]]) -> f64 {
+    let Some(&[first, _]) = edges.first() else { return 0.0 };
+    edges.iter().map(|&[p, q]| area(first, p, q)).sum()
+}

@@ -1,0 +1,154 @@
+//! Simplex splines by the recurrence of Micchelli (thesis 6.2.1).
+//!
+//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor in the
+//! recurrence: the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's geometric definition
+//! has integral one, and the base case that it prints lacks the area.)
+//!
+//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x: all terms are
+//! then positive, nothing cancels, and with areas that are accurate (`area`) so is the value, however flat sets of knots
+//! are.
+
+use super::approach::Approach;
+use super::jet::Jet;
+use foldhash::{HashMap, HashMapExt};
+use spmesh_geometry::predicates::{Point2, Sign, area};
+
+/// Greatest degree of a simplex spline: sets of knots are held in 32 bits.
+pub const MAX_DEGREE: usize = 28;
+
+/// Sets of fewer knots are evaluated again rather than looked up.
+const REMEMBERED: u32 = 6;
+
+/// The simplex spline of degree `knots.len() - 3` at a point.
+///
+/// Units: one over those of an area. Knots may be repeated; if all lie on one line, as any two do, the function is zero.
+///
+/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about 1e-14 times the
+/// degree.
+///
+/// Cost: O(3^k) areas for degrees k up to 2, then at most one evaluation for each subset of the knots.
+///
+/// Source: Micchelli, "A constructive approach to Kergin interpolation in R^k", 1980; thesis, equation 6.3.
+#[must_use]
+pub fn simplex_spline(at: &Approach, knots: &[Point2]) -> f64 {
+    Evaluation::new(at, knots, false).of_all().map_or(0.0, |jet| jet.value)
+}
+
+/// The simplex spline of degree `knots.len() - 3` with its derivatives at a point: limits where there is a jump.
+///
+/// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v M(x | X \ v)`,
+/// if the `mu_v v` sum to y and the `mu_v` to zero.
+#[must_use]
+pub fn simplex_spline_jet(at: &Approach, knots: &[Point2]) -> Jet {
+    Evaluation::new(at, knots, true).of_all().unwrap_or_default()
+}
+
+/// The same, or nothing if the point, as it is approached, is not in the convex hull of the knots.
+pub(super) fn evaluate(at: &Approach, knots: &[Point2], has_derivatives: bool) -> Option<Jet> {
+    Evaluation::new(at, knots, has_derivatives).of_all()
+}
+
+/// Subsets of one set of knots, as bits, at one point.
+struct Evaluation<'a> {
+    at: &'a Approach,
+    knots: &'a [Point2],
+    /// For each knot, to which others it has a line with the point on its left.
+    left: [u32; 32],
+    has_derivatives: bool,
+    known: HashMap<u32, Option<Jet>>,
+}
+
+impl<'a> Evaluation<'a> {
+    fn new(at: &'a Approach, knots: &'a [Point2], has_derivatives: bool) -> Evaluation<'a> {
+        debug_assert!(knots.len() <= MAX_DEGREE + 3);
+        let mut left = [0; 32];
+        for i in 0..knots.len() {
+            for j in 0..i {
+                match at.side(knots[i], knots[j]) {
+                    Sign::Positive => left[i] |= 1 << j,
+                    Sign::Negative => left[j] |= 1 << i,
+                    Sign::Zero => (),
+                }
+            }
+        }
+        Evaluation { at, knots, left, has_derivatives, known: HashMap::new() }
+    }
+
+    fn of_all(&mut self) -> Option<Jet> {
+        self.of(((1u64 << self.knots.len()) - 1) as u32)
+    }
+
+    fn of(&mut self, set: u32) -> Option<Jet> {
+        if set.count_ones() < REMEMBERED {
+            return self.recur(set);
+        }
+        if let Some(&known) = self.known.get(&set) {
+            return known;
+        }
+        let found = self.recur(set);
+        self.known.insert(set, found);
+        found
+    }
+
+    fn recur(&mut self, set: u32) -> Option<Jet> {
+        let (triple, size) = self.largest_around(set)?;
+        let degree = set.count_ones() - 3;
+        if degree == 0 {
+            return Some(Jet::constant(1.0 / size));
+        }
+        let [a, b, c] = triple.map(|place| self.knots[place]);
+        let mut sum = Jet::default();
+        for (place, [p, q]) in triple.into_iter().zip([[b, c], [c, a], [a, b]]) {
+            let share = area(self.at.x(), p, q) / size;
+            if share == 0.0 && !self.has_derivatives {
+                continue;
+            }
+            let Some(part) = self.of(set & !(1 << place)) else { continue };
+            let slope = [0.5 * (p[1] - q[1]) / size, 0.5 * (q[0] - p[0]) / size];
+            sum += term(f64::from(degree), share, slope, part);
+        }
+        Some(sum)
+    }
+
+    /// The largest triangle, counterclockwise, of knots of a set that contains the point, and its area.
+    fn largest_around(&self, set: u32) -> Option<([usize; 3], f64)> {
+        let mut best = (0.0, [0; 3]);
+        let mut take = |triple: [usize; 3]| {
+            let [a, b, c] = triple.map(|place| self.knots[place]);
+            let size = area(a, b, c);
+            if size > best.0 {
+                best = (size, triple);
+            }
+        };
+        for i in places(set) {
+            let (left, later) = (self.left[i], set & !((2 << i) - 1));
+            // From i around to j, to k, and back, with i before the others.
+            for j in places(left & later) {
+                places(self.left[j] & later)
+                    .filter(|&k| self.left[k] >> i & 1 == 1)
+                    .for_each(|k| take([i, j, k]));
+            }
+        }
+        (best.0 > 0.0).then_some((best.1, best.0))
+    }
+}
+
+/// What one knot of the triple adds: the recurrence, and its derivatives, in which shares are not differentiated.
+fn term(degree: f64, share: f64, slope: [f64; 2], part: Jet) -> Jet {
+    let second = |i: usize, j: usize| 0.5 * (slope[i] * part.gradient[j] + slope[j] * part.gradient[i]);
+    Jet {
+        value: share * part.value,
+        gradient: slope.map(|slope| degree * slope * part.value),
+        hessian: [second(0, 0), second(0, 1), second(1, 1)].map(|bend| degree * bend),
+    }
+}
+
+/// The members of a set, in order.
+fn places(set: u32) -> impl Iterator<Item = usize> {
+    let mut rest = set;
+    std::iter::from_fn(move || {
+        let next = (rest != 0).then(|| rest.trailing_zeros() as usize)?;
+        rest &= rest - 1;
+        Some(next)
+    })
+}

@@ -1,0 +1,144 @@
+//! A pass over observations in blocks of a fixed size, several at a time.
+//!
+//! Blocks are cut by the numbers of observations, whatever batches their source hands out, and what is made of blocks comes
+//! back in their order. So no result depends on the number of threads.
+
+use super::observations::{Observation, Observations};
+use spmesh_core::error::Result;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Observations in a block.
+pub(super) const BLOCK: usize = 1 << 13;
+/// Blocks per thread that are read before they are worked on: memory of a pass is that many.
+const BLOCKS_PER_THREAD: usize = 4;
+
+/// Consecutive observations.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block<'a> {
+    /// The number of the first observation.
+    pub(super) first: u64,
+    pub(super) observations: &'a [Observation],
+}
+
+impl<'a> Block<'a> {
+    /// Observations with their numbers.
+    pub(super) fn numbered(self) -> impl Iterator<Item = (u64, &'a Observation)> {
+        (self.first..).zip(self.observations)
+    }
+}
+
+/// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made of some
+/// consecutive blocks, in order.
+///
+/// Errors: those of the source, of `map` and of `take`; observations that are none.
+pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
+    observations: &O,
+    threads: NonZeroUsize,
+    map: impl Fn(Block) -> Result<T> + Sync,
+    mut take: impl FnMut(Vec<T>) -> Result<()>,
+) -> Result<()> {
+    let mut reader = observations.read()?;
+    let round = BLOCK * BLOCKS_PER_THREAD * threads.get();
+    let (mut first, mut buffer) = (0u64, Vec::new());
+    loop {
+        let is_last = fill(&mut buffer, round, |buffer| reader.append(buffer))?;
+        let whole = if is_last { buffer.len() } else { buffer.len() - buffer.len() % BLOCK };
+        let blocks: Vec<Block> = (first..)
+            .step_by(BLOCK)
+            .zip(buffer[..whole].chunks(BLOCK))
+            .map(|(first, observations)| Block { first, observations })
+            .collect();
+        let made = in_parallel(threads, blocks.len(), |at| {
+            blocks[at].numbered().try_for_each(|(index, observation)| observation.check(index))?;
+            map(blocks[at])
+        });
+        take(made.into_iter().collect::<Result<Vec<T>>>()?)?;
+        if is_last {
+            return Ok(());
+        }
+        first += whole as u64;
+        buffer.drain(..whole);
+    }
+}
+
+/// Appends until there are `enough`; whether that was all.
+fn fill<T>(
+    buffer: &mut Vec<T>,
+    enough: usize,
+    mut append: impl FnMut(&mut Vec<T>) -> Result<()>,
+) -> Result<bool> {
+    while buffer.len() < enough {
+        let before = buffer.len();
+        append(buffer)?;
+        if buffer.len() == before {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
+/// What `make` gives for the numbers below `count`, in order.
+pub(super) fn in_parallel<T: Send>(
+    threads: NonZeroUsize,
+    count: usize,
+    make: impl Fn(usize) -> T + Sync,
+) -> Vec<T> {
+    let threads = threads.get().min(count);
+    if threads <= 1 {
+        return (0..count).map(make).collect();
+    }
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut made = Vec::new();
+        loop {
+            let at = next.fetch_add(1, Ordering::Relaxed);
+            if at >= count {
+                return made;
+            }
+            made.push((at, make(at)));
+        }
+    };
+    let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let others: Vec<_> = (1..threads).map(|_| scope.spawn(worker)).collect();
+        let mut all = worker();
+        for other in others {
+            match other.join() {
+                Ok(made) => all.extend(made),
+                Err(panic) => std::panic::resume_unwind(panic),
+            }
+        }
+        all
+    });
+    all.sort_unstable_by_key(|&(at, _)| at);
+    all.into_iter().map(|(_, made)| made).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_do_not_depend_on_threads() {
+        let count = 3 * BLOCK * BLOCKS_PER_THREAD + 17;
+        let all: Vec<Observation> = (0..count).map(|i| Observation::new([0.0; 2], i as f64)).collect();
+        let seen = |threads| {
+            let mut seen = Vec::new();
+            let map = |block: Block| {
+                assert!(block.numbered().all(|(index, observation)| observation.value == index as f64));
+                Ok((block.first, block.observations.len()))
+            };
+            let take = |some| {
+                seen.extend::<Vec<(u64, usize)>>(some);
+                Ok(())
+            };
+            for_each_round(&all, NonZeroUsize::new(threads).unwrap(), map, take).unwrap();
+            seen
+        };
+        let expected: Vec<(u64, usize)> =
+            (0..count).step_by(BLOCK).map(|first| (first as u64, BLOCK.min(count - first))).collect();
+        assert_eq!(seen(1), expected);
+        assert_eq!(seen(2), expected);
+        assert_eq!(seen(3), expected);
+    }
+}

@@ -1,0 +1,102 @@
+//! Triangulated points: which triangle a place is in, and values between points.
+
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::delaunay2::{self, Triangulation};
+use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+
+/// The Delaunay triangulation of points.
+#[derive(Debug)]
+pub struct Mesh {
+    points: Vec<Point2>,
+    triangulation: Triangulation,
+}
+
+impl Mesh {
+    /// Of points that are not all on one line; of those at one place the first counts.
+    ///
+    /// Errors: coordinates that are not finite; no triangle.
+    pub fn of(points: Vec<Point2>) -> Result<Mesh> {
+        let triangulation = delaunay2::triangulate(&points)?;
+        if triangulation.triangles().is_empty() {
+            let what = format!("{} points on one line: three that are not are needed", points.len());
+            return Err(Error::usage(what));
+        }
+        Ok(Mesh { points, triangulation })
+    }
+
+    /// The points, in the order given.
+    #[must_use]
+    pub fn points(&self) -> &[Point2] {
+        &self.points
+    }
+
+    /// Vertices of the hull, counterclockwise, those on its edges included.
+    pub(super) fn hull(&self) -> &[u32] {
+        &self.triangulation.hull
+    }
+
+    pub(super) fn triangles_len(&self) -> usize {
+        self.triangulation.triangles().len()
+    }
+
+    /// The corners of a triangle, counterclockwise.
+    #[inline]
+    pub(super) fn vertices(&self, triangle: u32) -> [u32; 3] {
+        self.triangulation.triangles()[triangle as usize].vertices
+    }
+
+    pub(super) fn corners(&self, triangle: u32) -> [Point2; 3] {
+        self.vertices(triangle).map(|vertex| self.points[vertex as usize])
+    }
+
+    /// The edges of a triangle that nothing is beyond.
+    pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
+        let corners = self.corners(triangle);
+        self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))
+    }
+
+    /// The edges of a triangle with another triangle beyond, as pairs of places among its corners.
+    pub(super) fn inner_edges(&self, triangle: u32) -> impl Iterator<Item = [usize; 2]> {
+        self.sides(triangle, true)
+    }
+
+    fn sides(&self, triangle: u32, is_inner: bool) -> impl Iterator<Item = [usize; 2]> {
+        let triangle = &self.triangulation.triangles()[triangle as usize];
+        let is_wanted = move |side: &usize| triangle.across(*side).is_some() == is_inner;
+        (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
+    }
+
+    /// A triangle that contains x, if any does: the walk starts at `near`, which becomes the triangle.
+    ///
+    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to a triangle whose circle
+    /// has less power at x (Edelsbrunner 1990).
+    pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
+        let mut predicates = TotalPredicates::default();
+        loop {
+            let triangle = &self.triangulation.triangles()[*near as usize];
+            let beyond = (0..3).find(|&side| {
+                let [a, b] =
+                    [(side + 1) % 3, (side + 2) % 3].map(|i| self.points[triangle.vertices[i] as usize]);
+                predicates.orient2d(a, b, x) == Sign::Negative
+            });
+            match beyond {
+                Some(side) => *near = triangle.across(side)?.triangle,
+                None => return Some(*near),
+            }
+        }
+    }
+
+    /// The value at x of the function that is linear on triangles and has these values at points; nothing outside of the hull.
+    ///
+    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if there are fewer values than
+    /// points, or no such triangle.
+    #[must_use]
+    pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
+        let triangle = self.locate(x, near)?;
+        let [a, b, c] = self.corners(triangle);
+        let shares = [area(x, b, c), area(a, x, c), area(a, b, x)];
+        let whole: f64 = shares.iter().sum();
+        let of_vertices = self.vertices(triangle).map(|vertex| values[vertex as usize]);
+        Some(shares.iter().zip(of_vertices).map(|(share, value)| share * value).sum::<f64>() / whole)
+    }
+}

@@ -1,0 +1,82 @@
+//! Scattered points with values, read as often as a fit needs them.
+
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+
+/// A value at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Observation {
+    /// Where.
+    pub point: Point2,
+    /// What was measured there.
+    pub value: f64,
+    /// How much it counts: as one over a variance, or as a number of equal observations. Not negative.
+    pub weight: f64,
+}
+
+impl Observation {
+    /// An observation of weight one.
+    #[must_use]
+    pub fn new(point: Point2, value: f64) -> Observation {
+        Observation { point, value, weight: 1.0 }
+    }
+
+    /// Refuses what is no observation; `index` is its number.
+    pub(super) fn check(&self, index: u64) -> Result<()> {
+        let refuse = |what: String| Err(Error::malformed(what).at(format!("observation {index}")));
+        if !self.point.iter().all(|coordinate| coordinate.is_finite()) {
+            return refuse(format!("coordinate is not finite: {:?}", self.point));
+        }
+        if !self.value.is_finite() {
+            return refuse(format!("value is not finite: {}", self.value));
+        }
+        if !(self.weight >= 0.0 && self.weight.is_finite()) {
+            return refuse(format!("weight {}: expected a finite number, not negative", self.weight));
+        }
+        Ok(())
+    }
+}
+
+/// Observations that can be read several times, always in the same order.
+pub trait Observations {
+    /// Starts a pass over all of them.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>>;
+}
+
+/// One pass over observations.
+pub trait ObservationReader {
+    /// Appends some of the next observations; none at the end.
+    ///
+    /// # Errors
+    /// If they cannot be read, or are malformed.
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()>;
+}
+
+impl Observations for [Observation] {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        Ok(Box::new(Listed { rest: self }))
+    }
+}
+
+impl Observations for Vec<Observation> {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        self.as_slice().read()
+    }
+}
+
+/// What is left of a list.
+struct Listed<'a> {
+    rest: &'a [Observation],
+}
+
+impl ObservationReader for Listed<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let (next, rest) = self.rest.split_at(self.rest.len().min(super::blocks::BLOCK));
+        observations.extend_from_slice(next);
+        self.rest = rest;
+        Ok(())
+    }
+}

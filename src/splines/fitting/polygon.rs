@@ -1,0 +1,81 @@
+//! Convex polygons cut by half-planes, in plain arithmetic.
+
+use spmesh_geometry::predicates::Point2;
+
+/// Corners, counterclockwise.
+pub(super) type Polygon = Vec<Point2>;
+
+/// Twice the signed area of a triangle.
+#[inline]
+fn twice_area(a: Point2, b: Point2, c: Point2) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// Area of a polygon.
+pub(super) fn area(polygon: &[Point2]) -> f64 {
+    let Some((&first, rest)) = polygon.split_first() else { return 0.0 };
+    0.5 * rest.windows(2).map(|edge| twice_area(first, edge[0], edge[1])).sum::<f64>()
+}
+
+/// The square of the distance of two corners.
+#[inline]
+pub(super) fn square_of_side(p: Point2, q: Point2) -> f64 {
+    (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
+}
+
+/// Buffers for intersections.
+#[derive(Debug, Default)]
+pub(super) struct Clipper {
+    current: Polygon,
+    next: Polygon,
+}
+
+impl Clipper {
+    /// What two convex polygons have in common.
+    pub(super) fn common(&mut self, subject: &[Point2], with: &[Point2]) -> &[Point2] {
+        self.current.clear();
+        self.current.extend_from_slice(subject);
+        for (at, &p) in with.iter().enumerate() {
+            if self.current.is_empty() {
+                break;
+            }
+            self.keep_left(p, with[(at + 1) % with.len()]);
+        }
+        &self.current
+    }
+
+    /// Keeps what is not to the right of a line (Sutherland and Hodgman, 1974).
+    fn keep_left(&mut self, p: Point2, q: Point2) {
+        self.next.clear();
+        let Some(&last) = self.current.last() else { return };
+        let (mut a, mut at_a) = (last, twice_area(p, q, last));
+        for &b in &self.current {
+            let at_b = twice_area(p, q, b);
+            if (at_a > 0.0 && at_b < 0.0) || (at_a < 0.0 && at_b > 0.0) {
+                let share = at_a / (at_a - at_b);
+                self.next.push([0, 1].map(|axis| a[axis] + share * (b[axis] - a[axis])));
+            }
+            if at_b >= 0.0 {
+                self.next.push(b);
+            }
+            (a, at_a) = (b, at_b);
+        }
+        std::mem::swap(&mut self.current, &mut self.next);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn squares_have_rectangles_in_common() {
+        let square = |x: f64, y: f64| [[x, y], [x + 2.0, y], [x + 2.0, y + 2.0], [x, y + 2.0]];
+        let mut clipper = Clipper::default();
+        let mut common = |x, y| area(clipper.common(&square(0.0, 0.0), &square(x, y)));
+        assert_eq!(common(0.0, 0.0), 4.0);
+        assert_eq!(common(1.5, 0.5), 0.75);
+        assert_eq!(common(2.0, 0.0), 0.0);
+        assert_eq!(common(5.0, 5.0), 0.0);
+    }
+}

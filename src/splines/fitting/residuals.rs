@@ -1,0 +1,108 @@
+//! What a spline leaves of observations.
+
+use super::blocks::{self, Block};
+use super::observations::Observations;
+use crate::bases::{Basis, Scratch};
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+use std::num::NonZeroUsize;
+
+/// A residual: the value of an observation less that of the spline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// The number of the observation.
+    pub index: u64,
+    /// Where.
+    pub point: Point2,
+    /// Value less spline.
+    pub residual: f64,
+    /// Weight of the observation.
+    pub weight: f64,
+}
+
+/// Residuals of all observations in the domain, in numbers.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Summary {
+    /// Number of observations in the domain.
+    pub count: u64,
+    /// Number of observations outside of it.
+    pub outside: u64,
+    /// The residual of greatest magnitude, the first one of several.
+    pub worst: Option<Residual>,
+    /// Root of the mean square, weights not counted.
+    pub root_mean_square: f64,
+    /// Mean.
+    pub mean: f64,
+}
+
+/// The value of a spline, given the functions alive.
+#[inline]
+pub(super) fn value(coefficients: &[f64], alive: &[(u32, f64)]) -> f64 {
+    alive.iter().map(|&(function, value)| coefficients[function as usize] * value).sum()
+}
+
+/// Calls `visit` with all residuals in the domain, in order; the number of observations outside.
+///
+/// Errors: those of the source; another number of coefficients than functions.
+pub fn for_each_residual<O: Observations + ?Sized>(
+    basis: &Basis,
+    coefficients: &[f64],
+    observations: &O,
+    threads: NonZeroUsize,
+    mut visit: impl FnMut(Residual),
+) -> Result<u64> {
+    check_count(basis, coefficients)?;
+    let map = |block: Block| {
+        let mut scratch = Scratch::default();
+        let inside = block.numbered().filter(|(_, observation)| basis.is_in_domain(observation.point));
+        let all: Vec<Residual> = inside
+            .map(|(index, observation)| {
+                let alive = basis.at(observation.point, &mut scratch);
+                let residual = observation.value - value(coefficients, alive);
+                Residual { index, point: observation.point, residual, weight: observation.weight }
+            })
+            .collect();
+        Ok((block.observations.len() - all.len(), all))
+    };
+    let mut outside = 0;
+    blocks::for_each_round(observations, threads, map, |round| {
+        for (out, residuals) in round {
+            outside += out as u64;
+            residuals.into_iter().for_each(&mut visit);
+        }
+        Ok(())
+    })?;
+    Ok(outside)
+}
+
+/// Residuals in numbers: one pass.
+///
+/// Errors: those of [`for_each_residual`].
+pub fn summarise<O: Observations + ?Sized>(
+    basis: &Basis,
+    coefficients: &[f64],
+    observations: &O,
+    threads: NonZeroUsize,
+) -> Result<Summary> {
+    let (mut summary, mut sum, mut square) = (Summary::default(), 0.0, 0.0);
+    summary.outside = for_each_residual(basis, coefficients, observations, threads, |found| {
+        summary.count += 1;
+        sum += found.residual;
+        square += found.residual * found.residual;
+        if summary.worst.is_none_or(|worst| found.residual.abs() > worst.residual.abs()) {
+            summary.worst = Some(found);
+        }
+    })?;
+    let count = summary.count.max(1) as f64;
+    summary.mean = sum / count;
+    summary.root_mean_square = (square / count).sqrt();
+    Ok(summary)
+}
+
+pub(super) fn check_count(basis: &Basis, coefficients: &[f64]) -> Result<()> {
+    if coefficients.len() == basis.len() {
+        return Ok(());
+    }
+    let (found, needed) = (coefficients.len(), basis.len());
+    Err(Error::usage(format!("{found} coefficients for {needed} functions: one each is needed")))
+}

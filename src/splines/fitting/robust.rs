@@ -1,0 +1,211 @@
+//! Fits that gross errors do not pull: least squares with weights that depend on residuals, again and again.
+
+use super::normal::{Normal, Parts, Weighed};
+use super::observations::Observations;
+use super::residuals::{self, Residual};
+use super::solve::Equations;
+use super::spread::Spread;
+use super::symmetric::Symmetric;
+use crate::bases::Basis;
+use spmesh_core::error::{Error, Result};
+use std::num::NonZeroUsize;
+
+/// Where Huber's loss becomes linear, in standard deviations: 95 % efficient for normal errors.
+const HUBER: f64 = 1.345;
+/// Where Tukey's loss becomes constant: 95 % efficient, too. Observations beyond are *rejected*, for either loss.
+const TUKEY: f64 = 4.685;
+/// Standard deviations in a median of magnitudes, for normal errors.
+const DEVIATIONS: f64 = 1.482_602_218_505_602;
+/// Least scale, relative to the root of the mean square of values: that of rounding.
+const SCALE_MIN: f64 = 1e-12;
+/// Root of the mean square of changes of coefficients, in scales, that ends the rounds.
+const CHANGE_MAX: f64 = 1e-2;
+/// Rounds for one loss, at most...
+const ROUNDS_MAX: usize = 50;
+/// ...and where knots are added after it: coefficients may still change, but gross errors can be told from others.
+pub(super) const ROUNDS_FEW: usize = 6;
+
+/// What residuals cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// Squares near zero, then linear: convex, so that there is one best fit, which gross errors still pull a little.
+    Huber,
+    /// Tukey's biweight: constant from 4.685 scales on, so that gross errors do not count at all. Huber's fit is the start.
+    Tukey,
+}
+
+impl Loss {
+    /// The factor of the weight of an observation whose residual is this number of scales.
+    fn factor(self, scales: f64) -> f64 {
+        match self {
+            Loss::Huber if scales <= HUBER => 1.0,
+            Loss::Huber => HUBER / scales,
+            Loss::Tukey if scales < TUKEY => (1.0 - (scales / TUKEY).powi(2)).powi(2),
+            Loss::Tukey => 0.0,
+        }
+    }
+}
+
+/// A robust fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RobustFit {
+    /// Coefficients of the spline.
+    pub coefficients: Vec<f64>,
+    /// Standard deviation of an observation of weight one, from the median of the magnitudes of all residuals.
+    pub scale: f64,
+    /// Passes over the observations, that of the normal equations included.
+    pub passes: usize,
+    /// Whether coefficients did not change any more.
+    pub has_converged: bool,
+}
+
+/// Fits with a loss; `energy` is multiplied by `lambda`.
+///
+/// Errors: those of [`Normal::of`] and [`Equations::solve`]; in particular, functions all of whose observations are rejected are
+/// not determined if nothing is smoothed.
+///
+/// Cost: a pass and a factorisation per round, about 10 rounds for a loss. Source: Holland and Welsch 1977.
+pub fn robust<O: Observations + ?Sized>(
+    basis: &Basis,
+    observations: &O,
+    loss: Loss,
+    energy: Option<&Symmetric>,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<RobustFit> {
+    let plain = Normal::of(basis, observations, threads)?;
+    robust_from(&plain, basis, observations, loss, energy, lambda, threads)
+}
+
+/// The same from the normal equations of all observations, where they are known: a pass less.
+///
+/// Errors: those of [`robust()`].
+pub fn robust_from<O: Observations + ?Sized>(
+    plain: &Normal,
+    basis: &Basis,
+    observations: &O,
+    loss: Loss,
+    energy: Option<&Symmetric>,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<RobustFit> {
+    Rounds { basis, observations, energy, lambda, threads, most: ROUNDS_MAX }.fit(loss, plain)
+}
+
+impl RobustFit {
+    /// Observations of weight one whose residual is greater are *rejected*.
+    #[must_use]
+    pub fn limit(&self) -> f64 {
+        TUKEY * self.scale
+    }
+
+    /// Calls `visit` with all rejected observations, in order: those whose residual, multiplied by the root of the weight, is
+    /// greater than 4.685 scales. One pass; the number of rejected ones.
+    ///
+    /// Errors: those of [`residuals::for_each_residual`].
+    pub fn rejected<O: Observations + ?Sized>(
+        &self,
+        basis: &Basis,
+        observations: &O,
+        threads: NonZeroUsize,
+        mut visit: impl FnMut(Residual),
+    ) -> Result<u64> {
+        let mut count = 0;
+        residuals::for_each_residual(basis, &self.coefficients, observations, threads, |found| {
+            if found.residual.abs() * found.weight.sqrt() > self.limit() {
+                count += 1;
+                visit(found);
+            }
+        })?;
+        Ok(count)
+    }
+}
+
+/// What all rounds have in common.
+pub(super) struct Rounds<'a, O: ?Sized> {
+    pub(super) basis: &'a Basis,
+    pub(super) observations: &'a O,
+    pub(super) energy: Option<&'a Symmetric>,
+    pub(super) lambda: f64,
+    pub(super) threads: NonZeroUsize,
+    /// So many rounds for one loss, at most.
+    pub(super) most: usize,
+}
+
+impl<O: Observations + ?Sized> Rounds<'_, O> {
+    /// Fits with a loss, from the normal equations of all observations.
+    ///
+    /// Errors: those of [`robust()`].
+    pub(super) fn fit(&self, loss: Loss, plain: &Normal) -> Result<RobustFit> {
+        let coefficients = self.solve(plain)?;
+        let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
+        let scale = self.scale(&coefficients, scale_min)?;
+        let mut found = RobustFit { coefficients, scale, passes: 2, has_converged: false };
+        self.improve(&mut found, Loss::Huber, scale_min)?;
+        if loss == Loss::Tukey {
+            self.improve(&mut found, Loss::Tukey, scale_min)?;
+        }
+        Ok(found)
+    }
+
+    /// Rounds with one loss. A round weighs with the scale that the round before has seen, and measures the next one.
+    fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
+        fit.has_converged = false;
+        for _ in 0..self.most {
+            let (normal, scale) = self.weighted(fit, loss)?;
+            let coefficients = self.solve(&normal)?;
+            let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
+            let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
+            // While the scale shrinks, coefficients are on their way, however slowly.
+            let is_still = change <= CHANGE_MAX * scale.max(scale_min) && scale >= 0.98 * fit.scale;
+            fit.coefficients = coefficients;
+            fit.passes += 1;
+            let is_least = fit.scale <= scale_min && scale <= scale_min;
+            fit.scale = scale.max(scale_min);
+            if is_still || is_least {
+                fit.has_converged = true;
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// The equations with weights of residuals, and the scale of these.
+    fn weighted(&self, fit: &RobustFit, loss: Loss) -> Result<(Normal, f64)> {
+        let mut spread = Spread::default();
+        let parts = Parts::of(
+            self.basis,
+            self.observations,
+            self.threads,
+            1,
+            |_| 0,
+            |_, observation, alive| {
+                let residual = observation.value - residuals::value(&fit.coefficients, alive);
+                let residual = residual * observation.weight.sqrt();
+                let weight = observation.weight * loss.factor(residual.abs() / fit.scale);
+                Weighed { weight, residual: (observation.weight > 0.0).then_some(residual) }
+            },
+            |residual| spread.add(residual),
+        )?;
+        Ok((parts.sum(|_| true), scale_of(&spread)?))
+    }
+
+    fn scale(&self, coefficients: &[f64], scale_min: f64) -> Result<f64> {
+        let mut spread = Spread::default();
+        residuals::for_each_residual(self.basis, coefficients, self.observations, self.threads, |found| {
+            if found.weight > 0.0 {
+                spread.add(found.residual * found.weight.sqrt());
+            }
+        })?;
+        Ok(scale_of(&spread)?.max(scale_min))
+    }
+
+    fn solve(&self, normal: &Normal) -> Result<Vec<f64>> {
+        Equations::new(self.basis, normal, self.energy)?.solve(self.lambda)
+    }
+}
+
+fn scale_of(spread: &Spread) -> Result<f64> {
+    let median = spread.median().ok_or_else(|| Error::usage("no observations: nothing can be fitted"))?;
+    Ok(DEVIATIONS * median)
+}

@@ -1,0 +1,179 @@
+//! Coefficients from normal equations, smoothed or not.
+
+use super::control::bending;
+use super::factor::{Elimination, Factor};
+use super::normal::Normal;
+use super::observations::Observations;
+use super::symmetric::Symmetric;
+use super::trend::trend;
+use crate::bases::Basis;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+use std::num::NonZeroUsize;
+
+/// A function that observations do not determine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Undetermined {
+    /// Its number.
+    pub function: usize,
+    /// Its Greville site.
+    pub site: Point2,
+    /// How much equations change, relative to their diagonal, along the direction that it is not determined in: about 1e-13, or
+    /// zero without any observation.
+    pub curvature: f64,
+}
+
+/// A penalised least squares problem: (A'WA + lambda E) c = A'Wz for all `lambda`.
+///
+/// E is the thin-plate energy, or whatever is given in its place. With the weights one over variances and `lambda` one, c'Ec is
+/// taken for a priori knowledge; a greater `lambda` makes smoother splines, up to the plane of least squares.
+#[derive(Debug)]
+pub struct Equations<'a> {
+    basis: &'a Basis,
+    normal: &'a Normal,
+    energy: Option<&'a Symmetric>,
+    elimination: Elimination,
+    /// Coefficients of the linear function that is nearest to the observations.
+    trend: Vec<f64>,
+    /// The right side of the equations for the rest.
+    right: Vec<f64>,
+}
+
+impl<'a> Equations<'a> {
+    /// The problem of a basis; `energy` may be missing for a `lambda` of zero.
+    ///
+    /// Errors: no observation in the domain; matrices of another basis; not enough memory.
+    pub fn new(basis: &'a Basis, normal: &'a Normal, energy: Option<&'a Symmetric>) -> Result<Equations<'a>> {
+        let found = normal.matrix.len();
+        if found != basis.len() || energy.is_some_and(|energy| energy.len() != found) {
+            return Err(Error::usage(format!(
+                "matrices of other functions: {found} rows for {} functions",
+                basis.len()
+            )));
+        }
+        normal.check()?;
+        let elimination = match energy {
+            Some(energy) => Elimination::of(&normal.matrix.plus(0.0, energy))?,
+            None => Elimination::of(&normal.matrix)?,
+        };
+        let trend = trend(basis, normal);
+        let done = normal.matrix.times(&trend);
+        let right = normal.right.iter().zip(done).map(|(right, done)| right - done).collect();
+        Ok(Equations { basis, normal, energy, elimination, trend, right })
+    }
+
+    /// The normal equations.
+    #[must_use]
+    pub fn normal(&self) -> &Normal {
+        self.normal
+    }
+
+    /// The coefficients for a `lambda`.
+    ///
+    /// Errors: functions that are not determined, with their number and the place of the first; a `lambda` that is negative, or
+    /// not finite, or not zero without an energy.
+    pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
+        self.with_factor(lambda, |factor| {
+            self.check(factor, lambda)?;
+            let coefficients = self.coefficients(factor);
+            if coefficients.iter().all(|c| c.is_finite()) {
+                return Ok(coefficients);
+            }
+            Err(Error::malformed("coefficients are too great for 64 bits: scale the values"))
+        })
+    }
+
+    /// All functions that are not determined, in order; several that depend on each other have all but one listed.
+    ///
+    /// Errors: a `lambda` as in [`Equations::solve`].
+    pub fn undetermined(&self, lambda: f64) -> Result<Vec<Undetermined>> {
+        self.with_factor(lambda, |factor| Ok(self.named(factor)))
+    }
+
+    /// A `lambda` that makes observations and energy count alike, for the median of functions: a unit without dimensions for all
+    /// others. It is zero without an energy. (Traces would be those of the few functions with knots near lines, which are stiff.)
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        let Some(energy) = self.energy else { return 0.0 };
+        let both = self.normal.matrix.diagonal().zip(energy.diagonal());
+        let mut ratios: Vec<f64> = both.filter(|&(n, e)| n > 0.0 && e > 0.0).map(|(n, e)| n / e).collect();
+        if ratios.is_empty() {
+            return 0.0;
+        }
+        let middle = ratios.len() / 2;
+        *ratios.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// Does something with the factors for a `lambda`.
+    pub(super) fn with_factor<T>(&self, lambda: f64, work: impl FnOnce(&Factor) -> Result<T>) -> Result<T> {
+        if !(lambda >= 0.0 && lambda.is_finite()) {
+            return Err(Error::usage(format!("lambda {lambda}: expected a finite number, not negative")));
+        }
+        match self.energy {
+            Some(energy) => {
+                let matrix = self.normal.matrix.plus(lambda, energy);
+                work(&self.elimination.factor(&matrix)?)
+            }
+            None if lambda > 0.0 => Err(Error::usage("there is no energy that lambda could be a factor of")),
+            None => work(&self.elimination.factor(&self.normal.matrix)?),
+        }
+    }
+
+    /// The coefficients for factors.
+    pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
+        let rest = factor.solve(&self.right);
+        self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
+    }
+
+    /// Refuses factors that leave functions undetermined.
+    pub(super) fn check(&self, factor: &Factor, lambda: f64) -> Result<()> {
+        self.refuse(&self.named(factor), lambda)
+    }
+
+    fn named(&self, factor: &Factor) -> Vec<Undetermined> {
+        let named = |(function, curvature)| {
+            let site = self.basis.greville(function);
+            Undetermined { function, site, curvature }
+        };
+        factor.weak().into_iter().map(named).collect()
+    }
+
+    fn refuse(&self, undetermined: &[Undetermined], lambda: f64) -> Result<()> {
+        let Some(first) = undetermined.first() else { return Ok(()) };
+        let empty = undetermined.iter().filter(|weak| self.is_empty_at(weak.function)).count();
+        let remedy = if self.energy.is_some() && lambda > self.unit() {
+            "smooth with a lesser lambda, which leaves observations some weight"
+        } else if self.energy.is_some() {
+            "smooth with a greater lambda, or give more observations"
+        } else {
+            "smooth with a lambda above zero, or use fewer knots there"
+        };
+        Err(Error::usage(format!(
+            "{} of {} functions are not determined by {} observations, {empty} of them have none at all; the first \
+             one is at {} {}: {remedy}",
+            undetermined.len(),
+            self.basis.len(),
+            self.normal.count,
+            first.site[0],
+            first.site[1],
+        )))
+    }
+
+    fn is_empty_at(&self, function: usize) -> bool {
+        self.normal.matrix.at(function, function) == 0.0
+    }
+}
+
+/// Coefficients of the spline that is nearest to observations, for a given `lambda`: one pass.
+///
+/// Errors: those of [`Normal::of`], [`bending`] and [`Equations::solve`].
+pub fn least_squares<O: Observations + ?Sized>(
+    basis: &Basis,
+    observations: &O,
+    lambda: f64,
+    threads: NonZeroUsize,
+) -> Result<Vec<f64>> {
+    let normal = Normal::of(basis, observations, threads)?;
+    let energy = if lambda > 0.0 { Some(bending(basis)?) } else { None };
+    Equations::new(basis, &normal, energy.as_ref())?.solve(lambda)
+}

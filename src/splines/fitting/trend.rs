@@ -1,0 +1,79 @@
+//! The linear function that is nearest to observations.
+//!
+//! Linear functions do not bend, so that the smoothest splines are near to one, and a great `lambda` times the rounding errors of
+//! its bend would be more than all observations say. So it is found by itself, and equations are solved for the rest.
+
+use super::normal::Normal;
+use crate::bases::Basis;
+
+/// Directions whose part of a diagonal is less than this are left out: observations on a line have no slope across it.
+const PIVOT_MIN: f64 = 1e-9;
+
+/// Coefficients of the linear function that is nearest to the observations: linear themselves, by Greville sites.
+pub(super) fn trend(basis: &Basis, normal: &Normal) -> Vec<f64> {
+    let columns = linear_functions(basis);
+    let products: Vec<Vec<f64>> = columns.iter().map(|column| normal.matrix.times(column)).collect();
+    let mut rows = [[0.0; 4]; 3];
+    for (row, column) in rows.iter_mut().zip(&columns) {
+        (0..3).for_each(|i| row[i] = dot(column, &products[i]));
+        row[3] = dot(column, &normal.right);
+    }
+    let factors = solve(rows);
+    (0..basis.len()).map(|i| (0..3).map(|k| factors[k] * columns[k][i]).sum()).collect()
+}
+
+/// One, x and y at Greville sites, from their middle, in units of their extent.
+fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
+    let of_axis = |axis: usize| {
+        let all: Vec<f64> = (0..basis.len()).map(|function| basis.greville(function)[axis]).collect();
+        let [min, max] =
+            all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], &x| [min.min(x), max.max(x)]);
+        let (middle, half) = (min.midpoint(max), (0.5 * (max - min)).max(f64::MIN_POSITIVE));
+        all.into_iter().map(|x| (x - middle) / half).collect()
+    };
+    [vec![1.0; basis.len()], of_axis(0), of_axis(1)]
+}
+
+/// Solves three equations with a positive semidefinite matrix; unknowns that it does not determine are zero.
+fn solve(mut rows: [[f64; 4]; 3]) -> [f64; 3] {
+    let diagonal = [0, 1, 2].map(|i| rows[i][i]);
+    let mut is_known = [false; 3];
+    for i in 0..3 {
+        if rows[i][i] <= PIVOT_MIN * diagonal[i] {
+            continue;
+        }
+        is_known[i] = true;
+        let pivot = rows[i];
+        for row in rows.iter_mut().skip(i + 1) {
+            let factor = row[i] / pivot[i];
+            row.iter_mut().zip(pivot).for_each(|(entry, above)| *entry -= factor * above);
+        }
+    }
+    let mut solution = [0.0; 3];
+    for i in (0..3).rev().filter(|&i| is_known[i]) {
+        let known: f64 = (i + 1..3).map(|k| rows[i][k] * solution[k]).sum();
+        solution[i] = (rows[i][3] - known) / rows[i][i];
+    }
+    solution
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_equations_are_solved() {
+        let rows = [[4.0, 2.0, 0.0, 8.0], [2.0, 5.0, 1.0, 15.0], [0.0, 1.0, 2.0, 8.0]];
+        let found = solve(rows);
+        for (found, expected) in found.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((found - expected).abs() < 1e-14);
+        }
+        // The third is the sum of the others: there is no part of its own.
+        let found = solve([[4.0, 2.0, 6.0, 8.0], [2.0, 5.0, 7.0, 12.0], [6.0, 7.0, 13.0, 20.0]]);
+        assert_eq!(found, [1.0, 2.0, 0.0]);
+    }
+}

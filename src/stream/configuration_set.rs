@@ -1,0 +1,99 @@
+//! Reads a stream of configurations, whole.
+
+use std::io::Read;
+
+use crate::{Event, Header, StreamReader};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::configurations::Configurations;
+use spmesh_model::functions::Function;
+use spmesh_model::points::Point2;
+
+/// Knots and their configurations, as a stream holds them.
+#[derive(Debug, Clone, Default)]
+pub struct ConfigurationSet {
+    /// The knots by id, in stored coordinates.
+    pub points: Vec<Point2>,
+    /// The z of each knot, if knots have one.
+    pub heights: Option<Vec<f64>>,
+    /// Configurations, by increasing degree.
+    pub degrees: Vec<Configurations>,
+    /// Functions that quadratic splines are made of, if the stream lists any: otherwise all B-splines of links are.
+    pub functions: Vec<Function>,
+    /// Coefficients of functions, if there is a spline.
+    pub coefficients: Vec<f64>,
+}
+
+impl ConfigurationSet {
+    /// Reads a stream of kind [`crate::Kind::Configurations`] or [`crate::Kind::Splines`] to its end.
+    ///
+    /// Memory: what the stream holds.
+    ///
+    /// # Errors
+    /// Usage, if the stream is of another kind or has more knots than can be handled; otherwise as
+    /// [`StreamReader::next_event`].
+    pub fn read<R: Read>(reader: &mut StreamReader<R>) -> Result<Self> {
+        let kind = reader.header().kind;
+        if !kind.has_knots() {
+            let message =
+                format!("this is a stream of kind {}, expected configurations or splines", kind.name());
+            return Err(Error::usage(message).of_input(reader.name()));
+        }
+        let mut collector = Collector::new(reader.header());
+        while let Some(event) = reader.next_event()? {
+            collector.event(&event).map_err(|error| error.of_input(reader.name()))?;
+        }
+        Ok(collector.finish())
+    }
+}
+
+/// Gathers what events hold.
+#[derive(Debug, Default)]
+pub struct Collector {
+    points: Vec<Point2>,
+    heights: Option<Vec<f64>>,
+    degrees: Vec<Configurations>,
+    functions: Vec<Function>,
+    coefficients: Vec<f64>,
+}
+
+impl Collector {
+    /// Nothing yet of a stream with this header.
+    #[must_use]
+    pub fn new(header: &Header) -> Self {
+        Collector { heights: header.has_elevation.then(Vec::new), ..Collector::default() }
+    }
+
+    /// Takes the next event of a stream of configurations.
+    pub fn event(&mut self, event: &Event) -> Result<()> {
+        match event {
+            Event::Points(points) => {
+                self.points.extend(points.iter().map(|&[x, y, _]| [x, y]));
+                if let Some(heights) = &mut self.heights {
+                    heights.extend(points.iter().map(|point| point[2]));
+                }
+            }
+            Event::Configurations(block) => {
+                let degree = block.degree as usize;
+                if self.degrees.last().is_none_or(|last| last.degree() != degree) {
+                    self.degrees.push(Configurations::new(degree, block.claim));
+                }
+                if let Some(last) = self.degrees.last_mut() {
+                    block
+                        .groups()
+                        .try_for_each(|(interior, boundaries)| last.extend(interior, boundaries))?;
+                }
+            }
+            Event::Functions(functions) => self.functions.extend_from_slice(functions),
+            Event::Coefficients(coefficients) => self.coefficients.extend_from_slice(coefficients),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What was gathered.
+    #[must_use]
+    pub fn finish(self) -> ConfigurationSet {
+        let Collector { points, heights, degrees, functions, coefficients } = self;
+        ConfigurationSet { points, heights, degrees, functions, coefficients }
+    }
+}

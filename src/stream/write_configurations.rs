@@ -1,0 +1,118 @@
+//! Writes configurations, and splines over them, as a stream.
+
+use std::io::Write;
+
+use crate::{ConfigurationBlock, Coordinates, Crs, Header, Kind, StreamWriter};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CONFIGURATION_DEGREE_MAX;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::configurations::Configurations;
+use spmesh_model::functions::Function;
+use spmesh_model::points::Point2;
+
+/// Boundaries that are handed to the writer at a time.
+const BATCH: usize = 1 << 12;
+
+/// What a stream of knots holds, apart from its header.
+#[derive(Debug, Clone, Copy)]
+pub struct Content<'a> {
+    /// The knots, in stored coordinates: integers if the header says so.
+    pub knots: &'a [Point2],
+    /// The z of all knots, if the header says that they have an elevation.
+    pub heights: Option<&'a [f64]>,
+    /// Configurations of increasing degrees; of one degree for splines.
+    pub degrees: &'a [Configurations],
+    /// Functions of quadratic splines, if they are not just B-splines of links.
+    pub functions: &'a [Function],
+    /// For splines, a coefficient for each function.
+    pub coefficients: &'a [f64],
+}
+
+impl<'a> Content<'a> {
+    /// Configurations alone.
+    #[must_use]
+    pub fn of(knots: &'a [Point2], degrees: &'a [Configurations]) -> Content<'a> {
+        Content { knots, heights: None, degrees, functions: &[], coefficients: &[] }
+    }
+}
+
+/// Writes knots, and configurations of them of increasing degrees, in world coordinates of an unknown system.
+///
+/// # Errors
+/// As [`write_content`].
+pub fn write_configurations(knots: &[Point2], degrees: &[Configurations], out: impl Write) -> Result<()> {
+    write_content(
+        configurations_header(knots, Coordinates::F64, Crs::Unknown),
+        Content::of(knots, degrees),
+        out,
+    )
+}
+
+/// The header of a stream of configurations of knots in stored coordinates, without heights.
+#[must_use]
+pub fn configurations_header(knots: &[Point2], coordinates: Coordinates, crs: Crs) -> Header {
+    let mut header = Header::new(Kind::Configurations, coordinates, 2, false);
+    header.points = Some(knots.len() as u64);
+    header.bounds = Bounds::of_points(&stored(knots, None));
+    header.crs = crs;
+    header
+}
+
+/// Writes a stream of configurations, or of a spline, with a header of [`configurations_header`], or one like it.
+///
+/// # Errors
+/// Usage, if degrees do not increase, one is too high, or heights do not fit header and knots; malformed, if a coordinate
+/// does not fit the header, configurations or functions name knots that there are not, or a spline has not one coefficient for
+/// each function; I/O.
+pub fn write_content(header: Header, content: Content, out: impl Write) -> Result<()> {
+    let Content { knots, heights, degrees, functions, coefficients } = content;
+    if heights.map(<[f64]>::len) != header.has_elevation.then_some(knots.len()) {
+        return Err(Error::usage(
+            "there must be a height for each knot if the header says so, and none otherwise",
+        ));
+    }
+    if let Some(pair) = degrees.windows(2).find(|pair| pair[0].degree() >= pair[1].degree()) {
+        let (before, after) = (pair[0].degree(), pair[1].degree());
+        return Err(Error::usage(format!(
+            "cannot write degree {after} after degree {before}: degrees must increase"
+        )));
+    }
+    let mut writer = StreamWriter::new(out, header)?;
+    writer.points(&stored(knots, heights))?;
+    degrees.iter().try_for_each(|configurations| write_degree(&mut writer, configurations))?;
+    if !functions.is_empty() {
+        writer.functions(functions)?;
+    }
+    if !coefficients.is_empty() {
+        writer.coefficients(coefficients)?;
+    }
+    writer.end(0, 0).map(drop)
+}
+
+fn write_degree<W: Write>(writer: &mut StreamWriter<W>, configurations: &Configurations) -> Result<()> {
+    let degree = u32::try_from(configurations.degree()).ok().filter(|&k| k <= CONFIGURATION_DEGREE_MAX);
+    let Some(degree) = degree else {
+        return Err(Error::usage(format!(
+            "cannot write degree {}: streams have at most {CONFIGURATION_DEGREE_MAX}",
+            configurations.degree()
+        )));
+    };
+    let empty = ConfigurationBlock::new(degree, configurations.claim());
+    let mut block = empty.clone();
+    // At least one block, so that a degree without configurations is there.
+    for group in configurations.groups() {
+        for boundaries in group.triangles.chunks(BATCH).chain(group.infinite.chunks(BATCH)) {
+            block.push(group.interior, boundaries);
+            if block.boundaries.len() >= BATCH {
+                writer.configurations(&block)?;
+                block = empty.clone();
+            }
+        }
+    }
+    writer.configurations(&block)
+}
+
+fn stored(knots: &[Point2], heights: Option<&[f64]>) -> Vec<Point> {
+    let height = |id: usize| heights.map_or(0.0, |heights| heights[id]);
+    knots.iter().enumerate().map(|(id, &[x, y])| [x, y, height(id)]).collect()
+}

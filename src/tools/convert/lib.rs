@@ -1,0 +1,147 @@
+//! Conversion between formats: every input becomes the events of a stream, which go to every output that
+//! can hold their kind.
+
+mod detect;
+mod format;
+
+pub use format::Format;
+
+use std::io::{BufReader, Cursor, Read, Write};
+use std::path::{Path, PathBuf};
+
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_io::sink::{
+    EventSink, HullSink, MeditSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink,
+    SpmSink, TwinSink, VtuSink, surface_header,
+};
+use spmesh_io::source::{
+    EventSource, SpEvents, SpaReader, SpbReader, TwinSource, open_obj, open_ply, open_sma, open_smb,
+};
+use spmesh_stream::{Event, Kind, StreamReader};
+
+/// What a conversion may choose.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Format of the input; by its content and its name if `None`.
+    pub from: Option<Format>,
+    /// Dimensions of points in historical formats that do not say: 3, or else 2 with an elevation.
+    pub dims: Option<u8>,
+    /// Write PLY as text.
+    pub ascii: bool,
+    /// Where spools go; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+}
+
+/// Reads `input`, whose name is `name`, and writes it to `output` as `to`. What the user should know of
+/// losses is returned as sentences; `progress` is told how many points or vertices are done.
+///
+/// The output is complete only if this succeeds. Memory: bounded, but for meshes that do not say when
+/// vertices are final.
+///
+/// # Errors
+/// Malformed, if the input is; usage, if its format is not recognized or `to` cannot hold it; I/O.
+pub fn convert(
+    input: impl Read + Send + 'static,
+    name: &str,
+    to: Format,
+    output: &mut dyn Write,
+    options: &Options,
+    mut progress: impl FnMut(u64),
+) -> Result<Vec<String>> {
+    let mut done = 0;
+    let mut source = open_source(input, name, options)?;
+    let mut sink = open_sink(to, output, source.as_ref(), options)?;
+    while let Some(event) = source.next_event()? {
+        sink.event(&event).map_err(|error| match error.kind() {
+            ErrorKind::Malformed | ErrorKind::Usage => source.locate(error),
+            _ => error,
+        })?;
+        done += match &event {
+            Event::Points(points) => points.len() as u64,
+            Event::Patch(patch) => patch.new.len() as u64,
+            Event::Points4(points) => points.points.len() as u64,
+            _ => 0,
+        };
+        progress(done);
+    }
+    let mut notices = source.notices();
+    notices.extend(sink.notices());
+    Ok(notices)
+}
+
+/// Opens an input as a source of events.
+///
+/// # Errors
+/// Usage, if the format is not recognized or cannot be read; malformed, if the header is.
+pub fn open_source(
+    mut input: impl Read + Send + 'static,
+    name: &str,
+    options: &Options,
+) -> Result<Box<dyn EventSource>> {
+    let (format, head) = match options.from {
+        Some(format) => (format, Vec::new()),
+        None => {
+            let mut head = Vec::new();
+            let mut start = (&mut input).take(detect::HEAD_LEN);
+            start.read_to_end(&mut head).map_err(|e| Error::io("reading", e).of_input(name))?;
+            (detect::detect(&head, Path::new(name)).map_err(|e| e.of_input(name))?, head)
+        }
+    };
+    let input = Cursor::new(head).chain(input);
+    let dims = options.dims.unwrap_or(2);
+    let in_input = |error: Error| error.of_input(name);
+    Ok(match format {
+        Format::Spm => Box::new(StreamReader::new(BufReader::with_capacity(1 << 18, input), name)?),
+        Format::Text => Box::new(TwinSource::new(input, name)?),
+        Format::Obj => open_obj(input, name),
+        Format::Sma => open_sma(input, name)?,
+        Format::Smb => open_smb(BufReader::new(input), name)?,
+        Format::Spa => {
+            let reader = SpaReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
+            Box::new(SpEvents::new(reader, name, dims))
+        }
+        Format::Spb => {
+            let reader = SpbReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
+            Box::new(SpEvents::new(reader, name, dims))
+        }
+        Format::Ply => open_ply(input, name, dims)?,
+        Format::Vtu | Format::Medit => {
+            let name = format.name();
+            return Err(in_input(Error::usage(format!("{name} is written by this program, but not read"))));
+        }
+    })
+}
+
+fn open_sink<'a>(
+    to: Format,
+    output: &'a mut dyn Write,
+    source: &dyn EventSource,
+    options: &Options,
+) -> Result<Box<dyn EventSink + 'a>> {
+    let header = source.header();
+    let temp_dir = options.temp_dir.as_deref();
+    let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
+    if header.kind == Kind::TetrahedralMesh {
+        let surface = surface_header(header);
+        match to {
+            Format::Obj => return Ok(Box::new(HullSink::new(ObjSink::new(output, &surface)?, "OBJ"))),
+            Format::Ply => {
+                let ply = PlySink::new(output, &surface, encoding, temp_dir)?;
+                return Ok(Box::new(HullSink::new(ply, "PLY")));
+            }
+            _ => {}
+        }
+    }
+    Ok(match to {
+        Format::Spm => Box::new(SpmSink::new(output, header)?),
+        Format::Text => Box::new(TwinSink::new(output, header)?),
+        Format::Obj => Box::new(ObjSink::new(output, header)?),
+        Format::Ply => Box::new(PlySink::new(output, header, encoding, temp_dir)?),
+        Format::Vtu => Box::new(VtuSink::new(output, header, temp_dir)?),
+        Format::Medit => Box::new(MeditSink::new(output, header, temp_dir)?),
+        Format::Spa => Box::new(SpaSink::new(output, header)?),
+        Format::Spb => Box::new(SpbSink::new(output, header)?),
+        Format::Sma => Box::new(SmaSink::new(output, header)?),
+        Format::Smb => Box::new(SmbSink::new(output, header)?),
+    })
+}

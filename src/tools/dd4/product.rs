@@ -1,0 +1,142 @@
+//! What can be made of a diagram.
+
+use std::io::Write;
+
+use super::{Form, write_diagram, write_simplices, write_slice, write_surface, write_values};
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::diagram4::Diagram;
+use spmesh_geometry::spacetime::{
+    Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide,
+};
+use spmesh_model::cells4::Point4;
+
+/// What is made of a diagram.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Product {
+    /// Its cells.
+    Cells,
+    /// Simplices.
+    Simplices(Rule),
+    /// Values at sites.
+    Values(Vec<Point4>),
+    /// Tetrahedra at a time.
+    Slice {
+        /// The time.
+        time: f64,
+        /// VTU or Medit.
+        form: Form,
+    },
+    /// A surface of equal value at a time.
+    Isosurface {
+        /// The time.
+        time: f64,
+        /// The value.
+        level: f64,
+        /// Any.
+        form: Form,
+    },
+}
+
+impl Product {
+    /// Whether it can be made of these points: known before the work, rather than after it.
+    ///
+    /// # Errors
+    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all points.
+    pub fn check(&self, points: &[Point4], has_values: bool) -> Result<()> {
+        if matches!(self, Product::Values(_) | Product::Isosurface { .. }) && !has_values {
+            return Err(Error::usage(NO_VALUES));
+        }
+        match self {
+            Product::Slice { time, .. } | Product::Isosurface { time, .. } if !points.is_empty() => {
+                first_time(points, *time).map(drop)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether what is written is binary.
+    #[must_use]
+    pub fn is_binary(&self) -> bool {
+        match self {
+            Product::Cells | Product::Simplices(_) => true,
+            Product::Values(_) => false,
+            Product::Slice { form, .. } | Product::Isosurface { form, .. } => {
+                matches!(form, Form::Vtu | Form::Ply)
+            }
+        }
+    }
+
+    /// Makes it of a diagram and writes it. Returns what the user should know.
+    ///
+    /// # Errors
+    /// Usage, if values are needed and the points have none, the slice is at a time before or after all points, or the
+    /// form does not hold it; I/O. What is written is then not whole.
+    pub fn write(&self, diagram: &Diagram, output: &mut impl Write) -> Result<Vec<String>> {
+        match self {
+            Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),
+            Product::Simplices(rule) => {
+                let (points, values) = (&diagram.points, diagram.values.as_deref());
+                let parts = subdivide(points, values, &diagram.cells, *rule, |_| true)?;
+                write_simplices(&parts, diagram.merged, output)?;
+                Ok(flat_notice(parts.flat).into_iter().collect())
+            }
+            Product::Values(sites) => {
+                let values = interpolate(diagram, sites)?;
+                write_values(sites, &values, output)?;
+                Ok(outside_notice(&values).into_iter().collect())
+            }
+            Product::Slice { time, form } => {
+                let slice = slice(diagram, *time)?;
+                let mut notices = slice_notices(&slice);
+                notices.extend(write_slice(&slice, *form, output)?);
+                Ok(notices)
+            }
+            Product::Isosurface { time, level, form } => {
+                let slice = slice(diagram, *time)?;
+                let surface = isosurface(&slice, *level)?;
+                let mut notices = slice_notices(&slice);
+                if surface.triangles.is_empty() && !slice.tetrahedra.is_empty() {
+                    notices.push(empty_notice(&slice, *level));
+                }
+                write_surface(&surface, *form, output)?;
+                Ok(notices)
+            }
+        }
+    }
+}
+
+fn interpolate(diagram: &Diagram, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
+    let mut interpolator = Interpolator::new(diagram)?;
+    sites.iter().map(|&site| interpolator.value(site)).collect()
+}
+
+fn flat_notice(flat: u64) -> Option<String> {
+    (flat > 0).then(|| format!("{flat} simplices are flat, because barycentres are rounded: left out"))
+}
+
+fn outside_notice(values: &[Option<f64>]) -> Option<String> {
+    let outside = values.iter().filter(|value| value.is_none()).count();
+    let verb = if outside == 1 { "is" } else { "are" };
+    let message = "outside of the convex hull of the points: nan";
+    (outside > 0).then(|| format!("{outside} of {} sites {verb} {message}", values.len()))
+}
+
+fn slice_notices(slice: &Slice) -> Vec<String> {
+    let is_empty = slice.tetrahedra.is_empty();
+    let empty =
+        is_empty.then(|| format!("the slice is empty: the points span no volume at time {}", slice.time));
+    empty.into_iter().chain(flat_notice(slice.flat)).collect()
+}
+
+fn empty_notice(slice: &Slice, level: f64) -> String {
+    let values = slice.values.iter().flatten().filter(|value| !value.is_nan());
+    let range = values.fold(None, |range: Option<(f64, f64)>, &value| {
+        Some(range.map_or((value, value), |(least, most)| (least.min(value), most.max(value))))
+    });
+    match range {
+        Some((least, most)) => {
+            format!("the surface is empty: values in the slice go from {least} to {most}, not across {level}")
+        }
+        None => "the surface is empty: no values in the slice are known".into(),
+    }
+}

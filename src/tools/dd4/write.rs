@@ -1,0 +1,43 @@
+//! Diagrams to streams.
+
+use std::io::Write;
+
+use spmesh_core::error::Result;
+use spmesh_geometry::diagram4::Diagram;
+use spmesh_geometry::spacetime::Subdivision;
+use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
+
+/// Writes the diagram as a stream of cells.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_diagram(diagram: &Diagram, output: impl Write) -> Result<()> {
+    let Diagram { points, values, merged, cells } = diagram;
+    let count = points.len() as u64 + merged;
+    let mut writer = StreamWriter::new(output, header(Kind::Cells4, values.is_some(), count))?;
+    writer.points4(points, values.as_deref())?;
+    cells.iter().try_for_each(|cell| writer.cell4(cell))?;
+    writer.end(count, *merged).map(drop)
+}
+
+/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
+///
+/// # Errors
+/// If a value is infinite, or writing fails.
+pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> Result<()> {
+    let Subdivision { points, values, simplices, .. } = parts;
+    let count = points.len() as u64 + merged;
+    let mut writer = StreamWriter::new(output, header(Kind::Simplices4, values.is_some(), count))?;
+    writer.points4(points, values.as_deref())?;
+    writer.simplices4(simplices)?;
+    writer.end(count, merged).map(drop)
+}
+
+/// The header of a stream that `dd4` makes of `count` points.
+fn header(kind: Kind, has_values: bool, count: u64) -> Header {
+    Header {
+        points: Some(count),
+        producer: concat!("dd4 ", env!("CARGO_PKG_VERSION")).to_string(),
+        ..Header::new(kind, Coordinates::F64, 4, has_values)
+    }
+}

@@ -1,0 +1,262 @@
+//! Points that wait for their cell to be complete: packed in pages of memory, and beyond that on disk.
+
+use std::path::PathBuf;
+
+use super::Stats;
+use super::pages::{NO_PAGE, Pages};
+use super::spill::{NO_EXTENT, Spill};
+use spmesh_core::error::Result;
+
+/// Bytes of the state of one cell.
+pub(super) const CELL_COST: u64 = size_of::<Cell>() as u64;
+
+/// Longest page, in bytes, and fewest points in one.
+const PAGE_LEN_MAX: u64 = 16 << 10;
+const PAGE_POINTS_MIN: u64 = 4;
+
+/// Shortest and longest piece in which the temporary file is written and read.
+const IO_LEN_MIN: u64 = 4 << 10;
+const IO_LEN_MAX: u64 = 1 << 20;
+
+/// Where the points of one cell are: the extents first, then the pages.
+#[derive(Clone, Copy)]
+struct Cell {
+    first_page: u32,
+    last_page: u32,
+    pages: u32,
+    /// Bytes in the last page.
+    fill: u32,
+    first_extent: u64,
+    last_extent: u64,
+}
+
+impl Cell {
+    const EMPTY: Cell = Cell {
+        first_page: NO_PAGE,
+        last_page: NO_PAGE,
+        pages: 0,
+        fill: 0,
+        first_extent: NO_EXTENT,
+        last_extent: NO_EXTENT,
+    };
+
+    fn bytes(&self, page_len: usize) -> u64 {
+        (u64::from(self.pages) * page_len as u64).saturating_sub(page_len as u64 - u64::from(self.fill))
+    }
+}
+
+/// Waiting points of all cells, each as a record of its encoded bytes.
+///
+/// Order: the records of a cell come back in the order in which they went in.
+pub(super) struct CellBuffers {
+    record_len: usize,
+    cells: Vec<Cell>,
+    pages: Pages,
+    spill: Option<Spill>,
+    folder: Option<PathBuf>,
+    io_len: usize,
+    waiting: u64,
+    waiting_max: u64,
+    spilled: u64,
+}
+
+impl CellBuffers {
+    /// Buffers of `cells` cells that keep to `bytes` of memory and spill to a file in `folder`.
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Memory`] if the system refuses the memory.
+    pub(super) fn new(cells: usize, record_len: usize, bytes: u64, folder: Option<PathBuf>) -> Result<Self> {
+        let io_len = (bytes / 16).clamp(IO_LEN_MIN, IO_LEN_MAX);
+        let for_pages = bytes.saturating_sub(cells as u64 * CELL_COST + 2 * io_len);
+        let record = record_len as u64;
+        // Every cell may have a page that is filled in part: with many cells, pages must be short.
+        let points_max = PAGE_LEN_MAX / record;
+        let points = (for_pages / (4 * cells as u64 * record)).clamp(PAGE_POINTS_MIN, points_max);
+        Ok(CellBuffers {
+            record_len,
+            cells: vec![Cell::EMPTY; cells],
+            pages: Pages::new((points * record) as usize, for_pages)?,
+            spill: None,
+            folder,
+            io_len: io_len as usize,
+            waiting: 0,
+            waiting_max: 0,
+            spilled: 0,
+        })
+    }
+
+    /// Appends whole records to `cell`.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be written.
+    pub(super) fn push(&mut self, cell: usize, mut records: &[u8]) -> Result<()> {
+        debug_assert!(records.len().is_multiple_of(self.record_len));
+        self.waiting += (records.len() / self.record_len) as u64;
+        while !records.is_empty() {
+            if self.cells[cell].pages == 0 || self.cells[cell].fill as usize == self.pages.page_len() {
+                self.add_page(cell)?;
+            }
+            let state = &mut self.cells[cell];
+            let room = &mut self.pages.content_mut(state.last_page)[state.fill as usize..];
+            let (now, later) = records.split_at(records.len().min(room.len()));
+            room[..now.len()].copy_from_slice(now);
+            state.fill += now.len() as u32;
+            records = later;
+        }
+        self.waiting_max = self.waiting_max.max(self.waiting);
+        Ok(())
+    }
+
+    /// Hands the records of `cell` to `consume`, in pieces of whole records, and forgets them.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be read, or `consume` fails.
+    pub(super) fn drain(&mut self, cell: usize, mut consume: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
+        let state = std::mem::replace(&mut self.cells[cell], Cell::EMPTY);
+        let mut drained = 0;
+        let mut consume = |bytes: &[u8]| {
+            drained += bytes.len() as u64;
+            consume(bytes)
+        };
+        if let Some(spill) = self.spill.as_mut().filter(|_| state.first_extent != NO_EXTENT) {
+            spill.read_chain(state.first_extent, self.record_len, &mut consume)?;
+        }
+        for_each_page(&self.pages, &state, &mut consume)?;
+        self.waiting -= drained / self.record_len as u64;
+        self.give_back(&state);
+        Ok(())
+    }
+
+    /// Adds what happened to `stats`.
+    pub(super) fn report(&self, stats: &mut Stats) {
+        stats.buffered_points_max = self.waiting_max;
+        stats.buffered_bytes_max = self.pages.bytes_max();
+        stats.spilled_points = self.spilled;
+        stats.spilled_bytes = self.spill.as_ref().map_or(0, Spill::len);
+    }
+
+    fn add_page(&mut self, cell: usize) -> Result<()> {
+        let page = match self.pages.take() {
+            Some(page) => page,
+            None => {
+                self.spill_fullest()?;
+                self.pages.take().expect("spilling frees pages")
+            }
+        };
+        let state = &mut self.cells[cell];
+        if state.pages == 0 {
+            state.first_page = page;
+        } else {
+            self.pages.link(state.last_page, page);
+        }
+        state.last_page = page;
+        state.pages += 1;
+        state.fill = 0;
+        Ok(())
+    }
+
+    /// Writes the fullest cells to disk until at least half of the pages are free: extents become as long as
+    /// they can, and a cell is written rarely.
+    fn spill_fullest(&mut self) -> Result<()> {
+        let pages_min = self.victim_pages_min();
+        if self.spill.is_none() {
+            self.spill = Some(Spill::create(self.folder.as_deref(), self.io_len)?);
+        }
+        for cell in 0..self.cells.len() {
+            if self.cells[cell].pages >= pages_min {
+                self.spill_cell(cell)?;
+            }
+        }
+        self.spill.as_mut().expect("created above").flush()
+    }
+
+    /// The power of two such that the cells with at least so many pages have half of all pages in use.
+    fn victim_pages_min(&self) -> u32 {
+        let mut pages_of_size = [0u64; 32];
+        for cell in self.cells.iter().filter(|cell| cell.pages > 0) {
+            pages_of_size[cell.pages.ilog2() as usize] += u64::from(cell.pages);
+        }
+        let mut pages = 0;
+        let size = pages_of_size.iter().rposition(|&of_size| {
+            pages += of_size;
+            pages * 2 >= self.pages.in_use() as u64
+        });
+        1 << size.expect("all pages are more than half of them")
+    }
+
+    fn spill_cell(&mut self, cell: usize) -> Result<()> {
+        let state = self.cells[cell];
+        let spill = self.spill.as_mut().expect("the caller created it");
+        let len = state.bytes(self.pages.page_len());
+        let extent = spill.start_extent(state.last_extent, len)?;
+        for_each_page(&self.pages, &state, |bytes| spill.append(bytes))?;
+        self.spilled += len / self.record_len as u64;
+        self.give_back(&state);
+        let first_extent = if state.first_extent == NO_EXTENT { extent } else { state.first_extent };
+        self.cells[cell] = Cell { first_extent, last_extent: extent, ..Cell::EMPTY };
+        Ok(())
+    }
+
+    fn give_back(&mut self, state: &Cell) {
+        if state.pages > 0 {
+            self.pages.give_back(state.first_page, state.last_page, state.pages as usize);
+        }
+    }
+}
+
+/// Hands the filled part of every page of a cell to `consume`, in order.
+fn for_each_page(pages: &Pages, state: &Cell, mut consume: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
+    let mut page = state.first_page;
+    while page != NO_PAGE {
+        let fill = if page == state.last_page { state.fill as usize } else { pages.page_len() };
+        consume(&pages.content(page)[..fill])?;
+        page = pages.after(page);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RECORD: usize = 12;
+
+    fn record(value: u32) -> [u8; RECORD] {
+        let mut bytes = [0; RECORD];
+        bytes[..4].copy_from_slice(&value.to_le_bytes());
+        bytes
+    }
+
+    fn drain(buffers: &mut CellBuffers, cell: usize) -> Vec<u32> {
+        let mut values = Vec::new();
+        buffers
+            .drain(cell, |bytes| {
+                let records = bytes.chunks_exact(RECORD);
+                values.extend(records.map(|r| u32::from_le_bytes([r[0], r[1], r[2], r[3]])));
+                Ok(())
+            })
+            .expect("drains");
+        values
+    }
+
+    #[test]
+    fn records_come_back_once_in_order_whatever_the_memory() {
+        let cells = 50;
+        for bytes in [16 << 10, 40 << 10, 4 << 20] {
+            let mut buffers = CellBuffers::new(cells, RECORD, bytes, None).expect("enough memory");
+            let cell_of = |value: u32| (value.wrapping_mul(2_654_435_761) >> 20) as usize % cells;
+            for round in 0..3 {
+                let values = round * 20_000..(round + 1) * 20_000;
+                values.clone().for_each(|v| buffers.push(cell_of(v), &record(v)).expect("pushes"));
+                for cell in (0..cells).rev() {
+                    let expected: Vec<u32> = values.clone().filter(|&v| cell_of(v) == cell).collect();
+                    assert_eq!(drain(&mut buffers, cell), expected);
+                    assert!(drain(&mut buffers, cell).is_empty());
+                }
+                assert_eq!((buffers.waiting, buffers.pages.in_use()), (0, 0));
+            }
+            assert!(buffers.pages.bytes_max() <= bytes);
+            assert_eq!(buffers.spilled > 0, bytes < 1 << 20);
+        }
+    }
+}

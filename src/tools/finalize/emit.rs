@@ -1,0 +1,137 @@
+//! Pass 3: points and tags go out (thesis 5.2).
+
+use std::io::Write;
+
+use super::buffer::CellBuffers;
+use super::locate::Locator;
+use super::plan::Plan;
+use super::survey::input_changed;
+use super::work::Work;
+use super::{Options, Pass, Passes};
+use spmesh_core::error::Result;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Header, StreamWriter, encode_points};
+
+/// Points after which leaves that are complete are written. Counted in the input, not in what happens to be read at once,
+/// so that the output depends on the input alone.
+const WINDOW: u64 = 1 << 16;
+
+/// A batch of points with the leaf and the record of each.
+#[derive(Default)]
+struct Located {
+    leaves: Vec<u32>,
+    records: Vec<u8>,
+}
+
+impl Located {
+    fn prepare(&mut self, locator: &Locator, header: &Header, points: &[Point]) -> Result<()> {
+        expect_inside(&header.bounds, points)?;
+        locator.locate(points, &mut self.leaves)?;
+        self.records.clear();
+        encode_points(header, points, &mut self.records)
+    }
+
+    /// Every run of points in one leaf: the leaf, and the bytes of their records.
+    fn runs(&self, record_len: usize) -> impl Iterator<Item = (usize, &[u8])> {
+        let mut rest = &self.records[..];
+        self.leaves.chunk_by(|a, b| a == b).map(move |run| {
+            let (records, later) = rest.split_at(run.len() * record_len);
+            rest = later;
+            (run[0] as usize, records)
+        })
+    }
+}
+
+impl<P: Passes + ?Sized> Work<'_, P> {
+    /// Holds the points of a leaf back until its counter is zero, then writes them and its tag.
+    ///
+    /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree: from points
+    /// in random order nearly all are complete at the very end, and neighbours had better follow each other.
+    pub(super) fn write_chunked<W: Write>(
+        &mut self,
+        mut plan: Plan,
+        options: &Options,
+        mut writer: StreamWriter<W>,
+    ) -> Result<()> {
+        writer.cells(&plan.take_empty())?;
+        let header = writer.header().clone();
+        let record_len = header.point_len();
+        let bytes = options.budget.bytes() - plan.bytes();
+        let mut buffers = CellBuffers::new(plan.leaves(), record_len, bytes, options.temp_dir.clone())?;
+        let (locator, mut countdown) = plan.split();
+        let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
+            complete.sort_unstable();
+            complete.drain(..).try_for_each(|leaf| {
+                buffers.drain(leaf, |bytes| writer.encoded_points(bytes))?;
+                writer.cells(&[locator.leaves()[leaf]])
+            })
+        };
+        let (mut complete, mut points, mut window_end) = (Vec::new(), 0, WINDOW);
+        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        self.read_all(Pass::Write, prepare, |_, located| {
+            for (leaf, records) in located.runs(record_len) {
+                let is_complete = countdown.take(leaf, records.len() / record_len)?;
+                buffers.push(leaf, records)?;
+                points += (records.len() / record_len) as u64;
+                if points > window_end {
+                    write_leaves(&mut complete, &mut buffers)?;
+                    window_end = points.next_multiple_of(WINDOW);
+                }
+                if is_complete {
+                    complete.push(leaf);
+                }
+            }
+            Ok(())
+        })?;
+        countdown.expect_end()?;
+        write_leaves(&mut complete, &mut buffers)?;
+        buffers.report(&mut self.stats);
+        writer.end(0, 0).map(drop)
+    }
+
+    /// Writes every point as it comes, and the tag of a leaf after its last point.
+    pub(super) fn write_preserved<W: Write>(
+        &mut self,
+        mut plan: Plan,
+        mut writer: StreamWriter<W>,
+    ) -> Result<()> {
+        writer.cells(&plan.take_empty())?;
+        let header = writer.header().clone();
+        let (locator, mut countdown) = plan.split();
+        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        self.read_all(Pass::Write, prepare, |_, located| {
+            for (leaf, records) in located.runs(header.point_len()) {
+                writer.encoded_points(records)?;
+                if countdown.take(leaf, records.len() / header.point_len())? {
+                    writer.cells(&[locator.leaves()[leaf]])?;
+                }
+            }
+            Ok(())
+        })?;
+        countdown.expect_end()?;
+        writer.end(0, 0).map(drop)
+    }
+
+    /// Copies the points of an input for which there is no tree.
+    pub(super) fn write_untagged<W: Write>(&mut self, mut writer: StreamWriter<W>) -> Result<()> {
+        let header = writer.header().clone();
+        if header.points != Some(0) {
+            let prepare = |points: &[Point], (): &mut ()| expect_inside(&header.bounds, points);
+            self.read_all(Pass::Write, prepare, |batch, ()| writer.points(batch))?;
+        }
+        if header.points != Some(writer.totals().points) {
+            return Err(input_changed());
+        }
+        writer.end(0, 0).map(drop)
+    }
+}
+
+/// Fails unless all points lie in the box that was found before.
+fn expect_inside(bounds: &Option<Bounds>, points: &[Point]) -> Result<()> {
+    let Some(Bounds { min, max }) = bounds else { return Err(input_changed()) };
+    let is_inside = |point: &Point| {
+        (0..3).fold(true, |inside, axis| inside & (min[axis] <= point[axis]) & (point[axis] <= max[axis]))
+    };
+    // Without a way out of the loop it is a few instructions per point.
+    if points.iter().fold(true, |all, point| all & is_inside(point)) { Ok(()) } else { Err(input_changed()) }
+}

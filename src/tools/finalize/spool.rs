@@ -1,0 +1,237 @@
+//! Points that the first pass decoded, kept in a temporary file for the passes after it.
+//!
+//! Decompressing and parsing cost more than writing 12 bytes per point and reading them back. The file has no
+//! name, and consists of blocks: the length of the payload, its CRC-32C, and the points of a batch as records.
+
+use std::path::{Path, PathBuf};
+
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::system;
+use spmesh_core::temporary::TemporaryFile;
+use spmesh_io::source::{Description, PointReader};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Header, Kind, decode_points, encode_points};
+
+const BLOCK_HEADER_LEN: usize = 8;
+
+/// Bytes after which an automatic spool looks again whether there is room for it.
+const ROOM_CHECK_LEN: u64 = 16 << 20;
+
+/// When decoded points are kept for later passes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Spooling {
+    /// Where decoding again would cost more, and where it takes no more than a quarter of the room on a disk. If the
+    /// file cannot be written, the input is decoded again.
+    #[default]
+    Auto,
+    /// In any case; it is an error if the file cannot be written.
+    Always,
+    /// Not at all.
+    Never,
+}
+
+/// Points in a temporary file, in input order.
+pub(super) struct Spool {
+    file: TemporaryFile,
+    header: Header,
+    bytes: u64,
+    points: u64,
+    invalid: u64,
+}
+
+impl Spool {
+    fn create(folder: &Path, description: &Description) -> Result<Spool> {
+        let Description { coordinates, dims, has_elevation, .. } = *description;
+        let file = TemporaryFile::create(Some(folder))?;
+        let header = Header::new(Kind::Points, coordinates, dims, has_elevation);
+        Ok(Spool { file, header, bytes: 0, points: 0, invalid: 0 })
+    }
+
+    /// Points in it.
+    pub(super) fn points(&self) -> u64 {
+        self.points
+    }
+
+    /// Length in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Starts a pass over the points.
+    pub(super) fn read(&self) -> SpoolReader<'_> {
+        SpoolReader { spool: self, at: 0, payload: Vec::new() }
+    }
+
+    fn append(&mut self, points: &[Point], block: &mut Vec<u8>) -> Result<()> {
+        block.clear();
+        block.resize(BLOCK_HEADER_LEN, 0);
+        encode_points(&self.header, points, block)?;
+        let payload = &block[BLOCK_HEADER_LEN..];
+        let (len, checksum) = (payload.len() as u32, crc32c::crc32c(payload));
+        block[..4].copy_from_slice(&len.to_le_bytes());
+        block[4..BLOCK_HEADER_LEN].copy_from_slice(&checksum.to_le_bytes());
+        self.file.write_at("keeping decoded points", block, self.bytes)?;
+        self.bytes += block.len() as u64;
+        self.points += points.len() as u64;
+        Ok(())
+    }
+}
+
+/// One pass over a spool.
+pub(super) struct SpoolReader<'a> {
+    spool: &'a Spool,
+    at: u64,
+    payload: Vec<u8>,
+}
+
+impl SpoolReader<'_> {
+    fn read_exact(&mut self, len: usize) -> Result<()> {
+        self.payload.resize(len, 0);
+        self.spool.file.read_at("reading points back", &mut self.payload, self.at)?;
+        self.at += len as u64;
+        Ok(())
+    }
+
+    fn read_block(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        self.read_exact(BLOCK_HEADER_LEN)?;
+        let (len, checksum) = self.payload.split_at(4);
+        let number = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().expect("four bytes"));
+        let (len, checksum) = (number(len), number(checksum));
+        if u64::from(len) > self.spool.bytes - self.at {
+            return Err(damaged());
+        }
+        self.read_exact(len as usize)?;
+        if crc32c::crc32c(&self.payload) != checksum {
+            return Err(damaged());
+        }
+        decode_points(&self.spool.header, &self.payload, batch);
+        Ok(())
+    }
+}
+
+fn damaged() -> Error {
+    Error::new(
+        ErrorKind::Io,
+        "reading points back: the checksum does not match, the file was changed or damaged",
+    )
+}
+
+impl PointReader for SpoolReader<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        batch.clear();
+        if self.at == self.spool.bytes {
+            return Ok(());
+        }
+        self.read_block(batch).map_err(|e| e.of_input(self.spool.file.name()))
+    }
+
+    fn invalid(&self) -> u64 {
+        self.spool.invalid
+    }
+}
+
+/// Whether and where a run keeps its points.
+#[derive(Debug, Clone)]
+pub(super) struct SpoolPlan {
+    folder: PathBuf,
+    is_strict: bool,
+}
+
+impl SpoolPlan {
+    /// `None` if points are not kept. `is_costly` says that decoding them again is.
+    pub(super) fn new(
+        rule: Spooling,
+        is_costly: bool,
+        folder: Option<&Path>,
+        description: &Description,
+    ) -> Option<SpoolPlan> {
+        let is_named = folder.is_some();
+        let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
+        let Description { coordinates, dims, has_elevation, stated_points, .. } = *description;
+        let point_len = Header::new(Kind::Points, coordinates, dims, has_elevation).point_len() as u64;
+        let bytes = stated_points.unwrap_or(0).saturating_mul(point_len);
+        let is_kept = match rule {
+            Spooling::Always => true,
+            Spooling::Never => false,
+            // Memory that is used up behind a folder's name would be no saving, unless the user asks for it.
+            Spooling::Auto => {
+                is_costly && has_room(&folder, bytes) && (is_named || !system::is_in_memory(&folder))
+            }
+        };
+        is_kept.then_some(SpoolPlan { folder, is_strict: rule == Spooling::Always })
+    }
+}
+
+/// So many times the size of the spool has to be free: for the spool itself, for points that wait for their cell, and
+/// for what comes out at the end, which may all be on one disk.
+const ROOM: u64 = 4;
+
+/// Whether there is room for `bytes`. What the system does not tell is found out by writing.
+fn has_room(folder: &Path, bytes: u64) -> bool {
+    system::free_bytes(folder).is_none_or(|free| bytes <= free / ROOM)
+}
+
+/// A reader whose points are kept on the way.
+pub(super) struct Tee<'a> {
+    reader: Box<dyn PointReader + 'a>,
+    plan: SpoolPlan,
+    /// The file, or why there is none.
+    spool: Result<Spool>,
+    block: Vec<u8>,
+    next_room_check: u64,
+}
+
+impl<'a> Tee<'a> {
+    /// Keeps what `reader` reads.
+    ///
+    /// # Errors
+    /// If the file cannot be created, and must be.
+    pub(super) fn new(
+        reader: Box<dyn PointReader + 'a>,
+        plan: SpoolPlan,
+        description: &Description,
+    ) -> Result<Self> {
+        let spool = Spool::create(&plan.folder, description);
+        match spool {
+            Err(error) if plan.is_strict => Err(error),
+            spool => Ok(Tee { reader, plan, spool, block: Vec::new(), next_room_check: ROOM_CHECK_LEN }),
+        }
+    }
+
+    /// The points of a whole pass, or the reason why there are none.
+    pub(super) fn finish(self) -> Result<Spool> {
+        let invalid = self.reader.invalid();
+        self.spool.map(|spool| Spool { invalid, ..spool })
+    }
+
+    fn keep(&mut self, batch: &[Point]) -> Result<()> {
+        let Ok(spool) = &mut self.spool else { return Ok(()) };
+        if !self.plan.is_strict && spool.bytes >= self.next_room_check {
+            self.next_room_check += ROOM_CHECK_LEN;
+            if system::free_bytes(&self.plan.folder).is_some_and(|free| free < (ROOM - 1) * spool.bytes) {
+                return Err(Error::new(ErrorKind::Io, "more than a quarter of the room would be used up")
+                    .of_input(spool.file.name()));
+            }
+        }
+        spool.append(batch, &mut self.block)
+    }
+}
+
+impl PointReader for Tee<'_> {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        self.reader.next_batch(batch)?;
+        if batch.is_empty() {
+            return Ok(());
+        }
+        match self.keep(batch) {
+            Err(error) if self.plan.is_strict => return Err(error),
+            Err(error) => self.spool = Err(error),
+            Ok(()) => {}
+        }
+        Ok(())
+    }
+
+    fn invalid(&self) -> u64 {
+        self.reader.invalid()
+    }
+}

@@ -1,0 +1,143 @@
+//! Points on their way into cells: held until the tag of a cell says that it is complete.
+
+use std::collections::BTreeMap;
+
+use super::residual::Residual;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_stream::FinalizedCells;
+
+/// Points whose cell is not final yet.
+///
+/// In a chunked stream these are the points since the last tag, all in the cell that is tagged next. In any
+/// other stream, points of other cells go to a bucket of their deepest cell and wait there.
+pub(super) struct Arrivals<const D: usize> {
+    tree: Option<CellTree>,
+    finalized: Option<FinalizedCells>,
+    /// Points outside are counted and dropped.
+    region: Region<D>,
+    current: Residual<D>,
+    /// Bounding box of `current`, or one that is larger.
+    bounds: Option<Bounds>,
+    buckets: BTreeMap<u64, Vec<Point>>,
+    in_buckets: usize,
+    held_max: usize,
+    accepted: u64,
+    outside: u64,
+}
+
+impl<const D: usize> Arrivals<D> {
+    pub(super) fn new(tree: Option<CellTree>, region: Region<D>) -> Self {
+        Arrivals {
+            tree,
+            finalized: tree.map(FinalizedCells::new),
+            region,
+            current: Residual::default(),
+            bounds: None,
+            buckets: BTreeMap::new(),
+            in_buckets: 0,
+            held_max: 0,
+            accepted: 0,
+            outside: 0,
+        }
+    }
+
+    /// Points of the stream with their bounding box. Those outside of the region are dropped.
+    ///
+    /// # Errors
+    /// If a point lies in a cell that is final, or outside of the tree.
+    pub(super) fn points(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
+        if let Some(finalized) = &mut self.finalized {
+            finalized.check_points_in(points, bounds)?;
+        }
+        if self.region.contains(bounds.min) && self.region.contains(bounds.max) {
+            self.current.extend_raw(points);
+        } else {
+            let before = self.current.len();
+            for point in points.iter().filter(|&&point| self.region.contains(point)) {
+                self.current.extend_raw(std::slice::from_ref(point));
+            }
+            self.outside += (points.len() - (self.current.len() - before)) as u64;
+        }
+        self.bounds = Some(self.bounds.map_or(*bounds, |all| all.union(*bounds)));
+        self.held_max = self.held_max.max(self.current.len() + self.in_buckets);
+        Ok(())
+    }
+
+    /// The tag of `cell`: its points, in the order of the stream, and whether they are all of it, because no
+    /// part of the cell was final before. The points come in `fresh`, an empty residual whose memory is used
+    /// again.
+    ///
+    /// # Errors
+    /// If the cell is final already.
+    pub(super) fn tag(&mut self, cell: CellCode, fresh: Residual<D>) -> Result<(Residual<D>, bool)> {
+        let (Some(tree), Some(finalized)) = (self.tree, &mut self.finalized) else {
+            return Err(Error::malformed("cell tag in a stream without a finalization tree"));
+        };
+        let is_whole = finalized.is_open_cell(cell);
+        finalized.finalize(cell)?;
+        let (min, max) = tree.corners(cell);
+        let inside = Region::between(min, max);
+        if !self.all_inside(&inside) {
+            self.move_to_buckets(&tree);
+        }
+        let points = self.take(tree.deepest_range(cell), fresh);
+        Ok((points, is_whole))
+    }
+
+    /// The points whose cells were never tagged.
+    pub(super) fn rest(&mut self) -> Residual<D> {
+        self.take(0..u64::MAX, Residual::default())
+    }
+
+    /// Points handed on so far.
+    pub(super) fn accepted(&self) -> u64 {
+        self.accepted
+    }
+
+    /// Points dropped because they lie outside of the region.
+    pub(super) fn outside(&self) -> u64 {
+        self.outside
+    }
+
+    /// Most points held at once.
+    pub(super) fn held_max(&self) -> usize {
+        self.held_max
+    }
+
+    fn all_inside(&self, cell: &Region<D>) -> bool {
+        let contains = |bounds: Bounds| cell.contains(bounds.min) && cell.contains(bounds.max);
+        self.bounds.is_none_or(contains)
+            || (0..self.current.len()).all(|i| cell.contains(self.current.point(i)))
+    }
+
+    /// The points of the buckets in `range`, in its order, and behind them those that are in no bucket.
+    fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual<D>) -> Residual<D> {
+        self.bounds = None;
+        let current = std::mem::replace(&mut self.current, fresh);
+        self.accepted += current.len() as u64;
+        let keys: Vec<u64> = self.buckets.range(range).map(|(&key, _)| key).collect();
+        if keys.is_empty() {
+            return current;
+        }
+        let mut points = Residual::default();
+        for bucket in keys.iter().filter_map(|key| self.buckets.remove(key)) {
+            self.in_buckets -= bucket.len();
+            self.accepted += bucket.len() as u64;
+            points.extend_raw(&bucket);
+        }
+        points.append_raw(&current);
+        points
+    }
+
+    fn move_to_buckets(&mut self, tree: &CellTree) {
+        for i in 0..self.current.len() {
+            let point = self.current.point(i);
+            self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default().push(point);
+        }
+        self.in_buckets += self.current.len();
+        self.current.clear();
+        self.bounds = None;
+    }
+}

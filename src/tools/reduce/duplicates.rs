@@ -1,0 +1,121 @@
+//! Points that coincide are one vertex; in the plane a policy says which elevation it gets.
+
+use super::residual::Residual;
+use spmesh_core::error::{Error, Result};
+use spmesh_stream::Coordinates;
+
+/// Which elevation survives where points coincide in x and y.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Duplicates {
+    /// That of the point that comes first in the stream.
+    #[default]
+    First,
+    /// The lowest.
+    Lowest,
+    /// The highest.
+    Highest,
+    /// The mean; on integer coordinates rounded to the nearest, halves away from zero.
+    Mean,
+    /// None: coinciding points are an error.
+    Error,
+}
+
+impl Duplicates {
+    /// Gives each vertex its elevation. `duplicates` are pairs of a point and the vertex that it coincides
+    /// with, which is the first of them in the order of the points.
+    pub(super) fn settle<const D: usize>(
+        self,
+        points: &mut Residual<D>,
+        duplicates: &mut [[u32; 2]],
+        coordinates: &Coordinates,
+    ) -> Result<()> {
+        if self == Duplicates::Error
+            && let Some(&[_, vertex]) = duplicates.first()
+        {
+            let point = coordinates.to_world(points.point(vertex as usize));
+            let place: Vec<String> =
+                ["x", "y", "z"].iter().zip(point).take(D).map(|(axis, at)| format!("{axis} {at}")).collect();
+            let policies = if D == 2 { "first, lowest, highest or mean" } else { "first" };
+            let place = place.join(" ");
+            return Err(Error::malformed(format!(
+                "several points at {place}: choose --duplicates {policies}"
+            )));
+        }
+        if matches!(self, Duplicates::First | Duplicates::Error) {
+            return Ok(());
+        }
+        duplicates.sort_unstable_by_key(|&[point, vertex]| (vertex, point));
+        let mut group = Vec::new();
+        for same in duplicates.chunk_by(|a, b| a[1] == b[1]) {
+            let vertex = same[0][1] as usize;
+            group.clear();
+            group.push(points.elevation[vertex]);
+            group.extend(same.iter().map(|&[point, _]| points.elevation[point as usize]));
+            points.elevation[vertex] = self.choose(&mut group, coordinates);
+        }
+        Ok(())
+    }
+
+    /// The elevation of a group, independent of the order of its points.
+    fn choose(self, group: &mut [f64], coordinates: &Coordinates) -> f64 {
+        group.sort_unstable_by(f64::total_cmp);
+        match self {
+            Duplicates::First | Duplicates::Error => unreachable!("these need no choice"),
+            Duplicates::Lowest => group[0],
+            Duplicates::Highest => group[group.len() - 1],
+            Duplicates::Mean => mean(group, coordinates),
+        }
+    }
+}
+
+/// Mean of a sorted group.
+fn mean(group: &[f64], coordinates: &Coordinates) -> f64 {
+    let n = group.len() as f64;
+    let mean = match coordinates {
+        Coordinates::I32 { .. } => (group.iter().sum::<f64>() / n).round(),
+        // Divided before the sum, which could overflow otherwise.
+        Coordinates::F64 => group.iter().map(|z| z / n).sum(),
+    };
+    // Rounding must not carry the mean out of its group: it could leave the bounding box.
+    mean.clamp(group[0], group[group.len() - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(policy: Duplicates, elevations: &[f64]) -> Result<f64> {
+        let mut points = Residual::<2>::default();
+        elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]]));
+        let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
+        let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+        policy.settle(&mut points, &mut pairs, &grid).map(|()| points.elevation[0])
+    }
+
+    #[test]
+    fn each_policy_chooses_its_elevation() {
+        let elevations = [5.0, 9.0, 2.0, 2.0];
+        assert_eq!(settled(Duplicates::First, &elevations).unwrap(), 5.0);
+        assert_eq!(settled(Duplicates::Lowest, &elevations).unwrap(), 2.0);
+        assert_eq!(settled(Duplicates::Highest, &elevations).unwrap(), 9.0);
+        assert_eq!(settled(Duplicates::Mean, &elevations).unwrap(), 5.0);
+        let message = settled(Duplicates::Error, &elevations).unwrap_err().to_string();
+        assert!(message.contains("several points at x 3 y 4"), "{message}");
+    }
+
+    #[test]
+    fn the_mean_stays_within_its_group() {
+        for count in 1..50 {
+            let group = vec![858.59; count];
+            assert_eq!(mean(&group, &Coordinates::F64), 858.59);
+        }
+        let huge = mean(&[f64::MAX; 3], &Coordinates::F64);
+        assert_eq!(huge, f64::MAX);
+    }
+
+    #[test]
+    fn a_point_alone_keeps_its_elevation() {
+        assert_eq!(settled(Duplicates::Error, &[7.0]).unwrap(), 7.0);
+        assert_eq!(settled(Duplicates::Mean, &[7.0]).unwrap(), 7.0);
+    }
+}

@@ -1,0 +1,193 @@
+//! Finishes what partial runs left: their residuals become one node.
+
+use std::io::{Read, Write};
+
+use super::bulk::Bulk;
+use super::duplicates::Duplicates;
+use super::node::{Rules, Solver};
+use super::partial::Part;
+use super::plane::Plane;
+use super::residual::Residual;
+use super::schedule::Output;
+use super::sequencer::Sequencer;
+use super::space::Space;
+use super::stats::Stats;
+use super::tile::Tile;
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Bounds, Region};
+use spmesh_stream::{Event, Header, Kind, PatchBlocks, StreamReader, StreamWriter, Totals};
+
+/// Numbers of two nodes: all that the inputs have left, and what is made of it.
+const LEFT: u64 = 0;
+const MERGED: u64 = 1;
+
+/// Merges the results of partial runs over regions that do not overlap; `progress` is told how many vertices
+/// are read. Without `part`, the regions must cover all points, and the result is the whole mesh: the set of
+/// triangles that one run over all points gives. With it, the result is partial again, for the region `part`,
+/// which must contain the merged ones, and all points in it must lie in one of them.
+///
+/// Cost: final triangles are copied through; memory is the residuals.
+///
+/// # Errors
+/// If the inputs do not go together (kind, coordinates, reference system, overlapping regions), or one is
+/// malformed or ends too early, or writing fails. END is not written then.
+pub fn merge_triangles<R: Read, W: Write>(
+    readers: Vec<StreamReader<R>>,
+    output: W,
+    part: Option<Part>,
+    progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    merge::<Plane, R, W, 2>(readers, output, part, progress)
+}
+
+/// Merges the results of partial runs in space, as [`merge_triangles`] does it in the plane.
+///
+/// # Errors
+/// As [`merge_triangles`].
+pub fn merge_tetrahedra<R: Read, W: Write>(
+    readers: Vec<StreamReader<R>>,
+    output: W,
+    part: Option<Part<3>>,
+    progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    merge::<Space, R, W, 3>(readers, output, part, progress)
+}
+
+fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
+    mut readers: Vec<StreamReader<R>>,
+    output: W,
+    part: Option<Part<D>>,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    let header = merged_header::<B, R, D>(&readers, part)?;
+    let region = region_of(&header);
+    let rules = Rules::new(&header, Duplicates::Error, part.is_some());
+    let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
+    let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
+    let mut residual = Residual::<D>::default();
+    for reader in &mut readers {
+        copy_through(reader, &mut sequencer, &mut residual, &mut stats, &mut progress)?;
+    }
+    let points = residual.len();
+    stats.inner_node_max = points as u64;
+    sequencer.leave(LEFT, residual.keys.clone(), 0);
+    sequencer.open(&[LEFT]);
+    let mut solver = Solver::<B, D>::new(rules);
+    let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
+    let mut solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), flush)?;
+    residual = std::mem::take(&mut solved.residual);
+    let active = residual.active;
+    sequencer.close(Output { number: MERGED, points, children: Vec::new(), active, solved })?;
+    if part.is_some() {
+        stats.residual = residual.len() as u64;
+        sequencer.write_residual(&[MERGED], &residual)?;
+    }
+    sequencer.add_to(&mut stats);
+    stats.predicates = *solver.counts();
+    let output = sequencer.end(stats.points, stats.merged)?;
+    Ok((output, stats))
+}
+
+/// Header of the result, after checking that the inputs go together.
+fn merged_header<B: Bulk<D>, R: Read, const D: usize>(
+    readers: &[StreamReader<R>],
+    part: Option<Part<D>>,
+) -> Result<Header> {
+    let Some(first) = readers.first() else {
+        return Err(Error::usage("nothing to merge: give partial results"));
+    };
+    for (i, reader) in readers.iter().enumerate() {
+        check_kind::<B, R, D>(reader)?;
+        check_pair(first, reader)?;
+        for other in &readers[..i] {
+            check_regions::<R, D>(other, reader)?;
+        }
+    }
+    let one = first.header();
+    let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
+    let mut header = Header::new(kind, one.coordinates, one.dims, one.has_elevation);
+    header.crs = one.crs.clone();
+    let outer = part.map(|part| part.region(one)).transpose()?;
+    header.region = outer.map(|outer| outer.in_space());
+    let bounds: Option<Vec<Bounds>> = readers.iter().map(|reader| reader.header().bounds).collect();
+    header.bounds = bounds.and_then(|all| all.into_iter().reduce(Bounds::union));
+    if let Some(outer) = outer
+        && let Some(reader) = readers.iter().find(|reader| !outer.covers(&region_of(reader.header())))
+    {
+        return Err(Error::usage(format!("the region of {} is not inside of the given one", reader.name())));
+    }
+    Ok(header)
+}
+
+fn check_kind<B: Bulk<D>, R: Read, const D: usize>(reader: &StreamReader<R>) -> Result<()> {
+    let kind = reader.header().kind;
+    let remedy = match kind {
+        kind if kind == B::PARTIAL_MESH => return Ok(()),
+        Kind::PartialTriangleMesh => "merge it with spdelaunay2d",
+        Kind::PartialTetrahedralMesh => "merge it with spdelaunay3d",
+        _ => "--merge takes results of --partial",
+    };
+    let message = format!("this is a stream of kind {}: {remedy}", kind.name());
+    Err(Error::usage(message).of_input(reader.name()))
+}
+
+fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Result<()> {
+    let (a, b) = (first.header(), reader.header());
+    let differs = |what: &str, remedy: &str| {
+        Err(Error::usage(format!("{} and {} differ in {what}{remedy}", first.name(), reader.name())))
+    };
+    if a.coordinates != b.coordinates || a.has_elevation != b.has_elevation {
+        return differs("their coordinate grid", ": finalize both with the same --scale and --offset");
+    }
+    if a.crs != b.crs {
+        return differs("their coordinate reference system", "");
+    }
+    Ok(())
+}
+
+fn check_regions<R: Read, const D: usize>(a: &StreamReader<R>, b: &StreamReader<R>) -> Result<()> {
+    if region_of::<D>(a.header()).overlaps(&region_of(b.header())) {
+        return Err(Error::usage(format!("the regions of {} and {} overlap", a.name(), b.name())));
+    }
+    Ok(())
+}
+
+/// The region of a partial mesh; everything, if the mesh is whole.
+fn region_of<const D: usize>(header: &Header) -> Region<D> {
+    header.region.map_or(Region::EVERYTHING, |region| Region::between(region.min, region.max))
+}
+
+/// Copies the final simplices of one input and adds its residual to that of all.
+fn copy_through<R: Read, W: Write, const D: usize>(
+    reader: &mut StreamReader<R>,
+    sequencer: &mut Sequencer<W>,
+    residual: &mut Residual<D>,
+    stats: &mut Stats,
+    progress: &mut impl FnMut(u64),
+) -> Result<()> {
+    let mut tile = Tile::<D>::new(region_of(reader.header()), sequencer.vertices());
+    while let Some(event) = reader.next_event()? {
+        let taken = match event {
+            Event::Patch(patch) => tile.patch(patch).and_then(|patch| sequencer.forward(&patch)),
+            Event::ResidualPoints(points) => tile.residual_points(&points),
+            Event::Walls(walls) => {
+                tile.walls(&walls);
+                Ok(())
+            }
+            Event::End(totals) => tile.check_end().and_then(|()| add_totals(stats, &totals)),
+            _ => unreachable!("the reader refuses these blocks in a partial mesh"),
+        };
+        taken.map_err(|e| reader.locate(e))?;
+        progress(sequencer.vertices());
+    }
+    stats.input_bytes += reader.bytes_read();
+    residual.unite(vec![tile.into_residual()]);
+    Ok(())
+}
+
+fn add_totals(stats: &mut Stats, totals: &Totals) -> Result<()> {
+    let sum = |a: u64, b: u64| a.checked_add(b).ok_or_else(|| Error::malformed("END: totals beyond 64 bits"));
+    stats.points = sum(stats.points, totals.points)?;
+    stats.merged = sum(stats.merged, totals.merged)?;
+    Ok(())
+}

@@ -1,0 +1,220 @@
+//! Cuts the final simplices of a node into patches: vertices with their first simplex and finalized with their
+//! last.
+//!
+//! All of it happens where the node is triangulated, before it is known how many vertices precede it in the
+//! stream. So references stand for the ids of imported vertices: the number of a vertex among those that the node
+//! writes itself, or the number of a point among those that the nodes below have left.
+
+use super::residual::{Residual, UNWRITTEN};
+use spmesh_core::error::Result;
+use spmesh_stream::{PatchBlocks, PointCode};
+
+/// Isolated or imported vertices per patch, which take 36 bytes at most.
+const PATCH_VERTICES: usize = 16384;
+
+/// Simplices of D + 1 corners per patch: with as many vertices of their own, a triangle takes at most 108 bytes and a
+/// tetrahedron 128, so that a patch stays below the maximum of a block.
+const fn patch_simplices(dimensions: usize) -> usize {
+    if dimensions == 2 { 8192 } else { 8000 }
+}
+
+/// Bits of a key that count the vertices of a node, of which there are fewer than the kernel takes points.
+const KEY_BITS: u32 = 30;
+
+/// Bit of a reference to a vertex that the node writes itself.
+pub(super) const OWN: u64 = 1 << 63;
+
+const NONE: u32 = u32::MAX;
+
+/// In place of the number of a patch: in none, and in one or none but not done with it.
+const UNUSED: u32 = u32::MAX;
+const KEPT: u32 = u32::MAX - 1;
+
+/// Builds the patches of one node after the other, in buffers that are used again.
+///
+/// All final simplices are planned first, in the order in which they are written: patches are cut by their number, so it is
+/// known which patch is the last of each vertex before any is encoded, and patches can leave one by one.
+///
+/// The vertices of a patch have codes, counting up over all patches of a node, so that none has to be reset.
+#[derive(Default)]
+pub(super) struct PatchBuilder<const D: usize> {
+    /// For each point, the number of the last patch that uses it, [`UNUSED`] or [`KEPT`].
+    last: Vec<u32>,
+    /// Simplices that are planned, and patches that are closed.
+    planned: usize,
+    closed: u32,
+    /// For each point, its code in the last patch so far that uses it; 0 if none does.
+    codes: Vec<u32>,
+    /// Code of the first vertex of the patch.
+    first_code: u32,
+    /// Vertices of the patch, in order of appearance.
+    vertices: Vec<u32>,
+    /// Corners of the simplices of the patch, as indices into `vertices`.
+    corners: Vec<u32>,
+    /// For each of `vertices`, its local index.
+    locals: Vec<u32>,
+    /// Key and index in `vertices` of the imported ones.
+    imported: Vec<(u64, u32)>,
+    /// For each point, its number among the vertices that the node writes.
+    own: Vec<u32>,
+    own_count: u32,
+    /// Vertices of the patch in local order.
+    order: Vec<u32>,
+}
+
+/// Where patches go: called after each of them, with those that were not taken before.
+pub(super) type Flush<'f> = dyn FnMut(&mut PatchBlocks) -> Result<()> + 'f;
+
+impl<const D: usize> PatchBuilder<D> {
+    /// Begins with a node of `points` points.
+    pub(super) fn start(&mut self, points: usize) {
+        for (array, value) in [(&mut self.codes, 0), (&mut self.own, NONE), (&mut self.last, UNUSED)] {
+            array.clear();
+            array.resize(points, value);
+        }
+        self.planned = 0;
+        self.closed = 0;
+        self.first_code = 1;
+        self.own_count = 0;
+        self.vertices.clear();
+        self.corners.clear();
+    }
+
+    /// Plans a final simplex.
+    #[inline]
+    pub(super) fn plan(&mut self, simplex: &[u32]) {
+        let patch = (self.planned / patch_simplices(D)) as u32;
+        self.planned += 1;
+        for &v in simplex {
+            self.last[v as usize] = patch;
+        }
+    }
+
+    /// Whether `v` is in no simplex that is planned.
+    pub(super) fn is_unused(&self, v: u32) -> bool {
+        self.last[v as usize] == UNUSED
+    }
+
+    /// Says that `v` is not finalized, as it is not done with its last simplex here.
+    pub(super) fn keep(&mut self, v: u32) {
+        self.last[v as usize] = KEPT;
+    }
+
+    /// Adds a final simplex, in the order in which they were planned.
+    ///
+    /// # Errors
+    /// As [`PatchBlocks::push`] and `flush`.
+    #[inline]
+    pub(super) fn simplex(
+        &mut self,
+        simplex: &[u32],
+        points: &Residual<D>,
+        code: PointCode,
+        blocks: &mut PatchBlocks,
+        flush: &mut Flush,
+    ) -> Result<()> {
+        for &v in simplex {
+            let index = self.index(v);
+            self.corners.push(index);
+        }
+        if self.corners.len() < (D + 1) * patch_simplices(D) {
+            return Ok(());
+        }
+        self.close(points, code, blocks)?;
+        flush(blocks)
+    }
+
+    /// Ends the simplices, and adds vertices that are in none of them and done.
+    ///
+    /// # Errors
+    /// As [`PatchBlocks::push`] and `flush`.
+    pub(super) fn finish(
+        &mut self,
+        unused: impl Iterator<Item = u32>,
+        points: &Residual<D>,
+        code: PointCode,
+        blocks: &mut PatchBlocks,
+        flush: &mut Flush,
+    ) -> Result<()> {
+        self.close(points, code, blocks)?;
+        for v in unused {
+            self.index(v);
+            if self.vertices.len() == PATCH_VERTICES {
+                self.close(points, code, blocks)?;
+                flush(blocks)?;
+            }
+        }
+        self.close(points, code, blocks)?;
+        flush(blocks)
+    }
+
+    /// A reference to a point that is a vertex by now; [`UNWRITTEN`] for one that is none.
+    pub(super) fn reference(&self, v: u32, points: &Residual<D>) -> u64 {
+        match self.own[v as usize] {
+            NONE if points.key(v as usize) == UNWRITTEN => UNWRITTEN,
+            NONE => u64::from(v) - points.raw as u64,
+            own => OWN | u64::from(own),
+        }
+    }
+
+    /// Key of a point: vertices of node `number` come behind those of nodes with lesser numbers.
+    pub(super) fn key(&self, v: u32, number: u64, points: &Residual<D>) -> u64 {
+        match self.own[v as usize] {
+            NONE => points.key(v as usize),
+            own => number << KEY_BITS | u64::from(own),
+        }
+    }
+
+    /// Index of `v` in the patch, which it enters if it is new to it.
+    #[inline]
+    fn index(&mut self, v: u32) -> u32 {
+        let code = &mut self.codes[v as usize];
+        if *code < self.first_code {
+            *code = self.first_code + self.vertices.len() as u32;
+            self.vertices.push(v);
+        }
+        *code - self.first_code
+    }
+
+    /// Encodes the patch, if there is anything in it: unwritten points become new vertices in order of appearance,
+    /// the others are imported. Vertices are finalized that are done and in no later patch.
+    fn close(&mut self, points: &Residual<D>, code: PointCode, blocks: &mut PatchBlocks) -> Result<()> {
+        if self.vertices.is_empty() {
+            return Ok(());
+        }
+        self.order.clear();
+        self.locals.clear();
+        self.imported.clear();
+        for (i, &v) in (0..).zip(&self.vertices) {
+            let own = &mut self.own[v as usize];
+            let key = if *own == NONE { points.key(v as usize) } else { OWN | u64::from(*own) };
+            if key == UNWRITTEN {
+                *own = self.own_count;
+                self.own_count += 1;
+                self.locals.push(self.order.len() as u32);
+                self.order.push(v);
+            } else {
+                self.locals.push(NONE);
+                self.imported.push((key, i));
+            }
+        }
+        let imported_start = self.order.len();
+        self.imported.sort_unstable();
+        for &(_, i) in &self.imported {
+            self.locals[i as usize] = self.order.len() as u32;
+            self.order.push(self.vertices[i as usize]);
+        }
+        let new = self.order[..imported_start].iter().map(|&v| points.point(v as usize));
+        let imported = self.order[imported_start..].iter().map(|&v| self.reference(v, points));
+        let simplices = self.corners.iter().map(|&i| self.locals[i as usize]);
+        blocks.push(code, new, imported, simplices)?;
+        let is_last = |v: u32| self.last[v as usize] == self.closed || self.last[v as usize] == UNUSED;
+        let locals = (0..).zip(&self.order).filter(|&(_, &v)| is_last(v)).map(|(local, _)| local);
+        blocks.finalize(blocks.count() - 1, locals);
+        self.closed += 1;
+        self.first_code += self.vertices.len() as u32;
+        self.vertices.clear();
+        self.corners.clear();
+        Ok(())
+    }
+}

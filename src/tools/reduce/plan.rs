@@ -1,0 +1,54 @@
+//! Which nodes there will be, in which order they are written, and whose residuals each of them takes.
+
+use std::collections::BTreeMap;
+
+use spmesh_model::cells::{CellCode, CellTree};
+
+/// Nodes without a parent yet, keyed by the first deepest cell of their cell, so that the nodes below a cell are
+/// a range.
+///
+/// Everything here follows from the order of the tags alone, so it is the same for any number of threads.
+///
+/// Invariant: no node without a parent contains another.
+pub(super) struct Plan {
+    tree: Option<CellTree>,
+    waiting: BTreeMap<u64, (CellCode, u64)>,
+    next: u64,
+}
+
+impl Plan {
+    pub(super) fn new(tree: Option<CellTree>) -> Self {
+        Plan { tree, waiting: BTreeMap::new(), next: 0 }
+    }
+
+    /// Plans the node of `cell`, over all nodes inside that have no parent: its number, which is its place in the
+    /// order in which nodes are written, and theirs, in Morton order.
+    pub(super) fn node(&mut self, cell: CellCode) -> (u64, Vec<u64>) {
+        let range = self.range(cell);
+        let keys: Vec<u64> = self.waiting.range(range.clone()).map(|(&key, _)| key).collect();
+        let children =
+            keys.iter().filter_map(|key| self.waiting.remove(key)).map(|(_, number)| number).collect();
+        let number = self.next;
+        self.next += 1;
+        self.waiting.insert(range.start, (cell, number));
+        (number, children)
+    }
+
+    /// Parent of `cell`, if there are nodes of all its children.
+    pub(super) fn complete_parent(&self, cell: CellCode) -> Option<CellCode> {
+        let tree = self.tree.as_ref()?;
+        let parent = tree.parent(cell)?;
+        let waits =
+            |child| self.waiting.get(&self.range(child).start).is_some_and(|(code, _)| *code == child);
+        tree.children(parent).all(waits).then_some(parent)
+    }
+
+    /// Whether there is a node of the root, over everything.
+    pub(super) fn is_complete(&self) -> bool {
+        self.waiting.values().any(|(cell, _)| *cell == CellCode::ROOT)
+    }
+
+    fn range(&self, cell: CellCode) -> std::ops::Range<u64> {
+        self.tree.as_ref().map_or(0..u64::MAX, |tree| tree.deepest_range(cell))
+    }
+}

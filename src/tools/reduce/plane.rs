@@ -1,0 +1,109 @@
+//! Triangles: the reduction in the plane.
+
+use super::bulk::{Bulk, Facet};
+use super::disks::Disks;
+use super::residual::Residual;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangulation};
+use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_geometry::predicates::circle::CircleBounds;
+use spmesh_model::bounds::Region;
+use spmesh_stream::{Coordinates, Kind};
+
+/// The kernel of the plane and its triangulation.
+#[derive(Default)]
+pub(super) struct Plane {
+    kernel: Kernel,
+    triangulation: Triangulation,
+}
+
+impl Bulk<2> for Plane {
+    type Corners = [u32; 3];
+    type Balls = Disks;
+
+    const MESH: Kind = Kind::TriangleMesh;
+    const PARTIAL_MESH: Kind = Kind::PartialTriangleMesh;
+    const SIMPLEX: &'static str = "triangle";
+    const MAY_LEAVE_MOST: bool = false;
+
+    fn triangulate(&mut self, points: &Residual<2>) -> Result<()> {
+        self.kernel.triangulate(&points.at, &mut self.triangulation)
+    }
+
+    fn duplicates(&mut self) -> &mut Vec<[u32; 2]> {
+        &mut self.triangulation.duplicates
+    }
+
+    fn len(&self) -> usize {
+        self.triangulation.triangles().len()
+    }
+
+    /// The kernel's order is that of a curve.
+    #[inline]
+    fn nth(&self, k: usize) -> u32 {
+        k as u32
+    }
+
+    #[inline]
+    fn corners(&self, triangle: u32) -> [u32; 3] {
+        self.triangulation.triangles()[triangle as usize].vertices
+    }
+
+    #[inline]
+    fn across(&self, edge: Facet) -> Option<Facet> {
+        let beyond = self.triangulation.triangles()[edge.simplex as usize].across(edge.corner as usize);
+        beyond.map(facet)
+    }
+
+    fn hull_vertices(&self) -> impl Iterator<Item = u32> {
+        self.triangulation.hull.iter().copied()
+    }
+
+    fn hull_facets(&self) -> impl Iterator<Item = Facet> {
+        let Triangulation { hull, triangle_of_vertex, .. } = &self.triangulation;
+        hull.iter().filter_map(|&v| {
+            // The first triangle at a vertex of the hull is the one at the edge of the hull that leaves it.
+            let simplex = triangle_of_vertex[v as usize];
+            let triangle =
+                self.triangulation.triangles().get(simplex as usize).filter(|_| simplex != NONE)?;
+            let corner = (0..).zip(triangle.vertices).find(|&(_, vertex)| vertex == v)?.0;
+            Some(Facet { simplex, corner: (corner + 2) % 3 })
+        })
+    }
+
+    fn find(&mut self, walls: &[[u32; 2]], found: impl FnMut(Facet)) -> Result<()> {
+        let edge = |&[a, b]: &[u32; 2]| {
+            let edge = self.triangulation.left_of(a, b).map(facet);
+            edge.ok_or_else(|| Error::malformed("a wall of a residual is no edge of the triangulation"))
+        };
+        let mut found = found;
+        walls.iter().try_for_each(|wall| edge(wall).map(&mut found))
+    }
+
+    fn wall(&self, edge: Facet) -> [u32; 2] {
+        let vertices = self.corners(edge.simplex);
+        [1, 2].map(|k| vertices[(edge.corner as usize + k) % 3])
+    }
+
+    fn balls(coordinates: &Coordinates, region: Region) -> Disks {
+        let bounds = match coordinates {
+            Coordinates::F64 => CircleBounds::FLOAT,
+            Coordinates::I32 { .. } => CircleBounds::INTEGER,
+        };
+        Disks::new(bounds, region)
+    }
+
+    #[inline]
+    fn is_inside(&self, triangle: u32, points: &Residual<2>, disks: &Disks) -> bool {
+        let [a, b, c] = self.corners(triangle).map(|v| points.at[v as usize]);
+        disks.inside(a, b, c)
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        self.kernel.counts()
+    }
+}
+
+fn facet(Corner { triangle: simplex, corner }: Corner) -> Facet {
+    Facet { simplex, corner }
+}

@@ -1,0 +1,164 @@
+//! What a node triangulates, and what it passes up: points that are not done, and walls around the holes.
+
+use spmesh_model::bounds::Point;
+
+/// Key of a point that is no vertex yet.
+pub(super) const UNWRITTEN: u64 = u64::MAX;
+
+/// Points of D dimensions that a node has to triangulate, with walls around what is final already.
+///
+/// The raw points of a leaf are a residual too, one without walls whose points are all unwritten.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Residual<const D: usize> {
+    /// The D coordinates of each point that are geometry.
+    pub(super) at: Vec<[f64; D]>,
+    /// Elevation of each point of the plane, zero where the stream has none; empty in space.
+    pub(super) elevation: Vec<f64>,
+    /// Number of points, first of all, that no node has triangulated yet. Only these may coincide.
+    pub(super) raw: usize,
+    /// For each point behind the raw ones, a number that orders vertices as the stream does, or [`UNWRITTEN`].
+    pub(super) keys: Vec<u64>,
+    /// Facets of final simplices with none on their other side, as D points each: an edge has its final triangle on its
+    /// left; a triangle is counterclockwise as seen from the last corner of its final tetrahedron.
+    pub(super) walls: Vec<[u32; D]>,
+    /// Simplices that were not final at the node that left this residual.
+    pub(super) active: usize,
+}
+
+impl<const D: usize> Residual<D> {
+    /// Whether points have an elevation beside their geometry.
+    const HAS_ELEVATION: bool = D == 2;
+
+    pub(super) fn with_capacity(points: usize, walls: usize) -> Self {
+        Residual {
+            at: Vec::with_capacity(points),
+            elevation: Vec::with_capacity(if Self::HAS_ELEVATION { points } else { 0 }),
+            raw: 0,
+            keys: Vec::with_capacity(points),
+            walls: Vec::with_capacity(walls),
+            active: 0,
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.at.len()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.at.is_empty()
+    }
+
+    /// Empties all arrays, keeping their memory.
+    pub(super) fn clear(&mut self) {
+        self.at.clear();
+        self.elevation.clear();
+        self.raw = 0;
+        self.keys.clear();
+        self.walls.clear();
+        self.active = 0;
+    }
+
+    /// Adds a point that a node has left.
+    pub(super) fn push(&mut self, point: Point, key: u64) {
+        self.at.push(geometry(&point));
+        if Self::HAS_ELEVATION {
+            self.elevation.push(point[2]);
+        }
+        self.keys.push(key);
+    }
+
+    /// Adds points right from the stream; none may have come in another way before.
+    pub(super) fn extend_raw(&mut self, points: &[Point]) {
+        debug_assert_eq!(self.raw, self.len());
+        // By an eighth, not twofold: so much more memory would lie idle in each leaf under way.
+        let growth = points.len().max(self.len() / 8);
+        if self.at.capacity() - self.len() < points.len() {
+            self.at.reserve_exact(growth);
+            if Self::HAS_ELEVATION {
+                self.elevation.reserve_exact(growth);
+            }
+        }
+        self.at.extend(points.iter().map(geometry));
+        if Self::HAS_ELEVATION {
+            self.elevation.extend(points.iter().map(|point| point[2]));
+        }
+        self.raw += points.len();
+    }
+
+    pub(super) fn point(&self, index: usize) -> Point {
+        let at = &self.at[index];
+        if Self::HAS_ELEVATION { [at[0], at[1], self.elevation[index]] } else { [at[0], at[1], at[2]] }
+    }
+
+    /// Key of a point; raw ones are unwritten.
+    pub(super) fn key(&self, index: usize) -> u64 {
+        index.checked_sub(self.raw).map_or(UNWRITTEN, |index| self.keys[index])
+    }
+
+    /// Takes over the raw points of `other`, if it has any; none may have come in another way before.
+    pub(super) fn append_raw(&mut self, other: &Self) {
+        debug_assert!(other.raw == 0 || self.raw == self.len());
+        self.at.extend_from_slice(&other.at[..other.raw]);
+        if Self::HAS_ELEVATION {
+            self.elevation.extend_from_slice(&other.elevation[..other.raw]);
+        }
+        self.raw += other.raw;
+    }
+
+    /// Takes over the points of `other` that nodes have left, and its walls, when its raw points are here already, the
+    /// first of them at `first_raw`.
+    fn append_left(&mut self, other: &Self, first_raw: usize) {
+        let first = self.len();
+        self.at.extend_from_slice(&other.at[other.raw..]);
+        if Self::HAS_ELEVATION {
+            self.elevation.extend_from_slice(&other.elevation[other.raw..]);
+        }
+        self.keys.extend_from_slice(&other.keys);
+        let here = |corner: u32| match (corner as usize).checked_sub(other.raw) {
+            Some(left) => (first + left) as u32,
+            None => first_raw as u32 + corner,
+        };
+        self.walls.extend(other.walls.iter().map(|wall| wall.map(here)));
+        self.active += other.active;
+    }
+
+    /// Adds all `parts` in their order: first the raw points of all of them, which stay first, then what nodes have
+    /// left. If any of them are raw, all points so far must be. Each part is freed as soon as it is here.
+    pub(super) fn unite(&mut self, parts: Vec<Self>) {
+        self.reserve(&parts);
+        let mut left = Vec::new();
+        for part in parts {
+            let first_raw = self.raw;
+            self.append_raw(&part);
+            if part.raw < part.len() {
+                left.push((part, first_raw));
+            }
+        }
+        for (part, first_raw) in left {
+            self.append_left(&part, first_raw);
+        }
+    }
+
+    /// Makes room for all `parts`, and for no more: they can be large.
+    fn reserve(&mut self, parts: &[Self]) {
+        let points = parts.iter().map(Residual::len).sum();
+        self.at.reserve_exact(points);
+        if Self::HAS_ELEVATION {
+            self.elevation.reserve_exact(points);
+        }
+        self.keys.reserve_exact(parts.iter().map(|part| part.keys.len()).sum());
+        self.walls.reserve_exact(parts.iter().map(|part| part.walls.len()).sum());
+    }
+}
+
+/// The union of `parts`, in their order.
+pub(super) fn union<const D: usize>(parts: Vec<Residual<D>>) -> Residual<D> {
+    let mut all = Residual::default();
+    all.unite(parts);
+    all
+}
+
+/// The coordinates that are geometry. Adding zero makes -0.0 the same number as 0.0 in every bit.
+fn geometry<const D: usize>(point: &Point) -> [f64; D] {
+    std::array::from_fn(|axis| point[axis] + 0.0)
+}

@@ -1,0 +1,200 @@
+//! Writes nodes in their order, and numbers the vertices.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use super::node::Solved;
+use super::patches::OWN;
+use super::residual::{Residual, UNWRITTEN};
+use super::schedule::Output;
+use super::stats::Stats;
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Patch, PatchBlocks, StreamWriter};
+
+/// Residual points and their walls are written in blocks of about this many.
+const RESIDUAL_CHUNK: usize = 1 << 14;
+
+/// What a node that was written has left for the node above.
+#[derive(Debug)]
+struct Left {
+    /// Ids of the points of its residual, or [`UNWRITTEN`].
+    ids: Vec<u64>,
+    /// Number of its simplices that are not final.
+    active: usize,
+}
+
+/// The output: all that has to happen in the order of the stream.
+pub(super) struct Sequencer<W: Write> {
+    stream: StreamWriter<W>,
+    left: BTreeMap<u64, Left>,
+    /// Ids of the points that the nodes below the one being written have left.
+    ids: Vec<u64>,
+    /// Id of the first vertex of the node that is being written.
+    first: u64,
+    merged: u64,
+    live: u64,
+    live_max: u64,
+    points: usize,
+    points_max: usize,
+    active: usize,
+    active_max: usize,
+}
+
+impl<W: Write> Sequencer<W> {
+    pub(super) fn new(stream: StreamWriter<W>) -> Self {
+        Sequencer {
+            stream,
+            left: BTreeMap::new(),
+            ids: Vec::new(),
+            first: 0,
+            merged: 0,
+            live: 0,
+            live_max: 0,
+            points: 0,
+            points_max: 0,
+            active: 0,
+            active_max: 0,
+        }
+    }
+
+    /// Vertices written so far.
+    pub(super) fn vertices(&self) -> u64 {
+        self.stream.totals().vertices
+    }
+
+    /// Writes a patch made elsewhere, whose ids already fit this stream.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn forward(&mut self, patch: &Patch) -> Result<()> {
+        self.stream.patch(patch)?;
+        self.live += patch.new.len() as u64;
+        self.live_max = self.live_max.max(self.live);
+        self.live -= patch.finalized.len() as u64;
+        Ok(())
+    }
+
+    /// Takes the ids of a residual that comes from elsewhere, as if node `number` had left it.
+    pub(super) fn leave(&mut self, number: u64, ids: Vec<u64>, active: usize) {
+        self.points += ids.len();
+        self.points_max = self.points_max.max(self.points);
+        self.active += active;
+        self.active_max = self.active_max.max(self.active);
+        self.left.insert(number, Left { ids, active });
+    }
+
+    /// Writes the next node; its blocks, to be used again.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
+        self.open(&output.children);
+        self.close(output)
+    }
+
+    /// Begins with the next node, over `children`.
+    pub(super) fn open(&mut self, children: &[u64]) {
+        self.take_left(children);
+        self.first = self.stream.totals().vertices;
+    }
+
+    /// Writes patches of the node that is open, and empties `blocks`.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn patches(&mut self, blocks: &mut PatchBlocks) -> Result<()> {
+        let (ids, first) = (&self.ids, self.first);
+        let (live, live_max) = (&mut self.live, &mut self.live_max);
+        self.stream.patches(
+            blocks,
+            |reference| id_of(reference, first, ids),
+            |new, finalized| {
+                *live += new;
+                *live_max = (*live_max).max(*live);
+                *live -= finalized;
+            },
+        )?;
+        blocks.clear();
+        Ok(())
+    }
+
+    /// Writes what is left of the node that is open; its blocks, to be used again.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn close<const D: usize>(&mut self, output: Output<D>) -> Result<PatchBlocks> {
+        let Solved { mut blocks, mut references, merged, .. } = output.solved;
+        self.merged += merged;
+        self.patches(&mut blocks)?;
+        let (ids, first) = (&self.ids, self.first);
+        references.iter_mut().for_each(|reference| *reference = id_of(*reference, first, ids));
+        self.leave(output.number, references, output.active);
+        Ok(blocks)
+    }
+
+    /// Writes the residual of a partial run, which the nodes `children` have left. None of its points is raw: the root is
+    /// triangulated whatever it leaves, so that points which coincide are one.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write_residual<const D: usize>(
+        &mut self,
+        children: &[u64],
+        residual: &Residual<D>,
+    ) -> Result<()> {
+        self.take_left(children);
+        debug_assert!(residual.raw == 0 && self.ids.len() == residual.len());
+        let mut chunk: Vec<(Option<u64>, Point)> = Vec::with_capacity(RESIDUAL_CHUNK);
+        for (number, ids) in self.ids.chunks(RESIDUAL_CHUNK).enumerate() {
+            chunk.clear();
+            chunk.extend(
+                (number * RESIDUAL_CHUNK..)
+                    .zip(ids)
+                    .map(|(i, &id)| ((id != UNWRITTEN).then_some(id), residual.point(i))),
+            );
+            self.stream.residual_points(&chunk)?;
+        }
+        self.stream.walls(residual.walls.as_flattened())
+    }
+
+    /// Adds to `stats` what was counted.
+    pub(super) fn add_to(&self, stats: &mut Stats) {
+        stats.merged += self.merged;
+        stats.width = self.live_max;
+        stats.residual_max = self.points_max as u64;
+        stats.active_max = self.active_max as u64;
+        stats.vertices = self.stream.totals().vertices;
+        stats.simplices = self.stream.totals().simplices;
+    }
+
+    /// Writes END, for `points` of the input, `merged` of which are no vertices.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn end(self, points: u64, merged: u64) -> Result<W> {
+        self.stream.end(points, merged)
+    }
+
+    fn take_left(&mut self, children: &[u64]) {
+        self.ids.clear();
+        for child in children {
+            if let Some(left) = self.left.remove(child) {
+                self.points -= left.ids.len();
+                self.active -= left.active;
+                self.ids.extend(left.ids);
+            }
+        }
+    }
+}
+
+/// The id that a reference stands for in a node whose first vertex is `first`, over nodes that have left points of the
+/// given ids.
+#[inline]
+fn id_of(reference: u64, first: u64, ids: &[u64]) -> u64 {
+    match reference {
+        UNWRITTEN => UNWRITTEN,
+        own if own & OWN != 0 => first + (own & !OWN),
+        index => ids[index as usize],
+    }
+}

@@ -1,0 +1,170 @@
+//! Tetrahedra: the reduction in space.
+
+use std::borrow::Cow;
+
+use super::bulk::{Bulk, Facet};
+use super::residual::Residual;
+use super::walls::WallIndex;
+use spmesh_core::error::{Error, Result};
+use spmesh_core::prefetch::prefetch;
+use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization};
+use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_geometry::predicates::sphere::SphereBounds;
+use spmesh_model::bounds::Region;
+use spmesh_stream::{Coordinates, Kind};
+
+/// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
+const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// How many tetrahedra ahead of the one that is looked at are fetched.
+const AHEAD: usize = 12;
+
+/// The kernel of space and its tetrahedralization.
+#[derive(Default)]
+pub(super) struct Space {
+    kernel: Kernel,
+    mesh: Tetrahedralization,
+    /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds leaves them all over.
+    sequence: Vec<u32>,
+    hull: Vec<Facet>,
+    walls: WallIndex,
+}
+
+/// Decides which balls lie in a region.
+pub(super) struct Balls {
+    bounds: SphereBounds,
+    region: Region<3>,
+}
+
+impl Space {
+    /// Puts the tetrahedra in sequence.
+    fn arrange(&mut self) {
+        let tetrahedra = self.mesh.tetrahedra();
+        let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
+        // For each vertex, where tetrahedra of which it is the last go.
+        let mut places = vec![0u32; self.mesh.vertices().len()];
+        tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
+        let mut next = 0;
+        for place in &mut places {
+            next += std::mem::replace(place, next);
+        }
+        self.sequence.resize(tetrahedra.len(), 0);
+        for (t, tetrahedron) in (0..).zip(tetrahedra) {
+            let place = &mut places[last(tetrahedron.vertices)];
+            self.sequence[*place as usize] = t;
+            *place += 1;
+        }
+    }
+
+    fn find_hull(&mut self) {
+        self.hull.clear();
+        for (simplex, tetrahedron) in (0..).zip(self.mesh.tetrahedra()) {
+            let open = (0..4).filter(|&corner| tetrahedron.across(corner as usize).is_none());
+            self.hull.extend(open.map(|corner| Facet { simplex, corner }));
+        }
+    }
+}
+
+impl Bulk<3> for Space {
+    type Corners = [u32; 4];
+    type Balls = Balls;
+
+    const MESH: Kind = Kind::TetrahedralMesh;
+    const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
+    const SIMPLEX: &'static str = "tetrahedron";
+    const MAY_LEAVE_MOST: bool = true;
+
+    fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {
+        self.kernel.triangulate(Cow::Borrowed(&points.at), &mut self.mesh)?;
+        self.arrange();
+        self.find_hull();
+        Ok(())
+    }
+
+    fn duplicates(&mut self) -> &mut Vec<[u32; 2]> {
+        &mut self.mesh.duplicates
+    }
+
+    fn len(&self) -> usize {
+        self.mesh.tetrahedra().len()
+    }
+
+    #[inline]
+    fn nth(&self, k: usize) -> u32 {
+        // Neighbours in sequence are all over the array: without this, half of the time is waiting for them.
+        if let Some(&ahead) = self.sequence.get(k + AHEAD) {
+            prefetch(self.mesh.tetrahedra(), ahead as usize);
+        }
+        self.sequence[k]
+    }
+
+    #[inline]
+    fn corners(&self, tetrahedron: u32) -> [u32; 4] {
+        let vertices = self.mesh.vertices();
+        self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].index)
+    }
+
+    #[inline]
+    fn across(&self, Facet { simplex, corner }: Facet) -> Option<Facet> {
+        let beyond = self.mesh.tetrahedra()[simplex as usize].across(corner as usize);
+        beyond.map(|Corner { tetrahedron: simplex, corner }| Facet { simplex, corner })
+    }
+
+    fn hull_vertices(&self) -> impl Iterator<Item = u32> {
+        // Points of a plane are all on the boundary.
+        let flat = if self.mesh.tetrahedra().is_empty() { self.mesh.vertices() } else { &[] };
+        flat.iter().map(|vertex| vertex.index).chain(self.hull.iter().flat_map(|&facet| self.wall(facet)))
+    }
+
+    fn hull_facets(&self) -> impl Iterator<Item = Facet> {
+        self.hull.iter().copied()
+    }
+
+    fn find(&mut self, walls: &[[u32; 3]], mut found: impl FnMut(Facet)) -> Result<()> {
+        if walls.is_empty() {
+            return Ok(());
+        }
+        let mut index = std::mem::take(&mut self.walls);
+        index.fill(walls, self.mesh.vertices().len() + self.mesh.duplicates.len());
+        let mut count = 0;
+        for simplex in 0..self.len() as u32 {
+            let vertices = self.corners(simplex);
+            for (corner, facet) in (0..).zip(FACETS) {
+                if index.contains(facet.map(|i| vertices[i])) {
+                    count += 1;
+                    found(Facet { simplex, corner });
+                }
+            }
+        }
+        self.walls = index;
+        if count == walls.len() {
+            Ok(())
+        } else {
+            Err(Error::malformed("a wall of a residual is no facet of the tetrahedralization"))
+        }
+    }
+
+    fn wall(&self, Facet { simplex, corner }: Facet) -> [u32; 3] {
+        let vertices = self.corners(simplex);
+        FACETS[corner as usize].map(|i| vertices[i])
+    }
+
+    fn balls(coordinates: &Coordinates, region: Region<3>) -> Balls {
+        let bounds = match coordinates {
+            Coordinates::F64 => SphereBounds::FLOAT,
+            Coordinates::I32 { .. } => SphereBounds::INTEGER,
+        };
+        Balls { bounds, region }
+    }
+
+    #[inline]
+    fn is_inside(&self, tetrahedron: u32, _points: &Residual<3>, balls: &Balls) -> bool {
+        let vertices = self.mesh.vertices();
+        let corners = self.mesh.tetrahedra()[tetrahedron as usize].vertices.map(|v| vertices[v as usize].at);
+        balls.bounds.ball_inside(corners, &balls.region)
+    }
+
+    fn counts(&self) -> &PredicateCounts {
+        self.kernel.counts()
+    }
+}

@@ -1,0 +1,48 @@
+//! What a run did, for `--stats`.
+
+use spmesh_geometry::predicates::PredicateCounts;
+
+/// Figures of one run of the reduction.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Points triangulated.
+    pub points: u64,
+    /// Points that coincide with another one, in the plane in x and y, and are no vertices.
+    pub merged: u64,
+    /// Points left out because they lie outside of the region.
+    pub outside: u64,
+    /// Vertices written.
+    pub vertices: u64,
+    /// Triangles or tetrahedra written.
+    pub simplices: u64,
+    /// Cell tags read.
+    pub cells: u64,
+    /// Leaves with points.
+    pub leaves: u64,
+    /// Nodes above the leaves with points.
+    pub inner_nodes: u64,
+    /// Points of the largest leaf.
+    pub leaf_max: u64,
+    /// Points of the largest node above the leaves.
+    pub inner_node_max: u64,
+    /// Points that were left for the root, where everything is final.
+    pub root_points: u64,
+    /// Most points held at once because their cell was not final.
+    pub held_max: u64,
+    /// Levels of the input's finalization tree below its root.
+    pub level: u64,
+    /// Length of the input streams.
+    pub input_bytes: u64,
+    /// Most simplices, at the nodes that waited at once, that were not final.
+    pub active_max: u64,
+    /// Most residual points that waited at once for their parent.
+    pub residual_max: u64,
+    /// Points that were never covered by a tag and were held until the end.
+    pub untagged: u64,
+    /// Points of the residual that a partial run wrote.
+    pub residual: u64,
+    /// Most vertices that were written but not final at once: the width of the mesh.
+    pub width: u64,
+    /// Decisions of the predicates, by stage.
+    pub predicates: PredicateCounts,
+}

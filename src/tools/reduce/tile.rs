@@ -1,0 +1,91 @@
+//! A partial mesh as it is read, to be merged with others.
+
+use super::border::Border;
+use super::residual::{Residual, UNWRITTEN};
+use spmesh_core::error::{Error, Result};
+use spmesh_model::bounds::{Point, Region};
+use spmesh_stream::{LiveVertices, Patch};
+
+/// What is known of a partial mesh so far: its residual, its live vertices, and the border of its final simplices.
+#[derive(Debug)]
+pub(super) struct Tile<const D: usize> {
+    region: Region<D>,
+    /// What is added to the ids of the tile to make them those of the merged mesh.
+    id_offset: u64,
+    live: LiveVertices<Point>,
+    border: Border<D>,
+    residual: Residual<D>,
+}
+
+impl<const D: usize> Tile<D> {
+    pub(super) fn new(region: Region<D>, id_offset: u64) -> Self {
+        let (live, border, residual) = (LiveVertices::new(), Border::default(), Residual::default());
+        Tile { region, id_offset, live, border, residual }
+    }
+
+    /// A patch with the ids of the merged mesh.
+    ///
+    /// # Errors
+    /// If it uses a vertex that is finalized.
+    pub(super) fn patch(&mut self, mut patch: Patch) -> Result<Patch> {
+        self.live.enter(&patch, |_, point| point)?;
+        patch.first_id += self.id_offset;
+        patch.imported.iter_mut().for_each(|id| *id += self.id_offset);
+        self.border.simplices(&patch);
+        Ok(patch)
+    }
+
+    /// Takes residual points.
+    ///
+    /// # Errors
+    /// If one lies outside of the region, or is not where its vertex is.
+    pub(super) fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
+        points.iter().try_for_each(|&(id, point)| self.residual_point(id, point))
+    }
+
+    fn residual_point(&mut self, id: Option<u64>, point: Point) -> Result<()> {
+        if !self.region.contains(point) {
+            return Err(Error::malformed(format!(
+                "residual point {point:?} lies outside of the stream's region"
+            )));
+        }
+        if let Some(id) = id
+            && self.live.retire(id)? != point
+        {
+            return Err(Error::malformed(format!("residual point {point:?} is not where vertex {id} is")));
+        }
+        self.residual.push(point, id.map_or(UNWRITTEN, |id| id + self.id_offset));
+        Ok(())
+    }
+
+    /// Takes walls, D residual points each.
+    pub(super) fn walls(&mut self, corners: &[u32]) {
+        let (walls, _) = corners.as_chunks();
+        for wall in walls {
+            self.border.wall(wall.map(|corner| self.residual.keys[corner as usize]));
+        }
+        self.residual.walls.extend_from_slice(walls);
+    }
+
+    /// That nothing is lost: every vertex that is not finalized is in the residual, and the walls are the border of what
+    /// is final, without which a hole would stay open.
+    ///
+    /// # Errors
+    /// If it is not so.
+    pub(super) fn check_end(&self) -> Result<()> {
+        let lost = self.live.len();
+        if lost > 0 {
+            return Err(Error::malformed(format!(
+                "{lost} vertices are neither finalized nor in the residual"
+            )));
+        }
+        if !self.border.is_closed() {
+            return Err(Error::malformed("the walls of the residual are not the border of what is final"));
+        }
+        Ok(())
+    }
+
+    pub(super) fn into_residual(self) -> Residual<D> {
+        self.residual
+    }
+}

@@ -1,0 +1,70 @@
+//! Does jobs, one after the other.
+
+use super::bulk::Bulk;
+use super::node::{Rules, Solved, Solver};
+use super::patches::Flush;
+use super::residual::{Residual, UNWRITTEN};
+use super::sample::Sample;
+use super::schedule::Job;
+use spmesh_core::error::Result;
+use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_stream::PatchBlocks;
+
+/// A solver with the memory for the union of residuals.
+pub(super) struct Worker<B, const D: usize> {
+    solver: Solver<B, D>,
+    sample: Sample<B, D>,
+    union: Residual<D>,
+}
+
+impl<B: Bulk<D>, const D: usize> Worker<B, D> {
+    pub(super) fn new(rules: Rules) -> Self {
+        Worker { solver: Solver::new(rules), sample: Sample::new(rules), union: Residual::default() }
+    }
+
+    /// Triangulates a node, or passes its points up if that would leave most of them. The memory of `blocks` is used
+    /// again; `give_back` gets the memory of raw points, and `flush` may take patches as they come.
+    ///
+    /// # Errors
+    /// As [`Solver::solve`].
+    pub(super) fn solve(
+        &mut self,
+        job: Job<D>,
+        blocks: PatchBlocks,
+        give_back: impl FnOnce(Residual<D>),
+        flush: &mut Flush,
+    ) -> Result<Solved<D>> {
+        let Job { number, region, is_root, mut raw, parts, .. } = job;
+        if parts.is_empty() {
+            if !is_root && self.sample.leaves_most(&raw, &region)? {
+                return Ok(passed_up(raw, blocks));
+            }
+            let solved = self.solver.solve(number, &mut raw, &region, blocks, flush);
+            raw.clear();
+            give_back(raw);
+            return solved;
+        }
+        self.union.clear();
+        self.union.append_raw(&raw);
+        self.union.unite(parts);
+        if !is_root && self.sample.leaves_most(&self.union, &region)? {
+            return Ok(passed_up(std::mem::take(&mut self.union), blocks));
+        }
+        self.solver.solve(number, &mut self.union, &region, blocks, flush)
+    }
+
+    /// Decisions of the predicates so far.
+    pub(super) fn counts(&self) -> PredicateCounts {
+        let mut counts = *self.solver.counts();
+        counts.merge(self.sample.counts());
+        counts
+    }
+}
+
+/// A node that leaves its points as they are.
+fn passed_up<const D: usize>(residual: Residual<D>, mut blocks: PatchBlocks) -> Solved<D> {
+    blocks.clear();
+    let reference = |(number, &key): (u64, &u64)| if key == UNWRITTEN { UNWRITTEN } else { number };
+    let references = (0..).zip(&residual.keys).map(reference).collect();
+    Solved { blocks, residual, references, merged: 0 }
+}

@@ -1,0 +1,121 @@
+//! What can be asked of a spline at a point: its value, and what follows from its derivatives.
+
+use spmesh_io::raster::{aspect, slope};
+use spmesh_splines::bases::Jet;
+
+/// What is asked.
+///
+/// Where a spline is level, it has neither an aspect nor curvatures along and across its slope: these are not numbers there.
+///
+/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans, 1972, and Shary, 1995,
+/// have too): normal curvatures, positive where the surface is convex upwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attribute {
+    /// The value itself. Units: those of elevations.
+    Value,
+    /// The angle with the horizontal, in degrees.
+    Slope,
+    /// The direction of steepest descent, in degrees clockwise from north, from 0 to 360.
+    Aspect,
+    /// Curvature of the section along the steepest descent: where it is positive, what flows gets faster. Units: 1 over those of
+    /// coordinates.
+    ProfileCurvature,
+    /// Curvature of the section across the steepest descent: where it is positive, what flows diverges. Units: the same.
+    TangentialCurvature,
+    /// Both derivatives, by x and by y.
+    Gradient,
+}
+
+impl Attribute {
+    /// What tables call its columns.
+    #[must_use]
+    pub fn columns(self) -> &'static [&'static str] {
+        match self {
+            Attribute::Value => &["value"],
+            Attribute::Slope => &["slope"],
+            Attribute::Aspect => &["aspect"],
+            Attribute::ProfileCurvature => &["profile_curvature"],
+            Attribute::TangentialCurvature => &["tangential_curvature"],
+            Attribute::Gradient => &["dx", "dy"],
+        }
+    }
+
+    /// Whether there is one number at a point.
+    #[must_use]
+    pub fn is_single(self) -> bool {
+        self.columns().len() == 1
+    }
+
+    /// The number at a point, the first one of two; from a jet in world coordinates.
+    #[must_use]
+    pub fn of(self, jet: &Jet) -> f64 {
+        let [p, q] = jet.gradient;
+        let [r, s, t] = jet.hessian;
+        let square = p * p + q * q;
+        match self {
+            Attribute::Value => jet.value,
+            Attribute::Gradient => p,
+            Attribute::Slope => slope(jet.gradient),
+            Attribute::Aspect => aspect(jet.gradient),
+            // Not a number where the square is zero.
+            Attribute::ProfileCurvature => {
+                -(p * p * r + 2.0 * p * q * s + q * q * t) / (square * (1.0 + square).powf(1.5))
+            }
+            Attribute::TangentialCurvature => {
+                -(q * q * r - 2.0 * p * q * s + p * p * t) / (square * (1.0 + square).sqrt())
+            }
+        }
+    }
+
+    /// All numbers at a point, in the order of columns.
+    pub fn all(self, jet: &Jet) -> impl Iterator<Item = f64> {
+        let second = (self == Attribute::Gradient).then_some(jet.gradient[1]);
+        [self.of(jet)].into_iter().chain(second)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plane(p: f64, q: f64) -> Jet {
+        Jet { value: 1.0, gradient: [p, q], hessian: [0.0; 3] }
+    }
+
+    #[test]
+    fn slopes_face_where_water_flows() {
+        for (p, q, aspect) in [(0.0, -1.0, 0.0), (-1.0, 0.0, 90.0), (0.0, 1.0, 180.0), (1.0, 0.0, 270.0)] {
+            assert!((Attribute::Slope.of(&plane(p, q)) - 45.0).abs() < 1e-12);
+            assert!((Attribute::Aspect.of(&plane(p, q)) - aspect).abs() < 1e-12, "{p} {q}");
+        }
+        assert!(Attribute::Aspect.of(&plane(0.0, 0.0)).is_nan());
+        assert_eq!(Attribute::Slope.of(&plane(0.0, 0.0)), 0.0);
+    }
+
+    #[test]
+    fn spheres_have_the_curvature_of_their_radius() {
+        // The upper half of a sphere of radius 5, at a place off its axes.
+        let (radius, x, y) = (5f64, 1.0, -2.5);
+        let z = (radius * radius - x * x - y * y).sqrt();
+        let second = |a: f64, b: f64, same: f64| -same / z - a * b / (z * z * z);
+        let hessian = [second(x, x, 1.0), second(x, y, 0.0), second(y, y, 1.0)];
+        let jet = Jet { value: z, gradient: [-x / z, -y / z], hessian };
+        for attribute in [Attribute::ProfileCurvature, Attribute::TangentialCurvature] {
+            assert!((attribute.of(&jet) - 1.0 / radius).abs() < 1e-14, "{attribute:?}");
+            assert!(attribute.of(&plane(0.0, 0.0)).is_nan());
+        }
+    }
+
+    #[test]
+    fn cylinders_bend_in_one_direction() {
+        // z = -x^2 / 2 at x = 1: steepest along x, where it bends by 1 / (1 + 1)^1.5.
+        let jet = Jet { value: -0.5, gradient: [-1.0, 0.0], hessian: [-1.0, 0.0, 0.0] };
+        assert!((Attribute::ProfileCurvature.of(&jet) - 0.125f64.sqrt()).abs() < 1e-15);
+        assert_eq!(Attribute::TangentialCurvature.of(&jet), 0.0);
+        // z = x - y^2 / 2 at y = 0: across the slope it bends by 1 / sqrt(2).
+        let jet = Jet { value: 0.0, gradient: [1.0, 0.0], hessian: [0.0, 0.0, -1.0] };
+        assert_eq!(Attribute::ProfileCurvature.of(&jet), 0.0);
+        assert!((Attribute::TangentialCurvature.of(&jet) - 0.5f64.sqrt()).abs() < 1e-15);
+        assert_eq!(Vec::from_iter(Attribute::Gradient.all(&jet)), [1.0, 0.0]);
+    }
+}

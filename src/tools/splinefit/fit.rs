@@ -1,0 +1,194 @@
+//! From points and knots to coefficients.
+
+use std::io::Write;
+
+use super::choose::{Chosen, Problem, choose};
+use super::frame::Frame;
+use super::layout::{Layout, Spline};
+use super::options::Options;
+use super::points::{InFrame, Points};
+use super::statistics::Statistics;
+use super::{given, lists, sharp};
+use spmesh_core::error::{Error, Result};
+use spmesh_io::source::Opened;
+use spmesh_splines::fitting::{
+    self, Cover, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round,
+};
+
+/// Without a tolerance, this part of the range of elevations is one.
+const TOLERANCE_PART: f64 = 0.0025;
+/// Residuals below this part of the greatest elevation are rounding errors.
+const ROUNDING: f64 = 1e-9;
+/// Without a number of knots, there are at most so many...
+const KNOTS_MAX: usize = 20_000;
+/// ...and one for so many points: two or three functions belong to a knot.
+const POINTS_PER_KNOT: u64 = 4;
+
+/// A spline that was fitted.
+#[derive(Debug)]
+pub struct Fitted {
+    /// The spline.
+    pub spline: Spline,
+    /// What was done on the way.
+    pub report: Report,
+    robust: Option<RobustFit>,
+}
+
+/// What a fit did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Points of the input.
+    pub points: u64,
+    /// The search for knots, if they were not given.
+    pub search: Option<Search>,
+    /// How much was smoothed, and why; nothing if values were interpolated.
+    pub chosen: Option<Chosen>,
+    /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients settled.
+    pub scale: Option<(f64, bool)>,
+    /// What is left of points.
+    pub residuals: Statistics,
+}
+
+/// A search for knots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// What it was to reach.
+    pub goal: Goal,
+    /// Its rounds.
+    pub rounds: Vec<Round>,
+    /// Whether all residuals are within the tolerance.
+    pub is_reached: bool,
+}
+
+/// Fits a spline to points. `done` is told how many points were read since the start, in all passes together.
+///
+/// Without knots, it looks for them; with points for knots, functions are quadratic, and the border is pulled apart, so that the
+/// domain is the convex hull.
+///
+/// # Errors
+/// Usage, if options do not go together, or points do not determine the spline; those of reading.
+pub fn fit(
+    points: &Points,
+    knots: Option<(Opened, String)>,
+    options: &Options,
+    done: &dyn Fn(u64),
+) -> Result<Fitted> {
+    if options.interpolates && (options.loss.is_some() || options.smoothing.is_some()) {
+        let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out --interpolate, or \
+                    --lambda and --robust";
+        return Err(Error::usage(what));
+    }
+    let (mut layout, found) = match knots {
+        Some((source, name)) => (given::layout(source, &name, options.degree, &options.polylines)?, None),
+        None if options.step.is_some() => (even(points, options, done)?, None),
+        None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
+    };
+    layout.frame.join(points.crs())?;
+    let frame = layout.frame.clone();
+    let all = points.in_frame(&frame, done);
+    let are_given = found.is_none() && options.step.is_none();
+    let (coefficients, chosen, robust) = match options.interpolates {
+        true => (interpolate(&layout, &all)?, None, None),
+        false => {
+            let fitted = approximate(&layout, &all, options, are_given);
+            let (coefficients, chosen, robust) = fitted.map_err(|error| error.of_input(points.name()))?;
+            (coefficients, Some(chosen), robust)
+        }
+    };
+    let spline = Spline { layout, coefficients };
+    let residuals = Statistics::of(&spline, points, options.threads, done)?;
+    let scale = robust.as_ref().map(|fit| (fit.scale, fit.has_converged));
+    let report = Report { points: points.count(), search: found, chosen, scale, residuals };
+    Ok(Fitted { spline, report, robust })
+}
+
+impl Fitted {
+    /// Writes the points that were rejected, as lines of x, y, elevation and residual; their number, which is zero if the fit is
+    /// not robust.
+    ///
+    /// # Errors
+    /// If points cannot be read, or the list cannot be written.
+    pub fn write_rejected(&self, points: &Points, options: &Options, output: &mut impl Write) -> Result<u64> {
+        let Some(robust) = &self.robust else { return Ok(0) };
+        lists::write_rejected(robust, &self.spline, points, options.threads, output)
+    }
+}
+
+/// Knots where they are needed.
+fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
+    check_degree(options)?;
+    let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
+    // A plane at one height has residuals that are rounding errors of it.
+    let [low, high] = points.range();
+    let rounding = ROUNDING * low.abs().max(high.abs());
+    let own_tolerance = (TOLERANCE_PART * (high - low)).max(rounding).max(f64::MIN_POSITIVE);
+    let goal = Goal {
+        loss: options.loss,
+        ..Goal::new(
+            options.tolerance.unwrap_or(own_tolerance),
+            options.max_knots.unwrap_or(own_max.max(KNOTS_MIN)),
+        )
+    };
+    let frame = Frame::world(points.crs().clone());
+    let all = points.in_frame(&frame, done);
+    let refined = fitting::refine(&all, &goal, options.threads).map_err(|e| e.of_input(points.name()))?;
+    let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
+    let cover = match options.polylines.is_empty() {
+        true => refined.cover,
+        false => sharp::cover(refined.cover.mesh.points(), &options.polylines)?,
+    };
+    Ok((Layout::of_cover(cover, frame), search))
+}
+
+/// Knots on a grid.
+fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout> {
+    check_degree(options)?;
+    let frame = Frame::world(points.crs().clone());
+    let all = points.in_frame(&frame, done);
+    let side = options.step.unwrap_or_default();
+    let places = fitting::even_places(&all, side).map_err(|error| error.of_input(points.name()))?;
+    let cover = match options.polylines.is_empty() {
+        true => Cover::of(places)?,
+        false => sharp::cover(&places, &options.polylines)?,
+    };
+    Ok(Layout::of_cover(cover, frame))
+}
+
+fn check_degree(options: &Options) -> Result<()> {
+    match options.degree.filter(|&degree| degree != 2) {
+        Some(degree) => Err(Error::usage(format!(
+            "knots for splines of degree {degree} must be given as configurations: use configgen"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Coefficients of least squares, smoothed or weighed.
+fn approximate(
+    layout: &Layout,
+    all: &InFrame,
+    options: &Options,
+    are_given: bool,
+) -> Result<(Vec<f64>, Chosen, Option<RobustFit>)> {
+    let problem = choose(layout, all, options, are_given)?;
+    let Some(loss) = options.loss else {
+        return Ok((problem.solve(&layout.basis)?, problem.chosen, None));
+    };
+    let Problem { normal, energy, lambda, chosen } = problem;
+    let (basis, threads) = (&layout.basis, options.threads);
+    let robust = fitting::robust_from(&normal, basis, all, loss, energy.as_ref(), lambda, threads)?;
+    Ok((robust.coefficients.clone(), chosen, Some(robust)))
+}
+
+/// Coefficients of the spline that has at Greville sites the values of the triangulated points.
+fn interpolate(layout: &Layout, all: &InFrame) -> Result<Vec<f64>> {
+    let (mut reader, mut held) = (all.read()?, Vec::new());
+    let mut known = None;
+    while known != Some(held.len()) {
+        known = Some(held.len());
+        reader.append(&mut held)?;
+    }
+    let (places, values): (Vec<_>, Vec<f64>) =
+        held.into_iter().map(|one: Observation| (one.point, one.value)).unzip();
+    Interpolation::new(&layout.basis)?.of_points(&Mesh::of(places)?, &values)
+}

@@ -1,0 +1,133 @@
+//! The coordinates that knots are stored in, and those of the world.
+
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+use spmesh_io::source::crs_name;
+use spmesh_splines::bases::Jet;
+use spmesh_stream::{Coordinates, Crs};
+
+/// What stored knots mean. A step along x is as long as one along y, so that directions and shapes are those of the world.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// How knots are stored.
+    pub coordinates: Coordinates,
+    /// Coordinate reference system.
+    pub crs: Crs,
+}
+
+impl Frame {
+    /// A frame of world coordinates themselves.
+    #[must_use]
+    pub fn world(crs: Crs) -> Frame {
+        Frame { coordinates: Coordinates::F64, crs }
+    }
+
+    /// A frame of stored coordinates if their steps are equal, and of the world otherwise; and what makes points of the one those
+    /// of the other.
+    pub(super) fn of(coordinates: Coordinates, crs: Crs) -> (Frame, impl Fn(Point2) -> Point2) {
+        let is_even = match coordinates {
+            Coordinates::F64 => true,
+            Coordinates::I32 { scale, .. } => scale[0] == scale[1],
+        };
+        let frame = if is_even { Frame { coordinates, crs } } else { Frame::world(crs) };
+        let place = move |stored: Point2| if is_even { stored } else { to_world(&coordinates, stored) };
+        (frame, place)
+    }
+
+    /// A place of the world, not rounded to the grid of knots.
+    #[inline]
+    #[must_use]
+    pub fn to_stored(&self, world: Point2) -> Point2 {
+        match self.coordinates {
+            Coordinates::F64 => world,
+            Coordinates::I32 { scale, offset } => {
+                [0, 1].map(|axis| (world[axis] - offset[axis]) / scale[axis])
+            }
+        }
+    }
+
+    /// Where a stored place is in the world.
+    #[must_use]
+    pub fn to_world(&self, stored: Point2) -> Point2 {
+        to_world(&self.coordinates, stored)
+    }
+
+    /// Length of a step of stored coordinates. Units: those of the world.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        match self.coordinates {
+            Coordinates::F64 => 1.0,
+            Coordinates::I32 { scale, .. } => scale[0],
+        }
+    }
+
+    /// A jet by world coordinates, from one by stored coordinates. Values are those of the world already.
+    #[must_use]
+    pub fn jet_to_world(&self, jet: Jet) -> Jet {
+        let step = self.step();
+        Jet {
+            value: jet.value,
+            gradient: jet.gradient.map(|slope| slope / step),
+            hessian: jet.hessian.map(|bend| bend / (step * step)),
+        }
+    }
+
+    /// Takes the system of the points, if that of the knots is not known.
+    ///
+    /// # Errors
+    /// Usage, if both are known and are not the same.
+    pub(super) fn join(&mut self, crs: &Crs) -> Result<()> {
+        match (&self.crs, crs) {
+            (_, Crs::Unknown) => Ok(()),
+            (Crs::Unknown, known) => {
+                self.crs = known.clone();
+                Ok(())
+            }
+            (own, other) if own == other || crs_name(own) == crs_name(other) => Ok(()),
+            (own, other) => {
+                let name = |crs| crs_name(crs).unwrap_or_else(|| "another system".into());
+                Err(Error::usage(format!(
+                    "knots are in {} and points in {}: bring them into one system first",
+                    name(own),
+                    name(other)
+                )))
+            }
+        }
+    }
+}
+
+fn to_world(coordinates: &Coordinates, [x, y]: Point2) -> Point2 {
+    let [x, y, _] = coordinates.to_world([x, y, 0.0]);
+    [x, y]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stored_places_are_those_of_the_world() {
+        let coordinates = Coordinates::I32 { scale: [0.25, 0.25, 0.01], offset: [100.0, -8.0, 0.0] };
+        let (frame, place) = Frame::of(coordinates, Crs::Unknown);
+        assert_eq!(place([2.0, 3.0]), [2.0, 3.0]);
+        assert_eq!(frame.to_world([2.0, 3.0]), [100.5, -7.25]);
+        assert_eq!(frame.to_stored([100.5, -7.25]), [2.0, 3.0]);
+        let jet = frame.jet_to_world(Jet { value: 1.0, gradient: [1.0, 2.0], hessian: [1.0, 0.0, 2.0] });
+        assert_eq!(jet, Jet { value: 1.0, gradient: [4.0, 8.0], hessian: [16.0, 0.0, 32.0] });
+        let uneven = Coordinates::I32 { scale: [0.25, 0.5, 0.01], offset: [0.0; 3] };
+        let (frame, place) = Frame::of(uneven, Crs::Unknown);
+        assert_eq!((frame.coordinates, place([2.0, 3.0])), (Coordinates::F64, [0.5, 1.5]));
+    }
+
+    #[test]
+    fn systems_must_be_one() {
+        let wkt = |code| Crs::Wkt(format!("PROJCS[\"x\",AUTHORITY[\"EPSG\",\"{code}\"]]"));
+        let mut frame = Frame::world(Crs::Unknown);
+        frame.join(&wkt(1)).unwrap();
+        assert_eq!(frame.crs, wkt(1));
+        frame.join(&Crs::Unknown).unwrap();
+        frame.join(&wkt(1)).unwrap();
+        let message = frame.join(&wkt(2)).unwrap_err().to_string();
+        assert!(message.contains("EPSG:1 and points in EPSG:2"), "{message}");
+    }
+}

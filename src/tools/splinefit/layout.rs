@@ -1,0 +1,164 @@
+//! What splines are made over: knots, configurations, functions, and the basis of them. Read from streams, and written.
+
+use std::io::Write;
+use std::path::Path;
+
+use super::frame::Frame;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_io::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
+use spmesh_model::functions::Function;
+use spmesh_splines::bases::Basis;
+use spmesh_splines::fitting::Cover;
+use spmesh_stream::{
+    Collector, ConfigurationSet, Content, Header, Kind, configurations_header, write_content,
+};
+
+/// Functions, and what they are made of.
+#[derive(Debug)]
+pub struct Layout {
+    /// What coordinates of knots mean.
+    pub frame: Frame,
+    /// The knots, stored.
+    pub knots: Knots,
+    /// Configurations of one degree less than that of the functions.
+    pub configurations: Configurations,
+    /// Functions as sums of B-splines, if they are not just B-splines of links.
+    pub functions: Vec<Function>,
+    /// All functions, to be evaluated.
+    pub basis: Basis,
+}
+
+/// A spline: functions with coefficients.
+#[derive(Debug)]
+pub struct Spline {
+    /// The functions.
+    pub layout: Layout,
+    /// A coefficient for each function. Units: those of elevations.
+    pub coefficients: Vec<f64>,
+}
+
+impl Layout {
+    /// Of a cover, whose knots are in a frame.
+    pub(super) fn of_cover(cover: Cover, frame: Frame) -> Layout {
+        let Cover { knots, configurations, functions, basis, .. } = cover;
+        Layout { frame, knots, configurations, functions, basis }
+    }
+
+    /// Of a set of knots. Of several degrees it takes that for splines of degree `degree`; without one, that of the functions
+    /// listed, or else the highest.
+    ///
+    /// # Errors
+    /// Usage, if the degree is not there; those of [`Basis`].
+    fn of_set(set: ConfigurationSet, header: &Header, degree: Option<usize>) -> Result<Layout> {
+        let ConfigurationSet { points, mut degrees, functions, .. } = set;
+        let wanted = match degree {
+            Some(0) => {
+                return Err(Error::usage(
+                    "splines of degree 0 have jumps at every edge: take degree 1 or higher",
+                ));
+            }
+            Some(degree) => Some(degree - 1),
+            None if !functions.is_empty() => Some(1),
+            None => degrees.last().map(Configurations::degree),
+        };
+        let Some(at) = degrees.iter().position(|known| Some(known.degree()) == wanted) else {
+            let needed = wanted.unwrap_or_default();
+            return Err(Error::usage(format!(
+                "there are no configurations of degree {needed}, which splines of degree {} are made of",
+                needed + 1
+            )));
+        };
+        let configurations = degrees.swap_remove(at);
+        let functions = if configurations.degree() == 1 { functions } else { Vec::new() };
+        let (frame, place) = Frame::of(header.coordinates, header.crs.clone());
+        let knots = Knots::new(points.into_iter().map(place).collect())?;
+        let basis = match functions.is_empty() {
+            true => Basis::new(&knots, &configurations)?,
+            false => Basis::of_functions(&knots, &configurations, &functions)?,
+        };
+        Ok(Layout { frame, knots, configurations, functions, basis })
+    }
+
+    /// Reads a stream of configurations, or of a spline, with its coefficients if it has some.
+    ///
+    /// # Errors
+    /// As [`Layout::of_set`]; if the stream is damaged.
+    pub(super) fn read(
+        mut source: Box<dyn EventSource>,
+        name: &str,
+        degree: Option<usize>,
+    ) -> Result<(Layout, Vec<f64>)> {
+        let header = source.header().clone();
+        let mut collector = Collector::new(&header);
+        while let Some(event) = source.next_event()? {
+            collector.event(&event).map_err(|error| source.locate(error))?;
+        }
+        let finish = || {
+            let mut set = collector.finish();
+            let coefficients = std::mem::take(&mut set.coefficients);
+            Ok::<_, Error>((Layout::of_set(set, &header, degree)?, coefficients))
+        };
+        finish().map_err(|error| error.of_input(name))
+    }
+
+    /// Opens a file of configurations, or of a spline, with its coefficients if it has some.
+    ///
+    /// # Errors
+    /// Usage, if it is something else; as [`open_knots`].
+    pub fn open(path: &Path) -> Result<(Layout, Vec<f64>)> {
+        let name = name_of(path);
+        match open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })? {
+            Opened::Events(source) => Layout::read(source, &name, None),
+            Opened::Points(_) => {
+                Err(Error::usage("these are points, expected a spline: splinefit fit makes one of them")
+                    .of_input(name))
+            }
+        }
+    }
+
+    /// Number of different places of knots.
+    #[must_use]
+    pub fn places(&self) -> usize {
+        (0..self.knots.len() as u32).filter(|&id| self.knots.rank(id) == 0).count()
+    }
+}
+
+impl Spline {
+    /// Opens a file ("-" is standard input).
+    ///
+    /// # Errors
+    /// Usage, if it is no spline; as [`Layout::open`].
+    pub fn open(path: &Path) -> Result<Spline> {
+        let (layout, coefficients) = Layout::open(path)?;
+        if coefficients.is_empty() {
+            let what = "configurations without coefficients: splinefit fit --knots makes a spline of them";
+            return Err(Error::usage(what).of_input(name_of(path)));
+        }
+        if coefficients.len() != layout.basis.len() {
+            let (found, needed) = (coefficients.len(), layout.basis.len());
+            let what = format!("{found} coefficients for {needed} functions: one each is needed");
+            return Err(Error::malformed(what).of_input(name_of(path)));
+        }
+        Ok(Spline { layout, coefficients })
+    }
+
+    /// Writes a stream of a spline.
+    ///
+    /// # Errors
+    /// As [`write_content`].
+    pub fn write(&self, output: impl Write) -> Result<()> {
+        let Layout { frame, knots, configurations, functions, .. } = &self.layout;
+        let header = Header {
+            kind: Kind::Splines,
+            producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
+            ..configurations_header(knots.points(), frame.coordinates, frame.crs.clone())
+        };
+        let content = Content {
+            functions,
+            coefficients: &self.coefficients,
+            ..Content::of(knots.points(), std::slice::from_ref(configurations))
+        };
+        write_content(header, content, output)
+    }
+}

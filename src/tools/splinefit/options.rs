@@ -1,0 +1,103 @@
+//! How splines are fitted.
+
+use std::num::NonZeroUsize;
+use std::str::FromStr;
+
+use spmesh_io::source::Polyline;
+use spmesh_splines::fitting::Loss;
+
+/// What a fit is to be like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// How much to smooth; without it, as little as leaves no coefficient undetermined.
+    pub smoothing: Option<Smoothing>,
+    /// What residuals cost, if not their squares.
+    pub loss: Option<Loss>,
+    /// Whether values at Greville sites are to be those of the triangulated points.
+    pub interpolates: bool,
+    /// Greatest residual that needs no further knot, where knots are not given. Units: those of elevations.
+    pub tolerance: Option<f64>,
+    /// Most places of knots, where knots are not given.
+    pub max_knots: Option<usize>,
+    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of the world.
+    pub step: Option<f64>,
+    /// Along which splines are not smooth, where knots come without configurations.
+    pub polylines: Vec<Polyline>,
+    /// Degree of splines, where knots come with configurations of several degrees.
+    pub degree: Option<usize>,
+    /// Seed of random numbers: folds, and estimates of traces.
+    pub seed: u64,
+    /// Threads that evaluate functions.
+    pub threads: NonZeroUsize,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options {
+            smoothing: None,
+            loss: None,
+            interpolates: false,
+            tolerance: None,
+            max_knots: None,
+            step: None,
+            polylines: Vec::new(),
+            degree: None,
+            seed: 1,
+            threads: NonZeroUsize::MIN,
+        }
+    }
+}
+
+/// How much to smooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Smoothing {
+    /// By this factor of the thin-plate energy. Units: an area, if weights have none.
+    Lambda(f64),
+    /// By generalised cross-validation.
+    Generalised,
+    /// By cross-validation with so many folds.
+    Folds(usize),
+}
+
+/// Folds, if nothing else is said.
+const FOLDS: usize = 5;
+
+impl FromStr for Smoothing {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Smoothing, String> {
+        match text.split_once(':') {
+            Some(("cv", folds)) => match folds.parse() {
+                Ok(folds) if folds >= 2 => Ok(Smoothing::Folds(folds)),
+                _ => Err(format!("{folds:?} folds: expected a whole number above one")),
+            },
+            _ if text == "cv" => Ok(Smoothing::Folds(FOLDS)),
+            _ if text == "gcv" => Ok(Smoothing::Generalised),
+            _ => match text.parse() {
+                Ok(lambda) if (0.0..f64::INFINITY).contains(&lambda) => Ok(Smoothing::Lambda(lambda)),
+                _ => Err("expected a number that is not negative, gcv, cv or cv:FOLDS".into()),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn smoothing_is_a_number_or_a_method() {
+        for (text, expected) in [
+            ("0", Smoothing::Lambda(0.0)),
+            ("2.5e-3", Smoothing::Lambda(0.0025)),
+            ("gcv", Smoothing::Generalised),
+            ("cv", Smoothing::Folds(FOLDS)),
+            ("cv:10", Smoothing::Folds(10)),
+        ] {
+            assert_eq!(text.parse(), Ok(expected));
+        }
+        for text in ["", "-1", "nan", "inf", "cv:", "cv:1", "gcv:3", "reml"] {
+            assert!(text.parse::<Smoothing>().is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! Points of files as observations of their elevation, in the frame of knots.
+
+use std::cell::Cell;
+use std::path::PathBuf;
+
+use super::frame::Frame;
+use crate::elevations::Elevations;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+use spmesh_io::source::{Input, SourceOptions};
+use spmesh_splines::fitting::{Observation, ObservationReader, Observations};
+use spmesh_stream::Crs;
+
+/// Up to this number, points that are read again and again are held: 32 bytes each. Most sources take longer to decode...
+const HELD_OFTEN: usize = 1 << 23;
+/// ...but a few passes more do not matter, so that memory does not depend on the number of points.
+const HELD_SELDOM: usize = 1 << 20;
+/// Elevations in a sample, at least, if there are as many.
+const SAMPLE: usize = 1 << 12;
+/// The part of elevations beyond each end of their range.
+const OUTSIDE: f64 = 0.02;
+/// Points in a batch that are held.
+const BATCH: usize = 1 << 14;
+
+/// The points of an input with their weights, in world coordinates.
+#[derive(Debug)]
+pub struct Points {
+    input: Input,
+    weights: Option<Vec<f64>>,
+    held: Option<Vec<Observation>>,
+    /// Some elevations, in order.
+    sample: Vec<f64>,
+    count: u64,
+}
+
+impl Points {
+    /// Opens files and reads them once; `weights` are those of points, in their order; `often` tells whether many passes will follow.
+    ///
+    /// Memory: 32 bytes per point up to 8 million points if so, and up to one million otherwise; more are read again for each pass.
+    ///
+    /// # Errors
+    /// As [`Input::open`]; no elevation; another number of weights.
+    pub fn open(
+        paths: &[PathBuf],
+        options: &SourceOptions,
+        weights: Option<Vec<f64>>,
+        often: bool,
+        mut done: impl FnMut(u64),
+    ) -> Result<Points> {
+        let input = Input::open(paths, &SourceOptions { dims: 2, ..options.clone() })?;
+        let mut points = Points { input, weights, held: None, sample: Vec::new(), count: 0 };
+        let mut held = Some(Vec::new());
+        let (mut reader, mut batch) = (points.read_world()?, Vec::new());
+        let held_max = if often { HELD_OFTEN } else { HELD_SELDOM };
+        let (mut count, mut sample) = (0, Sample::default());
+        loop {
+            batch.clear();
+            reader.append(&mut batch)?;
+            if batch.is_empty() {
+                break;
+            }
+            count += batch.len() as u64;
+            batch.iter().for_each(|one| sample.add(one.value));
+            match &mut held {
+                Some(all) if all.len() + batch.len() <= held_max => all.extend_from_slice(&batch),
+                _ => held = None,
+            }
+            done(count);
+        }
+        drop(reader);
+        points.check_weights(count)?;
+        (points.held, points.sample, points.count) = (held, sample.in_order(), count);
+        Ok(points)
+    }
+
+    fn check_weights(&self, count: u64) -> Result<()> {
+        match &self.weights {
+            Some(weights) if weights.len() as u64 != count => {
+                Err(Error::usage(format!("{} weights for {count} points: one each is needed", weights.len()))
+                    .of_input(self.name()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What messages call the input.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.input.name()
+    }
+
+    /// What the user should know of the files.
+    #[must_use]
+    pub fn notices(&self) -> &[String] {
+        self.input.notices()
+    }
+
+    /// The system of coordinates.
+    #[must_use]
+    pub fn crs(&self) -> &Crs {
+        &self.input.description().crs
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// An elevation that most are above, and one that most are below: of a sample, so that a few gross errors change little.
+    #[must_use]
+    pub fn range(&self) -> [f64; 2] {
+        let ends = [OUTSIDE, 1.0 - OUTSIDE];
+        let place = |part: f64| (part * self.sample.len().saturating_sub(1) as f64).round() as usize;
+        ends.map(|part| self.sample.get(place(part)).copied().unwrap_or(0.0))
+    }
+
+    /// The points in a frame; `done` is told how many were read in all passes together.
+    pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> InFrame<'a> {
+        InFrame { points: self, frame, read: Cell::new(0), done }
+    }
+
+    /// A pass in world coordinates.
+    pub(super) fn read_world(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        if let Some(held) = &self.held {
+            return Ok(Box::new(Held(held)));
+        }
+        let elevations = Elevations::of(&self.input)?.into_reader()?;
+        let weights = self.weights.as_deref();
+        Ok(Box::new(Weighed { reader: elevations, weights, next: 0 }))
+    }
+}
+
+/// Every so many elevations, of any number of them.
+#[derive(Default)]
+struct Sample {
+    taken: Vec<f64>,
+    /// Elevations to pass over before the next one that is taken, and after each one.
+    left: u64,
+    stride: u64,
+}
+
+impl Sample {
+    fn add(&mut self, elevation: f64) {
+        if self.left > 0 {
+            self.left -= 1;
+            return;
+        }
+        self.taken.push(elevation);
+        if self.taken.len() == 2 * SAMPLE {
+            let mut is_kept = false;
+            self.taken.retain(|_| {
+                is_kept = !is_kept;
+                is_kept
+            });
+            self.stride = 2 * self.stride + 1;
+        }
+        self.left = self.stride;
+    }
+
+    fn in_order(mut self) -> Vec<f64> {
+        self.taken.sort_by(f64::total_cmp);
+        self.taken
+    }
+}
+
+/// Points that are held.
+struct Held<'a>(&'a [Observation]);
+
+impl ObservationReader for Held<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let (next, rest) = self.0.split_at(self.0.len().min(BATCH));
+        observations.extend_from_slice(next);
+        self.0 = rest;
+        Ok(())
+    }
+}
+
+/// Points that are decoded, with weights.
+struct Weighed<'a> {
+    reader: Box<dyn ObservationReader + 'a>,
+    weights: Option<&'a [f64]>,
+    next: usize,
+}
+
+impl ObservationReader for Weighed<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let first = observations.len();
+        self.reader.append(observations)?;
+        if let Some(weights) = self.weights {
+            // If there are too few, the rest has none, which is refused at the end.
+            let own = weights.iter().skip(self.next);
+            observations[first..].iter_mut().zip(own).for_each(|(one, &weight)| one.weight = weight);
+        }
+        self.next += observations.len() - first;
+        Ok(())
+    }
+}
+
+/// Points in the frame of knots.
+#[derive(Clone)]
+pub struct InFrame<'a> {
+    points: &'a Points,
+    frame: &'a Frame,
+    read: Cell<u64>,
+    done: &'a dyn Fn(u64),
+}
+
+impl Observations for InFrame<'_> {
+    fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
+        Ok(Box::new(Moved { all: self, reader: self.points.read_world()? }))
+    }
+}
+
+struct Moved<'a> {
+    all: &'a InFrame<'a>,
+    reader: Box<dyn ObservationReader + 'a>,
+}
+
+impl ObservationReader for Moved<'_> {
+    fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
+        let InFrame { frame, read, done, .. } = self.all;
+        let first = observations.len();
+        self.reader.append(observations)?;
+        observations[first..].iter_mut().for_each(|one| one.point = frame.to_stored(one.point));
+        read.set(read.get() + (observations.len() - first) as u64);
+        done(read.get());
+        Ok(())
+    }
+}
+
+/// World coordinates, elevations and weights of points by increasing numbers.
+pub(super) struct Cursor<'a> {
+    reader: Box<dyn ObservationReader + 'a>,
+    batch: Vec<Observation>,
+    /// The number of the first one in the batch.
+    first: u64,
+}
+
+impl<'a> Cursor<'a> {
+    pub(super) fn new(points: &'a Points) -> Result<Cursor<'a>> {
+        Ok(Cursor { reader: points.read_world()?, batch: Vec::new(), first: 0 })
+    }
+
+    /// The point with a number that is not less than any asked for before.
+    ///
+    /// # Errors
+    /// As its source; if there are fewer points than before.
+    pub(super) fn at(&mut self, index: u64) -> Result<(Point2, f64)> {
+        while index >= self.first + self.batch.len() as u64 {
+            self.first += self.batch.len() as u64;
+            self.batch.clear();
+            self.reader.append(&mut self.batch)?;
+            if self.batch.is_empty() {
+                return Err(Error::malformed("there were more points before: the file has changed"));
+            }
+        }
+        let one = self.batch[(index - self.first) as usize];
+        Ok((one.point, one.value))
+    }
+}

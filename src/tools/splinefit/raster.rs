@@ -1,0 +1,193 @@
+//! Splines in the cells of a grid.
+
+use std::io::{Seek, Write};
+use std::num::NonZeroUsize;
+
+use super::attributes::Attribute;
+use super::layout::Spline;
+use super::values::{line, write_error};
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
+use spmesh_splines::bases::{Raster, Scratch};
+
+/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
+const ROWS_PER_THREAD: usize = 64;
+
+impl Spline {
+    /// What the domain covers, in world coordinates.
+    ///
+    /// # Errors
+    /// A domain without an area.
+    pub fn window(&self) -> Result<Window> {
+        self.layout.domain_window()
+    }
+}
+
+/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data. The number of cells
+/// without data.
+///
+/// # Errors
+/// Usage, if there is more than one number per cell; if writing fails.
+pub fn write_raster<W: Write + Seek>(
+    spline: &Spline,
+    attribute: Attribute,
+    grid: &Grid,
+    options: &RasterOptions,
+    threads: NonZeroUsize,
+    output: &mut W,
+    mut done: impl FnMut(u64),
+) -> Result<u64> {
+    if !attribute.is_single() {
+        return Err(Error::usage("a raster has one number in a cell: take --format text for gradients"));
+    }
+    let mut bands = Bands { spline, attribute, grid, threads, first: 0, values: Vec::new() };
+    let mut unknown = 0;
+    let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
+    let crs = &spline.layout.frame.crs;
+    let are_elevations = attribute == Attribute::Value;
+    let file = RasterFile { options, grid: *grid, crs, are_elevations, reduction, is_staged: false };
+    raster::write_rows(output, &file, |row, values| {
+        for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
+            *value = found as f32;
+            unknown += u64::from(value.is_nan());
+            if value.is_infinite() {
+                let what =
+                    format!("value {found:e} is too great for a raster, which has 32 bits: scale elevations");
+                return Err(Error::usage(what));
+            }
+        }
+        done(u64::from(row) + 1);
+        Ok(())
+    })?;
+    Ok(unknown)
+}
+
+/// Writes a line for each cell in the domain: its centre, and what is asked; row by row from the top.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_table(
+    spline: &Spline,
+    attribute: Attribute,
+    grid: &Grid,
+    output: &mut impl Write,
+    mut done: impl FnMut(u64),
+) -> Result<u64> {
+    let (mut scratch, mut text, mut outside) = (Scratch::default(), Vec::new(), 0);
+    for row in 0..grid.rows {
+        text.clear();
+        for column in 0..grid.columns {
+            let at = grid.center(column, row);
+            match spline.jet(at, attribute, &mut scratch) {
+                Some(jet) => line(&mut text, at, attribute, Some(&jet)),
+                None => outside += 1,
+            }
+        }
+        output.write_all(&text).map_err(write_error)?;
+        done(u64::from(row) + 1);
+    }
+    Ok(outside)
+}
+
+/// Rows that are evaluated some at a time, by several threads.
+struct Bands<'a> {
+    spline: &'a Spline,
+    attribute: Attribute,
+    grid: &'a Grid,
+    threads: NonZeroUsize,
+    /// The first row of the band that is there.
+    first: usize,
+    values: Vec<f64>,
+}
+
+impl Bands<'_> {
+    /// A row; rows are asked for in order.
+    fn row(&mut self, row: usize) -> Result<&[f64]> {
+        let columns = self.grid.columns as usize;
+        if row * columns >= self.first * columns + self.values.len() {
+            self.evaluate(row)?;
+        }
+        Ok(&self.values[(row - self.first) * columns..][..columns])
+    }
+
+    fn evaluate(&mut self, first: usize) -> Result<()> {
+        let (columns, rows) = (self.grid.columns as usize, self.grid.rows as usize);
+        let count = (rows - first).min(ROWS_PER_THREAD * self.threads.get());
+        self.first = first;
+        self.values.clear();
+        self.values.resize(count * columns, f64::NAN);
+        let mut all = std::mem::take(&mut self.values);
+        let share = count.div_ceil(self.threads.get());
+        let parts = all.chunks_mut(share * columns).zip((first..).step_by(share));
+        let outcome = std::thread::scope(|scope| {
+            let this = &*self;
+            let workers: Vec<_> =
+                parts.map(|(part, first)| scope.spawn(move || this.evaluate_part(first, part))).collect();
+            workers.into_iter().try_for_each(|worker| match worker.join() {
+                Ok(outcome) => outcome,
+                Err(panic) => std::panic::resume_unwind(panic),
+            })
+        });
+        self.values = all;
+        outcome
+    }
+
+    /// Rows from a number on.
+    fn evaluate_part(&self, first: usize, values: &mut [f64]) -> Result<()> {
+        let columns = self.grid.columns as usize;
+        let rows = first..first + values.len() / columns;
+        match self.attribute {
+            Attribute::Value => self.sweep(rows.start, values),
+            attribute => {
+                let mut scratch = Scratch::default();
+                for (row, values) in rows.zip(values.chunks_exact_mut(columns)) {
+                    for (column, value) in (0..).zip(values) {
+                        let at = self.grid.center(column, row as u32);
+                        let jet = self.spline.jet(at, attribute, &mut scratch);
+                        *value = jet.map_or(f64::NAN, |jet| attribute.of(&jet));
+                    }
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn sweep(&self, first: usize, values: &mut [f64]) -> Result<()> {
+        let (grid, columns) = (self.grid, self.grid.columns as usize);
+        let Spline { layout, coefficients } = self.spline;
+        let step = grid.step / layout.frame.step();
+        let raster = Raster {
+            origin: layout.frame.to_stored(grid.center(0, first as u32)),
+            step: [step, -step],
+            columns,
+            rows: values.len() / columns,
+        };
+        layout.basis.raster(coefficients, &raster, |row| {
+            let into = &mut values[row.row * columns..][..columns];
+            into[row.domain.clone()].copy_from_slice(&row.values[row.domain]);
+            Ok(())
+        })
+    }
+}
+
+impl super::Layout {
+    /// The box of the domain, in world coordinates.
+    ///
+    /// # Errors
+    /// Usage, if there is no domain.
+    pub fn domain_window(&self) -> Result<Window> {
+        let corners = self.basis.domain_corners();
+        let corners = corners.iter().map(|&corner| self.frame.to_world(corner));
+        let bounds = corners.fold(None, |bounds: Option<[Point2; 2]>, corner| {
+            let [least, greatest] = bounds.unwrap_or([corner; 2]);
+            Some([[0, 1].map(|i| least[i].min(corner[i])), [0, 1].map(|i| greatest[i].max(corner[i]))])
+        });
+        match bounds {
+            Some([min, max]) if min[0] < max[0] && min[1] < max[1] => Ok(Window { min, max }),
+            _ => Err(Error::usage(
+                "functions sum to one nowhere: use more knots, or pull those of the border apart",
+            )),
+        }
+    }
+}

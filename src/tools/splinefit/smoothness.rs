@@ -1,0 +1,162 @@
+//! Where splines are less smooth than their degree allows.
+//!
+//! A function of degree k is a sum of simplex splines of k + 3 knots each. One of these has k + 1 - m continuous derivatives across
+//! a line that m of its knots are on: k - 1 across most lines, less where knots are repeated or on a line with others. What is
+//! left of that in a sum may be smoother, as box splines and tents of knots that are pulled apart are; so the segments between such
+//! knots are *candidates*, and for degree 2 each is looked at: derivatives next to it on both sides are compared.
+//!
+//! Source: Micchelli 1979; thesis 6.1.
+
+use super::layout::Layout;
+use spmesh_core::error::Result;
+use spmesh_geometry::configurations::{self, Rule};
+use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, lexicographic};
+use spmesh_splines::bases::{Jet, Scratch};
+
+/// Parts of a segment at which derivatives are compared: no simple ones, at which other lines may cross.
+const PARTS: [f64; 3] = [0.216_541, 0.487_312, 0.809_733];
+/// How far beside a segment they are, relative to its length.
+const BESIDE: f64 = 1e-5;
+/// The least change of a derivative, relative to what functions have there, that is no rounding error.
+const CHANGE_MIN: f64 = 1e-4;
+
+/// A segment across which derivatives may jump.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Candidate {
+    /// Its ends, in stored coordinates.
+    pub ends: [Point2; 2],
+    /// Number of derivatives that are continuous for certain: -1 if values may jump.
+    pub order: i32,
+}
+
+/// How smooth the functions of a layout are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoothness {
+    /// Number of continuous derivatives across all other lines.
+    pub order: i32,
+    /// Segments that may be different.
+    pub candidates: Vec<Candidate>,
+    /// Those across which the gradient of some function jumps, for degree 2.
+    pub folds: Option<Vec<Candidate>>,
+}
+
+impl Smoothness {
+    /// Of all functions, inside of their domain.
+    ///
+    /// # Errors
+    /// As [`configurations::link_triangulate`].
+    pub fn of(layout: &Layout) -> Result<Smoothness> {
+        let degree = layout.basis.degree();
+        let mut candidates = candidates(layout)?;
+        candidates.retain(|candidate| is_inside(layout, candidate));
+        let folds = (degree == 2).then(|| {
+            let mut scratch = Scratch::default();
+            let mut is_fold = |candidate: &&Candidate| folds_at(layout, candidate, &mut scratch);
+            candidates.iter().filter(&mut is_fold).copied().collect()
+        });
+        Ok(Smoothness { order: degree as i32 - 1, candidates, folds })
+    }
+}
+
+/// Segments between knots on lines with more of them than two, each with its least order.
+fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
+    let knots = &layout.knots;
+    let next = configurations::link_triangulate(knots, &layout.configurations, &Rule::Delaunay)?;
+    let (mut found, mut predicates) = (Vec::new(), TotalPredicates::default());
+    for (boundary, interior) in next.iter() {
+        let [a, b, c] = boundary.map(|id| knots.at(id));
+        // Those without area count for nothing.
+        if predicates.orient2d(a, b, c) == Sign::Zero {
+            continue;
+        }
+        let all: Vec<Point2> = boundary.iter().chain(interior).map(|&id| knots.at(id)).collect();
+        lines(&all, &mut predicates, &mut found);
+    }
+    found.sort_by(|p: &Candidate, q| {
+        let ends = |at: usize| lexicographic(p.ends[at], q.ends[at]);
+        ends(0).then_with(|| ends(1)).then(p.order.cmp(&q.order))
+    });
+    found.dedup_by(|later, first| later.ends == first.ends);
+    Ok(found)
+}
+
+/// The lines through more than two of some knots.
+fn lines(all: &[Point2], predicates: &mut impl Predicates2, found: &mut Vec<Candidate>) {
+    for (place, &p) in all.iter().enumerate() {
+        for &q in all[place + 1..].iter().filter(|&&q| q != p) {
+            let on: Vec<Point2> =
+                all.iter().copied().filter(|&r| predicates.orient2d(p, q, r) == Sign::Zero).collect();
+            if on.len() > 2 {
+                let least = |a: Point2, b: Point2| if lexicographic(a, b).is_le() { a } else { b };
+                let greatest = |a: Point2, b: Point2| if lexicographic(a, b).is_gt() { a } else { b };
+                let ends = [on.iter().copied().fold(p, least), on.iter().copied().fold(p, greatest)];
+                found.push(Candidate { ends, order: all.len() as i32 - 2 - on.len() as i32 });
+            }
+        }
+    }
+}
+
+/// A place on a segment, and one beside it.
+fn places([p, q]: [Point2; 2], part: f64, beside: f64) -> Point2 {
+    let along = [q[0] - p[0], q[1] - p[1]];
+    [p[0] + part * along[0] - beside * along[1], p[1] + part * along[1] + beside * along[0]]
+}
+
+/// Whether a segment has places inside of the domain on both sides.
+fn is_inside(layout: &Layout, candidate: &Candidate) -> bool {
+    let is_in = |part: f64, beside: f64| layout.basis.is_in_domain(places(candidate.ends, part, beside));
+    PARTS.iter().any(|&part| is_in(part, 2.0 * BESIDE) && is_in(part, -2.0 * BESIDE))
+}
+
+/// Whether values or gradients of a function change across a segment.
+///
+/// Functions are polynomials of degree 2 next to it, so that their gradients are linear, and limits are those of the line through
+/// two places, unless another knot line is between.
+fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bool {
+    let basis = &layout.basis;
+    let [p, q] = candidate.ends;
+    let length = ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt();
+    PARTS.iter().any(|&part| {
+        let at = |beside: f64| places(candidate.ends, part, beside);
+        if ![-2.0 * BESIDE, 2.0 * BESIDE].iter().all(|&beside| basis.is_in_domain(at(beside))) {
+            return false;
+        }
+        let mut side = |side: f64| Side {
+            near: basis.jets_at(at(side * BESIDE), scratch).to_vec(),
+            far: basis.jets_at(at(2.0 * side * BESIDE), scratch).to_vec(),
+        };
+        let (left, right) = (side(1.0), side(-1.0));
+        let mut functions: Vec<u32> = left.near.iter().chain(&right.near).map(|jet| jet.0).collect();
+        functions.sort_unstable();
+        functions.dedup();
+        functions.iter().any(|&function| {
+            let (a, b) = (left.gradient(function), right.gradient(function));
+            // Functions are at most about one, so that a gradient of one over the length is a great one.
+            let change = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt() * length;
+            let step = (left.value(function) - right.value(function)).abs();
+            change > CHANGE_MIN || step > CHANGE_MIN
+        })
+    })
+}
+
+/// The functions alive at two places on one side of a segment, one twice as far from it as the other.
+struct Side {
+    near: Vec<(u32, Jet)>,
+    far: Vec<(u32, Jet)>,
+}
+
+impl Side {
+    fn value(&self, function: u32) -> f64 {
+        jet_of(&self.near, function).value
+    }
+
+    /// The limit at the segment.
+    fn gradient(&self, function: u32) -> [f64; 2] {
+        let (near, far) = (jet_of(&self.near, function).gradient, jet_of(&self.far, function).gradient);
+        [0, 1].map(|axis| 2.0 * near[axis] - far[axis])
+    }
+}
+
+fn jet_of(jets: &[(u32, Jet)], function: u32) -> Jet {
+    jets.iter().find(|jet| jet.0 == function).map_or(Jet::default(), |jet| jet.1)
+}

@@ -1,0 +1,69 @@
+//! Residuals of a spline in numbers.
+
+use super::layout::Spline;
+use super::points::Points;
+use spmesh_core::error::Result;
+use spmesh_geometry::predicates::Point2;
+use spmesh_splines::fitting::{self, Spread};
+use std::num::NonZeroUsize;
+
+/// Parts of all magnitudes that percentiles are told of.
+pub const PERCENTILES: [f64; 5] = [0.5, 0.75, 0.9, 0.95, 0.99];
+
+/// What a spline leaves of points: elevations less values, those outside of the domain not counted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statistics {
+    /// Number of points in the domain.
+    pub count: u64,
+    /// Number of points outside of it.
+    pub outside: u64,
+    /// Mean.
+    pub mean: f64,
+    /// Root of the mean square.
+    pub root_mean_square: f64,
+    /// Greatest magnitude, and the place of the first point that has it, in world coordinates.
+    pub greatest: f64,
+    /// Where that is.
+    pub worst: Option<Point2>,
+    /// Quantiles of magnitudes for [`PERCENTILES`]: the first one is their median. Accuracy: half a percent.
+    pub percentiles: [f64; 5],
+}
+
+impl Statistics {
+    /// Of points, in one pass.
+    ///
+    /// # Errors
+    /// If points cannot be read.
+    pub fn of(
+        spline: &Spline,
+        points: &Points,
+        threads: NonZeroUsize,
+        done: &dyn Fn(u64),
+    ) -> Result<Statistics> {
+        let frame = &spline.layout.frame;
+        let (mut count, mut sum, mut square, mut spread) = (0u64, 0.0, 0.0, Spread::default());
+        let (mut greatest, mut worst) = (0f64, None);
+        let all = points.in_frame(frame, done);
+        let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
+        let outside = fitting::for_each_residual(basis, coefficients, &all, threads, |found| {
+            count += 1;
+            sum += found.residual;
+            square += found.residual * found.residual;
+            spread.add(found.residual);
+            if worst.is_none() || found.residual.abs() > greatest {
+                (greatest, worst) = (found.residual.abs(), Some(frame.to_world(found.point)));
+            }
+        })?;
+        let divisor = count.max(1) as f64;
+        Ok(Statistics {
+            count,
+            outside,
+            mean: sum / divisor,
+            root_mean_square: (square / divisor).sqrt(),
+            greatest,
+            worst,
+            // A class may end above the greatest magnitude.
+            percentiles: PERCENTILES.map(|part| spread.quantile(part).unwrap_or(0.0).min(greatest)),
+        })
+    }
+}

@@ -1,0 +1,73 @@
+//! One form for each line, whatever the order in which its pieces came.
+
+use spmesh_geometry::predicates::Point2;
+
+/// Drops points that are equal to the one before, and has a ring start where the sequence of its points is least: at its least point,
+/// by x, then y. Whether more than one point is left.
+pub(super) fn tidy(points: &mut Vec<Point2>, is_closed: bool) -> bool {
+    points.dedup();
+    if is_closed {
+        while points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        let start = least_rotation(points);
+        points.rotate_left(start);
+    }
+    points.len() > 1
+}
+
+/// Where a cyclic sequence has to start to be the least one in lexicographic order.
+///
+/// Two starts are compared point by point. Where the first `equal` points are the same and then one sequence is greater, none of
+/// the starts that were passed in it is the least either: so no point is compared more than a few times.
+fn least_rotation(points: &[Point2]) -> usize {
+    let count = points.len();
+    let (mut a, mut b, mut equal) = (0, 1, 0);
+    while a < count && b < count && equal < count {
+        let [of_a, of_b] = [a, b].map(|start| points[(start + equal) % count]);
+        if of_a == of_b {
+            equal += 1;
+            continue;
+        }
+        let passed = if of_a > of_b { &mut a } else { &mut b };
+        *passed += equal + 1;
+        if a == b {
+            b += 1;
+        }
+        equal = 0;
+    }
+    a.min(b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rings_start_at_the_least_of_all_rotations() {
+        // All sequences of up to seven points among three.
+        for count in 1..=7u32 {
+            for code in 0..3usize.pow(count) {
+                let points: Vec<Point2> =
+                    (0..count).map(|i| [(code / 3usize.pow(i) % 3) as f64, -1.0]).collect();
+                let rotation = |start: usize| [&points[start..], &points[..start]].concat();
+                let least = (0..points.len()).map(rotation).min_by(|a, b| a.partial_cmp(b).unwrap()).unwrap();
+                assert_eq!(rotation(least_rotation(&points)), least);
+            }
+        }
+    }
+
+    #[test]
+    fn equal_neighbours_are_one_point() {
+        let point = |x: u8| [f64::from(x), 0.0];
+        let of = |text: &[u8], is_closed| {
+            let mut points: Vec<Point2> = text.iter().map(|&x| point(x)).collect();
+            let is_line = tidy(&mut points, is_closed);
+            (points.into_iter().map(|[x, _]| x as u8).collect::<Vec<u8>>(), is_line)
+        };
+        assert_eq!(of(&[3, 3, 1, 1, 3], false), (vec![3, 1, 3], true));
+        assert_eq!(of(&[3, 3, 2, 5, 2, 1, 3, 3], true), (vec![1, 3, 2, 5, 2], true));
+        assert_eq!(of(&[3, 3, 3], true), (vec![3], false));
+        assert_eq!(of(&[3, 3], false), (vec![3], false));
+    }
+}

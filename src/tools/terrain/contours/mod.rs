@@ -1,0 +1,251 @@
+//! `spdem --contours`: triangles in, contour lines out.
+//!
+//! `levels` says which elevations have lines, and between which of them a vertex is; `crossings` then, in whole numbers, which edges
+//! of a triangle a line passes, and `places` where. `open_lines` joins what is in neighbouring triangles. A line that nothing can
+//! be added to gets its one form from `canonical` and is written by `geojson`. `decimals` are numbers as people write them.
+
+mod canonical;
+mod crossings;
+mod decimals;
+mod geojson;
+mod levels;
+mod open_lines;
+mod places;
+
+use std::io::{Read, Write};
+
+use foldhash::{HashSet, HashSetExt};
+
+pub use geojson::{LineFormat, epsg_code};
+pub use levels::Levels;
+
+use crate::surface::{LongEdges, check_input, is_counterclockwise};
+use geojson::LineWriter;
+use open_lines::{Contour, OpenLines};
+use places::{Elevations, Plane, Vertex};
+use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::CONTOURS_PER_TRIANGLE_MAX;
+use spmesh_geometry::predicates::TotalPredicates;
+use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
+
+/// Which lines are made.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// The elevations that have lines.
+    pub levels: Levels,
+    /// Triangles with an edge that is longer are left out. Units: those of the world.
+    pub kill: Option<f64>,
+    /// Lines that have so many points and are not complete are written as they are, and go on with their last point as another line;
+    /// two at least. All lines are whole if `None`.
+    pub points: Option<usize>,
+}
+
+/// Figures of a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Stats {
+    /// Vertices of the mesh.
+    pub vertices: u64,
+    /// Triangles of the mesh.
+    pub triangles: u64,
+    /// Triangles left out because of a long edge.
+    pub killed: u64,
+    /// Most vertices that were live at once.
+    pub width: u64,
+    /// Levels that have lines.
+    pub levels: u64,
+    /// Lines, rings included.
+    pub lines: u64,
+    /// Lines that are closed.
+    pub rings: u64,
+    /// Points of lines; that at which a ring begins and ends is one.
+    pub points: u64,
+    /// Lines that were left out because all of their points are one.
+    pub single_points: u64,
+    /// How many times a line was cut.
+    pub cuts: u64,
+    /// Most points of lines that were held at once.
+    pub open_points: u64,
+    /// Most ends of lines that were held at once.
+    pub open_ends: u64,
+    /// Bytes read.
+    pub input_bytes: u64,
+    /// Least and greatest elevation, if there are vertices.
+    pub elevations: Option<[f64; 2]>,
+}
+
+/// Writes the contour lines of a triangle mesh with elevations; `progress` is told how many vertices are read.
+///
+/// A vertex on a level counts as above it. So a line passes exactly two edges of a triangle or none, and lines end at the border of
+/// the mesh only. What is level and on a level has no line in it; there is one along it where the ground beyond is lower. Higher
+/// ground is on the left of a line.
+///
+/// The lines are the same for any order of triangles, to the last bit, unless they are cut; their order is that in which they become
+/// complete. Coordinates are those of the world; of whole coordinates, they have two digits more than the step. Successive points
+/// that are equal are one.
+///
+/// Memory: the vertices that are not final, and the lines that may still grow, 16 bytes for each point.
+///
+/// # Errors
+/// If the input is no triangle mesh with elevations, is malformed or ends too early; if levels are too close to each other; if
+/// writing fails.
+pub fn contour<R: Read, W: Write>(
+    reader: &mut StreamReader<R>,
+    output: W,
+    format: LineFormat,
+    options: &Options,
+    mut progress: impl FnMut(u64),
+) -> Result<Stats> {
+    let header = reader.header().clone();
+    check_input(&header).map_err(|e| e.of_input(reader.name()))?;
+    let mut tracer = Tracer::new(&header, options);
+    let mut drain = Drain::new(&header, LineWriter::new(output, format, &header.crs), options.levels);
+    let mut live = LiveVertices::new();
+    while let Some(event) = reader.next_event()? {
+        if let Event::Patch(patch) = event {
+            let triangles = tracer.corners(&patch, &mut live).map_err(|error| reader.locate(error))?;
+            for triangle in triangles {
+                tracer.trace(&triangle).map_err(|error| reader.locate(error))?;
+                drain.write(&mut tracer.lines.complete)?;
+            }
+            if tracer.lines.is_look_due() {
+                tracer.lines.finish_ended(|vertex| live.contains(vertex));
+                drain.write(&mut tracer.lines.complete)?;
+            }
+            progress(reader.totals().vertices);
+        }
+    }
+    tracer.lines.finish_ended(|_| false);
+    drain.write(&mut tracer.lines.complete)?;
+    drain.writer.end()?;
+    let totals = reader.totals();
+    Ok(Stats {
+        vertices: totals.vertices,
+        triangles: totals.simplices,
+        killed: tracer.killed,
+        width: live.live_max() as u64,
+        levels: drain.levels_with_lines.len() as u64,
+        cuts: tracer.lines.cuts,
+        open_points: tracer.lines.points_max as u64,
+        open_ends: tracer.lines.ends_max as u64,
+        input_bytes: reader.bytes_read(),
+        elevations: tracer.elevations,
+        ..drain.stats
+    })
+}
+
+/// Follows lines through triangles.
+struct Tracer {
+    levels: Levels,
+    plane: Plane,
+    to_world: Elevations,
+    long_edges: LongEdges,
+    predicates: TotalPredicates,
+    lines: OpenLines,
+    killed: u64,
+    elevations: Option<[f64; 2]>,
+}
+
+impl Tracer {
+    fn new(header: &Header, options: &Options) -> Tracer {
+        Tracer {
+            levels: options.levels,
+            plane: Plane::new(&header.coordinates),
+            to_world: Elevations::new(&header.coordinates),
+            long_edges: LongEdges::new(options.kill, &header.coordinates),
+            predicates: TotalPredicates::default(),
+            lines: OpenLines::new(options.points.map_or(usize::MAX, |points| points.max(2))),
+            killed: 0,
+            elevations: None,
+        }
+    }
+
+    /// The corners of the triangles of a patch.
+    fn corners<'a>(
+        &mut self,
+        patch: &'a Patch,
+        live: &'a mut LiveVertices<Vertex>,
+    ) -> Result<impl Iterator<Item = [Vertex; 3]> + use<'a>> {
+        let mut failure = None;
+        let vertices = live.enter(patch, |id, [x, y, z]| {
+            let elevation = self.to_world.to_world(z);
+            let [least, greatest] = self.elevations.unwrap_or([elevation; 2]);
+            self.elevations = Some([least.min(elevation), greatest.max(elevation)]);
+            let rank = self.levels.rank(elevation).unwrap_or_else(|error| {
+                failure.get_or_insert(error);
+                0
+            });
+            Vertex { id, at: [x, y], elevation, rank }
+        })?;
+        match failure {
+            Some(error) => Err(error),
+            None => Ok(patch.triangles().map(|triangle| triangle.map(|local| vertices[local as usize].1))),
+        }
+    }
+
+    /// Adds what of lines is in a triangle.
+    fn trace(&mut self, corners: &[Vertex; 3]) -> Result<()> {
+        let places = corners.map(|corner| corner.at);
+        if self.long_edges.are_in(places) {
+            self.killed += 1;
+            return Ok(());
+        }
+        let levels = crossings::levels(corners);
+        if levels.is_empty() {
+            return Ok(());
+        }
+        let count = levels.end().abs_diff(*levels.start()) + 1;
+        if count > CONTOURS_PER_TRIANGLE_MAX {
+            return Err(Error::usage(format!(
+                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} can: take a larger distance"
+            )));
+        }
+        // One that is flat as seen from above goes on with lines like any other.
+        is_counterclockwise(places, &mut self.predicates)?;
+        levels.into_iter().try_for_each(|level| self.add(corners, level))
+    }
+
+    /// Adds what of the line of a level is in a triangle.
+    fn add(&mut self, corners: &[Vertex; 3], level: i64) -> Result<()> {
+        let piece = crossings::piece(corners, level);
+        let edges = [piece.from, piece.to].map(|edge| crossings::ends(corners, edge));
+        let elevation = self.levels.elevation(level);
+        let place = |side: usize| {
+            let [p, q] = edges[side];
+            self.plane.place(p, q, elevation)
+        };
+        self.lines.add(edges.map(|edge| crossings::crossing(edge, level)), place)
+    }
+}
+
+/// Writes lines that are complete, and counts them.
+struct Drain<W> {
+    writer: LineWriter<W>,
+    levels: Levels,
+    plane: Plane,
+    levels_with_lines: HashSet<i64>,
+    stats: Stats,
+}
+
+impl<W: Write> Drain<W> {
+    fn new(header: &Header, writer: LineWriter<W>, levels: Levels) -> Drain<W> {
+        let plane = Plane::new(&header.coordinates);
+        Drain { writer, levels, plane, levels_with_lines: HashSet::new(), stats: Stats::default() }
+    }
+
+    fn write(&mut self, complete: &mut Vec<Contour>) -> Result<()> {
+        for Contour { level, mut points, is_closed } in complete.drain(..) {
+            if !canonical::tidy(&mut points, is_closed) {
+                self.stats.single_points += 1;
+                continue;
+            }
+            self.levels_with_lines.insert(level);
+            self.stats.lines += 1;
+            self.stats.rings += u64::from(is_closed);
+            self.stats.points += points.len() as u64;
+            let again = is_closed.then(|| points[0]);
+            let places = points.iter().copied().chain(again).map(|place| self.plane.to_world(place));
+            self.writer.line(self.levels.elevation(level), is_closed, places)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,238 @@
+//! Lines that may still grow: pieces in triangles are joined where they meet.
+
+use std::collections::VecDeque;
+use std::collections::hash_map::Entry;
+
+use foldhash::{HashMap, HashMapExt};
+
+use super::crossings::Crossing;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::Point2;
+
+/// What may be held beyond twice of what was left by the last look at what is complete: ends that wait and points.
+const SLACK: usize = 1 << 16;
+
+/// A line that nothing will be added to, or a part of one that was cut.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Contour {
+    pub(super) level: i64,
+    /// Places; the first one of a ring is not repeated at its end.
+    pub(super) points: Vec<Point2>,
+    pub(super) is_closed: bool,
+}
+
+/// One of the ends of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    First,
+    Last,
+}
+
+#[derive(Debug, Default)]
+struct Line {
+    points: VecDeque<Point2>,
+    /// Where it may go on at its first and its last point, if it may.
+    ends: [Option<Crossing>; 2],
+}
+
+/// All lines that may still grow.
+///
+/// Cost: each piece takes constant time, and joining logarithmic time on average, because the shorter line is added to the longer one.
+///
+/// Memory: the points of these lines, and some 50 bytes for each end; lines that have ended are found when twice as much is held
+/// as after the last look at all ends.
+#[derive(Debug)]
+pub(super) struct OpenLines {
+    waiting: HashMap<Crossing, (usize, End)>,
+    lines: Vec<Line>,
+    free: Vec<usize>,
+    /// Lines with as many points are cut.
+    points_limit: usize,
+    /// Points that are held.
+    points: usize,
+    /// Most points that were held.
+    pub(super) points_max: usize,
+    /// Most ends that were waiting.
+    pub(super) ends_max: usize,
+    /// How many times a line was cut.
+    pub(super) cuts: u64,
+    /// What was held after the last look at what is complete.
+    left: usize,
+    /// What is complete and was not fetched.
+    pub(super) complete: Vec<Contour>,
+}
+
+impl OpenLines {
+    /// No lines. Those with `points_limit` points, two at least, are cut.
+    pub(super) fn new(points_limit: usize) -> OpenLines {
+        OpenLines {
+            waiting: HashMap::new(),
+            lines: Vec::new(),
+            free: Vec::new(),
+            points_limit,
+            points: 0,
+            points_max: 0,
+            ends_max: 0,
+            cuts: 0,
+            left: 0,
+            complete: Vec::new(),
+        }
+    }
+
+    /// Adds the piece of a line in a triangle, which leads from a crossing to another one of the same level; `place` says where these
+    /// are, the first (0) and the second (1).
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Malformed`], if another triangle has one of the edges on the same side; those of `place`.
+    pub(super) fn add(
+        &mut self,
+        [from, to]: [Crossing; 2],
+        place: impl Fn(usize) -> Result<Point2>,
+    ) -> Result<()> {
+        let line = match (self.take(from, End::Last)?, self.take(to, End::First)?) {
+            (None, None) => {
+                let points = VecDeque::from([place(0)?, place(1)?]);
+                self.points += 2;
+                let line = self.insert(Line { points, ends: [None; 2] });
+                self.wait(line, End::First, from);
+                self.wait(line, End::Last, to);
+                line
+            }
+            (Some(line), None) => {
+                self.lines[line].points.push_back(place(1)?);
+                self.points += 1;
+                self.wait(line, End::Last, to);
+                line
+            }
+            (None, Some(line)) => {
+                self.lines[line].points.push_front(place(0)?);
+                self.points += 1;
+                self.wait(line, End::First, from);
+                line
+            }
+            (Some(before), Some(after)) if before == after => {
+                self.finish(before, from.level, true);
+                return Ok(());
+            }
+            (Some(before), Some(after)) => self.join(before, after),
+        };
+        self.points_max = self.points_max.max(self.points);
+        self.ends_max = self.ends_max.max(self.waiting.len());
+        if self.lines[line].ends == [None; 2] {
+            // What was between two cuts, or between a cut and the border.
+            self.finish(line, from.level, false);
+        } else if self.lines[line].points.len() >= self.points_limit {
+            self.cut(line, from.level);
+        }
+        Ok(())
+    }
+
+    /// Whether so much is held that [`OpenLines::finish_ended`] is worth its time.
+    pub(super) fn is_look_due(&self) -> bool {
+        self.waiting.len() + self.points > 2 * self.left + SLACK
+    }
+
+    /// Completes lines that end at edges that no later triangle has: one of their vertices is not live.
+    pub(super) fn finish_ended(&mut self, is_live: impl Fn(u64) -> bool) {
+        let is_over = |crossing: &&Crossing| !crossing.edge.iter().all(|&vertex| is_live(vertex));
+        let mut over: Vec<Crossing> = self.waiting.keys().filter(is_over).copied().collect();
+        // The table has its own order, which is another one each time.
+        over.sort_unstable();
+        for crossing in over {
+            let Some((line, end)) = self.waiting.remove(&crossing) else { continue };
+            self.lines[line].ends[end as usize] = None;
+            if self.lines[line].ends == [None; 2] {
+                self.finish(line, crossing.level, false);
+            }
+        }
+        self.left = self.waiting.len() + self.points;
+    }
+
+    /// The line that has this end at a crossing; it waits there no more.
+    fn take(&mut self, crossing: Crossing, end: End) -> Result<Option<usize>> {
+        match self.waiting.entry(crossing) {
+            Entry::Vacant(_) => Ok(None),
+            Entry::Occupied(found) if found.get().1 == end => {
+                let (line, _) = found.remove();
+                self.lines[line].ends[end as usize] = None;
+                Ok(Some(line))
+            }
+            Entry::Occupied(_) => {
+                let [p, q] = crossing.edge;
+                Err(Error::malformed(format!(
+                    "two triangles have the edge between vertices {p} and {q} on the same side"
+                )))
+            }
+        }
+    }
+
+    /// Has a line wait for a piece that goes on there.
+    fn wait(&mut self, line: usize, end: End, crossing: Crossing) {
+        self.lines[line].ends[end as usize] = Some(crossing);
+        self.waiting.insert(crossing, (line, end));
+    }
+
+    fn insert(&mut self, line: Line) -> usize {
+        match self.free.pop() {
+            Some(place) => {
+                self.lines[place] = line;
+                place
+            }
+            None => {
+                self.lines.push(line);
+                self.lines.len() - 1
+            }
+        }
+    }
+
+    fn remove(&mut self, line: usize) -> Line {
+        self.free.push(line);
+        std::mem::take(&mut self.lines[line])
+    }
+
+    /// Makes one line of two of which the second begins where the first ends in the triangle; the shorter one is moved.
+    fn join(&mut self, before: usize, after: usize) -> usize {
+        let is_first_longer = self.lines[before].points.len() >= self.lines[after].points.len();
+        let (kept, moved, end) = if is_first_longer {
+            (before, self.remove(after), End::Last)
+        } else {
+            (after, self.remove(before), End::First)
+        };
+        let points = &mut self.lines[kept].points;
+        match end {
+            End::Last => points.extend(moved.points),
+            End::First => moved.points.into_iter().rev().for_each(|point| points.push_front(point)),
+        }
+        if let Some(crossing) = moved.ends[end as usize] {
+            self.wait(kept, end, crossing);
+        }
+        kept
+    }
+
+    /// Completes what there is of a line. What comes at its ends goes on with the points there.
+    fn cut(&mut self, line: usize, level: i64) {
+        let Line { points, ends } = self.remove(line);
+        let corners = [points.front().copied(), points.back().copied()];
+        self.points -= points.len();
+        self.cuts += 1;
+        self.complete.push(Contour { level, points: points.into(), is_closed: false });
+        for (end, (crossing, corner)) in
+            [End::First, End::Last].into_iter().zip(ends.into_iter().zip(corners))
+        {
+            if let (Some(crossing), Some(corner)) = (crossing, corner) {
+                let rest = self.insert(Line { points: VecDeque::from([corner]), ends: [None; 2] });
+                self.points += 1;
+                self.wait(rest, end, crossing);
+            }
+        }
+    }
+
+    fn finish(&mut self, line: usize, level: i64, is_closed: bool) {
+        let Line { points, .. } = self.remove(line);
+        self.points -= points.len();
+        // A single point is what was left of a line that was cut: it is in the other part.
+        if points.len() > 1 {
+            self.complete.push(Contour { level, points: points.into(), is_closed });
+        }
+    }
+}

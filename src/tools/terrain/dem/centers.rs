@@ -1,0 +1,34 @@
+//! Where the centres of cells are, in the coordinates that vertices are stored in.
+
+use super::axis::Axis;
+use spmesh_geometry::predicates::Point2;
+use spmesh_io::raster::Grid;
+use spmesh_stream::Coordinates;
+
+/// The centres of the cells of a grid, in stored coordinates: triangles that cover the plane cover each centre, whatever the rounding.
+#[derive(Debug)]
+pub(super) struct Centers {
+    pub(super) columns: Axis,
+    pub(super) rows: Axis,
+    scale: Point2,
+}
+
+impl Centers {
+    pub(super) fn new(grid: Grid, coordinates: &Coordinates) -> Centers {
+        let (scale, offset) = match coordinates {
+            Coordinates::F64 => ([1.0; 2], [0.0; 2]),
+            Coordinates::I32 { scale, offset } => ([scale[0], scale[1]], [offset[0], offset[1]]),
+        };
+        let Grid { left, top, step, columns, rows } = grid;
+        Centers {
+            columns: Axis::new(left, step, columns, scale[0], offset[0]),
+            rows: Axis::new(top, -step, rows, scale[1], offset[1]),
+            scale,
+        }
+    }
+
+    /// A gradient by stored coordinates, by those of the world.
+    pub(super) fn gradient_to_world(&self, gradient: Point2) -> Point2 {
+        [0, 1].map(|axis| gradient[axis] / self.scale[axis])
+    }
+}

@@ -1,0 +1,128 @@
+//! The plane of a triangle.
+
+use super::out_of_range;
+use spmesh_core::error::Result;
+use spmesh_geometry::predicates::{Point2, area};
+use spmesh_model::bounds::Point;
+
+/// From this part of the sum of its two products on, the determinant of a triangle makes its gradient good to 2^-30 of its
+/// differences in elevation; flatter triangles are interpolated by areas, which are accurate whatever they are like.
+const BROAD: f64 = 1.0 / (1u64 << 20) as f64;
+
+/// A triangle with elevations: coordinates are stored ones, elevations those of the world.
+#[derive(Debug)]
+pub(super) struct Facet {
+    corners: [Point; 3],
+    /// By stored coordinates; not a number, if these are out of the range of numbers.
+    pub(super) gradient: Point2,
+    is_broad: bool,
+    lowest: f64,
+    highest: f64,
+}
+
+/// The place of a corner.
+pub(super) fn place([x, y, _]: Point) -> Point2 {
+    [x, y]
+}
+
+impl Facet {
+    /// The plane of a triangle.
+    ///
+    /// Domain: corners counterclockwise.
+    pub(super) fn of(corners: [Point; 3]) -> Facet {
+        let [a, b, c] = corners;
+        let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+        let products = [u[0] * v[1], u[1] * v[0]];
+        let determinant = Some(2.0 * area(place(a), place(b), place(c)));
+        // Where products of coordinates are out of the range of numbers, nothing is known.
+        let determinant = determinant.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(f64::NAN);
+        let gradient = [(u[2] * v[1] - u[1] * v[2]) / determinant, (u[0] * v[2] - u[2] * v[0]) / determinant];
+        // How far elevations may be from that of the first corner, along each axis.
+        let rise = [0, 1].map(|axis| gradient[axis] * u[axis].abs().max(v[axis].abs()));
+        let is_broad = determinant >= BROAD * (products[0].abs() + products[1].abs())
+            && rise.iter().all(|rise| rise.is_finite());
+        Facet {
+            corners,
+            gradient,
+            is_broad,
+            lowest: a[2].min(b[2]).min(c[2]),
+            highest: a[2].max(b[2]).max(c[2]),
+        }
+    }
+
+    /// The elevations at places in the closed triangle, of one ordinate: between those of its corners.
+    ///
+    /// # Errors
+    /// Usage, if coordinates are out of the range of numbers.
+    #[inline]
+    pub(super) fn row(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) -> Result<()> {
+        if !self.is_broad {
+            return self.row_by_areas(y, abscissae, row);
+        }
+        let [a, ..] = self.corners;
+        let start = a[2] + self.gradient[1] * (y - a[1]);
+        for (value, x) in row.iter_mut().zip(abscissae) {
+            let elevation = start + self.gradient[0] * (x - a[0]);
+            *value = elevation.max(self.lowest).min(self.highest) as f32;
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn row_by_areas(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) -> Result<()> {
+        for (value, x) in row.iter_mut().zip(abscissae) {
+            let elevation = self.by_areas([x, y]);
+            if elevation.is_nan() {
+                return Err(out_of_range());
+            }
+            *value = elevation.clamp(self.lowest, self.highest) as f32;
+        }
+        Ok(())
+    }
+
+    /// The elevation by areas of the triangles between a place and edges.
+    fn by_areas(&self, at: Point2) -> f64 {
+        let [a, b, c] = self.corners;
+        let [p, q, r] = [a, b, c].map(place);
+        let shares = [area(at, q, r), area(p, at, r), area(p, q, at)];
+        let sum = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2];
+        sum / (shares[0] + shares[1] + shares[2])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn elevation(facet: &Facet, [x, y]: Point2) -> Result<f32> {
+        let mut row = [0.0];
+        facet.row(y, [x].into_iter(), &mut row)?;
+        Ok(row[0])
+    }
+
+    #[test]
+    fn planes_are_found_again() {
+        let plane = |x: f64, y: f64| [x, y, 100.0 + 0.25 * x - 0.5 * y];
+        let facet = Facet::of([plane(0.0, 0.0), plane(8.0, 1.0), plane(3.0, 9.0)]);
+        assert!((facet.gradient[0] - 0.25).abs() < 1e-15 && (facet.gradient[1] + 0.5).abs() < 1e-15);
+        assert_eq!(elevation(&facet, [3.0, 4.0]).unwrap(), 98.75);
+    }
+
+    #[test]
+    fn needles_are_interpolated_accurately() {
+        // A third corner 2^-20 above the middle of a diagonal of a million steps.
+        let (length, height) = (2f64.powi(20), 2f64.powi(-20));
+        let (half, quarter) = (0.5 * length, 0.25 * length);
+        let facet = Facet::of([[0.0, 0.0, 0.0], [length, length, 10.0], [half, half + height, 7.0]]);
+        assert!(!facet.is_broad);
+        assert_eq!(elevation(&facet, [quarter, quarter]).unwrap(), 2.5);
+        assert_eq!(elevation(&facet, [quarter, quarter + 0.5 * height]).unwrap(), 3.5);
+        assert_eq!(elevation(&facet, [half, half + height]).unwrap(), 7.0);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_none() {
+        let facet = Facet::of([[0.0, 0.0, 0.0], [1e300, 0.0, 10.0], [0.0, 1e300, 7.0]]);
+        assert!(elevation(&facet, [1e299, 1e299]).is_err());
+    }
+}

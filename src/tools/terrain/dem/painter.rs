@@ -1,0 +1,171 @@
+//! Draws triangles.
+
+use std::ops::Range;
+
+use super::canvas::{Canvas, TilePlace};
+use super::centers::Centers;
+use super::facet::{Facet, place};
+use super::span::{Edges, Span};
+use super::tile::overlap;
+use super::{Attribute, Options};
+use crate::surface::{LongEdges, is_counterclockwise};
+use spmesh_core::error::Result;
+use spmesh_geometry::predicates::{Point2, TotalPredicates};
+use spmesh_io::raster::{Grid, TILE};
+use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
+
+/// Takes the values of tiles that are complete.
+pub(super) type Handover<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
+
+/// Draws triangles on the tiles of a grid, one by one.
+#[derive(Debug)]
+pub(super) struct Painter {
+    centers: Centers,
+    attribute: Attribute,
+    long_edges: LongEdges,
+    pub(super) canvas: Canvas,
+    pub(super) predicates: TotalPredicates,
+    /// Triangles that were not drawn because of a long edge.
+    pub(super) killed: u64,
+    /// Those of the rows of a triangle in a row of tiles.
+    spans: Vec<Span>,
+}
+
+impl Painter {
+    /// Nothing drawn so far.
+    ///
+    /// # Errors
+    /// As [`Canvas::new`].
+    pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Painter> {
+        Ok(Painter {
+            centers: Centers::new(grid, coordinates),
+            attribute: options.attribute,
+            long_edges: LongEdges::new(options.kill, coordinates),
+            canvas: Canvas::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
+            predicates: TotalPredicates::default(),
+            killed: 0,
+            spans: Vec::with_capacity(TILE),
+        })
+    }
+
+    /// Draws a triangle: corners have stored coordinates, and elevations of the world. Tiles that become complete go to `complete`, if
+    /// there is one.
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Malformed`], if it is clockwise or overlaps another one, as far as there are cells to tell; those of
+    /// `complete` and of temporary files.
+    pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut Handover>) -> Result<()> {
+        let corners = least_first(corners);
+        let places = corners.map(place);
+        if self.long_edges.are_in(places) {
+            self.killed += 1;
+            return Ok(());
+        }
+        let [bottom, top] = range(places, 1);
+        let rows = self.centers.rows.cells(bottom, top);
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let [left, right] = range(places, 0);
+        let columns = self.centers.columns.cells(left, right);
+        if columns.is_empty() || !is_counterclockwise(places, &mut self.predicates)? {
+            return Ok(());
+        }
+        let (facet, edges) = (Facet::of(corners), Edges::of(places, &self.centers.columns));
+        let mut from = rows.start;
+        while from < rows.end {
+            let band = from as usize / TILE;
+            let end = rows.end.min(((band + 1) * TILE) as u32);
+            self.draw_band(&facet, &edges, columns.clone(), from..end, &mut complete)?;
+            from = end;
+        }
+        Ok(())
+    }
+
+    /// Draws what of a triangle is in rows of one row of tiles.
+    fn draw_band(
+        &mut self,
+        facet: &Facet,
+        edges: &Edges,
+        columns: Range<u32>,
+        rows: Range<u32>,
+        complete: &mut Option<&mut Handover>,
+    ) -> Result<()> {
+        let mut spans = std::mem::take(&mut self.spans);
+        spans.clear();
+        spans.extend(rows.clone().map(|row| {
+            let y = self.centers.rows.at(row);
+            edges.span(y, columns.clone(), &self.centers.columns, &mut self.predicates)
+        }));
+        let filled = || spans.iter().map(|span| &span.cells).filter(|cells| !cells.is_empty());
+        let ends = filled().map(|cells| cells.start).min().zip(filled().map(|cells| cells.end).max());
+        let tiles = ends.map_or(0..0, |(start, end)| start as usize / TILE..(end as usize).div_ceil(TILE));
+        let band = rows.start as usize / TILE;
+        for column in tiles {
+            self.draw_tile(facet, [column, band], rows.start, &spans)?;
+            if let Some(complete) = complete.as_deref_mut()
+                && let Some(tile) = self.canvas.take_complete([column, band])
+            {
+                complete([column, band], &tile.values)?;
+                self.canvas.give_back(tile);
+            }
+        }
+        self.spans = spans;
+        Ok(())
+    }
+
+    /// Draws what of spans, from a row on, is in a tile.
+    fn draw_tile(&mut self, facet: &Facet, at: TilePlace, first_row: u32, spans: &[Span]) -> Result<()> {
+        let [left, top] = at.map(|place| (place * TILE) as u32);
+        let within = |cells: &Range<u32>| cells.start.max(left)..cells.end.min(left + TILE as u32);
+        if spans.iter().all(|span| within(&span.cells).is_empty()) {
+            return Ok(());
+        }
+        let flat = self.attribute.of_plane(self.centers.gradient_to_world(facet.gradient))?;
+        let Some(tile) = self.canvas.tile(at)? else {
+            // All of its cells belong to other triangles, on whose borders those of this one must be.
+            let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
+            return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
+        };
+        for (row, span) in (first_row..).zip(spans) {
+            let y = self.centers.rows.at(row);
+            let values_of = |cells: Range<u32>, values: &mut [f32]| match flat {
+                Some(value) => {
+                    values.fill(value);
+                    Ok(())
+                }
+                None => facet.row(y, cells.map(|column| self.centers.columns.at(column)), values),
+            };
+            let place = |cells: &Range<u32>| (cells.start - left) as usize..(cells.end - left) as usize;
+            let owned = within(&(span.cells.start..span.owned_end));
+            if !owned.is_empty() {
+                let values = tile.own((row - top) as usize, place(&owned))?;
+                values_of(owned, values)?;
+            }
+            for column in within(&(span.owned_end..span.cells.end)) {
+                let mut value = [0.0];
+                values_of(column..column + 1, &mut value)?;
+                tile.touch((row - top) as usize, (column - left) as usize, value[0]);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The same triangle, with the corner first that is least in x, then y: values do not depend on which corner a stream has first.
+fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
+    let is_less = |p: Point, q: Point| place(p) < place(q);
+    if is_less(a, b) && is_less(a, c) {
+        [a, b, c]
+    } else if is_less(b, c) {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Least and greatest coordinate of an axis.
+fn range([a, b, c]: [Point2; 3], axis: usize) -> [f64; 2] {
+    [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]
+}

@@ -1,0 +1,70 @@
+//! Triangles with elevations, as engines draw them: which streams have them, and which triangles are left out or refused.
+
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::predicates::{Point2, Predicates2, Sign};
+use spmesh_stream::{Coordinates, Header, Kind};
+
+/// By how much, relatively, an edge may be longer than allowed: one that is meant to be as long is not, however its length is
+/// rounded.
+const LENGTH_TOLERANCE: f64 = 1e-12;
+
+/// That a stream is a triangle mesh with elevations.
+///
+/// # Errors
+/// Usage, if it is something else.
+pub(crate) fn check_input(header: &Header) -> Result<()> {
+    let what = match header.kind {
+        Kind::TriangleMesh if header.has_elevation => return Ok(()),
+        Kind::TriangleMesh => "vertices have no elevation: give points x y z to spfinalize".to_string(),
+        Kind::PartialTriangleMesh => {
+            "this is a partial triangle mesh: finish it with spdelaunay2d --merge".to_string()
+        }
+        Kind::Points => "these are points: triangulate them with spdelaunay2d".to_string(),
+        kind => format!("this is a stream of kind {}, expected a triangle mesh", kind.name()),
+    };
+    Err(Error::usage(what))
+}
+
+/// Which edges are too long for their triangles to be drawn.
+#[derive(Debug)]
+pub(crate) struct LongEdges {
+    scale: Point2,
+    longest: f64,
+}
+
+impl LongEdges {
+    /// Those longer than `kill`, in units of the world; none, if there is no such length.
+    pub(crate) fn new(kill: Option<f64>, coordinates: &Coordinates) -> LongEdges {
+        let scale = match coordinates {
+            Coordinates::F64 => [1.0; 2],
+            Coordinates::I32 { scale: [x, y, _], .. } => [*x, *y],
+        };
+        LongEdges { scale, longest: kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)) }
+    }
+
+    /// Whether a triangle with corners in stored coordinates has one.
+    pub(crate) fn are_in(&self, [a, b, c]: [Point2; 3]) -> bool {
+        let is_long = |p, q| self.length(p, q) > self.longest;
+        self.longest.is_finite() && (is_long(a, b) || is_long(b, c) || is_long(c, a))
+    }
+
+    /// The length of an edge. Units: those of the world.
+    fn length(&self, a: Point2, b: Point2) -> f64 {
+        let [x, y] = [0, 1].map(|axis| (b[axis] - a[axis]) * self.scale[axis]);
+        x.hypot(y)
+    }
+}
+
+/// Whether corners are counterclockwise; false, if they are on one line.
+///
+/// # Errors
+/// [`spmesh_core::error::ErrorKind::Malformed`], if they are clockwise.
+pub(crate) fn is_counterclockwise([a, b, c]: [Point2; 3], predicates: &mut impl Predicates2) -> Result<bool> {
+    match predicates.orient2d(a, b, c) {
+        Sign::Positive => Ok(true),
+        Sign::Zero => Ok(false),
+        Sign::Negative => Err(Error::malformed(format!(
+            "the triangle with corners {a:?}, {b:?}, {c:?} (stored coordinates) is clockwise"
+        ))),
+    }
+}

@@ -1,0 +1,204 @@
+//! One structure: select, triangulate, write.
+
+use std::borrow::Cow;
+use std::io::Write;
+use std::time::Instant;
+
+use super::alpha::AlphaComplex;
+use super::mesh::write_mesh;
+use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
+use super::{Arithmetic, Options, Product, Report, choice};
+use spmesh_core::error::Result;
+use spmesh_core::output::Output;
+use spmesh_geometry::delaunay3::Tetrahedralization;
+use spmesh_io::source::structure::{Models, Selected, Structure};
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter};
+
+/// Triangulates the selected models of a structure one by one, and writes to what `open` gives: a mesh for each model,
+/// whose place in the file and number `open` is told, or one table for all of them.
+///
+/// Memory: beside the structure and the kernel, 8 bytes per point for a mesh; for a table some 200, and the names.
+///
+/// # Errors
+/// Usage, if the structure does not have what is selected, or nothing is left of it; otherwise if writing fails, or
+/// `open` does.
+pub fn run(
+    structure: Structure,
+    options: &Options,
+    open: &mut dyn FnMut(Option<ModelName>) -> Result<Output>,
+) -> Result<Vec<Report>> {
+    let name = structure.name.clone();
+    let mut job = Job { options: options.clone(), open, table: None };
+    let reports = job.all_models(structure).map_err(|e| e.of_input(name))?;
+    if let Some(table) = job.table {
+        table.commit()?;
+    }
+    Ok(reports)
+}
+
+/// What a model of a file may be called by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModelName {
+    /// Its place in the file, from 1.
+    pub place: usize,
+    /// The number that the file gives it; several may have the same.
+    pub number: i64,
+}
+
+struct Job<'o> {
+    options: Options,
+    open: &'o mut dyn FnMut(Option<ModelName>) -> Result<Output>,
+    /// The table of all models.
+    table: Option<Output>,
+}
+
+impl Job<'_> {
+    fn all_models(&mut self, mut structure: Structure) -> Result<Vec<Report>> {
+        if self.options.selection.models != Models::All {
+            return Ok(vec![self.model(&mut structure, 1)?]);
+        }
+        self.options.selection.models = Models::First;
+        let mut reports = Vec::new();
+        for (place, model) in (1..).zip(std::mem::take(&mut structure.models)) {
+            structure.models = vec![model];
+            reports.push(self.model(&mut structure, place)?);
+        }
+        Ok(reports)
+    }
+
+    /// Triangulates what is selected of the selected model.
+    fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
+        let started = Instant::now();
+        let at = choice::model_index(structure, &self.options.selection)?;
+        let name = ModelName { place, number: structure.models[at].number };
+        // Points of which nothing else is known are handed over, so that the kernel needs no copy.
+        let is_plain = self.options.product == Product::Mesh && structure.models[at].atoms.is_empty();
+        if is_plain {
+            choice::select(structure, &self.options.selection)?;
+        }
+        let plain = is_plain.then(|| std::mem::take(&mut structure.models[at].points));
+        let selected =
+            plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
+        let selected = selected.as_ref();
+        let points = match (plain, selected) {
+            (Some(points), _) => Cow::Owned(points),
+            (None, selected) => Cow::Borrowed(selected.map_or(&[][..], Selected::points)),
+        };
+        let mut report = Report::new(name.number, points.len());
+        let mesh = self.options.method.triangulate(points, &mut report)?;
+        report.times.triangulate = started.elapsed();
+        let model = Model { name, coordinates: structure.coordinates, selected };
+        match (selected, self.options.product) {
+            (Some(selected), Product::Tetrahedra | Product::Contacts) => {
+                self.write_table(&model, selected, &mesh, &mut report)?;
+            }
+            _ => self.write_mesh(&model, mesh, &mut report)?,
+        }
+        report.times.write = started.elapsed() - report.times.triangulate;
+        Ok(report)
+    }
+
+    /// The alpha complex that is wanted, if one is.
+    fn alpha<'m>(
+        &self,
+        model: &Model<'_>,
+        mesh: &'m Tetrahedralization,
+        report: &mut Report,
+    ) -> Option<AlphaComplex<'m>> {
+        let radius = self.options.alpha.as_ref()?;
+        let alpha = AlphaComplex::new(mesh, radius.in_steps(model.scale()));
+        report.tetrahedra = alpha.tetrahedra();
+        Some(alpha)
+    }
+
+    fn write_table(
+        &mut self,
+        model: &Model<'_>,
+        selected: &Selected<'_>,
+        mesh: &Tetrahedralization,
+        report: &mut Report,
+    ) -> Result<()> {
+        let alpha = self.alpha(model, mesh, report);
+        let (number, scale) = (model.name.number, model.scale());
+        let rows = Rows { number, selected, mesh, alpha: alpha.as_ref(), scale };
+        let is_contacts = self.options.product == Product::Contacts;
+        let table = self.table()?;
+        if is_contacts { rows.write_contacts(table) } else { rows.write_tetrahedra(table) }
+    }
+
+    /// The table, which begins with the names of the columns.
+    fn table(&mut self) -> Result<&mut Output> {
+        if self.table.is_none() {
+            let columns = if self.options.product == Product::Contacts { CONTACTS } else { TETRAHEDRA };
+            let mut table = (self.open)(None)?;
+            table.write_all(columns.as_bytes()).map_err(write_error)?;
+            self.table = Some(table);
+        }
+        Ok(self.table.as_mut().expect("there is one now"))
+    }
+
+    fn write_mesh(&mut self, model: &Model<'_>, mesh: Tetrahedralization, report: &mut Report) -> Result<()> {
+        let kept = self.alpha(model, &mesh, report).map(AlphaComplex::into_bits);
+        let merged = mesh.duplicates.len() as u64;
+        let points = mesh.vertices().len() as u64 + merged;
+        let header = self.header(model.coordinates, &mesh, points);
+        let mut writer = StreamWriter::new((self.open)(Some(model.name))?, header)?;
+        let is_kept = |t: usize| kept.as_ref().is_none_or(|bits| bits[t / 64] >> (t % 64) & 1 == 1);
+        let mut corners = mesh.into_corners(is_kept);
+        let label = |index: u32| match model.selected {
+            Some(selected) => selected.label(index as usize),
+            None => u64::from(index) + 1,
+        };
+        write_mesh(&mut writer, &mut corners, label)?;
+        writer.end(points, merged)?.commit()
+    }
+
+    fn header(&self, coordinates: Coordinates, mesh: &Tetrahedralization, points: u64) -> Header {
+        let mut producer = format!("tess3 {}", env!("CARGO_PKG_VERSION"));
+        if let Some(radius) = &self.options.alpha {
+            producer += &format!(", alpha complex of radius {radius}");
+        }
+        if self.options.method.arithmetic != Arithmetic::Exact {
+            producer += ", in floating-point arithmetic";
+        }
+        Header {
+            kind: Kind::TetrahedralMesh,
+            coordinates,
+            dims: 3,
+            has_elevation: false,
+            bounds: bounds(mesh),
+            points: Some(points),
+            tree: None,
+            region: None,
+            chunked: false,
+            crs: Crs::Unknown,
+            producer,
+        }
+    }
+}
+
+/// What is written beside the mesh.
+struct Model<'s> {
+    name: ModelName,
+    coordinates: Coordinates,
+    /// The atoms, if they are more than points.
+    selected: Option<&'s Selected<'s>>,
+}
+
+impl Model<'_> {
+    /// World units per stored unit, which is the same for all axes of structures.
+    fn scale(&self) -> f64 {
+        match self.coordinates {
+            Coordinates::F64 => 1.0,
+            Coordinates::I32 { scale, .. } => scale[0],
+        }
+    }
+}
+
+fn bounds(mesh: &Tetrahedralization) -> Option<Bounds> {
+    let (first, rest) = mesh.vertices().split_first()?;
+    let mut bounds = Bounds::of_point(first.at);
+    rest.iter().for_each(|vertex| bounds.extend(vertex.at));
+    Some(bounds)
+}

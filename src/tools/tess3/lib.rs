@@ -1,0 +1,182 @@
+//! `tess3`: the Delaunay tetrahedralization of the atoms of molecules and of other points in memory (thesis 3.4), as a
+//! mesh stream or as tables, of one file or of very many.
+//!
+//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files, beside each other.
+
+mod alpha;
+mod choice;
+mod edges;
+mod exact;
+pub mod heap;
+mod job;
+mod mesh;
+mod method;
+mod names;
+mod number;
+mod radius;
+mod spheres;
+pub mod sweep;
+mod tables;
+
+pub use alpha::AlphaComplex;
+pub use job::{ModelName, run};
+pub use mesh::write_mesh;
+pub use method::{Arithmetic, Method};
+pub use radius::Radius;
+pub use spheres::{Measure, measure};
+
+use std::time::Duration;
+
+use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_io::source::structure::Selection;
+
+/// What is written of a triangulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Product {
+    /// The stream of the tetrahedral mesh, one per model.
+    Mesh,
+    /// A table of the tetrahedra.
+    Tetrahedra,
+    /// A table of the edges.
+    Contacts,
+}
+
+/// What to triangulate, and what to write of it.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Which atoms; all models are triangulated one by one.
+    pub selection: Selection,
+    /// What is written.
+    pub product: Product,
+    /// Write only simplices of the alpha complex with this radius, in world units.
+    pub alpha: Option<Radius>,
+    /// How the kernel is to go about it.
+    pub method: Method,
+}
+
+/// What was done with one model.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Report {
+    /// Number that the file gives the model.
+    pub model: i64,
+    /// Atoms that were selected.
+    pub atoms: u64,
+    /// Different points among them: vertices of the mesh.
+    pub vertices: u64,
+    /// Tetrahedra of the triangulation, or with a radius of the alpha complex.
+    pub tetrahedra: u64,
+    /// Facets of the convex hull.
+    pub hull_facets: u64,
+    /// Tetrahedra that the kernel made, infinite ones included; most of them did not last.
+    pub created: u64,
+    /// In-sphere tests of the search for cavities.
+    pub in_sphere_tests: u64,
+    /// Most bytes that the kernel and its result held at a time, the points of the input included; 0 if not known.
+    pub kernel_bytes: u64,
+    /// Decisions of the predicates, if they are exact.
+    pub predicates: PredicateCounts,
+    /// What went wrong, if they are not.
+    pub rounding: Rounding,
+    /// Time.
+    pub times: Times,
+}
+
+impl Report {
+    /// Of a model with the given number of atoms, before anything is done.
+    fn new(model: i64, atoms: usize) -> Self {
+        Report { model, atoms: atoms as u64, ..Report::default() }
+    }
+}
+
+/// What rounding did to a triangulation in floating-point arithmetic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Rounding {
+    /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known only if
+    /// signs are checked.
+    pub wrong_signs: u64,
+    /// In-sphere tests whose exact value is zero, and the computed one is not.
+    pub wrong_zeros: u64,
+    /// In-sphere tests whose value was not the exact one.
+    pub rounded: u64,
+    /// Distinct points that are in no tetrahedron.
+    pub missing: u64,
+}
+
+impl Rounding {
+    fn add(&mut self, other: &Rounding) {
+        let Rounding { wrong_signs, wrong_zeros, rounded, missing } = self;
+        *wrong_signs += other.wrong_signs;
+        *wrong_zeros += other.wrong_zeros;
+        *rounded += other.rounded;
+        *missing += other.missing;
+    }
+}
+
+/// Where the time went.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Times {
+    /// Reading the file and finding out what is in it; counted with the first model.
+    pub read: Duration,
+    /// Selecting atoms and triangulating.
+    pub triangulate: Duration,
+    /// Of that, ordering the points.
+    pub order: Duration,
+    /// Of that, if it was to be measured, the walks to the points; the search of cavities, with the predicates; and
+    /// putting new tetrahedra in their place.
+    pub locate: Duration,
+    /// See `locate`.
+    pub predicates: Duration,
+    /// See `locate`.
+    pub update: Duration,
+    /// Measuring, formatting and writing.
+    pub write: Duration,
+}
+
+impl Times {
+    /// All of it.
+    #[must_use]
+    pub fn total(&self) -> Duration {
+        self.read + self.triangulate + self.write
+    }
+
+    fn add(&mut self, other: &Times) {
+        let Times { read, triangulate, order, locate, predicates, update, write } = self;
+        *read += other.read;
+        *triangulate += other.triangulate;
+        *order += other.order;
+        *locate += other.locate;
+        *predicates += other.predicates;
+        *update += other.update;
+        *write += other.write;
+    }
+}
+
+/// What was done with all models together.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stats {
+    /// Models.
+    pub models: u64,
+    /// Sums of the models, and the greatest [`Report::kernel_bytes`]; the number of the model means nothing.
+    pub sums: Report,
+    /// Greatest number of atoms of a model.
+    pub atoms_max: u64,
+}
+
+impl Stats {
+    /// Adds a model.
+    pub fn add(&mut self, report: &Report) {
+        let Stats { models, sums, atoms_max } = self;
+        *models += 1;
+        *atoms_max = report.atoms.max(*atoms_max);
+        sums.atoms += report.atoms;
+        sums.vertices += report.vertices;
+        sums.tetrahedra += report.tetrahedra;
+        sums.hull_facets += report.hull_facets;
+        sums.created += report.created;
+        sums.in_sphere_tests += report.in_sphere_tests;
+        sums.kernel_bytes = report.kernel_bytes.max(sums.kernel_bytes);
+        sums.predicates.merge(&report.predicates);
+        sums.rounding.add(&report.rounding);
+        sums.times.add(&report.times);
+    }
+}

@@ -1,0 +1,176 @@
+//! Writes a tetrahedralization as a stream, patch by patch along the curve.
+
+use std::io::Write;
+
+use spmesh_core::error::Result;
+use spmesh_geometry::delaunay3::{CornerParts, Corners, Vertex};
+use spmesh_stream::{Patch, StreamWriter};
+
+/// Tetrahedra per patch. With four vertices of its own each, a tetrahedron takes at most 4 * (4 + 24 + 4) bytes, so a
+/// patch stays below the maximum of a block.
+const PATCH_TETRAHEDRA: usize = 8000;
+
+/// Vertices without tetrahedra per patch, by the same reckoning.
+const PATCH_VERTICES: usize = 32_000;
+
+/// Id of a vertex that no patch has so far.
+const NONE: u32 = u32::MAX;
+
+/// Marks what stands in place of the id of a vertex while it is imported into a patch: its number there. Ids are
+/// less: they are words of eight per tetrahedron to the kernel.
+const IMPORTED: u32 = 1 << 31;
+
+/// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A vertex comes with
+/// its first patch, and is finalized by its last. `label` is told the index of a vertex among the points of the input.
+///
+/// Memory: 8 bytes per vertex, which are those that the mesh has to spare, and a patch.
+///
+/// # Errors
+/// If writing fails, or a coordinate does not fit the encoding of the stream.
+pub fn write_mesh<W: Write>(
+    writer: &mut StreamWriter<W>,
+    mesh: &mut Corners,
+    label: impl Fn(u32) -> u64,
+) -> Result<()> {
+    let CornerParts { vertices, tetrahedra, spare } = mesh.parts();
+    let mut own = Vec::new();
+    let words = match spare.get_mut(..2 * vertices.len()) {
+        Some(words) => words,
+        None => {
+            own.resize(2 * vertices.len(), 0);
+            &mut own[..]
+        }
+    };
+    let mut builder = PatchBuilder::new(vertices, label, words);
+    for (number, corners) in (0..).zip(tetrahedra.chunks(PATCH_TETRAHEDRA)) {
+        corners.as_flattened().iter().for_each(|&v| builder.last_patches[v as usize] = number);
+    }
+    for corners in tetrahedra.chunks(PATCH_TETRAHEDRA) {
+        corners.as_flattened().iter().for_each(|&v| builder.corner(v));
+        builder.close(writer)?;
+    }
+    for v in 0..vertices.len() as u32 {
+        builder.single(v);
+        if builder.new.len() == PATCH_VERTICES {
+            builder.close(writer)?;
+        }
+    }
+    builder.close(writer)
+}
+
+/// Builds one patch after the other.
+struct PatchBuilder<'m, Label> {
+    vertices: &'m [Vertex],
+    label: Label,
+    /// Number of the last patch that uses a vertex; anything as long as there is none.
+    last_patches: &'m mut [u32],
+    /// Number of the current patch.
+    number: u32,
+    /// Id of each vertex, [`NONE`], or [`IMPORTED`] and its place in `imported`.
+    ids: &'m mut [u32],
+    /// New vertices of the patch.
+    new: Vec<u32>,
+    /// Ids and vertices that the patch imports, in order of appearance.
+    imported: Vec<(u32, u32)>,
+    /// For each of `imported`, its local index.
+    locals: Vec<u32>,
+    labels: Vec<u64>,
+    /// The patch as it is written; corners are local indices of new vertices or marked as `ids` are.
+    patch: Patch,
+}
+
+impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
+    /// Needs two words per vertex.
+    fn new(vertices: &'m [Vertex], label: Label, words: &'m mut [u32]) -> Self {
+        assert!(vertices.len() < IMPORTED as usize, "more vertices than the kernel can number");
+        let (last_patches, ids) = words.split_at_mut(vertices.len());
+        ids.fill(NONE);
+        PatchBuilder {
+            vertices,
+            label,
+            last_patches,
+            number: 0,
+            ids,
+            new: Vec::new(),
+            imported: Vec::new(),
+            locals: Vec::new(),
+            labels: Vec::new(),
+            patch: Patch::default(),
+        }
+    }
+
+    /// Adds a corner of a tetrahedron.
+    #[inline]
+    fn corner(&mut self, v: u32) {
+        let first_id = self.patch.first_id as u32;
+        let id = &mut self.ids[v as usize];
+        if *id == NONE {
+            *id = first_id + self.new.len() as u32;
+            self.new.push(v);
+        } else if *id < first_id {
+            self.imported.push((*id, v));
+            *id = IMPORTED | (self.imported.len() - 1) as u32;
+        }
+        let corner = if *id < IMPORTED { *id - first_id } else { *id };
+        self.patch.simplices.push(corner);
+    }
+
+    /// Adds a vertex, if it is in no patch so far.
+    fn single(&mut self, v: u32) {
+        let id = &mut self.ids[v as usize];
+        if *id == NONE {
+            *id = self.patch.first_id as u32 + self.new.len() as u32;
+            self.new.push(v);
+            self.last_patches[v as usize] = self.number;
+        }
+    }
+
+    /// Writes the patch, if there is anything in it.
+    fn close<W: Write>(&mut self, writer: &mut StreamWriter<W>) -> Result<()> {
+        if self.new.is_empty() && self.imported.is_empty() {
+            return Ok(());
+        }
+        self.number_imported();
+        for corner in &mut self.patch.simplices {
+            if *corner >= IMPORTED {
+                *corner = self.locals[(*corner - IMPORTED) as usize];
+            }
+        }
+        let vertices = self.new.iter().copied().chain(self.imported.iter().map(|&(_, v)| v));
+        let is_last = |v: u32| self.last_patches[v as usize] == self.number;
+        self.patch.finalized.extend((0..).zip(vertices).filter(|&(_, v)| is_last(v)).map(|(local, _)| local));
+        self.patch.new.extend(self.new.iter().map(|&v| self.vertices[v as usize].at));
+        self.patch.imported.extend(self.imported.iter().map(|&(id, _)| u64::from(id)));
+        writer.patch(&self.patch)?;
+        self.labels.extend(self.new.iter().map(|&v| (self.label)(self.vertices[v as usize].index)));
+        if !self.labels.is_empty() {
+            writer.labels(&self.labels)?;
+        }
+        self.start_next();
+        Ok(())
+    }
+
+    /// Sorts the imported vertices, says which local index each of them has, and gives them their ids back.
+    fn number_imported(&mut self) {
+        self.imported.sort_unstable();
+        self.locals.clear();
+        self.locals.resize(self.imported.len(), 0);
+        let first = self.new.len() as u32;
+        for (local, &(id, v)) in (first..).zip(&self.imported) {
+            let place = std::mem::replace(&mut self.ids[v as usize], id) - IMPORTED;
+            self.locals[place as usize] = local;
+        }
+    }
+
+    fn start_next(&mut self) {
+        self.number += 1;
+        self.patch.first_id += self.new.len() as u64;
+        self.new.clear();
+        self.imported.clear();
+        self.labels.clear();
+        self.patch.new.clear();
+        self.patch.imported.clear();
+        self.patch.simplices.clear();
+        self.patch.finalized.clear();
+    }
+}

@@ -1,0 +1,107 @@
+//! How points are triangulated: by the exact kernel, or as the program of the thesis did.
+
+use std::borrow::Cow;
+use std::time::Duration;
+
+use super::heap::peak_during;
+use super::{Report, Rounding};
+use spmesh_core::error::Result;
+use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_geometry::delaunay3_float;
+use spmesh_geometry::order::{Curve, Sequence};
+use spmesh_geometry::predicates::Point3;
+
+/// Which arithmetic decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Arithmetic {
+    /// Signs are never wrong.
+    #[default]
+    Exact,
+    /// That of `f64`, with errors where rounding matters.
+    Float {
+        /// Whether signs are compared with the exact ones.
+        check_signs: bool,
+    },
+}
+
+/// How the kernel works, for experiments. With exact arithmetic nothing of it changes the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Method {
+    /// Which arithmetic decides.
+    pub arithmetic: Arithmetic,
+    /// The curve along which points are stored and inserted.
+    pub curve: Curve,
+    /// In which sequence they are inserted.
+    pub sequence: Sequence,
+    /// Whether points that have more low bits in common are inserted first.
+    pub by_bit_levels: bool,
+    /// Seed of the walks in floating-point arithmetic.
+    pub seed: u64,
+    /// Measure the parts of exact insertions, too, which takes some time itself.
+    pub is_timed: bool,
+}
+
+impl Method {
+    /// Triangulates, and says in `report` what that took.
+    ///
+    /// # Errors
+    /// Those of the kernels.
+    pub(super) fn triangulate(
+        &self,
+        points: Cow<[Point3]>,
+        report: &mut Report,
+    ) -> Result<Tetrahedralization> {
+        let input_bytes = size_of_val(&points[..]) as u64;
+        let (mesh, peak) = peak_during(|| match self.arithmetic {
+            Arithmetic::Exact => self.exactly(points, report),
+            Arithmetic::Float { check_signs } => self.in_floating_point(&points, check_signs, report),
+        });
+        let mesh = mesh?;
+        report.kernel_bytes = peak.map_or(0, |bytes| input_bytes + bytes);
+        report.vertices = mesh.vertices().len() as u64;
+        report.tetrahedra = mesh.tetrahedra().len() as u64;
+        report.hull_facets = mesh.hull_facets as u64;
+        Ok(mesh)
+    }
+
+    fn exactly(&self, points: Cow<[Point3]>, report: &mut Report) -> Result<Tetrahedralization> {
+        let mut kernel = Kernel::new();
+        kernel.curve = self.curve;
+        kernel.sequence = self.sequence;
+        kernel.by_bit_levels = self.by_bit_levels;
+        kernel.is_timed = self.is_timed;
+        let mut mesh = Tetrahedralization::default();
+        kernel.triangulate(points, &mut mesh)?;
+        let stats = mesh.stats;
+        report.created = stats.created;
+        report.in_sphere_tests = stats.insphere_tests;
+        report.predicates = *kernel.counts();
+        report.times.order = stats.order;
+        report.times.locate = stats.locate;
+        report.times.predicates = stats.cavity;
+        report.times.update = stats.update;
+        Ok(mesh)
+    }
+
+    fn in_floating_point(
+        &self,
+        points: &[Point3],
+        check_signs: bool,
+        report: &mut Report,
+    ) -> Result<Tetrahedralization> {
+        let Method { curve, sequence, by_bit_levels, seed, .. } = *self;
+        let thesis = delaunay3_float::Options::default();
+        let options =
+            delaunay3_float::Options { curve, sequence, by_bit_levels, seed, check_signs, ..thesis };
+        let (mesh, stats) = delaunay3_float::triangulate(points, &options)?;
+        let delaunay3_float::Stats { wrong_signs, wrong_zeros, rounded, missing, .. } = stats;
+        report.created = stats.created;
+        report.in_sphere_tests = stats.in_sphere_tests;
+        report.rounding = Rounding { wrong_signs, wrong_zeros, rounded, missing };
+        report.times.order = Duration::from_secs_f64(stats.seconds.order);
+        report.times.locate = Duration::from_secs_f64(stats.seconds.locate);
+        report.times.predicates = Duration::from_secs_f64(stats.seconds.predicates);
+        report.times.update = Duration::from_secs_f64(stats.seconds.update);
+        Ok(mesh)
+    }
+}

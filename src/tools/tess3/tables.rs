@@ -1,0 +1,158 @@
+//! Tables of tetrahedra and of contacts: lines of columns separated by tabs, below a line with their names.
+//!
+//! Rows do not depend on how the triangulation was made: atoms are in the order of the input within a row, and so are
+//! the rows.
+
+use std::io::Write;
+
+use super::alpha::AlphaComplex;
+use super::edges::for_each_edge;
+use super::names::AtomNames;
+use super::number::write_number;
+use super::spheres::measure;
+use spmesh_core::error::{Error, Result};
+use spmesh_geometry::delaunay3::Tetrahedralization;
+use spmesh_geometry::predicates::Point3;
+use spmesh_io::source::structure::Selected;
+
+/// Columns of the table of tetrahedra.
+pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\tserial2\tserial3\tserial4\t\
+                                     circumradius\tvolume\n";
+
+/// Columns of the table of contacts.
+pub(super) const CONTACTS: &str = "model\tatom1\tatom2\tserial1\tserial2\tdistance\ttetrahedra\n";
+
+/// Bytes of rows that are collected before they are written.
+const ROWS_LEN: usize = 1 << 16;
+
+/// What the rows of one model are made of.
+pub(super) struct Rows<'s> {
+    /// Number that the file gives it.
+    pub(super) number: i64,
+    /// Its atoms: what the mesh was made of.
+    pub(super) selected: &'s Selected<'s>,
+    pub(super) mesh: &'s Tetrahedralization,
+    /// What is to be printed of the mesh, if not all of it.
+    pub(super) alpha: Option<&'s AlphaComplex<'s>>,
+    /// World units per stored unit.
+    pub(super) scale: f64,
+}
+
+impl<'s> Rows<'s> {
+    /// Writes a row per tetrahedron: its atoms, the radius of the circumscribed sphere, and the volume.
+    ///
+    /// Memory: 16 bytes per tetrahedron, and the names of the atoms.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write_tetrahedra(&self, output: &mut impl Write) -> Result<()> {
+        let tetrahedra = self.mesh.tetrahedra().iter().enumerate();
+        let kept = tetrahedra.filter(|&(t, _)| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t)));
+        let mut rows: Vec<[u32; 4]> = kept.map(|(_, t)| self.in_order_of_input(t.vertices)).collect();
+        rows.sort_unstable();
+        let mut table = Table::new(output, self);
+        for row in rows {
+            table.start_row(&row)?;
+            let measure = measure(row.map(|index| self.point(index)));
+            table.number(measure.circumradius * self.scale)?;
+            table.number(measure.volume * self.scale.powi(3))?;
+            table.end_row()?;
+        }
+        table.finish()
+    }
+
+    /// Writes a row per edge: its atoms, their distance, and the number of tetrahedra around it.
+    ///
+    /// Memory: 12 bytes per edge, and the names of the atoms.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub(super) fn write_contacts(&self, output: &mut impl Write) -> Result<()> {
+        let mut rows: Vec<([u32; 2], u32)> = Vec::new();
+        for_each_edge(self.mesh, |ring| -> Result<()> {
+            if self.alpha.is_none_or(|alpha| alpha.has_edge(ring)) {
+                let is_kept = |t: u32| self.alpha.is_none_or(|alpha| alpha.has_tetrahedron(t as usize));
+                let tetrahedra = ring.tetrahedra.iter().filter(|&&t| is_kept(t)).count();
+                rows.push((self.in_order_of_input(ring.ends), tetrahedra as u32));
+            }
+            Ok(())
+        })?;
+        rows.sort_unstable();
+        let mut table = Table::new(output, self);
+        for (row, tetrahedra) in rows {
+            table.start_row(&row)?;
+            let [a, b] = row.map(|index| self.point(index));
+            let square: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
+            table.number(square.sqrt() * self.scale)?;
+            table.count(tetrahedra)?;
+            table.end_row()?;
+        }
+        table.finish()
+    }
+
+    /// Indices in the selection, increasing, of vertices of the mesh.
+    fn in_order_of_input<const N: usize>(&self, vertices: [u32; N]) -> [u32; N] {
+        let mut indices = vertices.map(|v| self.mesh.vertices()[v as usize].index);
+        indices.sort_unstable();
+        indices
+    }
+
+    fn point(&self, index: u32) -> Point3 {
+        self.selected.points()[index as usize]
+    }
+}
+
+/// Rows on their way to the output.
+struct Table<'t, W> {
+    output: &'t mut W,
+    number: i64,
+    selected: &'t Selected<'t>,
+    names: AtomNames,
+    text: Vec<u8>,
+}
+
+impl<'t, W: Write> Table<'t, W> {
+    fn new(output: &'t mut W, rows: &Rows<'t>) -> Self {
+        let Rows { number, selected, .. } = *rows;
+        Table { output, number, selected, names: AtomNames::new(selected), text: Vec::new() }
+    }
+
+    /// Model, names and serial numbers of atoms.
+    fn start_row(&mut self, atoms: &[u32]) -> Result<()> {
+        write!(self.text, "{}", self.number).map_err(write_error)?;
+        for &index in atoms {
+            self.text.push(b'\t');
+            self.text.extend_from_slice(self.names.name(index as usize).as_bytes());
+        }
+        for &index in atoms {
+            let serial = self.selected.label(index as usize);
+            write!(self.text, "\t{serial}").map_err(write_error)?;
+        }
+        Ok(())
+    }
+
+    fn number(&mut self, value: f64) -> Result<()> {
+        self.text.push(b'\t');
+        write_number(&mut self.text, value).map_err(write_error)
+    }
+
+    fn count(&mut self, count: u32) -> Result<()> {
+        write!(self.text, "\t{count}").map_err(write_error)
+    }
+
+    fn end_row(&mut self) -> Result<()> {
+        self.text.push(b'\n');
+        if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
+    }
+
+    /// Hands the rows so far to the output.
+    fn finish(&mut self) -> Result<()> {
+        self.output.write_all(&self.text).map_err(write_error)?;
+        self.text.clear();
+        Ok(())
+    }
+}
+
+pub(super) fn write_error(cause: std::io::Error) -> Error {
+    Error::io("writing the table", cause)
+}

@@ -1,0 +1,12 @@
+//! Predicates, orders and kernels, held against slow and plain ones.
+
+mod circle;
+mod configurations;
+mod delaunay3_float;
+mod diagram4;
+mod kernel;
+mod kernel3;
+mod kernel_predicates;
+mod kernel_predicates3;
+mod order;
+mod sphere;

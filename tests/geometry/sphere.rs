@@ -1,0 +1,127 @@
+//! The sphere test is conservative: checked against exact integers, at the tightest boxes there are.
+
+use num_bigint::BigInt;
+use num_traits::Signed;
+use spmesh_geometry::predicates::sphere::SphereBounds;
+use spmesh_model::bounds::Region;
+
+use spmesh_reference::sets::Random;
+
+type Corner = [i64; 3];
+
+fn cross(p: &[BigInt; 3], q: &[BigInt; 3]) -> [BigInt; 3] {
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &p[i] * &q[j] - &p[j] * &q[i])
+}
+
+fn dot(p: &[BigInt; 3], q: &[BigInt; 3]) -> BigInt {
+    &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2]
+}
+
+/// Centre `m / 2v` of the sphere relative to the first corner, as m and v > 0; `None` for a flat tetrahedron.
+fn centre(corners: [Corner; 4]) -> Option<([BigInt; 3], BigInt)> {
+    let [a, b, c, d] = corners;
+    let [b, c, d] = [b, c, d].map(|p| [0, 1, 2].map(|axis| BigInt::from(p[axis]) - a[axis]));
+    let [x, y, z] = [cross(&c, &d), cross(&d, &b), cross(&b, &c)];
+    let volume = dot(&b, &x);
+    let [p, q, r] = [dot(&b, &b), dot(&c, &c), dot(&d, &d)];
+    let m = [0, 1, 2].map(|axis| (&p * &x[axis] + &q * &y[axis] + &r * &z[axis]) * volume.signum());
+    (volume != BigInt::ZERO).then(|| (m, volume.abs()))
+}
+
+/// Whether the ball lies strictly on the near side of a plane at `side` from the first corner, towards `sign` of `axis`.
+fn is_within(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64, side: &BigInt) -> bool {
+    let gap: BigInt = volume * side * 2 - &m[axis] * sign;
+    gap.is_positive() && &gap * &gap > dot(m, m)
+}
+
+/// The least integer distance of a plane beyond the ball.
+fn tightest(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64) -> BigInt {
+    let (mut low, mut high) = (BigInt::from(-1), BigInt::from(1));
+    while !is_within(m, volume, axis, sign, &high) {
+        high *= 2;
+    }
+    while &high - &low > BigInt::from(1) {
+        let middle: BigInt = (&low + &high) / 2;
+        if is_within(m, volume, axis, sign, &middle) { high = middle } else { low = middle }
+    }
+    high
+}
+
+/// Tests boxes with one finite side around the border of the ball, which is `tightest` away: counts claims, and balls
+/// inside.
+fn check(corners: [Corner; 4], bounds: SphereBounds, counts: &mut (u32, u32)) {
+    let Some((m, volume)) = centre(corners) else { return };
+    for axis in 0..3 {
+        for sign in [1, -1] {
+            let Ok(tightest) = i64::try_from(tightest(&m, &volume, axis, sign)) else { continue };
+            for side in tightest.saturating_sub(2)..tightest.saturating_add(3) {
+                let plane = corners[0][axis] as i128 + i128::from(sign * side);
+                if plane as f64 as i128 != plane {
+                    continue;
+                }
+                let mut region = Region::<3>::EVERYTHING;
+                let which = if sign > 0 { &mut region.max } else { &mut region.min };
+                which[axis] = plane as f64;
+                let claim = bounds.ball_inside(corners.map(|p| p.map(|c| c as f64)), &region);
+                assert!(!claim || side >= tightest, "{corners:?}: axis {axis}, {side} of {tightest}");
+                counts.0 += u32::from(claim);
+                counts.1 += u32::from(side >= tightest);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_ball_is_claimed_inside_that_is_not() {
+    let mut random = Random::new(12);
+    let mut counts = (0, 0);
+    for round in 0..4000 {
+        let side = [3, 10, 1000, 1 << 18][round % 4];
+        let offset = [0, 1_000_000_000][round / 4 % 2];
+        let mut corner = || {
+            [
+                offset + random.integer(-side, side),
+                random.integer(-side, side) - offset,
+                random.integer(-side, side),
+            ]
+        };
+        let corners = [corner(), corner(), corner(), corner()];
+        for bounds in [SphereBounds::INTEGER, SphereBounds::FLOAT] {
+            check(corners, bounds, &mut counts);
+        }
+    }
+    // Conservative, but not useless: nearly every ball that is inside by a unit is recognised.
+    let (claimed, inside) = counts;
+    assert!(f64::from(claimed) > 0.95 * f64::from(inside), "{claimed} of {inside}");
+}
+
+/// Corners hardly off a plane, with spheres far larger than they are.
+#[test]
+fn slivers_are_not_claimed_by_mistake() {
+    let mut random = Random::new(13);
+    let mut counts = (0, 0);
+    for _ in 0..4000 {
+        let mut corner =
+            |side: i64| [random.integer(-side, side), random.integer(-side, side), random.integer(0, 1)];
+        let corners = [corner(1 << 12), corner(1 << 12), corner(1 << 12), corner(1 << 12)];
+        for bounds in [SphereBounds::INTEGER, SphereBounds::FLOAT] {
+            check(corners, bounds, &mut counts);
+        }
+    }
+    assert!(counts.0 > counts.1 / 2, "{counts:?}");
+}
+
+#[test]
+fn extreme_tetrahedra_are_never_claimed() {
+    let finite = Region { min: [-1e300; 3], max: [1e300; 3] };
+    let corner = |size: f64| [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
+    for size in [0.0, 5e-324, 1e-200, 1e-60, 1e60, 1e120, 1e308] {
+        assert!(!SphereBounds::FLOAT.ball_inside(corner(size), &finite), "{size}");
+    }
+    let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+    assert!(!SphereBounds::FLOAT.ball_inside(flat, &finite));
+    assert!(!SphereBounds::FLOAT.ball_inside([[f64::NAN; 3]; 4], &Region::EVERYTHING));
+    assert!(SphereBounds::FLOAT.ball_inside(corner(1.0), &finite));
+    let tiny = [[0.0; 3], [1.0, 1e-310, 0.0], [0.0, 1.0, 1e-310], [1e-310, 0.0, 1.0]];
+    assert!(SphereBounds::FLOAT.ball_inside(tiny, &finite));
+}

@@ -1,0 +1,229 @@
+//! One set of tetrahedra, however the input comes: that of the kernel over all points at once.
+
+use std::borrow::Cow;
+use std::io::Cursor;
+
+use spmesh_audit::{Audit, PointSet, Standard};
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+use spmesh_model::bounds::Point;
+use spmesh_reduce::{Duplicates, Options, Stats};
+use spmesh_stream::{Coordinates, Event, LiveVertices, StreamReader};
+
+use super::streams::{GRID, Tagging, stream_of};
+use spmesh_reference::clouds::{FAMILIES, Family, mixture, of};
+use spmesh_reference::sets::Random;
+
+/// The corners of a tetrahedron, sorted, as bits of their coordinates.
+pub type Corners = [[u64; 3]; 4];
+
+const TAGGINGS: [Tagging; 9] = [
+    Tagging::None,
+    Tagging::Never,
+    Tagging::Chunked(0),
+    Tagging::Chunked(1),
+    Tagging::Chunked(2),
+    Tagging::Chunked(3),
+    Tagging::Ragged,
+    Tagging::Preserved(2),
+    Tagging::Forgetful(2),
+];
+
+/// Options under which also small nodes are triangulated.
+fn every_node(threads: usize) -> Options<3> {
+    Options { threads, every_node: true, ..Options::default() }
+}
+
+pub fn tetrahedralize(points: &[u8], options: &Options<3>) -> Result<(Vec<u8>, Stats)> {
+    let reader = StreamReader::new(Cursor::new(points.to_vec()), "points")?;
+    spmesh_reduce::tetrahedralize(reader, Vec::new(), options, |_| ())
+}
+
+pub fn bits(point: Point) -> [u64; 3] {
+    point.map(|x| (x + 0.0).to_bits())
+}
+
+fn sorted(mut corners: Corners) -> Corners {
+    corners.sort_unstable();
+    corners
+}
+
+/// What the kernel makes of all points at once.
+pub fn expected(points: &[Point]) -> Vec<Corners> {
+    let mut mesh = Tetrahedralization::default();
+    Kernel::new().triangulate(Cow::Borrowed(points), &mut mesh).unwrap();
+    let corner = |v: u32| bits(mesh.vertices()[v as usize].at);
+    let mut set: Vec<Corners> = mesh.tetrahedra().iter().map(|t| sorted(t.vertices.map(corner))).collect();
+    set.sort_unstable();
+    set
+}
+
+/// The tetrahedra of a mesh stream and its number of vertices, after checking that each is used only while it is live.
+pub fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
+    let mut reader = StreamReader::new(bytes, "mesh").unwrap();
+    let mut live = LiveVertices::new();
+    let (mut set, mut vertices) = (Vec::new(), 0);
+    while let Some(event) = reader.next_event().unwrap() {
+        if let Event::Patch(patch) = event {
+            let local = live.enter(&patch, |_, point| point).unwrap();
+            vertices += patch.new.len();
+            let corner = |&v: &u32| bits(local[v as usize].1);
+            set.extend(patch.simplices.chunks_exact(4).map(|t| {
+                let corners: Vec<[u64; 3]> = t.iter().map(corner).collect();
+                sorted(corners.try_into().unwrap())
+            }));
+        }
+    }
+    assert!(live.is_empty(), "{} vertices are never finalized", live.len());
+    set.sort_unstable();
+    (set, vertices)
+}
+
+/// The exact audit, which uses neither predicates nor kernels.
+fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
+    let mut given = PointSet::new(coordinates, 3);
+    given.extend(points);
+    let given = given.finish(&coordinates).unwrap();
+    let mut reader = StreamReader::new(mesh, "mesh").unwrap();
+    let mut audit = Audit::new(reader.header(), Standard::Canonical, Some(given)).unwrap();
+    while let Some(event) = reader.next_event().unwrap() {
+        audit.event(&event).unwrap();
+    }
+}
+
+pub fn fits_a_grid(points: &[Point]) -> bool {
+    points.as_flattened().iter().all(|&x| f64::from(x as i32) == x)
+}
+
+fn assert_same_set(points: &[Point], taggings: &[Tagging], random: &mut Random, what: &str) {
+    let tetrahedra = expected(points);
+    let mut distinct: Vec<_> = points.iter().map(|&point| bits(point)).collect();
+    distinct.sort_unstable();
+    distinct.dedup();
+    for &tagging in taggings {
+        let coordinates =
+            if fits_a_grid(points) && tagging != Tagging::Ragged { GRID } else { Coordinates::F64 };
+        let mut shuffled = points.to_vec();
+        random.shuffle(&mut shuffled);
+        let input = stream_of(3, &shuffled, coordinates, tagging, random);
+        let (one, stats) = tetrahedralize(&input, &every_node(1)).unwrap();
+        let (set, vertices) = read_mesh(&one);
+        assert!(set == tetrahedra, "{what}, {tagging:?}: {} of {}", set.len(), tetrahedra.len());
+        assert_eq!(vertices, distinct.len(), "{what}, {tagging:?}");
+        assert_eq!(stats.vertices + stats.merged, points.len() as u64);
+        assert_eq!(stats.simplices, tetrahedra.len() as u64);
+        let (three, _) = tetrahedralize(&input, &every_node(3)).unwrap();
+        assert!(one == three, "{what}, {tagging:?}: the stream depends on the number of threads");
+        let lazy = Options { threads: 2, ..Options::default() };
+        let (lazy, _) = tetrahedralize(&input, &lazy).unwrap();
+        assert!(
+            read_mesh(&lazy).0 == tetrahedra,
+            "{what}, {tagging:?}, with nodes that pass their points up"
+        );
+        if !tetrahedra.is_empty() && points.len() < 60 {
+            assert_proven(&one, points, coordinates);
+        }
+    }
+}
+
+#[test]
+fn no_family_depends_on_cells() {
+    for (number, family) in FAMILIES.into_iter().enumerate() {
+        for count in [20, 90] {
+            let mut random = Random::new((number * 1000 + count) as u64);
+            let points = of(&mut random, family, count);
+            assert_same_set(&points, &TAGGINGS, &mut random, &format!("{family:?} of {count}"));
+        }
+    }
+}
+
+#[test]
+fn larger_sets_do_not_depend_on_cells() {
+    let taggings = [Tagging::Chunked(2), Tagging::Ragged, Tagging::Forgetful(2)];
+    for family in
+        [Family::Uniform, Family::Cubic, Family::BodyCentered, Family::RoundedSphere, Family::Cluster]
+    {
+        let mut random = Random::new(family as u64);
+        let points = of(&mut random, family, 2500);
+        assert_same_set(&points, &taggings, &mut random, &format!("{family:?}"));
+    }
+}
+
+#[test]
+fn mixtures_equal_the_kernel() {
+    for seed in 0..60 {
+        let mut random = Random::new(7000 + seed);
+        let points = mixture(&mut random, 10 + 4 * seed as usize);
+        let tagging = [Tagging::Ragged, Tagging::Chunked(2), Tagging::Forgetful(3)][seed as usize % 3];
+        assert_same_set(&points, &[tagging], &mut random, &format!("mixture {seed}"));
+    }
+}
+
+#[test]
+fn few_points_and_no_tetrahedra_are_valid_streams() {
+    let sets: [&[Point]; 7] = [
+        &[],
+        &[[5.0, 5.0, 5.0]],
+        &[[5.0, 5.0, 0.0], [7.0, 1.0, 3.0]],
+        &[[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [2.0, 2.0, 1.0]],
+        &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [8.0, 8.0, 0.0], [3.0, 3.0, 0.0]],
+        &[[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 8.0], [2.0, 2.0, 2.0]],
+    ];
+    for points in sets {
+        assert_same_set(points, &TAGGINGS, &mut Random::new(1), &format!("{points:?}"));
+    }
+}
+
+#[test]
+fn coinciding_points_are_one_vertex_or_an_error() {
+    let mut random = Random::new(4);
+    let integer = |random: &mut Random| random.integer(0, 4) as f64;
+    let points: Vec<Point> = (0..300).map(|_| [(); 3].map(|()| integer(&mut random))).collect();
+    assert_same_set(&points, &TAGGINGS, &mut random, "a crowded grid");
+    let equal = vec![[4.0, 2.0, 1.0]; 50];
+    let input = stream_of(3, &equal, GRID, Tagging::Chunked(2), &mut random);
+    let (bytes, stats) = tetrahedralize(&input, &every_node(2)).unwrap();
+    assert_eq!((stats.vertices, stats.merged, stats.simplices), (1, 49, 0));
+    assert_eq!(read_mesh(&bytes).1, 1);
+    for every_node in [false, true] {
+        let input = stream_of(3, &points, GRID, Tagging::Chunked(2), &mut random);
+        let options = Options { duplicates: Duplicates::Error, threads: 2, every_node, ..Options::default() };
+        let failure = tetrahedralize(&input, &options).unwrap_err();
+        assert_eq!(failure.kind(), ErrorKind::Malformed);
+        assert!(failure.to_string().contains("several points at x "), "{failure}");
+    }
+}
+
+#[test]
+fn memory_follows_the_faces_of_cells() {
+    let mut random = Random::new(3);
+    let points = of(&mut random, Family::Uniform, 40_000);
+    let input = stream_of(3, &points, Coordinates::F64, Tagging::Chunked(2), &mut random);
+    let (_, stats) = tetrahedralize(&input, &every_node(1)).unwrap();
+    assert_eq!(stats.untagged, 0);
+    assert!(stats.held_max < 1000, "held {} points", stats.held_max);
+    assert!(stats.residual_max < 30_000, "{} residual points waited", stats.residual_max);
+}
+
+#[test]
+fn damaged_streams_are_refused() {
+    let mut random = Random::new(11);
+    let points = of(&mut random, Family::Integers, 700);
+    let input = stream_of(3, &points, GRID, Tagging::Chunked(2), &mut random);
+    for threads in [1, 3] {
+        for part in 1..16 {
+            let at = input.len() * part / 16;
+            let cut = tetrahedralize(&input[..at], &every_node(threads)).unwrap_err();
+            assert_eq!(cut.kind(), ErrorKind::Malformed, "{threads} threads, cut at {at}: {cut}");
+            let mut damaged = input.clone();
+            damaged[at] ^= 1;
+            let flipped = tetrahedralize(&damaged, &every_node(threads)).unwrap_err();
+            assert_eq!(flipped.kind(), ErrorKind::Malformed, "{threads} threads, bit at {at}: {flipped}");
+        }
+    }
+    let planar = stream_of(2, &points, GRID, Tagging::None, &mut random);
+    let refused = tetrahedralize(&planar, &every_node(1)).unwrap_err();
+    assert_eq!(refused.kind(), ErrorKind::Usage);
+    assert!(refused.to_string().contains("with --octree"), "{refused}");
+}

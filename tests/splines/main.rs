@@ -1,0 +1,4 @@
+//! Bases of splines, and fits.
+
+mod bases;
+mod fitting;
