@@ -2,7 +2,7 @@
 
 use super::insertion::{Cavity, Insertion};
 use super::locate::Start;
-use super::sphere::Sphere;
+use super::mesh::Sphere;
 use crate::predicates::{Point2, Predicates2, Sign, WithPredicates2};
 
 /// Triangulates distinct points, all in one arithmetic.

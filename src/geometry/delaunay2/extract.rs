@@ -1,7 +1,7 @@
 //! From the triangulated sphere to a [`super::Triangulation`], in place: infinite triangles go, and vertices become
 //! indices of input points.
 
-use super::sphere::{HalfEdge, Sphere, number_of, previous, triangle_of};
+use super::mesh::{HalfEdge, Sphere, number_of, previous, triangle_of};
 use super::triangulation::NONE;
 
 /// Reads the finished sphere.

@@ -2,7 +2,7 @@
 //! 1981).
 
 use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly};
-use super::sphere::{HalfEdge, Sphere, next, previous, triangle_of, triangles_of};
+use super::mesh::{HalfEdge, Sphere, next, previous, triangle_of, triangles_of};
 use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
 
 /// With lifts k, l, m of three points around the new one, the rounded in-circle determinant has the sign of the exact

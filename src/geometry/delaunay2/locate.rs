@@ -1,6 +1,6 @@
 //! Where a new point begins to change the triangulation: a triangle in conflict with it.
 
-use super::sphere::{HalfEdge, INFINITE, Sphere, corner, next, previous, triangle_of};
+use super::mesh::{HalfEdge, INFINITE, Sphere, corner, next, previous, triangle_of};
 use crate::predicates::{Point2, Predicates2, Sign, lexicographic};
 
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.

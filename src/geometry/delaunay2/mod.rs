@@ -9,7 +9,7 @@ mod distinct;
 mod extract;
 mod insertion;
 mod locate;
-mod sphere;
+mod mesh;
 mod triangulation;
 
 pub use distinct::distinct;
@@ -20,7 +20,7 @@ use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicograph
 use build::Build;
 use extract::Extraction;
 use insertion::Cavity;
-use sphere::INFINITE;
+use mesh::INFINITE;
 use spmesh_core::error::{Error, Result};
 
 /// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.

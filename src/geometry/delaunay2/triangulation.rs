@@ -1,6 +1,6 @@
 //! What the kernel hands out: flat arrays.
 
-use super::sphere::{HalfEdge, WORDS, corner, number_of};
+use super::mesh::{HalfEdge, WORDS, corner, number_of};
 use bytemuck::{Pod, Zeroable};
 
 /// No triangle: beyond an edge of the hull, or at a vertex without triangles.

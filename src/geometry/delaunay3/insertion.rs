@@ -5,11 +5,11 @@ use super::complex::{CORNERS, Complex, DELETED, Facet, tetrahedron_of};
 use super::exact::Exact;
 use super::lanes::Lanes;
 use super::locate::{is_in_conflict, walk, walk_exactly};
-use super::sight::{InSphere, Sight};
 use super::star::Star;
 use super::stats::{Clock, Stats};
 use super::tetrahedralization::Vertex;
 use super::tie::{EXACT, is_inside};
+use super::translated::{InSphere, Sight};
 use crate::predicates::{INSPHERE_SQUARED_BOUND, Point3, TINY};
 use bytemuck::cast;
 

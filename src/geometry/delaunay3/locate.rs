@@ -2,7 +2,7 @@
 
 use super::complex::{CORNERS, Complex, DELETED, Facet, corner, tetrahedron_of};
 use super::exact::Exact;
-use super::sight::{difference, volume};
+use super::translated::{difference, volume};
 use crate::predicates::{Point3, Sign};
 
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.

@@ -14,13 +14,13 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
-mod sight;
 mod star;
 mod stats;
 #[cfg(test)]
 mod tests;
 mod tetrahedralization;
 mod tie;
+mod translated;
 
 pub use corners::{CornerParts, Corners};
 pub use stats::Stats;

@@ -1,8 +1,8 @@
 //! The cavity of a new point: tetrahedra whose spheres have it inside, changed until it sees all facets around.
 
 use super::insertion::Insertion;
-use super::laps::Part;
 use super::mesh::{FACETS, Facet, faraway_corner, sphere_of, tetrahedron_of};
+use super::phase_timer::Part;
 use super::sphere::Sphere;
 use crate::predicates::Point3;
 

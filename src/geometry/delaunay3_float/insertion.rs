@@ -1,8 +1,8 @@
 //! Insertion of points: the tetrahedra in conflict with a point give way to a star around it.
 
 use super::cavity::Cavity;
-use super::laps::{Laps, Part};
 use super::mesh::{Cell, MAX_TETRAHEDRA, Mesh, corner_of, facet, faraway_corner, tetrahedron_of};
+use super::phase_timer::{Laps, Part};
 use super::star::Star;
 use super::{Options, Stats};
 use crate::delaunay3::{Tetrahedron, Vertex};
