@@ -45,7 +45,7 @@ fn across_of(mesh: &Triangulation) -> Vec<[Corner; 3]> {
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
     let mut across = Vec::with_capacity((finite + infinite) as usize);
     across.extend(mesh.triangles().iter().map(|triangle| {
-        [0, 1, 2].map(|i| match triangle.across(i) {
+        [0, 1, 2].map(|i| match triangle.neighbour(i) {
             Some(beyond) => 3 * beyond.triangle + beyond.corner,
             None => 3 * outside[&triangle.vertices[(i + 1) % 3]] + 2,
         })

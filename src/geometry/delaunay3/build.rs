@@ -5,7 +5,7 @@ use super::complex::Complex;
 use super::exact::Exact;
 use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
-use super::stats::{Clock, Stats};
+use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
 use crate::order::Insertions;
 use crate::predicates::{Point3, Sign};
@@ -56,7 +56,7 @@ impl Build<'_> {
             predicates,
             cavity: self.cavity,
             stats: self.stats,
-            clock: Clock::new(self.is_timed),
+            timer: PhaseTimer::new(self.is_timed),
             infinite_lift: self.infinite_lift,
             unfiltered: 0,
             lanes: PhantomData,

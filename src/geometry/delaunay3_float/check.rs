@@ -1,8 +1,8 @@
 //! Exact signs and values, to count the errors of rounded arithmetic with.
 
-use super::Stats;
 use super::mesh::{faraway_corner, finite_facet};
 use super::sphere::difference;
+use super::stats::Stats;
 use crate::delaunay3::Vertex;
 use crate::predicates::{Point3, Predicates2, Predicates3, Sign, TotalPredicates, TotalPredicates3};
 

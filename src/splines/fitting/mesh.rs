@@ -62,7 +62,7 @@ impl Mesh {
 
     fn sides(&self, triangle: u32, is_inner: bool) -> impl Iterator<Item = [usize; 2]> {
         let triangle = &self.triangulation.triangles()[triangle as usize];
-        let is_wanted = move |side: &usize| triangle.across(*side).is_some() == is_inner;
+        let is_wanted = move |side: &usize| triangle.neighbour(*side).is_some() == is_inner;
         (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
     }
 
@@ -80,7 +80,7 @@ impl Mesh {
                 predicates.orient2d(a, b, x) == Sign::Negative
             });
             match beyond {
-                Some(side) => *near = triangle.across(side)?.triangle,
+                Some(side) => *near = triangle.neighbour(side)?.triangle,
                 None => return Some(*near),
             }
         }
