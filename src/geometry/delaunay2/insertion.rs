@@ -143,7 +143,7 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         let end = edge.end;
         let value = end.lift * left + from.lift * right - apex.lift * edge.cross;
         let error = ERROR * (apex.lift * (from.lift + end.lift) + from.lift * end.lift);
-        if P::NUMBERS != Numbers::Any && value.abs() > error {
+        if P::NUMBERS != Numbers::FiniteFloats && value.abs() > error {
             return value > 0.0;
         }
         self.unfiltered += 1;
@@ -163,7 +163,7 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
             let side = |i: usize, j: usize| cross(corners[i].at, corners[j].at);
             (t, corners, [side(1, 2), side(2, 0), side(0, 1)])
         };
-        if P::NUMBERS != Numbers::Any {
+        if P::NUMBERS != Numbers::FiniteFloats {
             let t = walk(&self.mesh, start, at);
             let (t, corners, crosses) = look(&self.mesh, t);
             let [k, l, m] = corners.map(|corner| corner.lift);

@@ -2,7 +2,7 @@
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]
@@ -71,7 +71,7 @@ impl Mesh {
     /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to a triangle whose circle
     /// has less power at x (Edelsbrunner 1990).
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         loop {
             let triangle = &self.triangulation.triangles()[*near as usize];
             let beyond = (0..3).find(|&side| {
