@@ -46,7 +46,7 @@ impl Cavity {
 }
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
-pub(super) struct Insertion<'a, L> {
+pub(super) struct Insertion<'a, L: Lanes> {
     pub(super) complex: Complex,
     pub(super) predicates: &'a mut dyn Exact,
     pub(super) cavity: &'a mut Cavity,
@@ -57,7 +57,8 @@ pub(super) struct Insertion<'a, L> {
     pub(super) infinite_lift: f64,
     /// In-sphere tests that the filter did not decide.
     pub(super) unfiltered: u64,
-    pub(super) lanes: std::marker::PhantomData<L>,
+    /// Proves that the processor has the instructions of the vectors.
+    pub(super) token: L::Token,
 }
 
 impl<L: Lanes> Insertion<'_, L> {
@@ -180,9 +181,13 @@ impl<L: Lanes> Insertion<'_, L> {
     #[inline(always)]
     fn values(&self, at: Point3, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
         let [a, b, c] = abc;
-        let [px, py, pz, lift] = L::columns([L::new(a), L::new(b), L::new(c)]);
+        let [px, py, pz, lift] =
+            L::columns([L::new(self.token, a), L::new(self.token, b), L::new(self.token, c)]);
         let p = [px, py, pz];
-        let (d, d_lift) = ([L::splat(d[0]), L::splat(d[1]), L::splat(d[2])], L::splat(d[3]));
+        let (d, d_lift) = (
+            [L::splat(self.token, d[0]), L::splat(self.token, d[1]), L::splat(self.token, d[2])],
+            L::splat(self.token, d[3]),
+        );
         let [ex, ey, ez, e_lift] = self.apexes(at, apexes);
         let e = [ex, ey, ez];
         let nm = next(cross(p, next(p)));
@@ -193,7 +198,8 @@ impl<L: Lanes> Insertion<'_, L> {
         let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
         let square = greatest * greatest;
         let fifth = square * square * greatest;
-        let bound = fifth.times_plus(L::splat(INSPHERE_SQUARED_BOUND), L::splat(TINY));
+        let bound =
+            fifth.times_plus(L::splat(self.token, INSPHERE_SQUARED_BOUND), L::splat(self.token, TINY));
         value.where_greater(value * value, bound)
     }
 
@@ -203,15 +209,19 @@ impl<L: Lanes> Insertion<'_, L> {
         let infinite = self.complex.infinite();
         let [u, v, w] =
             apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
-        let [x, y, z, _] = L::columns([L::new(u), L::new(v), L::new(w)]);
-        let (x, y, z) = (x - L::splat(at[0]), y - L::splat(at[1]), z - L::splat(at[2]));
+        let [x, y, z, _] = L::columns([L::new(self.token, u), L::new(self.token, v), L::new(self.token, w)]);
+        let (x, y, z) = (
+            x - L::splat(self.token, at[0]),
+            y - L::splat(self.token, at[1]),
+            z - L::splat(self.token, at[2]),
+        );
         let mut lift = dot([x, y, z], [x, y, z]);
         if apexes.contains(&infinite) {
             let mut lifts = lift.array();
             for (lift, apex) in lifts.iter_mut().zip(apexes) {
                 *lift = if apex == infinite { self.infinite_lift } else { *lift };
             }
-            lift = L::new(lifts);
+            lift = L::new(self.token, lifts);
         }
         [x, y, z, lift]
     }

@@ -30,6 +30,7 @@ pub struct Vertex {
 
 impl Vertex {
     /// The input point of this index.
+    #[cfg(feature = "experiments")]
     pub(crate) fn new(at: Point3, index: u32) -> Vertex {
         Vertex { at, index, local: 0 }
     }
@@ -50,6 +51,7 @@ pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
 
 impl Tetrahedron {
     /// A tetrahedron made elsewhere, with what is across from each corner.
+    #[cfg(feature = "experiments")]
     pub(crate) fn new(vertices: [u32; 4], neighbours: [Option<Corner>; 4]) -> Tetrahedron {
         let word = |corner: Corner| corner.tetrahedron * WORDS as u32 + corner.corner;
         Tetrahedron { vertices, neighbours: neighbours.map(|corner| corner.map_or(NONE, word)) }
@@ -80,6 +82,7 @@ pub struct Tetrahedralization {
 
 impl Tetrahedralization {
     /// A tetrahedralization made elsewhere, without stats.
+    #[cfg(feature = "experiments")]
     pub(crate) fn from_parts(
         vertices: Vec<Vertex>,
         duplicates: Vec<[u32; 2]>,
