@@ -9,3 +9,4 @@ pub mod cells4;
 pub mod configurations;
 pub mod functions;
 pub mod points;
+pub mod simplex;

@@ -29,8 +29,8 @@ fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
         for i in 0..3 {
             let (a, b) = (triangle.vertices[(i + 1) % 3], triangle.vertices[(i + 2) % 3]);
             assert_eq!(mesh.left_of(a, b), Some(Corner { triangle: t as u32, corner: i as u32 }));
-            assert_eq!(mesh.left_of(b, a), triangle.across(i));
-            if triangle.across(i).is_none() {
+            assert_eq!(mesh.left_of(b, a), triangle.neighbour(i));
+            if triangle.neighbour(i).is_none() {
                 assert!(hull_edges.insert((a, b)));
             }
         }
@@ -217,7 +217,7 @@ fn order_of_input_does_not_matter() {
         let renamed = triangles(&again).map(|t| t.map(|v| order[v as usize]));
         assert!(triangles(&mesh).eq(renamed), "the very same triangles in the same order, seed {seed}");
         let neighbours = |mesh: &Triangulation| -> Vec<_> {
-            mesh.triangles().iter().map(|t| [0, 1, 2].map(|side| t.across(side))).collect()
+            mesh.triangles().iter().map(|t| [0, 1, 2].map(|side| t.neighbour(side))).collect()
         };
         assert_eq!(neighbours(&mesh), neighbours(&again));
     }

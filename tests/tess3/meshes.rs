@@ -236,7 +236,7 @@ fn flat_structures_are_all_vertices_with_a_notice() {
 #[test]
 fn long_meshes_come_in_patches() {
     let text: String = cloud(30_000, 90_000, 5).iter().map(|atom| format!("{:?}\n", atom.at)).collect();
-    let mesh = mesh_of(&text.replace(['[', ']'], ""), &["--sequence", "rounds"]);
+    let mesh = mesh_of(&text.replace(['[', ']'], ""), &[]);
     assert_eq!(mesh.points.len() as u64 + mesh.merged, 30_000);
     assert!(mesh.patches > 20, "{} patches", mesh.patches);
     // Along the curve few vertices are in use at a time.

@@ -10,7 +10,7 @@
 use super::knots::Knots;
 use super::surface;
 use crate::delaunay2::{MAX_POINTS, distinct};
-use crate::predicates::{Predicates2, Sign, TotalPredicates, lexicographic};
+use crate::predicates::{FiniteFloatPredicates, Predicates2, Sign, lexicographic};
 use spmesh_core::error::{Error, Result};
 
 impl Knots {
@@ -77,7 +77,7 @@ impl Knots {
     /// The border of the convex hull, counterclockwise; of knots at one place the first.
     fn border(&self) -> Result<Border> {
         let all = surface::hull(self)?;
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let count = all.len();
         let is_corner = |&place: &usize| {
             let [before, at, after] = [place + count - 1, place, place + 1].map(|i| self.at(all[i % count]));

@@ -3,7 +3,7 @@
 use super::knots::Knots;
 use super::plane::Plane;
 use super::surface::{Corner, Start};
-use crate::predicates::TotalPredicates;
+use crate::predicates::FiniteFloatPredicates;
 use foldhash::{HashMap, HashMapExt};
 use spmesh_core::random::Random;
 use std::collections::BTreeMap;
@@ -20,7 +20,7 @@ impl Start {
     ///
     /// Cost: O(n log n) expected for n knots, whatever the number of places.
     pub(super) fn insert_copies(&mut self, knots: &Knots) {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut corner_at = self.corners_at(knots.len());
         let place = |id: u32| knots.at(id).map(|c| if c == 0.0 { 0 } else { c.to_bits() });
@@ -79,7 +79,13 @@ impl Start {
     /// Replaces the triangles in conflict with a knot by a star around it.
     ///
     /// All knots stay vertices, so that the cavity has none inside, and its triangles are a tree: none is met twice.
-    fn insert(&mut self, plane: &mut Plane<TotalPredicates>, id: u32, first: u32, corner_at: &mut [Corner]) {
+    fn insert(
+        &mut self,
+        plane: &mut Plane<FiniteFloatPredicates>,
+        id: u32,
+        first: u32,
+        corner_at: &mut [Corner],
+    ) {
         let [a, b, c] = self.triangles[first as usize];
         let [across_a, across_b, across_c] = self.across[first as usize];
         // Edges to look across, the cavity to the left of them; the last comes first.

@@ -145,7 +145,7 @@ mod tests {
     use crate::configurations::rule::Rule;
     use crate::configurations::special::Diagonals;
     use crate::configurations::{Lift, Start, generate};
-    use crate::predicates::TotalPredicates;
+    use crate::predicates::FiniteFloatPredicates;
     use spmesh_model::configurations::FARAWAY;
     use spmesh_model::configurations::{Claim, Configurations};
 
@@ -164,7 +164,7 @@ mod tests {
     fn compare(knots: &Knots, start: Configurations, rule: &Rule, degree: usize) -> usize {
         let (claim, diagonals) = (start.claim(), Diagonals::default());
         let order: Vec<u32> = (0..knots.len() as u32).collect();
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut triangulator = Triangulator::new(knots, (rule, &diagonals), claim, &mut predicates);
         let mut compared = 0;
         for configurations in generate(knots, start, rule, degree).expect("degrees") {
@@ -267,7 +267,7 @@ mod tests {
             let knots = Knots::new(points).expect("knots");
             let start = Start::delaunay(&knots).expect("triangles").configurations();
             let order: Vec<u32> = (0..knots.len() as u32).collect();
-            let (mut predicates, diagonals) = (TotalPredicates::default(), Diagonals::default());
+            let (mut predicates, diagonals) = (FiniteFloatPredicates::default(), Diagonals::default());
             let rule = (&Rule::Delaunay, &diagonals);
             let mut triangulator = Triangulator::new(&knots, rule, Claim::Delaunay, &mut predicates);
             let mut largest = 0;

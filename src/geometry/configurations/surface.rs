@@ -4,7 +4,7 @@ use super::knots::Knots;
 use super::lift::Lift;
 use super::plane::Plane;
 use crate::delaunay2::{Kernel, Triangulation};
-use crate::predicates::TotalPredicates;
+use crate::predicates::FiniteFloatPredicates;
 use foldhash::HashMap;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::random::Random;
@@ -45,7 +45,7 @@ fn across_of(mesh: &Triangulation) -> Vec<[Corner; 3]> {
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
     let mut across = Vec::with_capacity((finite + infinite) as usize);
     across.extend(mesh.triangles().iter().map(|triangle| {
-        [0, 1, 2].map(|i| match triangle.across(i) {
+        [0, 1, 2].map(|i| match triangle.neighbour(i) {
             Some(beyond) => 3 * beyond.triangle + beyond.corner,
             None => 3 * outside[&triangle.vertices[(i + 1) % 3]] + 2,
         })
@@ -97,7 +97,7 @@ impl Start {
     pub fn lifted(knots: &Knots, lift: &Lift) -> Result<Start> {
         lift.check(knots)?;
         let mut start = Start::delaunay(knots)?;
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, Some(lift), &mut predicates);
         let mut waiting: Vec<Corner> = (0..3 * start.triangles.len() as u32).collect();
         // Each flip lowers the lifted surface, so this ends.
@@ -150,7 +150,7 @@ impl Start {
 
     /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number of flips.
     pub fn flip_random(&mut self, knots: &Knots, count: usize, seed: u64) -> usize {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut random = Random::new(seed);
         let (mut flips, corners) = (0, 3 * self.triangles.len() as u64);
@@ -170,7 +170,7 @@ impl Start {
     /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise from the x axis;
     /// the number of flips.
     pub fn flip_aligned(&mut self, knots: &Knots, degrees: f64) -> usize {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut flips = 0;
         let mut waiting: Vec<Corner> = (0..3 * self.triangles.len() as u32).rev().collect();
@@ -210,14 +210,14 @@ impl Start {
     }
 
     /// Whether the edge opposite to a corner can be flipped.
-    pub(super) fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+    pub(super) fn can_flip(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         self.quadrilateral(corner)
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
     /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length stay, and no
     /// triangle becomes flat but those that have such an edge.
-    fn keeps_places(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+    fn keeps_places(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         let knots = plane.knots;
         let Some([v, a, w, b]) = self.quadrilateral(corner).filter(|_| knots.has_copies()) else {
             return true;

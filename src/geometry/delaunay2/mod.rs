@@ -1,26 +1,28 @@
 //! The bulk kernel in 2D: the canonical Delaunay triangulation of an array of points.
 //!
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `sphere` is the
+//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `mesh` is the
 //! data structure, `locate` the walk to the next point, `insertion` what it changes, `extract` what comes out.
 
 mod build;
 mod distinct;
 mod extract;
+mod half_edge;
 mod insertion;
 mod locate;
-mod sphere;
+mod mesh;
 mod triangulation;
 
 pub use distinct::distinct;
-pub use triangulation::{Corner, NONE, Triangle, Triangulation};
+pub use half_edge::NONE;
+pub use triangulation::{Corner, Triangle, Triangulation};
 
 use crate::order::{Curve, Rounds, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
 use build::Build;
 use extract::Extraction;
 use insertion::Cavity;
-use sphere::INFINITE;
+use mesh::INFINITE;
 use spmesh_core::error::{Error, Result};
 
 /// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.
@@ -78,14 +80,14 @@ impl Kernel {
         self.sequence.extend(Rounds::new(self.points.len() - 1).map(|place| place + 1));
         let build = Build {
             points: &self.points,
-            room: triangulation.memory.room(self.points.len()),
+            memory: triangulation.memory.allocate(self.points.len()),
             sequence: &self.sequence,
             cavity: &mut self.cavity,
         };
         match Arithmetic::of(&extent).run(build, &mut self.counts) {
-            Some(sphere) => {
+            Some(mesh) => {
                 let extraction = Extraction {
-                    sphere,
+                    mesh,
                     indices: &self.indices,
                     triangle_at: &mut self.sequence,
                     hull: &mut triangulation.hull,

@@ -1,10 +1,7 @@
 //! What the kernel hands out: flat arrays.
 
-use super::sphere::{HalfEdge, WORDS, corner, number_of};
+use super::half_edge::{HalfEdge, NONE, WORDS, corner, number_of};
 use bytemuck::{Pod, Zeroable};
-
-/// No triangle: beyond an edge of the hull, or at a vertex without triangles.
-pub const NONE: u32 = u32::MAX;
 
 /// A corner of a triangle; it stands for the edge opposite to it, too.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -21,18 +18,21 @@ pub struct Corner {
 pub struct Triangle {
     /// Vertices, counterclockwise.
     pub vertices: [u32; 3],
-    spare: u32,
-    /// The half-edges on the other sides of the edges opposite to the vertices.
-    across: [HalfEdge; 3],
-    spare_too: u32,
+    unused: u32,
+    /// The neighbouring half-edges of the edges opposite to the vertices.
+    neighbours: [HalfEdge; 3],
+    unused_too: u32,
 }
 
 impl Triangle {
-    /// The triangle across the edge opposite to a corner, as its corner opposite to that edge; `None` beyond the hull.
+    /// The neighbour across the edge opposite to corner `side`, as its corner opposite to that edge; `None` at the hull.
+    ///
+    /// # Panics
+    /// If `side` is above 2.
     #[inline]
     #[must_use]
-    pub fn across(&self, side: usize) -> Option<Corner> {
-        let h = self.across[side];
+    pub fn neighbour(&self, side: usize) -> Option<Corner> {
+        let h = self.neighbours[side];
         (h != NONE).then(|| Corner { triangle: number_of(h), corner: corner(h) as u32 })
     }
 }
@@ -67,7 +67,7 @@ impl Triangulation {
             let triangle = self.triangles().get(next as usize)?;
             let corner = triangle.vertices.iter().position(|&w| w == v)?;
             let at = Corner { triangle: next, corner: corner as u32 };
-            next = triangle.across((corner + 1) % 3).map_or(NONE, |beyond| beyond.triangle);
+            next = triangle.neighbour((corner + 1) % 3).map_or(NONE, |neighbour| neighbour.triangle);
             if next == first {
                 next = NONE;
             }
@@ -104,10 +104,10 @@ pub(super) struct TriangleMemory {
 }
 
 impl TriangleMemory {
-    /// Room for the triangles of `vertices` vertices, that at infinity among them, to be written before they are read.
+    /// Memory for the triangles of `vertices` vertices, including the vertex at infinity. Its content is arbitrary.
     ///
-    /// Fresh memory is zeroed by the system when it is touched, not here.
-    pub(super) fn room(&mut self, vertices: usize) -> &mut [u32] {
+    /// The system zeroes fresh memory when it is first touched; nothing is zeroed here.
+    pub(super) fn allocate(&mut self, vertices: usize) -> &mut [u32] {
         let words = 2 * vertices * WORDS;
         // Up to one triangle is lost to alignment.
         if self.words.len() < words + WORDS {
@@ -118,7 +118,7 @@ impl TriangleMemory {
         &mut bytemuck::cast_slice_mut(triangles)[..words]
     }
 
-    /// Makes the first `count` triangles of the room those of the triangulation.
+    /// Makes the first `count` triangles of that memory those of the triangulation.
     pub(super) fn set_count(&mut self, count: usize) {
         self.count = count;
     }

@@ -5,6 +5,8 @@
 //! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
 //! cavity, `star` what takes its place, `extract` what comes out.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod build;
 mod complex;
 mod corners;
@@ -14,13 +16,13 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
-mod sight;
 mod star;
 mod stats;
 #[cfg(test)]
 mod tests;
 mod tetrahedralization;
 mod tie;
+mod translated;
 
 pub use corners::{CornerParts, Corners};
 pub use stats::Stats;

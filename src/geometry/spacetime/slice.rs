@@ -3,7 +3,7 @@
 use super::prism::{Cuts, between, staircases};
 use super::subdivide::{Rule, Subdivision, subdivide};
 use crate::diagram4::Diagram;
-use crate::predicates::{Predicates3, Sign, TotalPredicates3};
+use crate::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells4::Point4;
@@ -46,7 +46,7 @@ pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
     let parts = subdivide(points, values, &diagram.cells, Rule::Barycentric, is_cut)?;
     let slice = Slice { time, values: values.map(|_| Vec::new()), flat: parts.flat, ..Slice::default() };
     let mut cutter =
-        Cutter { parts: &parts, cuts: Cuts::new(), slice, predicates: TotalPredicates3::default() };
+        Cutter { parts: &parts, cuts: Cuts::new(), slice, predicates: FiniteFloatPredicates3::default() };
     for simplex in &parts.simplices {
         let mut simplex = *simplex;
         simplex.sort_unstable();
@@ -74,7 +74,7 @@ struct Cutter<'a> {
     parts: &'a Subdivision,
     cuts: Cuts,
     slice: Slice,
-    predicates: TotalPredicates3,
+    predicates: FiniteFloatPredicates3,
 }
 
 impl Cutter<'_> {

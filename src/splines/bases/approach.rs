@@ -5,7 +5,7 @@
 //! all small e > 0, with d towards a point that is fixed, and d' the same turned left: no line contains these points for all
 //! small e, and all functions are asked for one side. With an inner point of a convex domain, d points inward on its border.
 
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// A point, and the point that it is approached from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +32,7 @@ impl Approach {
     #[inline]
     #[must_use]
     pub fn side(&self, a: Point2, b: Point2) -> Sign {
-        match TotalPredicates::default().orient2d(a, b, self.x) {
+        match FiniteFloatPredicates::default().orient2d(a, b, self.x) {
             Sign::Zero => self.side_nearby(a, b),
             sign => sign,
         }
@@ -46,7 +46,7 @@ impl Approach {
             return sign_of(ay, by).then(sign_of(bx, ax));
         }
         // With x on the line, the cross product of b - a with d has the sign of an orientation, which is exact.
-        let first = TotalPredicates::default().orient2d(a, b, self.from);
+        let first = FiniteFloatPredicates::default().orient2d(a, b, self.from);
         if first != Sign::Zero {
             return first;
         }

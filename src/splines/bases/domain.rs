@@ -26,7 +26,7 @@
 
 use super::approach::Approach;
 use spmesh_geometry::configurations::{Configurations, Knots};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// Closed half-planes to the right of directed lines, in common.
 #[derive(Debug, Clone)]
@@ -66,7 +66,7 @@ impl Domain {
     }
 
     fn has_inside(&self, x: Point2) -> bool {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         self.lines.iter().all(|&[p, q]| predicates.orient2d(p, q, x) == Sign::Negative)
     }
 
@@ -95,7 +95,7 @@ impl Domain {
 
 /// Whether x is not to the left of a line.
 pub(super) fn is_right_or_on([p, q]: [Point2; 2], x: Point2) -> bool {
-    TotalPredicates::default().orient2d(p, q, x) != Sign::Positive
+    FiniteFloatPredicates::default().orient2d(p, q, x) != Sign::Positive
 }
 
 /// What of a convex polygon is to the right of a line.

@@ -9,7 +9,7 @@ use foldhash::HashMap;
 use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::order::{Curve, SpatialOrder};
-use spmesh_geometry::predicates::{Extent, Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The share of a function in an element: `factor * area(x, a, b)`, for an edge ab.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -174,14 +174,14 @@ fn cancel(shares: &mut Vec<(u32, Share)>) {
 fn is_flat(knots: &Knots, all: &[u32]) -> bool {
     let first = knots.at(all[0]);
     let Some(second) = all.iter().map(|&id| knots.at(id)).find(|&other| other != first) else { return true };
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     all.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
 }
 
 /// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots that are not all on
 /// one line.
 pub(super) fn hull_edges(points: &[Point2]) -> Vec<[Point2; 2]> {
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut edges: Vec<[Point2; 2]> = Vec::with_capacity(points.len());
     for (&p, &q) in points.iter().flat_map(|p| points.iter().map(move |q| (p, q))) {
         let mut is_outside = |r: Point2| match predicates.orient2d(p, q, r) {

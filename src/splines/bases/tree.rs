@@ -5,7 +5,7 @@
 //! names: where knots are spread evenly, that is near to the leaves.
 
 use super::domain::{Domain, is_right_or_on};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// Cells with so few elements are not halved.
 const FEW: usize = 6;
@@ -239,7 +239,7 @@ impl Cell {
         }
         let corners = self.corners();
         let is_beyond = |&[p, q]: &[Point2; 2]| {
-            let mut predicates = TotalPredicates::default();
+            let mut predicates = FiniteFloatPredicates::default();
             corners.iter().all(|&corner| predicates.orient2d(p, q, corner) == Sign::Positive)
         };
         self.lines.retain(|&line| {

@@ -61,7 +61,7 @@ pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
 fn for_each_hinge(mesh: &Triangulation, mut visit: impl FnMut([u32; 4])) {
     for (number, triangle) in mesh.triangles().iter().enumerate() {
         for side in 0..3 {
-            let Some(beyond) = triangle.across(side).filter(|beyond| (beyond.triangle as usize) > number)
+            let Some(beyond) = triangle.neighbour(side).filter(|beyond| (beyond.triangle as usize) > number)
             else {
                 continue;
             };

@@ -2,7 +2,7 @@
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ impl Mesh {
 
     fn sides(&self, triangle: u32, is_inner: bool) -> impl Iterator<Item = [usize; 2]> {
         let triangle = &self.triangulation.triangles()[triangle as usize];
-        let is_wanted = move |side: &usize| triangle.across(*side).is_some() == is_inner;
+        let is_wanted = move |side: &usize| triangle.neighbour(*side).is_some() == is_inner;
         (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
     }
 
@@ -71,7 +71,7 @@ impl Mesh {
     /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to a triangle whose circle
     /// has less power at x (Edelsbrunner 1990).
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         loop {
             let triangle = &self.triangulation.triangles()[*near as usize];
             let beyond = (0..3).find(|&side| {
@@ -80,7 +80,7 @@ impl Mesh {
                 predicates.orient2d(a, b, x) == Sign::Negative
             });
             match beyond {
-                Some(side) => *near = triangle.across(side)?.triangle,
+                Some(side) => *near = triangle.neighbour(side)?.triangle,
                 None => return Some(*near),
             }
         }

@@ -51,7 +51,7 @@ impl Bulk<2> for Plane {
 
     #[inline]
     fn across(&self, edge: Facet) -> Option<Facet> {
-        let beyond = self.triangulation.triangles()[edge.simplex as usize].across(edge.corner as usize);
+        let beyond = self.triangulation.triangles()[edge.simplex as usize].neighbour(edge.corner as usize);
         beyond.map(facet)
     }
 

@@ -10,7 +10,7 @@
 use super::layout::Layout;
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Rule};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, lexicographic};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use spmesh_splines::bases::{Jet, Scratch};
 
 /// Parts of a segment at which derivatives are compared: no simple ones, at which other lines may cross.
@@ -62,7 +62,7 @@ impl Smoothness {
 fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
     let knots = &layout.knots;
     let next = configurations::link_triangulate(knots, &layout.configurations, &Rule::Delaunay)?;
-    let (mut found, mut predicates) = (Vec::new(), TotalPredicates::default());
+    let (mut found, mut predicates) = (Vec::new(), FiniteFloatPredicates::default());
     for (boundary, interior) in next.iter() {
         let [a, b, c] = boundary.map(|id| knots.at(id));
         // Those without area count for nothing.

@@ -88,7 +88,7 @@ impl<'m> AlphaComplex<'m> {
         if !triangle_fits([a, b, c], &self.radius) {
             return false;
         }
-        let beyond = tetrahedron.across(side);
+        let beyond = tetrahedron.neighbour(side);
         let other = beyond.map(|corner| {
             self.mesh.tetrahedra()[corner.tetrahedron as usize].vertices[corner.corner as usize]
         });

@@ -106,7 +106,7 @@ impl Walker {
         if self.is_done {
             return None;
         }
-        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].across(self.exit)
+        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].neighbour(self.exit)
         else {
             self.is_done = true;
             return None;

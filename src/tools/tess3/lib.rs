@@ -21,7 +21,7 @@ mod tables;
 pub use alpha::AlphaComplex;
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
-pub use method::{Arithmetic, Method};
+pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
 pub use radius::Radius;
 pub use spheres::{Measure, measure};
 

@@ -16,7 +16,7 @@ use super::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::{MAX_POINTS, distinct};
-use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 use foldhash::{HashMap, HashSet};
 use spmesh_core::error::{Error, Result};
 
@@ -97,7 +97,7 @@ impl Patch {
         if !self.steps.iter().chain([&self.origin]).flatten().all(|number| number.is_finite()) {
             return Err(Error::malformed(format!("a number is not finite in {self:?}")));
         }
-        if TotalPredicates::default().orient2d([0.0; 2], [a, b], [c, d]) != Sign::Positive {
+        if FiniteFloatPredicates::default().orient2d([0.0; 2], [a, b], [c, d]) != Sign::Positive {
             let what = "the second step is not counterclockwise of the first: exchange them";
             return Err(Error::usage(what));
         }
@@ -151,7 +151,7 @@ impl Merged {
 
 /// Cells of grids in one triangulation.
 fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special> {
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, Start::delaunay(&knots)?, &mut predicates);
     let sides = |cell: &Cell| [0, 1, 2, 3].map(|i| [cell[i], cell[(i + 1) % 4]]);
     for (number, grid) in grids.iter().enumerate() {

@@ -7,7 +7,7 @@ use crate::configurations::knots::Knots;
 use crate::configurations::plane::Plane;
 use crate::configurations::surface::{Around, Corner, Start};
 use crate::delaunay2::distinct;
-use crate::predicates::{Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Sign};
 use foldhash::{HashSet, HashSetExt};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::FARAWAY;
@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 /// A triangulation with edges that stay.
 pub(super) struct Constrained<'a> {
     start: Start,
-    plane: Plane<'a, TotalPredicates>,
+    plane: Plane<'a, FiniteFloatPredicates>,
     /// A corner at each knot.
     corner_at: Vec<Corner>,
     /// Edges that stay, the lesser end first.
@@ -30,7 +30,7 @@ struct Passage {
 }
 
 impl<'a> Constrained<'a> {
-    pub(super) fn new(knots: &'a Knots, start: Start, predicates: &'a mut TotalPredicates) -> Self {
+    pub(super) fn new(knots: &'a Knots, start: Start, predicates: &'a mut FiniteFloatPredicates) -> Self {
         let plane = Plane::new(knots, None, predicates);
         let mut all = Constrained { start, plane, corner_at: vec![0; knots.len()], fixed: HashSet::new() };
         (0..all.start.triangles.len() as u32).for_each(|triangle| all.note(triangle));

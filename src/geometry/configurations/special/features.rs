@@ -7,7 +7,7 @@ use super::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::distinct;
-use crate::predicates::TotalPredicates;
+use crate::predicates::FiniteFloatPredicates;
 use spmesh_core::error::{Error, Result};
 
 /// A polyline of knots along which splines have a crease.
@@ -46,7 +46,7 @@ pub fn features(knots: &Knots, features: &Features) -> Result<Special> {
     features.check(knots)?;
     let apart = knots.pull_apart(&features.sharp_knots())?;
     let firsts = distinct(apart.points());
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&apart, Start::delaunay(&apart)?, &mut predicates);
     fix_copies(&mut mesh, &firsts)?;
     for (what, polyline) in features.polylines() {
@@ -146,7 +146,7 @@ fn smooth_creases(
     });
     let first_middle = apart.len() as u32;
     let knots = Knots::new(points)?;
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, start, &mut predicates);
     let mut rows = Vec::new();
     for (middle, &(at, edge)) in (first_middle..).zip(&edges) {

@@ -25,7 +25,7 @@ use open_lines::{Contour, OpenLines};
 use places::{Elevations, Plane, Vertex};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CONTOURS_PER_TRIANGLE_MAX;
-use spmesh_geometry::predicates::TotalPredicates;
+use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 
 /// Which lines are made.
@@ -139,7 +139,7 @@ struct Tracer {
     plane: Plane,
     to_world: Elevations,
     long_edges: LongEdges,
-    predicates: TotalPredicates,
+    predicates: FiniteFloatPredicates,
     lines: OpenLines,
     killed: u64,
     elevations: Option<[f64; 2]>,
@@ -152,7 +152,7 @@ impl Tracer {
             plane: Plane::new(&header.coordinates),
             to_world: Elevations::new(&header.coordinates),
             long_edges: LongEdges::new(options.kill, &header.coordinates),
-            predicates: TotalPredicates::default(),
+            predicates: FiniteFloatPredicates::default(),
             lines: OpenLines::new(options.points.map_or(usize::MAX, |points| points.max(2))),
             killed: 0,
             elevations: None,

@@ -10,7 +10,7 @@ use super::tile::overlap;
 use super::{Attribute, Options};
 use crate::surface::{LongEdges, is_counterclockwise};
 use spmesh_core::error::Result;
-use spmesh_geometry::predicates::{Point2, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
@@ -25,7 +25,7 @@ pub(super) struct Painter {
     attribute: Attribute,
     long_edges: LongEdges,
     pub(super) canvas: Canvas,
-    pub(super) predicates: TotalPredicates,
+    pub(super) predicates: FiniteFloatPredicates,
     /// Triangles that were not drawn because of a long edge.
     pub(super) killed: u64,
     /// Those of the rows of a triangle in a row of tiles.
@@ -43,7 +43,7 @@ impl Painter {
             attribute: options.attribute,
             long_edges: LongEdges::new(options.kill, coordinates),
             canvas: Canvas::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
-            predicates: TotalPredicates::default(),
+            predicates: FiniteFloatPredicates::default(),
             killed: 0,
             spans: Vec::with_capacity(TILE),
         })

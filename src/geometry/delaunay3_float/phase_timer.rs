@@ -1,6 +1,6 @@
 //! Where the time of insertions goes.
 
-use super::Seconds;
+use super::stats::Seconds;
 use std::time::{Duration, Instant};
 
 /// One insertion of so many is timed: reading the clock takes a while itself.
@@ -8,7 +8,7 @@ const SAMPLE: u32 = 8;
 
 /// The parts of an insertion.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Part {
+pub(super) enum Phase {
     Locate,
     Predicates,
     Update,
@@ -16,13 +16,13 @@ pub(super) enum Part {
 
 /// Time of all insertions, and of the parts of some.
 #[derive(Debug, Default)]
-pub(super) struct Laps {
+pub(super) struct PhaseTimer {
     all: Option<Instant>,
     last: Option<Instant>,
     parts: [Duration; 3],
 }
 
-impl Laps {
+impl PhaseTimer {
     /// Starts the time of all.
     pub(super) fn begin_all(&mut self) {
         self.all = Some(Instant::now());
@@ -36,10 +36,10 @@ impl Laps {
 
     /// A part of it ends.
     #[inline(always)]
-    pub(super) fn end(&mut self, part: Part) {
+    pub(super) fn end(&mut self, phase: Phase) {
         if let Some(last) = &mut self.last {
             let now = Instant::now();
-            self.parts[part as usize] += now - *last;
+            self.parts[phase as usize] += now - *last;
             *last = now;
         }
     }
@@ -49,9 +49,9 @@ impl Laps {
         let all = self.all.take().map_or(0.0, |begin| begin.elapsed().as_secs_f64());
         let parts = self.parts.map(|part| part.as_secs_f64());
         let sum: f64 = parts.iter().sum();
-        let share = |part: Part| if sum > 0.0 { all * parts[part as usize] / sum } else { 0.0 };
-        seconds.locate = share(Part::Locate);
-        seconds.predicates = share(Part::Predicates);
-        seconds.update = share(Part::Update);
+        let share = |phase: Phase| if sum > 0.0 { all * parts[phase as usize] / sum } else { 0.0 };
+        seconds.locate = share(Phase::Locate);
+        seconds.predicates = share(Phase::Predicates);
+        seconds.update = share(Phase::Update);
     }
 }
