@@ -11,8 +11,9 @@ use std::error::Error;
 use std::fs::File;
 
 use files::{read_tuples, timed};
-use spmesh_geometry::diagram4::{Diagram, Route, Stats, diagram_by};
+use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
 use spmesh_model::cells4::Cells4;
+use spmesh_model::diagram4::Diagram4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// A line of JSON.
-fn report(diagram: &Diagram, stats: &Stats, seconds: f64) {
+fn report(diagram: &Diagram4, stats: &Stats, seconds: f64) {
     let sizes = Sizes::of(&diagram.cells);
     let times = [stats.order, stats.insertion, stats.merge].map(|time| time.as_secs_f64());
     let figures = [

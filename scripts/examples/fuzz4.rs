@@ -12,8 +12,9 @@ mod fuzzing;
 use clap::Parser;
 use fuzzing::{Fuzzing, Trial};
 use spmesh_audit::diagram::check;
-use spmesh_geometry::diagram4::{Diagram, Route, diagram_by};
+use spmesh_geometry::diagram4::{Route, diagram_by};
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 use spmesh_reference::sets::Random;
 
 /// Fuzzes the 4D engine.
@@ -65,7 +66,7 @@ fn try_set(points: &[Point4], random: &mut Random) -> usize {
 }
 
 /// The diagram, unless all points are in a hyperplane.
-fn by(route: Route, points: &[Point4]) -> Option<Diagram> {
+fn by(route: Route, points: &[Point4]) -> Option<Diagram4> {
     match diagram_by(route, points.to_vec(), None) {
         Ok((diagram, _)) => Some(diagram),
         Err(error) => {

@@ -7,5 +7,6 @@ pub mod bounds;
 pub mod cells;
 pub mod cells4;
 pub mod configurations;
+pub mod diagram4;
 pub mod functions;
 pub mod points;

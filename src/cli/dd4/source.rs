@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use crate::open_input;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::points4::{
-    Condition, From4, Points4, RawLayout, Request, Selection, Share, Spacing, parse_sizes, read_points4,
+    Condition, From4, RawLayout, Request, Selected4, Selection, Share, Spacing, parse_sizes, read_points4,
 };
 
 /// Examples for the end of the help.
@@ -79,7 +79,7 @@ impl SourceFlags {
     ///
     /// # Errors
     /// As [`read_points4`]; usage, if nothing is asked for, or stdin is a terminal.
-    pub fn read(&self) -> Result<Points4> {
+    pub fn read(&self) -> Result<Selected4> {
         read_points4(&self.request()?)
     }
 

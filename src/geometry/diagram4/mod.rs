@@ -22,20 +22,8 @@ use sites::Sites;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_model::cells4::{Cells4, Point4};
+use spmesh_model::diagram4::Diagram4;
 use std::time::{Duration, Instant};
-
-/// A Delaunay diagram.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Diagram {
-    /// The distinct points, in lexicographic order; each is a vertex.
-    pub points: Vec<Point4>,
-    /// Values of the points, if they have any.
-    pub values: Option<Vec<f64>>,
-    /// Points of the input that are equal to an earlier one.
-    pub merged: u64,
-    /// Finite cells by their vertices, then infinite ones by theirs.
-    pub cells: Cells4,
-}
 
 /// What a run did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -76,14 +64,14 @@ pub enum Route {
 ///
 /// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if coordinates are
 /// integers that differ by at most 26, otherwise 88.
-pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     diagram_by(Route::default(), points, values)
 }
 
 /// [`diagram`] by a route of choice.
 ///
 /// Errors: as `diagram`.
-pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();
     let started = Instant::now();
@@ -101,7 +89,7 @@ pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -
         Route::Direct => direct::cells(&sites, &mut stats)?,
     };
     stats.order += sorting;
-    Ok((Diagram { points: sites.points, values, merged, cells }, stats))
+    Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))
 }
 
 fn through_simplices<C: simplices::Coefficient>(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {

@@ -3,9 +3,9 @@
 use super::NO_VALUES;
 use super::locate::Locator;
 use super::subdivide::{Subdivision, subdivide_one};
-use crate::diagram4::Diagram;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// Interpolates the values of a diagram.
 ///
@@ -13,7 +13,7 @@ use spmesh_model::cells4::Point4;
 /// continuous, has the values of the points exactly, and is what the values come from if that is linear, but for rounding.
 #[derive(Debug)]
 pub struct Interpolator<'a> {
-    diagram: &'a Diagram,
+    diagram: &'a Diagram4,
     values: &'a [f64],
     locator: Locator<'a>,
     /// The cell of the last site, and its simplices.
@@ -25,7 +25,7 @@ impl<'a> Interpolator<'a> {
     ///
     /// # Errors
     /// Usage, if the points have no values.
-    pub fn new(diagram: &'a Diagram) -> Result<Self> {
+    pub fn new(diagram: &'a Diagram4) -> Result<Self> {
         let Some(values) = diagram.values.as_deref() else {
             return Err(Error::usage(NO_VALUES));
         };

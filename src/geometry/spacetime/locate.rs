@@ -1,7 +1,7 @@
 //! The cell that a site is in.
 
 use super::faces::Faces;
-use crate::diagram4::{Diagram, orient4d};
+use crate::diagram4::orient4d;
 use spmesh_model::cells4::{Cells4, Point4};
 
 /// Finds cells by walking from the one that was found last.
@@ -17,7 +17,7 @@ pub struct Locator<'a> {
 impl<'a> Locator<'a> {
     /// Starts at the first cell.
     #[must_use]
-    pub fn new(diagram: &'a Diagram) -> Self {
+    pub fn new(diagram: &'a Diagram4) -> Self {
         Locator { points: &diagram.points, cells: &diagram.cells, current: 0, visited: 0 }
     }
 

@@ -2,11 +2,11 @@
 
 use super::prism::{Cuts, between, staircases};
 use super::subdivide::{Rule, Subdivision, subdivide};
-use crate::diagram4::Diagram;
 use crate::predicates::{Predicates3, Sign, TotalPredicates3};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// The tetrahedra that a time cuts out of a diagram.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -34,7 +34,7 @@ pub struct Slice {
 /// Usage, if the time is not that of any point or between two.
 ///
 /// Cost: as [`subdivide`] for the cells that the time passes, and half a microsecond per tetrahedron.
-pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
+pub fn slice(diagram: &Diagram4, time: f64) -> Result<Slice> {
     let first = first_time(&diagram.points, time)?;
     let is_above = |point: &Point4| if time == first { point[3] > time } else { point[3] >= time };
     let (points, values) = (&diagram.points, diagram.values.as_deref());

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use super::{Form, write_diagram, write_simplices, write_slice, write_surface, write_values};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::diagram4::Diagram;
 use spmesh_geometry::spacetime::{
     Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide,
 };
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// What is made of a diagram.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,7 +71,7 @@ impl Product {
     /// # Errors
     /// Usage, if values are needed and the points have none, the slice is at a time before or after all points, or the
     /// form does not hold it; I/O. What is written is then not whole.
-    pub fn write(&self, diagram: &Diagram, output: &mut impl Write) -> Result<Vec<String>> {
+    pub fn write(&self, diagram: &Diagram4, output: &mut impl Write) -> Result<Vec<String>> {
         match self {
             Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),
             Product::Simplices(rule) => {
@@ -105,7 +105,7 @@ impl Product {
     }
 }
 
-fn interpolate(diagram: &Diagram, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
+fn interpolate(diagram: &Diagram4, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
     let mut interpolator = Interpolator::new(diagram)?;
     sites.iter().map(|&site| interpolator.value(site)).collect()
 }
