@@ -83,11 +83,21 @@ enum RouteFlag {
     Direct,
 }
 
-impl From<RouteFlag> for Route {
-    fn from(flag: RouteFlag) -> Self {
-        match flag {
-            RouteFlag::Simplices => Route::Simplices,
-            RouteFlag::Direct => Route::Direct,
+impl RouteFlag {
+    /// The route in the engine.
+    ///
+    /// # Errors
+    /// Usage, if this build does not have it.
+    fn route(self) -> Result<Route> {
+        match self {
+            RouteFlag::Simplices => Ok(Route::Simplices),
+            #[cfg(feature = "experiments")]
+            RouteFlag::Direct => Ok(Route::Direct),
+            #[cfg(not(feature = "experiments"))]
+            RouteFlag::Direct => Err(Error::usage(
+                "--route direct is an experiment, and this build has none: install one that has them with \
+                 `cargo install --locked --path . --features experiments`",
+            )),
         }
     }
 }
@@ -104,7 +114,7 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-        let options = Options { quantum: self.quantum, route: self.route.into() };
+        let options = Options { quantum: self.quantum, route: self.route.route()? };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }

@@ -9,6 +9,7 @@
 
 mod canonical;
 mod determinant;
+#[cfg(feature = "experiments")]
 mod direct;
 mod exact;
 mod merge;
@@ -51,6 +52,7 @@ pub enum Route {
     #[default]
     Simplices,
     /// Cells as points come, in integers (thesis 3.6.4): slower, for comparison.
+    #[cfg(feature = "experiments")]
     Direct,
 }
 
@@ -86,6 +88,7 @@ pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -
                 through_simplices::<f64>(&sites, &mut stats)?
             }
         }
+        #[cfg(feature = "experiments")]
         Route::Direct => direct::cells(&sites, &mut stats)?,
     };
     stats.order += sorting;
