@@ -7,7 +7,8 @@ use spmesh_stream::{Diagram4Collector, Event, Kind};
 
 /// Audit of one stream of cells or simplices: give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
+/// block.
 ///
 /// Memory: what the stream holds, and what [`check`] or [`check_simplices`] needs.
 #[derive(Debug)]

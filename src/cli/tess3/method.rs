@@ -13,8 +13,8 @@ use spmesh_tess3::{Arithmetic, Method};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub(super) struct MethodFlags {
-    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together but may not be
-    /// Delaunay
+    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together
+    /// but may not be Delaunay
     #[arg(long, value_enum, default_value_t = ArithmeticFlag::Exact, value_name = "exact|float", hide_possible_values = true)]
     arithmetic: ArithmeticFlag,
 
@@ -22,8 +22,8 @@ pub(super) struct MethodFlags {
     #[arg(long, value_enum, default_value_t = OrderFlag::Hilbert, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
     order: OrderFlag,
 
-    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one pass
-    /// [default: rounds, with --arithmetic float pass]
+    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one
+    /// pass [default: rounds, with --arithmetic float pass]
     #[arg(long, value_enum, value_name = "rounds|pass", hide_possible_values = true)]
     sequence: Option<SequenceFlag>,
 

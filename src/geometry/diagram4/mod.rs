@@ -1,11 +1,12 @@
 //! Exact Delaunay diagrams in four dimensions (thesis 3.6 and 4).
 //!
-//! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of all points on
-//! it. Where many points are cospherical, as those of a grid, it is small and unique, where a triangulation is large and
-//! arbitrary. Cells beyond the hull have the faraway point as a vertex, and correspond to the facets of cells on the hull.
+//! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of
+//! all points on it. Where many points are cospherical, as those of a grid, it is small and unique, where a
+//! triangulation is large and arbitrary. Cells beyond the hull have the faraway point as a vertex, and
+//! correspond to the facets of cells on the hull.
 //!
-//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates, `merge` makes
-//! cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
+//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates,
+//! `merge` makes cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
 
 mod canonical;
 mod determinant;
@@ -58,21 +59,23 @@ pub enum Route {
 
 /// The Delaunay diagram of points in any order, which depends on the set of points only.
 ///
-/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs are exact for
-/// all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any size where rounded values do
-/// not tell.
+/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs
+/// are exact for all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any
+/// size where rounded values do not tell.
 ///
-/// Errors: a coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
+/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if
+/// coordinates are integers that differ by at most 26, otherwise 88.
 ///
-/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if coordinates are
-/// integers that differ by at most 26, otherwise 88.
+/// # Errors
+/// A coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
 pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     diagram_by(Route::default(), points, values)
 }
 
 /// [`diagram`] by a route of choice.
 ///
-/// Errors: as `diagram`.
+/// # Errors
+/// As `diagram`.
 pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();

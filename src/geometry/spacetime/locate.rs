@@ -21,11 +21,13 @@ impl<'a> Locator<'a> {
         Locator { points: &diagram.points, cells: &diagram.cells, current: 0, visited: 0 }
     }
 
-    /// The number of a finite cell that has the site in it or on its border; `None` outside of the convex hull.
+    /// The number of a finite cell that has the site in it or on its border; `None` outside of the convex
+    /// hull.
     ///
-    /// Domain: finite coordinates. The signs are exact, so the walk is sure to end: beyond a facet the site has less power
-    /// with respect to the sphere of the next cell, as the points where the powers are equal are the hyperplane of the
-    /// facet. So no cell is visited twice, and sites on the border of the hull are inside.
+    /// Domain: finite coordinates. The signs are exact, so the walk is sure to end: beyond a facet the site
+    /// has less power with respect to the sphere of the next cell, as the points where the powers are equal
+    /// are the hyperplane of the facet. So no cell is visited twice, and sites on the border of the hull are
+    /// inside.
     ///
     /// Cost: some microseconds per cell on the way.
     pub fn locate(&mut self, site: Point4) -> Option<usize> {

@@ -50,8 +50,8 @@ pub struct Report {
 /// Makes the diagram of points, of which a product is wanted.
 ///
 /// # Errors
-/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value
-/// is infinite.
+/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed,
+/// if a value is infinite.
 pub fn make(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Report)> {
     let name = points.name.clone();
     let started = Instant::now();

@@ -41,7 +41,8 @@ impl Product {
     /// Whether it can be made of these points: known before the work, rather than after it.
     ///
     /// # Errors
-    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all points.
+    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all
+    /// points.
     pub fn check(&self, points: &[Point4], has_values: bool) -> Result<()> {
         if matches!(self, Product::Values(_) | Product::Isosurface { .. }) && !has_values {
             return Err(Error::usage(NO_VALUES));
@@ -69,8 +70,8 @@ impl Product {
     /// Makes it of a diagram and writes it. Returns what the user should know.
     ///
     /// # Errors
-    /// Usage, if values are needed and the points have none, the slice is at a time before or after all points, or the
-    /// form does not hold it; I/O. What is written is then not whole.
+    /// Usage, if values are needed and the points have none, the slice is at a time before or after all
+    /// points, or the form does not hold it; I/O. What is written is then not whole.
     pub fn write(&self, diagram: &Diagram4, output: &mut impl Write) -> Result<Vec<String>> {
         match self {
             Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),

@@ -20,7 +20,8 @@ pub fn write_diagram(diagram: &Diagram4, output: impl Write) -> Result<()> {
     writer.end(count, *merged).map(drop)
 }
 
-/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
+/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come
+/// `merged`.
 ///
 /// # Errors
 /// If a value is infinite, or writing fails.
