@@ -51,10 +51,11 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. Meshes of triangles and of
-    /// tetrahedra are proved as they pass: what is held are the vertices that are not finalized and the boundary of
-    /// what came so far. Cells and simplices of four dimensions and configurations are held whole. In four dimensions
-    /// both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it may be any
+    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. Meshes of triangles
+    /// and of tetrahedra are proved as they pass: what is held are the vertices that are not finalized and
+    /// the boundary of what came so far. Cells and simplices of four dimensions and configurations are held
+    /// whole. In four dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and
+    /// simplices of it may be any
     #[arg(
         long,
         value_enum,
@@ -66,14 +67,14 @@ pub struct Flags {
     audit: Option<AuditStandard>,
 
     /// Prove also that the vertices of the mesh are exactly the points of this file, of any format that
-    /// spfinalize reads; can be given several times. The points are held: 4 bytes per coordinate of integers, 8 of
-    /// others
+    /// spfinalize reads; can be given several times. The points are held: 4 bytes per coordinate of integers,
+    /// 8 of others
     #[arg(long, value_name = "FILE", requires = "audit")]
     points: Vec<PathBuf>,
 
     /// Do not stop at the first violation but count them all, exactly and once more in plain floating-point
-    /// arithmetic; for tetrahedral meshes. Holds 4 bytes per tetrahedron more than the audit, and edges and facets
-    /// between vertices that are not finalized
+    /// arithmetic; for tetrahedral meshes. Holds 4 bytes per tetrahedron more than the audit, and edges and
+    /// facets between vertices that are not finalized
     #[arg(long, requires = "audit", conflicts_with = "points")]
     count_violations: bool,
 

@@ -46,9 +46,9 @@ input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or compressed
-/// (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of
-/// points only.
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or
+/// compressed (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it
+/// depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -71,8 +71,8 @@ pub struct Flags {
     #[arg(long)]
     contacts: bool,
 
-    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere of
-    /// at most that radius
+    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
+    /// of at most that radius
     #[arg(long, value_name = "RADIUS")]
     alpha: Option<Radius>,
 

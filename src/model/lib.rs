@@ -7,6 +7,7 @@ pub mod bounds;
 pub mod cells;
 pub mod cells4;
 pub mod configurations;
+pub mod diagram4;
 pub mod functions;
 pub mod points;
 pub mod simplex;

@@ -29,7 +29,7 @@ mod writer;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};
-pub use diagram4::Diagram4;
+pub use diagram4::{Diagram4Collector, read_diagram4};
 pub use ending::ends_with_end;
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;

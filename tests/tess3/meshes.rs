@@ -88,8 +88,8 @@ impl Mesh {
         all
     }
 
-    /// Proves that this is a Delaunay triangulation of its vertices: every tetrahedron is positively oriented and has no
-    /// vertex inside of its sphere, facets are shared by two, or lie on the hull.
+    /// Proves that this is a Delaunay triangulation of its vertices: every tetrahedron is positively oriented
+    /// and has no vertex inside of its sphere, facets are shared by two, or lie on the hull.
     pub fn prove(&self) {
         let mut facets: HashMap<[usize; 3], Vec<usize>> = HashMap::new();
         for t in &self.tetrahedra {
@@ -132,8 +132,8 @@ pub fn orientation([a, b, c, d]: [Point; 4]) -> i128 {
     determinant([b, c, d].map(|point| from(a, point)))
 }
 
-/// Positive if `e` is inside of the sphere through the corners of a positively oriented tetrahedron: cofactors of the
-/// lifts of the differences to `e`.
+/// Positive if `e` is inside of the sphere through the corners of a positively oriented tetrahedron:
+/// cofactors of the lifts of the differences to `e`.
 fn in_sphere(corners: [Point; 4], e: Point) -> i128 {
     let rows = corners.map(|point| from(e, point));
     let lift = |row: [i128; 3]| row.iter().map(|value| value * value).sum::<i128>();

@@ -19,8 +19,8 @@ const SEED: u64 = 1;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub(super) struct MethodFlags {
-    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together but may not be
-    /// Delaunay
+    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together
+    /// but may not be Delaunay
     #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = ArithmeticFlag::Exact, value_name = "exact|float", hide_possible_values = true)]
     arithmetic: ArithmeticFlag,
 
@@ -28,8 +28,8 @@ pub(super) struct MethodFlags {
     #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = OrderFlag::Hilbert, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
     order: OrderFlag,
 
-    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one pass
-    /// [default: rounds, with --arithmetic float pass]
+    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one
+    /// pass [default: rounds, with --arithmetic float pass]
     #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, value_name = "rounds|pass", hide_possible_values = true)]
     sequence: Option<SequenceFlag>,
 

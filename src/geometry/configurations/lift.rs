@@ -26,8 +26,8 @@ impl Lift {
         }
     }
 
-    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies under a function of
-    /// which only values are known is not defined.
+    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies under
+    /// a function of which only values are known is not defined.
     pub(super) fn check(&self, knots: &Knots) -> Result<()> {
         let (found, expected) = (self.values().len(), knots.len());
         if found != expected {
@@ -44,7 +44,8 @@ impl Lift {
         Ok(())
     }
 
-    /// Positive if the last of four knots is below the plane of the others, which are counterclockwise; not perturbed.
+    /// Positive if the last of four knots is below the plane of the others, which are counterclockwise; not
+    /// perturbed.
     pub(super) fn sign(&self, knots: &Knots, ids: [u32; 4]) -> Sign {
         let d = knots.at(ids[3]);
         let value = |id: u32| self.values()[id as usize];

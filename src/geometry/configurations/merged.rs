@@ -9,8 +9,9 @@ use foldhash::{HashMap, HashMapExt};
 impl CentroidMesh {
     /// The same with one vertex for sets that have the same places, and without flat triangles.
     ///
-    /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side. What else is flat,
-    /// knots on a line of which some are moved symbolically, is on the border: inside of it, other triangles would end amid an edge.
+    /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side.
+    /// What else is flat, knots on a line of which some are moved symbolically, is on the border: inside of
+    /// it, other triangles would end amid an edge.
     #[must_use]
     pub fn without_flat(&self, knots: &Knots) -> CentroidMesh {
         let mut predicates = FiniteFloatPredicates::default();

@@ -1,7 +1,8 @@
 //! Whether triangles are a triangulation of the convex hull of all knots.
 //!
-//! They are counterclockwise, every directed edge has its opposite but for one cycle, which is convex and goes around once:
-//! then the triangles cover what is inside the cycle once (winding numbers), and edges meet at knots only.
+//! They are counterclockwise, every directed edge has its opposite but for one cycle, which is convex and
+//! goes around once: then the triangles cover what is inside the cycle once (winding numbers), and edges meet
+//! at knots only.
 
 use super::knots::Knots;
 use super::plane::Plane;

@@ -1,4 +1,5 @@
-//! Triangulations to start from: a triangulated sphere of the plane and the faraway point, with flips and insertion.
+//! Triangulations to start from: a triangulated sphere of the plane and the faraway point, with flips and
+//! insertion.
 
 use super::knots::Knots;
 use super::lift::Lift;
@@ -11,7 +12,8 @@ use spmesh_core::random::Random;
 use spmesh_model::configurations::FARAWAY;
 use spmesh_model::configurations::{Claim, Configurations};
 
-/// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the place.
+/// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the
+/// place.
 pub(super) type Corner = u32;
 
 /// A triangulation of the convex hull of all knots, that every knot is a vertex of.
@@ -65,10 +67,13 @@ pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
     Ok(kernel_mesh(knots)?.hull)
 }
 
-/// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if no knots are at
-/// one place.
+/// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if
+/// no knots are at one place.
 ///
-/// Errors: knots on one line. Cost: little more than the kernel's.
+/// Cost: little more than the kernel's.
+///
+/// # Errors
+/// Knots on one line.
 pub fn delaunay(knots: &Knots) -> Result<Configurations> {
     if knots.has_copies() {
         return Ok(Start::delaunay(knots)?.configurations());
@@ -79,7 +84,8 @@ pub fn delaunay(knots: &Knots) -> Result<Configurations> {
 impl Start {
     /// The canonical Delaunay triangulation; copies of knots are vertices, too.
     ///
-    /// Errors: knots on one line.
+    /// # Errors
+    /// Knots on one line.
     pub fn delaunay(knots: &Knots) -> Result<Start> {
         let mesh = kernel_mesh(knots)?;
         let (triangles, across) = (triangles_of(&mesh), across_of(&mesh));
@@ -91,9 +97,11 @@ impl Start {
         Ok(start)
     }
 
-    /// The triangulation below which no lifted knot lies (a regular triangulation): projective configurations of degree 0.
+    /// The triangulation below which no lifted knot lies (a regular triangulation): projective configurations
+    /// of degree 0.
     ///
-    /// Errors: knots on one line, values that do not fit the knots, a lift that is not strictly convex at some knot.
+    /// # Errors
+    /// Knots on one line, values that do not fit the knots, a lift that is not strictly convex at some knot.
     pub fn lifted(knots: &Knots, lift: &Lift) -> Result<Start> {
         lift.check(knots)?;
         let mut start = Start::delaunay(knots)?;
@@ -123,8 +131,9 @@ impl Start {
 
     /// Any triangulation of all knots, counterclockwise.
     ///
-    /// Errors: an unknown knot, a triangle that is flat or clockwise, an edge with two triangles on one side, a border that is
-    /// not that of the convex hull, a knot that is no vertex.
+    /// # Errors
+    /// An unknown knot, a triangle that is flat or clockwise, an edge with two triangles on one side, a
+    /// border that is not that of the convex hull, a knot that is no vertex.
     pub fn of_triangles(knots: &Knots, triangles: &[[u32; 3]]) -> Result<Start> {
         super::start_check::check(knots, triangles)?;
         let border = super::start_check::border(triangles)?;
@@ -134,8 +143,9 @@ impl Start {
         Ok(Start { across: join(&all)?, triangles: all, claim: Claim::Any })
     }
 
-    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for constrained Delaunay
-    /// triangulations of links, and links of knots that are pulled apart are triangulated as in figure 8.7 of the thesis.
+    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for
+    /// constrained Delaunay triangulations of links, and links of knots that are pulled apart are
+    /// triangulated as in figure 8.7 of the thesis.
     #[must_use]
     pub fn generalised(mut self) -> Start {
         self.claim = Claim::Any;
@@ -148,7 +158,8 @@ impl Start {
         Configurations::of_triangles(self.claim, self.triangles.clone())
     }
 
-    /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number of flips.
+    /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number
+    /// of flips.
     pub fn flip_random(&mut self, knots: &Knots, count: usize, seed: u64) -> usize {
         let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
@@ -167,8 +178,8 @@ impl Start {
         flips
     }
 
-    /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise from the x axis;
-    /// the number of flips.
+    /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise
+    /// from the x axis; the number of flips.
     pub fn flip_aligned(&mut self, knots: &Knots, degrees: f64) -> usize {
         let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
@@ -189,7 +200,8 @@ impl Start {
         flips
     }
 
-    /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are finite.
+    /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are
+    /// finite.
     pub(super) fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
         let all = self.around(corner).corners;
         (!all.contains(&FARAWAY)).then_some(all)
@@ -198,7 +210,8 @@ impl Start {
     /// The two triangles at the edge opposite to a corner, with what is around them.
     pub(super) fn around(&self, corner: Corner) -> Around {
         let beyond = self.across[corner as usize / 3][corner as usize % 3];
-        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the second and third.
+        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the
+        // second and third.
         let seen = |from: Corner| {
             let (triangle, place) = (from as usize / 3, from as usize % 3);
             let places = [place, (place + 1) % 3, (place + 2) % 3];
@@ -215,8 +228,8 @@ impl Start {
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
-    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length stay, and no
-    /// triangle becomes flat but those that have such an edge.
+    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length
+    /// stay, and no triangle becomes flat but those that have such an edge.
     fn keeps_places(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         let knots = plane.knots;
         let Some([v, a, w, b]) = self.quadrilateral(corner).filter(|_| knots.has_copies()) else {

@@ -1,4 +1,5 @@
-//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in integers of any size.
+//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in
+//! integers of any size.
 
 use super::knots::Knots;
 use crate::predicates::{Sign, big};
@@ -13,7 +14,8 @@ pub(super) fn orient(knots: &Knots, ids: [u32; 3]) -> Sign {
     first_sign(&cross(&minus_each(&a, &c), &minus_each(&b, &c)))
 }
 
-/// In-circle sign of four knots of P(e), the first three counterclockwise; zero if they are on one circle for all e.
+/// In-circle sign of four knots of P(e), the first three counterclockwise; zero if they are on one circle for
+/// all e.
 pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
     let [a, b, c, d] = moved(knots, ids);
     let [a, b, c] = [a, b, c].map(|point| minus_each(&point, &d));

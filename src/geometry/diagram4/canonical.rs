@@ -31,8 +31,9 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
 
 /// The numbers of the cells in order.
 fn order(cells: &Cells4) -> Vec<u32> {
-    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices have room if they
-    // have 21 bits, otherwise two of 31, and what the last bit would tell is left to the cell.
+    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices
+    // have room if they have 21 bits, otherwise two of 31, and what the last bit would tell is left to the
+    // cell.
     let greatest = cells.iter().filter_map(|cell| cell.vertices.last().copied()).max().unwrap_or_default();
     let is_narrow = greatest < 1 << 21;
     let key = |number: u32| {

@@ -18,7 +18,8 @@ pub struct DegreeCounts {
     pub infinite: u64,
     /// Interior sets.
     pub interiors: u64,
-    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come from.
+    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come
+    /// from.
     pub links: u64,
     /// Links that are null.
     pub null_links: u64,

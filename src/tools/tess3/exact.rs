@@ -1,5 +1,5 @@
-//! Signs of polynomials in coordinates that are never wrong: a formula is written once, and evaluated in numbers that know
-//! how far off they may be; if that leaves the sign open, in integers of any length.
+//! Signs of polynomials in coordinates that are never wrong: a formula is written once, and evaluated in
+//! numbers that know how far off they may be; if that leaves the sign open, in integers of any length.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -17,8 +17,8 @@ impl Number for BigInt {}
 /// A vector of any numbers.
 pub(super) type Vector<T> = [T; 3];
 
-/// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of its
-/// numerator and the square of its denominator. All terms have the same degree in the unit of length.
+/// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of
+/// its numerator and the square of its denominator. All terms have the same degree in the unit of length.
 pub(super) trait Polynomial<const N: usize> {
     /// Its value.
     fn value<T: Number>(points: [Vector<T>; N], radius: &[T; 2]) -> T;
@@ -50,8 +50,8 @@ impl Approximate {
         Approximate { value, error: 0.0 }
     }
 
-    /// A result rounded by half a unit in the last place, or within the least numbers, of operands whose errors may add
-    /// up to `error`.
+    /// A result rounded by half a unit in the last place, or within the least numbers, of operands whose
+    /// errors may add up to `error`.
     fn rounded(value: f64, error: f64) -> Self {
         Approximate { value, error: (error + value.abs() * f64::EPSILON + f64::MIN_POSITIVE) * OF_BOUNDS }
     }
@@ -109,8 +109,8 @@ fn decompose(value: f64) -> (i64, i32) {
     (if value.is_sign_negative() { -significand } else { significand }, exponent)
 }
 
-/// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and twice the
-/// exponent of two that it is to be multiplied with.
+/// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and
+/// twice the exponent of two that it is to be multiplied with.
 pub(super) fn root_of_quotient(dividend: &BigInt, divisor: &BigInt) -> (f64, i32) {
     const DIGITS: i64 = 64;
     let surplus = dividend.bits() as i64 - divisor.bits() as i64 - DIGITS;

@@ -1,5 +1,5 @@
-//! Many files, several at a time: each becomes an output of its own, and a line of the summary. A file that cannot be
-//! triangulated is a line, too, and does not keep the others from being done.
+//! Many files, several at a time: each becomes an output of its own, and a line of the summary. A file that
+//! cannot be triangulated is a line, too, and does not keep the others from being done.
 
 mod crew;
 mod file;
@@ -68,8 +68,8 @@ pub enum News<'n> {
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// If the folder or the summary cannot be written, or is none. With `strict`, the error of the first file that fails.
-/// Otherwise failures are counted.
+/// If the folder or the summary cannot be written, or is none. With `strict`, the error of the first file
+/// that fails. Otherwise failures are counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
     fs::create_dir_all(folder)
