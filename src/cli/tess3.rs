@@ -19,6 +19,7 @@ use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::parallel::available_threads;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
 use spmesh_tess3::{Options, Product, Radius, Stats};
@@ -217,7 +218,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
             "--resume reads the summary of the earlier run: give it a file with --summary",
         ));
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = available_threads().get();
     let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,

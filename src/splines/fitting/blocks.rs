@@ -5,8 +5,8 @@
 
 use super::observations::{Observation, Observations};
 use spmesh_core::error::Result;
+use spmesh_core::parallel;
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Observations in a block.
 pub(super) const BLOCK: usize = 1 << 13;
@@ -31,7 +31,8 @@ impl<'a> Block<'a> {
 /// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made of some
 /// consecutive blocks, in order.
 ///
-/// Errors: those of the source, of `map` and of `take`; observations that are none.
+/// # Errors
+/// Those of the source, of `map` and of `take`; an invalid observation.
 pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     observations: &O,
     threads: NonZeroUsize,
@@ -49,11 +50,11 @@ pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
             .zip(buffer[..whole].chunks(BLOCK))
             .map(|(first, observations)| Block { first, observations })
             .collect();
-        let made = in_parallel(threads, blocks.len(), |at| {
-            blocks[at].numbered().try_for_each(|(index, observation)| observation.check(index))?;
-            map(blocks[at])
+        let made = parallel::map(threads, blocks, |block| {
+            block.numbered().try_for_each(|(index, observation)| observation.check(index))?;
+            map(block)
         });
-        take(made.into_iter().collect::<Result<Vec<T>>>()?)?;
+        take(made?)?;
         if is_last {
             return Ok(());
         }
@@ -76,42 +77,6 @@ fn fill<T>(
         }
     }
     Ok(false)
-}
-
-/// What `make` gives for the numbers below `count`, in order.
-pub(super) fn in_parallel<T: Send>(
-    threads: NonZeroUsize,
-    count: usize,
-    make: impl Fn(usize) -> T + Sync,
-) -> Vec<T> {
-    let threads = threads.get().min(count);
-    if threads <= 1 {
-        return (0..count).map(make).collect();
-    }
-    let next = AtomicUsize::new(0);
-    let worker = || {
-        let mut made = Vec::new();
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            if at >= count {
-                return made;
-            }
-            made.push((at, make(at)));
-        }
-    };
-    let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(worker)).collect();
-        let mut all = worker();
-        for other in others {
-            match other.join() {
-                Ok(made) => all.extend(made),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        all
-    });
-    all.sort_unstable_by_key(|&(at, _)| at);
-    all.into_iter().map(|(_, made)| made).collect()
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use super::rows::Rows;
 use super::symmetric::Symmetric;
 use crate::bases::{Basis, Scratch};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
 /// Normal equations, and what is needed to know how well they are solved.
@@ -166,14 +167,11 @@ impl Parts {
                 totals.iter_mut().zip(&block.totals).for_each(|(all, some)| all.add(some));
                 block.residuals.iter().for_each(|&residual| see(residual));
             }
-            std::thread::scope(|scope| {
-                let (first, others) = shards.split_at_mut(1);
-                for shard in others {
-                    scope.spawn(|| shard.add(&round));
-                }
-                first[0].add(&round);
-            });
-            Ok(())
+            let add = |shard: &mut Shard| {
+                shard.add(&round);
+                Ok(())
+            };
+            parallel::map(threads, &mut shards, add).map(drop)
         })?;
         let rights: Vec<Vec<f64>> = shards.iter_mut().map(|shard| std::mem::take(&mut shard.right)).collect();
         let right = (0..basis.len())

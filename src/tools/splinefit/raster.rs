@@ -7,6 +7,7 @@ use super::attributes::Attribute;
 use super::layout::Spline;
 use super::values::{line, write_error};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::parallel;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
 use spmesh_splines::bases::{Raster, Scratch};
@@ -119,18 +120,12 @@ impl Bands<'_> {
         self.values.resize(count * columns, f64::NAN);
         let mut all = std::mem::take(&mut self.values);
         let share = count.div_ceil(self.threads.get());
-        let parts = all.chunks_mut(share * columns).zip((first..).step_by(share));
-        let outcome = std::thread::scope(|scope| {
-            let this = &*self;
-            let workers: Vec<_> =
-                parts.map(|(part, first)| scope.spawn(move || this.evaluate_part(first, part))).collect();
-            workers.into_iter().try_for_each(|worker| match worker.join() {
-                Ok(outcome) => outcome,
-                Err(panic) => std::panic::resume_unwind(panic),
-            })
+        let parts = all.chunks_mut(share * columns).enumerate();
+        let outcome = parallel::map(self.threads, parts, |(number, part)| {
+            self.evaluate_part(first + number * share, part)
         });
         self.values = all;
-        outcome
+        outcome.map(drop)
     }
 
     /// Rows from a number on.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::io::Read;
 
-use super::arrivals::Arrivals;
+use super::cell_buffer::Arrivals;
 use super::residual::Residual;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Region;

@@ -12,8 +12,8 @@ use std::thread::{Builder, Scope, ScopedJoinHandle};
 use crossbeam_channel::{Receiver, Sender, bounded, never, select, select_biased, unbounded};
 
 use super::bulk::Bulk;
-use super::intake::{Arrival, Ended, Intake};
 use super::node::{Rules, Solved};
+use super::reader::{Arrival, Ended, Intake};
 use super::residual::Residual;
 use super::run::Run;
 use super::schedule::{Job, Output};
