@@ -10,6 +10,8 @@ mod convert;
 mod dd4;
 mod dem;
 mod finalize;
+mod house;
+mod links;
 mod output;
 mod pipelines;
 mod points4;

@@ -3,7 +3,7 @@
 import os
 import subprocess
 
-from machine import ROOT
+import target
 
 UNITS = {"k": 10**3, "M": 10**6}
 # Inputs above this are not kept, unless asked for.
@@ -36,7 +36,7 @@ class Inputs:
         # Under another name until it is whole.
         part = path.with_name("part-" + name)
         if kind == "flight":
-            self.make(ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)
+            self.make(target.ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)
         elif kind == "permuted":
             self.make(self.helpers / "inputs", "permute", self.file(f"flight-{size}.las"), part)
         else:
@@ -61,9 +61,8 @@ class Inputs:
 
 
 def program(name):
-    """A program of this project, as `cargo build --release` makes it."""
-    target = os.environ.get("CARGO_TARGET_DIR", ROOT / "target")
-    return ROOT / target / "release" / name
+    """A program or an example of the release build."""
+    return target.PROGRAMS / name
 
 
 def build(dims):
@@ -71,5 +70,4 @@ def build(dims):
     names = (EXAMPLES4 if 4 in dims else []) + (EXAMPLES if dims != {4} else [])
     examples = [word for name in names for word in ("--example", name)]
     bins = ["--bins"] if dims != {4} else []
-    command = ["cargo", "build", "--release", "--locked", "--quiet", *bins, *examples]
-    subprocess.run(command, cwd=ROOT, check=True)
+    target.build(*bins, *examples)

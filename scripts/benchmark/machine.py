@@ -6,7 +6,7 @@ import pathlib
 import platform
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from target import ROOT
 
 
 def line_of(*command):

@@ -1,15 +1,13 @@
 """Points, tess3 and spinfo as functions."""
 
 import json
-import os
 import pathlib
 import random
 import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-BIN = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
+from target import PROGRAMS as BIN
 
 
 class Workplace:

@@ -1,0 +1,15 @@
+# The release build of the project, for scripts to source: $root, $target and $programs say where it is.
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+target=${CARGO_TARGET_DIR:-$root/target}
+case $target in /*) ;; *) target=$PWD/$target ;; esac
+export CARGO_TARGET_DIR=$target
+programs=$target/release
+
+# Builds programs and examples, given as flags of cargo such as --bins or --example NAME.
+build() { cargo build --release --locked --quiet --manifest-path "$root/Cargo.toml" "$@"; }
+
+# Builds an example and runs it in place of this script.
+run_example() {
+    build --example "$1"
+    exec "$programs/examples/$1" "${@:2}"
+}
