@@ -51,7 +51,11 @@ fn no_example_in_documentation_goes_untested() {
             collect(root.parent().expect("a folder"), &mut files);
             for file in files {
                 let text = fs::read_to_string(&file).expect("a source file");
-                assert!(!has_example(&text), "{}: remove `doctest = false` from the manifest", file.display());
+                assert!(
+                    !has_example(&text),
+                    "{}: remove `doctest = false` from the manifest",
+                    file.display()
+                );
             }
         }
     }
