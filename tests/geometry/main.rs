@@ -10,4 +10,5 @@ mod kernel3;
 mod kernel_predicates;
 mod kernel_predicates3;
 mod order;
+mod queries;
 mod sphere;

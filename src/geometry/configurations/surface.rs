@@ -4,7 +4,7 @@
 use super::knots::Knots;
 use super::lift::Lift;
 use super::plane::Plane;
-use crate::delaunay2::{Kernel, Triangulation};
+use crate::delaunay2::{Kernel, Triangles};
 use crate::predicates::FiniteFloatPredicates;
 use foldhash::HashMap;
 use spmesh_core::error::{Error, Result};
@@ -26,14 +26,14 @@ pub struct Start {
 }
 
 /// The canonical Delaunay triangulation; of knots at one place only the first is a vertex.
-fn kernel_mesh(knots: &Knots) -> Result<Triangulation> {
-    let mut mesh = Triangulation::default();
+fn kernel_mesh(knots: &Knots) -> Result<Triangles> {
+    let mut mesh = Triangles::default();
     Kernel::new().triangulate(knots.points(), &mut mesh)?;
     if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh) }
 }
 
 /// Its triangles, and after them the infinite ones at the edges of the hull.
-fn triangles_of(mesh: &Triangulation) -> Vec<[u32; 3]> {
+fn triangles_of(mesh: &Triangles) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(mesh.triangles().len() + mesh.hull.len());
     triangles.extend(mesh.triangles().iter().map(|triangle| triangle.vertices));
     let ends = mesh.hull.iter().cycle().skip(1);
@@ -42,7 +42,7 @@ fn triangles_of(mesh: &Triangulation) -> Vec<[u32; 3]> {
 }
 
 /// For each half-edge of [`triangles_of`] that on the other side.
-fn across_of(mesh: &Triangulation) -> Vec<[Corner; 3]> {
+fn across_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
     let (finite, infinite) = (mesh.triangles().len() as u32, mesh.hull.len() as u32);
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
     let mut across = Vec::with_capacity((finite + infinite) as usize);

@@ -2,7 +2,7 @@
 //! integers of any size.
 
 use super::knots::Knots;
-use crate::predicates::{Sign, big};
+use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 
 /// A polynomial in e: the coefficients, the constant one first.
@@ -26,7 +26,7 @@ pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
 
 /// Positions as linear polynomials. The unit of e does not matter, so that it may differ from call to call.
 fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[Polynomial; 2]; N] {
-    let points = big::integers(ids.map(|id| knots.at(id)));
+    let points = exact_integers::integers(ids.map(|id| knots.at(id)));
     std::array::from_fn(|i| {
         let rank = BigInt::from(knots.rank(ids[i]));
         let [x, y] = &points[i];

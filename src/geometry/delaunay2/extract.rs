@@ -1,4 +1,4 @@
-//! From the triangulated sphere to a [`super::Triangulation`], in place: infinite triangles go, and vertices become
+//! From the triangulated sphere to a [`super::Triangles`], in place: infinite triangles go, and vertices become
 //! indices of input points.
 
 use super::half_edge::{HalfEdge, NONE, number_of, previous, triangle_of};

@@ -4,6 +4,7 @@
 //! they can be sorted into the other half, and the first one is free for whoever writes them.
 
 use super::tetrahedralization::{Tetrahedralization, Tetrahedron, Vertex};
+use crate::order::sizes_to_starts;
 
 /// Tetrahedra that come without order among themselves, and greatest number of such groups.
 const GROUP: usize = 4096;
@@ -54,10 +55,7 @@ impl Tetrahedralization {
         if counts.len() == 1 {
             return Corners { vertices, storage, start: 0, end: kept };
         }
-        let mut next = 0;
-        for place in &mut counts {
-            next += std::mem::replace(place, next);
-        }
+        sizes_to_starts(&mut counts);
         let (unordered, ordered) = quadruples.split_at_mut(kept);
         for &corners in &*unordered {
             let place = &mut counts[group(corners, shift)];

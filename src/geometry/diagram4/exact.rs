@@ -1,7 +1,7 @@
 //! Exact signs, where rounded values do not tell.
 
 use super::determinant::{Number, difference, dot, lift, normal, sphere};
-use crate::predicates::big::integers;
+use crate::predicates::exact_integers::integers;
 use num_bigint::BigInt;
 use spmesh_model::cells4::Point4;
 use std::cmp::Ordering;

@@ -1,7 +1,7 @@
 //! Points made ready: distinct, in order, and small numbers about the centre of their box.
 
 use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX, SMALL_MAX};
-use crate::predicates::big::integers_of;
+use crate::predicates::exact_integers::integers_of;
 use crate::predicates::{Extent, lexicographic};
 use num_bigint::BigInt;
 use spmesh_model::cells4::Point4;

@@ -7,9 +7,10 @@
 
 mod adaptive;
 mod area;
-pub(crate) mod big;
+mod big;
 pub mod circle;
 mod counts;
+pub mod exact_integers;
 mod extent;
 mod integer;
 mod perturbation;

@@ -8,6 +8,7 @@ use super::walls::WallIndex;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::prefetch::prefetch;
 use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization};
+use spmesh_geometry::order::sizes_to_starts;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::sphere::SphereBounds;
 use spmesh_model::bounds::Region;
@@ -42,10 +43,7 @@ impl Space {
         // For each vertex, where tetrahedra of which it is the last go.
         let mut places = vec![0u32; self.mesh.vertices().len()];
         tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
-        let mut next = 0;
-        for place in &mut places {
-            next += std::mem::replace(place, next);
-        }
+        sizes_to_starts(&mut places);
         self.sequence.resize(tetrahedra.len(), 0);
         for (t, tetrahedron) in (0..).zip(tetrahedra) {
             let place = &mut places[last(tetrahedron.vertices)];

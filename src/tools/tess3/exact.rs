@@ -6,6 +6,7 @@ use std::ops::{Add, Mul, Sub};
 use num_bigint::BigInt;
 
 use super::radius::Radius;
+use spmesh_geometry::predicates::exact_integers::integers_and_unit;
 use spmesh_geometry::predicates::{Point3, Sign};
 
 /// What a formula is evaluated in.
@@ -30,7 +31,7 @@ pub(super) fn sign<P: Polynomial<N>, const N: usize>(points: [Point3; N], radius
     if value.value.abs() > value.error {
         return Sign::of(value.value);
     }
-    let (points, unit) = integers(points);
+    let (points, unit) = integers_and_unit(points);
     Sign::of(P::value(points, &radius.squares_in(unit)))
 }
 
@@ -85,28 +86,6 @@ impl Mul for Approximate {
         let error = self.value.abs() * other.error + (other.value.abs() + other.error) * self.error;
         Approximate::rounded(self.value * other.value, error)
     }
-}
-
-/// The points in units of 2^unit, in which all their coordinates are whole, and that exponent.
-pub(super) fn integers<const N: usize>(points: [Point3; N]) -> ([Vector<BigInt>; N], i32) {
-    let parts = points.map(|point| point.map(decompose));
-    let unit = parts.iter().flatten().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
-    let whole = |(significand, exponent): (i64, i32)| match significand {
-        0 => BigInt::from(0),
-        _ => BigInt::from(significand) << (exponent - unit) as usize,
-    };
-    (parts.map(|point| point.map(whole)), unit)
-}
-
-/// Significand and exponent: `value == significand * 2^exponent`.
-fn decompose(value: f64) -> (i64, i32) {
-    debug_assert!(value.is_finite());
-    let bits = value.to_bits();
-    let biased = (bits >> 52 & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (significand, exponent) =
-        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-    (if value.is_sign_negative() { -significand } else { significand }, exponent)
 }
 
 /// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and

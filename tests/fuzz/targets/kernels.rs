@@ -5,10 +5,11 @@ use std::borrow::Cow;
 use spmesh_audit::{Audit, Standard, config, diagram::check};
 use spmesh_core::error::ErrorKind;
 use spmesh_geometry::configurations::{Knots, Rule, delaunay, generate};
-use spmesh_geometry::diagram4::{Diagram, Route, diagram_by};
+use spmesh_geometry::diagram4::{Route, diagram_by};
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::{delaunay2, delaunay3};
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_configurations, write_triangles};
 
 use crate::points::{moderate, points};
@@ -58,7 +59,7 @@ pub fn kernel3(bytes: &[u8]) {
 /// Both routes agree, and an audit proves what they say.
 pub fn diagram4(bytes: &[u8]) {
     let points = moderate::<4>(bytes, 40);
-    let by = |route| -> Option<Diagram> {
+    let by = |route| -> Option<Diagram4> {
         match diagram_by(route, points.clone(), None) {
             Ok((diagram, _)) => Some(diagram),
             Err(error) => {
@@ -69,7 +70,7 @@ pub fn diagram4(bytes: &[u8]) {
     };
     let diagram = by(Route::Simplices);
     assert_eq!(diagram, by(Route::Direct), "let points: Vec<Point4> = vec!{points:?};");
-    if let Some(Diagram { points, cells, .. }) = diagram {
+    if let Some(Diagram4 { points, cells, .. }) = diagram {
         prove4(&points, &cells);
     }
 }

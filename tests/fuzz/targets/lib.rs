@@ -8,6 +8,7 @@ mod files;
 mod kernels;
 pub mod mutation;
 mod points;
+#[allow(dead_code)]
 #[path = "../../geometry/kernel3/promises.rs"]
 mod promises;
 pub mod samples;

@@ -13,7 +13,7 @@ pub const ONE: NonZeroUsize = NonZeroUsize::MIN;
 /// Quadratic functions over points, with the border of their hull pulled apart: the domain is the whole hull.
 pub fn pulled_apart(points: &[[f64; 2]]) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
-    let hull = delaunay2::triangulate(points).expect("a triangulation").hull;
+    let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
     let special = features(&knots, &Features { corners: hull, ..Features::default() }).expect("features");
     let all = special.generate(&Rule::Delaunay, 1).expect("configurations");
     let links = configurations::links(&special.knots, &all[1]).expect("links");

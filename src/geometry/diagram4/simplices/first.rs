@@ -1,7 +1,7 @@
 //! Five points that are not in a hyperplane.
 
 use crate::diagram4::sites::Sites;
-use crate::predicates::big::integers;
+use crate::predicates::exact_integers::integers;
 use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
