@@ -2,14 +2,14 @@
 
 mod bends;
 
-use super::approach::Approach;
+use super::directional_limit::Approach;
 use super::domain::Domain;
 use super::elements::{Elements, Share};
 use super::factors::Factors;
 use super::function_sets::FunctionSets;
 use super::jet::Jet;
+use super::linear_simplex::{self, Found, Line, Tent};
 use super::simplex;
-use super::tent::{self, Found, Line, Tent};
 use super::tree::Tree;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::prefetch::prefetch;
@@ -222,9 +222,9 @@ impl Basis {
             };
             if tent.is_exact_enough {
                 let factors = self.factors.of_element(element);
-                return factors
-                    .iter()
-                    .for_each(|(function, line)| take(*function, tent::value(line, offset) * found));
+                return factors.iter().for_each(|(function, line)| {
+                    take(*function, linear_simplex::value(line, offset) * found)
+                });
             }
         }
         self.for_each_careful_share(element, x, knots, take);
@@ -254,7 +254,8 @@ impl Basis {
             }
             let is_clear = tent.is_exact_enough && matches!(found, Found::Inside(_));
             if let Some(piece) = tent.piece(offset).filter(|_| is_clear) {
-                let linear = |line: &Line| Jet::linear(tent::value(line, offset), [line[1], line[2]]);
+                let linear =
+                    |line: &Line| Jet::linear(linear_simplex::value(line, offset), [line[1], line[2]]);
                 let jet = linear(&piece);
                 for (function, line) in self.factors.of_element(element) {
                     add(&mut scratch.jets, *function, linear(line).product(jet));
@@ -284,7 +285,7 @@ impl Basis {
     fn is_inside(&self, element: usize, x: Point2) -> bool {
         let mut knots = Vec::new();
         self.take_knots(element, &mut knots);
-        tent::is_inside(&self.approach(x), &knots)
+        linear_simplex::is_inside(&self.approach(x), &knots)
     }
 
     fn take_knots(&self, element: usize, knots: &mut Vec<Point2>) {

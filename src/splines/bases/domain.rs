@@ -24,7 +24,7 @@
 //! it included, and there are at most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line,
 //! are limits of knots that are moved.
 
-use super::approach::Approach;
+use super::directional_limit::Approach;
 use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
 

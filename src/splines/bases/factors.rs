@@ -1,7 +1,7 @@
 //! Linear factors of closed forms.
 
 use super::elements::Elements;
-use super::tent::{Line, Tent, line_of, scaled};
+use super::linear_simplex::{Line, Tent, line_of, scaled};
 use spmesh_geometry::predicates::Point2;
 
 /// Linear factors of functions in elements, as functions of the offset from the origin of the tent.

@@ -6,7 +6,7 @@
 //! in a loop without branches. Columns too near to an edge are evaluated like single points.
 
 use super::basis::{Basis, Scratch};
-use super::tent::{Line, Tent, lesser, scaled, value};
+use super::linear_simplex::{Line, Tent, lesser, scaled, value};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::ops::Range;

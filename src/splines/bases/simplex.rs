@@ -8,7 +8,7 @@
 //! then positive, nothing cancels, and with areas that are accurate (`area`) so is the value, however flat sets of knots
 //! are.
 
-use super::approach::Approach;
+use super::directional_limit::Approach;
 use super::jet::Jet;
 use foldhash::{HashMap, HashMapExt};
 use spmesh_geometry::predicates::{Point2, Sign, area};

@@ -9,44 +9,44 @@
 //!
 //! `observations` and `elevations` are what is fitted, `blocks` reads it in parallel, `rows` and `symmetric` are matrices, `factor` is
 //! where they are factored, `trend` is what needs no solution, `energy` and `control` are what smooths, with `polygon` and `overlaps`;
-//! `spread` has medians, `mesh` and `cover` are knots with what is over them, `places` says where knots go, and `survey` what asks
+//! `spread` has medians, `mesh` and `cover` are knots with what is over them, `places` says where knots go, and `triangle_residuals` what asks
 //! for them.
 
 mod blocks;
-mod choice;
-mod control;
-mod cover;
+mod cholesky;
+mod control_energy;
+mod cross_validation;
 mod energy;
-mod factor;
+mod interpolation;
+mod knot_placement;
 mod mesh;
-mod normal;
+mod normal_equations;
 mod observations;
 mod overlaps;
-mod places;
 mod polygon;
+mod quantile_sketch;
 mod refine;
 mod residuals;
 mod robust;
 mod rows;
-mod sites;
 mod solve;
-mod spread;
-mod survey;
+mod spline_space;
 mod symmetric;
 mod trend;
+mod triangle_residuals;
 
-pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
-pub use control::{bending, control_bending};
-pub use cover::Cover;
+pub use control_energy::{bending, control_bending};
+pub use cross_validation::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
 pub use energy::thin_plate;
+pub use interpolation::{Interpolation, interpolate};
+pub use knot_placement::{KNOTS_MIN, even_places};
 pub use mesh::Mesh;
-pub use normal::Normal;
+pub use normal_equations::Normal;
 pub use observations::{Observation, ObservationReader, Observations};
-pub use places::{KNOTS_MIN, even_places};
+pub use quantile_sketch::Spread;
 pub use refine::{Goal, Refined, Round, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust, robust_from};
-pub use sites::{Interpolation, interpolate};
 pub use solve::{Equations, Undetermined, least_squares};
-pub use spread::Spread;
+pub use spline_space::Cover;
 pub use symmetric::Symmetric;

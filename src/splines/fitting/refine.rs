@@ -1,18 +1,18 @@
 //! Knots where they are needed: fits that add knots until residuals are small enough.
 //!
 //! The knots begin as a coarse grid over the box of the data. Each round fits a spline, and looks for the greatest residual in
-//! each triangle of knots (`survey`). Where it is above the tolerance, a new knot about halfway between the place and the middle
+//! each triangle of knots (`triangle_residuals`). Where it is above the tolerance, a new knot about halfway between the place and the middle
 //! of the triangle: near to where it is needed, and away from knots and edges. Next to the border it is the middle of the border's
-//! edge instead (`places`).
+//! edge instead (`knot_placement`).
 
-use super::control::bending;
-use super::cover::Cover;
-use super::normal::Normal;
+use super::control_energy::bending;
+use super::knot_placement::{KNOTS_MIN, bounds, first_places, settled};
+use super::normal_equations::Normal;
 use super::observations::Observations;
-use super::places::{KNOTS_MIN, bounds, first_places, settled};
 use super::robust::{Loss, ROUNDS_FEW, Rounds};
 use super::solve::Equations;
-use super::survey::Survey;
+use super::spline_space::Cover;
+use super::triangle_residuals::Survey;
 use spmesh_core::error::{Error, Result};
 use std::num::NonZeroUsize;
 

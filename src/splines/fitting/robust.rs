@@ -1,10 +1,10 @@
 //! Fits that gross errors do not pull: least squares with weights that depend on residuals, again and again.
 
-use super::normal::{Normal, Parts, Weighed};
+use super::normal_equations::{Normal, Parts, Weighed};
 use super::observations::Observations;
+use super::quantile_sketch::Spread;
 use super::residuals::{self, Residual};
 use super::solve::Equations;
-use super::spread::Spread;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};

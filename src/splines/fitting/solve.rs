@@ -1,8 +1,8 @@
 //! Coefficients from normal equations, smoothed or not.
 
-use super::control::bending;
-use super::factor::{Elimination, Factor};
-use super::normal::Normal;
+use super::cholesky::{Elimination, Factor};
+use super::control_energy::bending;
+use super::normal_equations::Normal;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
 use super::trend::trend;

@@ -3,7 +3,7 @@
 //! Linear functions do not bend, so that the smoothest splines are near to one, and a great `lambda` times the rounding errors of
 //! its bend would be more than all observations say. So it is found by itself, and equations are solved for the rest.
 
-use super::normal::Normal;
+use super::normal_equations::Normal;
 use crate::bases::Basis;
 
 /// Directions whose part of a diagonal is less than this are left out: observations on a line have no slope across it.

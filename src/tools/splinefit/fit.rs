@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use super::choose::{Chosen, Problem, choose};
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
 use super::options::Options;
 use super::points::{InFrame, Points};
+use super::smoothing_choice::{Chosen, Problem, choose};
 use super::statistics::Statistics;
-use super::{given, lists, sharp};
+use super::{breaklines, given_knots, residual_lists};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Opened;
 use spmesh_splines::fitting::{
@@ -79,7 +79,9 @@ pub fn fit(
         return Err(Error::usage(what));
     }
     let (mut layout, found) = match knots {
-        Some((source, name)) => (given::layout(source, &name, options.degree, &options.polylines)?, None),
+        Some((source, name)) => {
+            (given_knots::layout(source, &name, options.degree, &options.polylines)?, None)
+        }
         None if options.step.is_some() => (even(points, options, done)?, None),
         None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
@@ -110,7 +112,7 @@ impl Fitted {
     /// If points cannot be read, or the list cannot be written.
     pub fn write_rejected(&self, points: &Points, options: &Options, output: &mut impl Write) -> Result<u64> {
         let Some(robust) = &self.robust else { return Ok(0) };
-        lists::write_rejected(robust, &self.spline, points, options.threads, output)
+        residual_lists::write_rejected(robust, &self.spline, points, options.threads, output)
     }
 }
 
@@ -135,7 +137,7 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
     let cover = match options.polylines.is_empty() {
         true => refined.cover,
-        false => sharp::cover(refined.cover.mesh.points(), &options.polylines)?,
+        false => breaklines::cover(refined.cover.mesh.points(), &options.polylines)?,
     };
     Ok((Layout::of_cover(cover, frame), search))
 }
@@ -149,7 +151,7 @@ fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout
     let places = fitting::even_places(&all, side).map_err(|error| error.of_input(points.name()))?;
     let cover = match options.polylines.is_empty() {
         true => Cover::of(places)?,
-        false => sharp::cover(&places, &options.polylines)?,
+        false => breaklines::cover(&places, &options.polylines)?,
     };
     Ok(Layout::of_cover(cover, frame))
 }

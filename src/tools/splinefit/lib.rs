@@ -7,34 +7,34 @@
 //! smooth than others, and `control` has control meshes.
 
 mod attributes;
-mod choose;
+mod breaklines;
 mod control;
 mod elevations;
 mod fit;
 mod frame;
-mod given;
+mod given_knots;
 mod layout;
-mod lists;
 mod options;
 mod points;
 mod raster;
-mod sharp;
+mod residual_lists;
+mod smoothing_choice;
 mod smoothness;
 mod statistics;
 mod summary;
 mod values;
 
 pub use attributes::Attribute;
-pub use choose::Chosen;
 pub use control::ControlMesh;
 pub use elevations::Elevations;
 pub use fit::{Fitted, Report, Search, fit};
 pub use frame::Frame;
 pub use layout::{Layout, Spline};
-pub use lists::write_residuals;
 pub use options::{Options, Smoothing};
 pub use points::{InFrame, Points};
 pub use raster::{write_raster, write_table};
+pub use residual_lists::write_residuals;
+pub use smoothing_choice::Chosen;
 pub use smoothness::{Candidate, Smoothness};
 pub use statistics::{PERCENTILES, Statistics};
 pub use summary::{Condition, Summary};

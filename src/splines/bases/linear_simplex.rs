@@ -12,7 +12,7 @@
 //! function: the edge is a *wall*, at which the spline jumps to zero. A triangle has three walls, and is capped by a
 //! constant.
 
-use super::approach::Approach;
+use super::directional_limit::Approach;
 use super::elements::hull_edges;
 use spmesh_geometry::predicates::{Extent, Point2, Sign, area, exact_area};
 

@@ -1,8 +1,8 @@
 //! Knots that are given, as points or with all that was made of them.
 
+use super::breaklines;
 use super::frame::Frame;
 use super::layout::Layout;
-use super::sharp;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::predicates::Point2;
@@ -55,7 +55,7 @@ fn of_points(input: &Input, polylines: &[Polyline]) -> Result<Layout> {
     }
     // Polylines have vertices that are on no grid.
     let places: Vec<Point2> = places.into_iter().map(|stored| frame.to_world(stored)).collect();
-    Ok(Layout::of_cover(sharp::cover(&places, polylines)?, Frame::world(frame.crs)))
+    Ok(Layout::of_cover(breaklines::cover(&places, polylines)?, Frame::world(frame.crs)))
 }
 
 /// The first point at each place.

@@ -1,7 +1,7 @@
 //! How much to smooth: generalised and k-fold cross-validation.
 
-use super::factor::Factor;
-use super::normal::{Normal, Parts};
+use super::cholesky::Factor;
+use super::normal_equations::{Normal, Parts};
 use super::observations::Observations;
 use super::solve::Equations;
 use super::symmetric::Symmetric;

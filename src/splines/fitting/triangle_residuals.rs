@@ -3,12 +3,12 @@
 //! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations ask for no knot, unless they are a
 //! good part of what is in a triangle.
 
-use super::cover::Cover;
+use super::knot_placement::knot_in;
 use super::mesh::Mesh;
 use super::observations::Observations;
-use super::places::knot_in;
 use super::refine::{Goal, Round};
 use super::residuals::{self, Residual};
+use super::spline_space::Cover;
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
 use spmesh_geometry::predicates::Point2;

@@ -1,6 +1,6 @@
 //! Breaklines and corners: polylines of the world become knots with features between them.
 
-use super::given::without_copies;
+use super::given_knots::without_copies;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::special::{Crease, Features};
 use spmesh_geometry::delaunay2;
