@@ -53,8 +53,8 @@ const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";
 
 /// Bivariate splines fitted to scattered points.
 ///
-/// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and coefficients. It
-/// evaluates such streams at sites and in cells of rasters.
+/// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and
+/// coefficients. It evaluates such streams at sites and in cells of rasters.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -74,7 +74,8 @@ enum Action {
     Eval(eval::Flags),
     /// Say what a spline is like: domain, condition, smoothness, residuals
     Info(info::Flags),
-    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh or a picture
+    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh
+    /// or a picture
     Mesh(mesh::Flags),
 }
 

@@ -15,7 +15,7 @@ pub fn spread2(x: u32) -> u64 {
 /// Undoes [`spread2`]: moves bit 2i to bit i, whatever the odd bits are.
 #[inline(always)]
 #[must_use]
-pub fn gather2(x: u64) -> u32 {
+pub(crate) fn gather2(x: u64) -> u32 {
     let mut x = x & 0x5555_5555_5555_5555;
     x = (x | x >> 1) & 0x3333_3333_3333_3333;
     x = (x | x >> 2) & 0x0f0f_0f0f_0f0f_0f0f;

@@ -1,8 +1,9 @@
-//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a later one.
+//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a
+//! later one.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
-use super::payload::whole_records;
+use super::block::whole_records;
 use super::rules4::check_cell;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CELL_WORDS_MAX;

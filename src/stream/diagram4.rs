@@ -1,4 +1,4 @@
-//! A stream of points or of cells of four dimensions, whole.
+//! Reads a whole stream of four-dimensional points or cells.
 
 use std::io::Read;
 
@@ -45,7 +45,10 @@ impl Diagram4 {
         Ok(diagram)
     }
 
-    /// Takes what a block holds; `words` counts those of cells.
+    /// Takes the next event; `words` counts the words of all cells so far.
+    ///
+    /// # Errors
+    /// Usage, if the cells have 2^32 words or more.
     pub fn event(&mut self, event: &Event, words: &mut u64) -> Result<()> {
         match event {
             Event::Points4(block) => {

@@ -2,6 +2,7 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::block::whole_records;
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
 use spmesh_core::error::{Error, Result};
@@ -161,14 +162,6 @@ pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {
     }
 }
 
-pub(super) fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
-    if bytes.len().is_multiple_of(len) {
-        Ok(bytes.chunks_exact(len))
-    } else {
-        Err(Error::malformed(format!("{} bytes are not a whole number of records of {len}", bytes.len())))
-    }
-}
-
 /// A point that lies where the header says that all points lie.
 fn point(header: &Header, record: &[u8]) -> Result<Point> {
     let mut point = [0.0; 3];
@@ -207,7 +200,10 @@ fn check_point(header: &Header, point: Point) -> Result<()> {
     check_place(header, point)
 }
 
-/// That a point lies where the header says that all points lie.
+/// Checks that a point lies in the bounding box, the tree and the region that the header states.
+///
+/// # Errors
+/// Malformed, if it lies outside of one.
 pub fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
         "the header's bounding box"

@@ -39,7 +39,8 @@ meet at common vertices only.
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
 pub(super) struct Flags {
-    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point streams); - is stdin
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK,
+    /// point streams); - is stdin
     #[arg(value_name = "POINTS", default_value = "-")]
     inputs: Vec<PathBuf>,
 
@@ -51,8 +52,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots", "step"])]
     knots: Option<PathBuf>,
 
-    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are listed, or else one
-    /// more than the highest]
+    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are
+    /// listed, or else one more than the highest]
     #[arg(long, value_name = "K")]
     degree: Option<usize>,
 
@@ -84,8 +85,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 
-    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or linear and X Y X Y ...,
-    /// or GeoJSON; - is stdin
+    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or
+    /// linear and X Y X Y ..., or GeoJSON; - is stdin
     #[arg(long, value_name = "FILE")]
     features: Option<PathBuf>,
 

@@ -1,7 +1,7 @@
 //! A pass over observations in blocks of a fixed size, several at a time.
 //!
-//! Blocks are cut by the numbers of observations, whatever batches their source hands out, and what is made of blocks comes
-//! back in their order. So no result depends on the number of threads.
+//! Blocks are cut by the numbers of observations, whatever batches their source hands out, and what is made
+//! of blocks comes back in their order. So no result depends on the number of threads.
 
 use super::observations::{Observation, Observations};
 use spmesh_core::error::Result;
@@ -9,7 +9,7 @@ use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Observations in a block.
-pub(super) const BLOCK: usize = 1 << 13;
+const BLOCK: usize = 1 << 13;
 /// Blocks per thread that are read before they are worked on: memory of a pass is that many.
 const BLOCKS_PER_THREAD: usize = 4;
 
@@ -28,10 +28,11 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made of some
-/// consecutive blocks, in order.
+/// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made
+/// of some consecutive blocks, in order.
 ///
-/// Errors: those of the source, of `map` and of `take`; observations that are none.
+/// # Errors
+/// Those of the source, of `map` and of `take`; observations that are none.
 pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     observations: &O,
     threads: NonZeroUsize,

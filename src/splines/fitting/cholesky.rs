@@ -1,12 +1,14 @@
 //! Symmetric positive definite equations, solved by sparse Cholesky factors.
 //!
-//! Bases can be linearly dependent, and observations can leave gaps, so nothing is factored as it is. Equations are scaled to a
-//! diagonal of ones, and [`RIDGE`] is added to it; what the ridge does to the solution is removed again by refinement with the
-//! residuals of the true equations, as far as they determine it.
+//! Bases can be linearly dependent, and observations can leave gaps, so nothing is factored as it is.
+//! Equations are scaled to a diagonal of ones, and [`RIDGE`] is added to it; what the ridge does to the
+//! solution is removed again by refinement with the residuals of the true equations, as far as they determine
+//! it.
 //!
-//! A direction v in which they do not has v'Mv near zero for the scaled matrix M. The function that is eliminated last of those in
-//! it has a small pivot then: about v'(M + ridge)v over the square of its part of v, which may be small. So small pivots are
-//! candidates; the solution for a unit vector at a candidate is nearly such a direction, and tells.
+//! A direction v in which they do not has v'Mv near zero for the scaled matrix M. The function that is
+//! eliminated last of those in it has a small pivot then: about v'(M + ridge)v over the square of its part of
+//! v, which may be small. So small pivots are candidates; the solution for a unit vector at a candidate is
+//! nearly such a direction, and tells.
 
 use super::symmetric::Symmetric;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -19,8 +21,8 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 
 /// What is added to a diagonal of ones: some hundred times what rounding does to a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
-/// What it is multiplied by, again and again, while a pivot is not positive for all that: knots near to one line make energies so
-/// stiff that rounding errors of theirs are more than what others add.
+/// What it is multiplied by, again and again, while a pivot is not positive for all that: knots near to one
+/// line make energies so stiff that rounding errors of theirs are more than what others add.
 const RIDGE_STEP: f64 = 100.0;
 const RIDGE_MAX: f64 = 1e-6;
 /// The least v'Mv / v'v of directions that are determined.
@@ -57,7 +59,9 @@ impl Elimination {
 
     /// Factors of a matrix with the pattern.
     ///
-    /// Errors: not enough memory; a pivot that is not positive for all the ridge: entries that are no normal equations.
+    /// # Errors
+    /// Not enough memory; a pivot that is not positive for all the ridge: entries that are no normal
+    /// equations.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
         debug_assert_eq!(self.entries, matrix.entries_len());
         let scale: Vec<f64> =
@@ -117,8 +121,8 @@ impl Factor<'_> {
         x
     }
 
-    /// The functions that are not determined, given those eliminated before, in order of their numbers; with the curvature v'Mv / v'v
-    /// in the direction that they are not determined in.
+    /// The functions that are not determined, given those eliminated before, in order of their numbers; with
+    /// the curvature v'Mv / v'v in the direction that they are not determined in.
     pub(super) fn weak(&self) -> Vec<(usize, f64)> {
         let symbolic = &self.elimination.symbolic;
         let original = symbolic.perm().map(|order| order.arrays().0);

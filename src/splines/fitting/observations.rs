@@ -3,6 +3,9 @@
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
+/// Observations that a list hands out at a time.
+const BATCH: usize = 1 << 13;
+
 /// A value at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
@@ -74,7 +77,7 @@ struct Listed<'a> {
 
 impl ObservationReader for Listed<'_> {
     fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
-        let (next, rest) = self.rest.split_at(self.rest.len().min(super::blocks::BLOCK));
+        let (next, rest) = self.rest.split_at(self.rest.len().min(BATCH));
         observations.extend_from_slice(next);
         self.rest = rest;
         Ok(())

@@ -12,8 +12,8 @@ pub(super) type Rectangle = [Point2; 2];
 
 /// Calls `visit` once for each pair of different boxes that have a point in common, the lesser number first.
 ///
-/// The plane is halved at medians, again and again; a pair is that of the part that the lower left corner of what both have in
-/// common is in. Cost: O(n log n), and that of pairs.
+/// The plane is halved at medians, again and again; a pair is that of the part that the lower left corner of
+/// what both have in common is in. Cost: O(n log n), and that of pairs.
 pub(super) fn for_each_pair(boxes: &[Rectangle], visit: &mut impl FnMut(u32, u32)) {
     let all: Vec<u32> = (0..boxes.len() as u32).collect();
     Search { boxes, visit }.search(all, [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);

@@ -5,10 +5,11 @@ use spmesh_splines::bases::Jet;
 
 /// What is asked.
 ///
-/// Where a spline is level, it has neither an aspect nor curvatures along and across its slope: these are not numbers there.
+/// Where a spline is level, it has neither an aspect nor curvatures along and across its slope: these are not
+/// numbers there.
 ///
-/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans, 1972, and Shary, 1995,
-/// have too): normal curvatures, positive where the surface is convex upwards.
+/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans,
+/// 1972, and Shary, 1995, have too): normal curvatures, positive where the surface is convex upwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attribute {
     /// The value itself. Units: those of elevations.
@@ -17,10 +18,11 @@ pub enum Attribute {
     Slope,
     /// The direction of steepest descent, in degrees clockwise from north, from 0 to 360.
     Aspect,
-    /// Curvature of the section along the steepest descent: where it is positive, what flows gets faster. Units: 1 over those of
-    /// coordinates.
+    /// Curvature of the section along the steepest descent: where it is positive, what flows gets faster.
+    /// Units: 1 over those of coordinates.
     ProfileCurvature,
-    /// Curvature of the section across the steepest descent: where it is positive, what flows diverges. Units: the same.
+    /// Curvature of the section across the steepest descent: where it is positive, what flows diverges.
+    /// Units: the same.
     TangentialCurvature,
     /// Both derivatives, by x and by y.
     Gradient,

@@ -6,7 +6,8 @@ use spmesh_io::source::crs_name;
 use spmesh_splines::bases::Jet;
 use spmesh_stream::{Coordinates, Crs};
 
-/// What stored knots mean. A step along x is as long as one along y, so that directions and shapes are those of the world.
+/// What stored knots mean. A step along x is as long as one along y, so that directions and shapes are those
+/// of the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// How knots are stored.
@@ -22,8 +23,8 @@ impl Frame {
         Frame { coordinates: Coordinates::F64, crs }
     }
 
-    /// A frame of stored coordinates if their steps are equal, and of the world otherwise; and what makes points of the one those
-    /// of the other.
+    /// A frame of stored coordinates if their steps are equal, and of the world otherwise; and what makes
+    /// points of the one those of the other.
     pub(super) fn of(coordinates: Coordinates, crs: Crs) -> (Frame, impl Fn(Point2) -> Point2) {
         let is_even = match coordinates {
             Coordinates::F64 => true,

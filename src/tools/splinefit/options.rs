@@ -19,7 +19,8 @@ pub struct Options {
     pub tolerance: Option<f64>,
     /// Most places of knots, where knots are not given.
     pub max_knots: Option<usize>,
-    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of the world.
+    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of
+    /// the world.
     pub step: Option<f64>,
     /// Along which splines are not smooth, where knots come without configurations.
     pub polylines: Vec<Polyline>,

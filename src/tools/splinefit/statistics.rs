@@ -4,7 +4,7 @@ use super::layout::Spline;
 use super::points::Points;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
-use spmesh_splines::fitting::{self, Spread};
+use spmesh_splines::fitting::{self, QuantileSketch};
 use std::num::NonZeroUsize;
 
 /// Parts of all magnitudes that percentiles are told of.
@@ -41,7 +41,7 @@ impl Statistics {
         done: &dyn Fn(u64),
     ) -> Result<Statistics> {
         let frame = &spline.layout.frame;
-        let (mut count, mut sum, mut square, mut spread) = (0u64, 0.0, 0.0, Spread::default());
+        let (mut count, mut sum, mut square, mut sketch) = (0u64, 0.0, 0.0, QuantileSketch::default());
         let (mut greatest, mut worst) = (0f64, None);
         let all = points.in_frame(frame, done);
         let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
@@ -49,7 +49,7 @@ impl Statistics {
             count += 1;
             sum += found.residual;
             square += found.residual * found.residual;
-            spread.add(found.residual);
+            sketch.add(found.residual);
             if worst.is_none() || found.residual.abs() > greatest {
                 (greatest, worst) = (found.residual.abs(), Some(frame.to_world(found.point)));
             }
@@ -63,7 +63,7 @@ impl Statistics {
             greatest,
             worst,
             // A class may end above the greatest magnitude.
-            percentiles: PERCENTILES.map(|part| spread.quantile(part).unwrap_or(0.0).min(greatest)),
+            percentiles: PERCENTILES.map(|part| sketch.quantile(part).unwrap_or(0.0).min(greatest)),
         })
     }
 }
