@@ -107,8 +107,7 @@ impl ConfigurationBlock {
     /// Appends the payload.
     pub(super) fn encode(&self, payload: &mut Vec<u8>) {
         let claim = CLAIMS.iter().position(|(claim, _)| *claim == self.claim);
-        let head =
-            [self.degree, claim.expect("every claim has its code") as u32, self.counts.len() as u32];
+        let head = [self.degree, claim.expect("every claim has its code") as u32, self.counts.len() as u32];
         let words =
             head.iter().chain(&self.interiors).chain(&self.counts).chain(self.boundaries.as_flattened());
         words.for_each(|word| payload.extend_from_slice(&word.to_le_bytes()));

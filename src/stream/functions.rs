@@ -1,5 +1,4 @@
-//! Functions that splines are made of, as sums of B-splines, and coefficients of splines: as blocks hold
-//! them, and their rules.
+//! Encoding and rules of spline functions (sums of B-splines) and of spline coefficients.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 

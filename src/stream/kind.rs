@@ -174,8 +174,7 @@ impl Kind {
         self.dims() == [4]
     }
 
-    /// Whether END counts vertices apart from points, and points that were merged. The knots of
-    /// configurations are points.
+    /// Whether END counts vertices and merged points besides points. Knots of configurations count as points.
     #[must_use]
     pub fn has_vertices(self) -> bool {
         !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()

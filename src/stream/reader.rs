@@ -22,8 +22,7 @@ use spmesh_model::bounds::{Bounds, Point};
 /// Reads one stream.
 ///
 /// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
-/// Memory: one block, and its decoded event; of a cell of four dimensions that goes on in later blocks, what
-/// of it has arrived.
+/// Memory: one block and its decoded event, and the words so far of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,

@@ -1,4 +1,5 @@
-//! The rules of four-dimensional streams that span blocks; the reader, the text twin and the writer share them.
+//! The rules of four-dimensional streams that span blocks; the reader, the text twin and the writer share
+//! them.
 
 use super::event::Totals;
 use super::kind::Kind;

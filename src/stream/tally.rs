@@ -56,8 +56,8 @@ impl Tally {
     /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
     ///
     /// # Errors
-    /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or
-    /// what is of four dimensions, configurations, or functions break a rule.
+    /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
+    /// if four-dimensional data, configurations or functions break a rule.
     pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -125,13 +125,13 @@ impl Tally {
         Ok(())
     }
 
-    /// Checks the totals that END states against those of the events before (`formats/spmesh.md` 4.14). A mesh
-    /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
-    /// residual.
+    /// Checks the totals that END states against those of the events before (`formats/spmesh.md` 4.14). A
+    /// mesh counts the points of the input that it was made from: each is a vertex, was merged, or waits in
+    /// the residual.
     ///
     /// # Errors
-    /// If they are not, if vertices are neither final nor in the residual, or if some have a label and others
-    /// none.
+    /// Malformed, if they differ, if a vertex is neither final nor in the residual, or if only some vertices
+    /// have labels.
     pub fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         let mut counted = self.totals;
         if self.has_vertices {

@@ -255,8 +255,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes END and flushes. For what has vertices, `input_points` of the input were triangulated and
-    /// `merged` of them coincide with another one; a points stream counts its own points and ignores both.
+    /// Writes END and flushes. Streams with vertices state that `input_points` points were triangulated, of
+    /// which `merged` coincide with another one. A points stream counts its own points and ignores both.
     ///
     /// # Errors
     /// If a 4D cell names a neighbour that does not exist, or writing or flushing fails.

@@ -1,4 +1,4 @@
-//! Bases of splines: what is alive at a point, with values and derivatives.
+//! A basis of splines: the functions alive at a point, with values and derivatives.
 
 mod bends;
 
@@ -17,13 +17,13 @@ use spmesh_geometry::predicates::{Point2, area};
 
 /// Functions of one degree over configurations of knots.
 ///
-/// A function is a sum of B-splines with factors, and a B-spline is what configurations collect around a set
-/// of k knots, its *interior set*. On lines through knots, where functions or derivatives may jump, they have
-/// the values that they have next to the line on the side of the middle of the domain: sides are told by
-/// exact predicates, so that values at knots, on lines and on the border are right.
+/// A function is a sum of B-splines with factors. A B-spline belongs to a set of k knots, its *interior set*,
+/// and consists of the simplex splines of the configurations around that set. On lines through knots
+/// functions or derivatives may jump: there they take the limit from the side of the middle of the domain.
+/// Exact predicates decide sides, so that values at knots, on lines and on the border are correct.
 ///
-/// Cost: one way down a tree and a few elements for each point; for degree 2, about four elements and seven
-/// functions are not zero.
+/// Cost: one descent of a tree and a few elements for each point; for degree 2, about four elements and seven
+/// functions are nonzero.
 #[derive(Debug, Clone)]
 pub struct Basis {
     pub(super) degree: usize,
@@ -69,7 +69,8 @@ impl Basis {
     /// The interior sets of the B-splines whose sum a function is, each with a factor; for degree 0, the
     /// triangle.
     ///
-    /// Panics if there is no such function, as everything that takes its number.
+    /// # Panics
+    /// If there is no such function; so do all methods that take the number of a function.
     pub fn terms(&self, function: usize) -> impl Iterator<Item = (&[u32], f64)> {
         self.sets.terms(function)
     }
@@ -109,7 +110,7 @@ impl Basis {
         self.tree.lines(x).is_some_and(|lines| lines.iter().all(is_right))
     }
 
-    /// From where functions look at a point.
+    /// The directional limit that functions take at a point.
     #[must_use]
     pub fn limit_at(&self, x: Point2) -> DirectionalLimit {
         self.domain.limit_at(x)
@@ -117,7 +118,8 @@ impl Basis {
 
     /// The functions alive at a point, with their values, in order of their numbers.
     ///
-    /// Alive are all whose elements have the point inside, as it is approached: a value may still be zero.
+    /// A function is alive if one of its elements contains the directional limit; its value may still be
+    /// zero.
     pub fn at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, f64)] {
         scratch.values.clear();
         let elements = self.tree.elements(x);
@@ -173,7 +175,7 @@ impl Basis {
         }
     }
 
-    /// Has closed forms brought into the cache: points may come in any order.
+    /// Prefetches the closed form of an element, because points may come in any order.
     #[inline(always)]
     fn prefetch(&self, element: usize) {
         prefetch(&self.linear_simplices, element);
@@ -183,14 +185,14 @@ impl Basis {
         }
     }
 
-    /// What an element adds to values at a point.
+    /// Adds the values of an element at a point.
     #[inline]
     fn add_values(&self, element: usize, x: Point2, scratch: &mut Scratch) {
         let values = &mut scratch.values;
         self.for_each_share(element, x, &mut scratch.knots, |function, value| add(values, function, value));
     }
 
-    /// What an element adds to a spline at a point.
+    /// The part of an element in the value of a spline at a point.
     pub(super) fn value_of_element(
         &self,
         element: usize,
@@ -305,7 +307,7 @@ impl Basis {
     }
 }
 
-/// Adds to what is there for a function.
+/// Adds to the entry of a function.
 #[inline(always)]
 fn add<T: std::ops::AddAssign>(all: &mut Vec<(u32, T)>, function: u32, value: T) {
     match all.iter_mut().find(|(other, _)| *other == function) {

@@ -1,4 +1,4 @@
-//! From configurations to bases.
+//! Builds bases from configurations.
 
 use super::basis::Basis;
 use super::domain::Domain;
@@ -160,7 +160,7 @@ impl Basis {
     }
 }
 
-/// What is asked of all knots and configurations.
+/// Checks the limits that all bases have.
 fn check(knots: &Knots, configurations: &Configurations) -> Result<()> {
     if !ExpansionPredicates::covers(&Extent::of(knots.points())) {
         let what =

@@ -1,14 +1,14 @@
-//! On which side of a line a point is, when it is on the line.
+//! Values at jumps: the limit along a fixed direction.
 //!
 //! Simplex splines of degree 0, derivatives, and splines over repeated or collinear knots jump across lines
-//! through knots. On such a line closed triangles would count twice. So a function has at x the value that it
-//! has at x + e d + e^2 d' for all small e > 0, with d towards a point that is fixed, and d' the same turned
-//! left: no line contains these points for all small e, and all functions are asked for one side. With an
-//! inner point of a convex domain, d points inward on its border.
+//! through knots. On such a line closed triangles would count twice. So the value of a function at x is that
+//! at x + e d + e^2 d' for all small e > 0, where d points towards a fixed point and d' is d turned left. No
+//! line contains these points for all small e, so that all functions take the limit from the same side. With
+//! an inner point of a convex domain, d points inward on its border.
 
 use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates};
 
-/// A point, and the point that it is approached from.
+/// A point, and the direction along which functions take their limit there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DirectionalLimit {
     x: Point2,
@@ -16,7 +16,7 @@ pub struct DirectionalLimit {
 }
 
 impl DirectionalLimit {
-    /// The point `x`, approached from `from`; along the x axis, from the right, if these are equal.
+    /// The limit at `x` from the direction of `from`; from the right along the x axis, if they are equal.
     #[must_use]
     pub fn new(x: Point2, from: Point2) -> DirectionalLimit {
         DirectionalLimit { x, from }

@@ -84,7 +84,7 @@ impl Elements {
     }
 }
 
-/// Elements while they are found.
+/// Elements while configurations are read.
 struct Gathered<'a> {
     knots: &'a Knots,
     size: usize,

@@ -10,7 +10,7 @@
 //! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the
 //! fourth knot or over the crossing of the diagonals, and there it is one over the area of the hull. If c or
 //! d is on ab, there is no such function: the edge is a *wall*, at which the spline jumps to zero. A triangle
-//! has three walls, and is capped by a constant.
+//! has three walls and a constant value.
 
 use super::directional_limit::DirectionalLimit;
 use super::elements::hull_edges;
@@ -44,7 +44,7 @@ pub(super) struct LinearSimplex {
     error: f32,
     /// Which lines are walls: bits.
     walls: u8,
-    /// Whether lines are good enough for values, and not just as a filter for the sides of edges.
+    /// Whether the lines are accurate enough for values, not only as a filter for the sides of edges.
     pub(super) is_exact_enough: bool,
     /// Linear functions that are positive inside, by coefficients: for each edge; the last one a constant, if
     /// there are three.
@@ -165,20 +165,19 @@ impl LinearSimplex {
     }
 }
 
-/// The lesser one of two numbers: unlike `f64::min`, it has no rule for what is not a number, and costs
-/// nothing for it.
+/// The lesser of two numbers. Unlike `f64::min` it has no rule for NaN, which saves instructions.
 #[inline(always)]
 pub(super) fn lesser(p: f64, q: f64) -> f64 {
     if p < q { p } else { q }
 }
 
-/// The least number of fewer bits that is not less.
+/// The least f32 that is not below an f64.
 fn rounded_up(number: f64) -> f32 {
     let near = number as f32;
     if f64::from(near) < number { near.next_up() } else { near }
 }
 
-/// Whether a point, as it is approached, is inside of the hull of knots.
+/// Whether a directional limit is taken inside the hull of knots.
 #[cold]
 pub(super) fn is_inside(at: &DirectionalLimit, knots: &[Point2]) -> bool {
     hull_edges(knots).iter().all(|&[p, q]| at.side(p, q) == Sign::Positive)

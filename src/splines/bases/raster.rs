@@ -72,7 +72,7 @@ impl Raster {
     /// The columns from an abscissa to another, and one more on either side.
     fn columns_around(&self, [from, to]: [f64; 2]) -> Range<usize> {
         let place = |x: f64| (x - self.origin[0]) / self.step[0];
-        // Conversions saturate, and take what is not a number for zero.
+        // Conversions saturate, and turn NaN into zero.
         let first = (place(from).ceil() as usize).saturating_sub(1).min(self.columns);
         let end = if place(to) < -1.0 {
             0

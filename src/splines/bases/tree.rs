@@ -1,9 +1,8 @@
-//! Which elements may be alive at a point, and which lines of the domain a point may be beyond: a tree of
-//! boxes.
+//! A tree of boxes that finds the elements near a point, and the lines of the domain near it.
 //!
 //! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not
-//! length of lists; leaves list all elements whose hulls meet their cell. A search is one way down, from the
-//! node that a grid over the box names: where knots are spread evenly, that is near to the leaves.
+//! length of lists; leaves list all elements whose hulls meet their cell. A search descends from the node
+//! that a grid over the box names; where knots are evenly spread, that node is near the leaves.
 
 use super::domain::{Domain, is_right_or_on};
 use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates};
@@ -59,7 +58,7 @@ impl Node {
     }
 }
 
-/// What a leaf lists but for elements.
+/// The lines of a leaf, and whether it is outside of the domain.
 #[derive(Debug, Clone, Copy, Default)]
 struct Leaf {
     lines: [u32; 2],
@@ -100,7 +99,7 @@ struct Halves {
     elements: [Vec<u32>; 2],
 }
 
-/// What a tree is made over.
+/// The hulls and the domain that a tree is built for.
 struct TreeInput<'a> {
     hulls: &'a [Hull],
     domain: &'a Domain,
@@ -295,7 +294,7 @@ impl Cell {
         let mut elements = [Vec::new(), Vec::new()];
         for &at in &self.elements {
             let hull = &hulls[at as usize];
-            // What meets the cell and is on one side of the cut meets that half, and no other.
+            // An element that meets the cell on one side of the cut meets only that half.
             match hull.side(axis, cut) {
                 Some(half) => elements[half].push(at),
                 None => {

@@ -1,4 +1,4 @@
-//! How much to smooth: generalised and k-fold cross-validation.
+//! Choice of the smoothing parameter: generalised and k-fold cross-validation.
 
 use super::cholesky::Factor;
 use super::normal_equations::{NormalEquations, Parts};
@@ -63,7 +63,7 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
     })
 }
 
-/// How many coefficients would do as well, for a `lambda`: the trace of the matrix that smooths.
+/// The effective number of parameters for a `lambda`: the trace of the smoothing matrix.
 ///
 /// # Errors
 /// Those of [`Equations::solve`]. Accuracy: exact up to 256 functions, about a percent above.

@@ -1,9 +1,9 @@
 //! The thin-plate energy of splines: the integral of f_xx^2 + 2 f_xy^2 + f_yy^2 over the domain.
 //!
-//! Second derivatives count where they exist. Functions may have edges, along creases, linear elements and
-//! collinear knots, and on the borders between grids: folding them costs nothing, which is what creases are
-//! for. (So it is along any edge between two knots that are pulled apart: one that cuts off a corner of the
-//! border lets the corner fold, and then planes are not all that has no energy.)
+//! Second derivatives count where they exist. Functions may have edges along creases, linear elements and
+//! collinear knots, and on the borders between grids: folds there have no energy, which is the purpose of
+//! creases. (The same holds along any edge between two knots that are pulled apart: an edge that cuts off a
+//! corner of the border lets the corner fold, and then functions other than planes have zero energy.)
 //!
 //! For degree 2 the matrix is exact but for rounding, and for triangles that are almost flat: second
 //! derivatives are constants on triangles (`spline::basis::bends`), and what any two triangles have in common

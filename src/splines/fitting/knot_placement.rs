@@ -1,8 +1,8 @@
-//! Where knots go: on grids, and next to residuals.
+//! Placement of knots: on grids, and next to residuals.
 //!
 //! Knots inside are moved at random, by a fixed seed, so that no three are on a line and splines are smooth.
-//! The border is pulled apart, so that along edges from border to border splines could be folded. Such edges
-//! get a knot, too.
+//! The border is pulled apart, so that splines could fold along *border chords*: inner edges that join two
+//! knots of the border. Such edges get a knot, too.
 
 use super::mesh::Mesh;
 use super::observations::Observations;
@@ -18,7 +18,7 @@ const MOVED: f64 = 0.2;
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
 /// Most cells of a grid.
 const EVEN_MAX: f64 = 5e7;
-/// Attempts to place knots so that no edge through the inside joins two knots of the border.
+/// Attempts to place knots so that there is no border chord.
 const ATTEMPTS: usize = 4;
 
 /// Knots on a grid over the box of all observations, with cells of about this side; those inside are moved a
@@ -104,11 +104,11 @@ fn between(from: f64, to: f64, part: f64) -> f64 {
     if part == 1.0 { to } else { from + part * (to - from) }
 }
 
-/// New knots, with more at edges from border to border while there is `added_max`; otherwise without those
-/// that make such edges.
+/// Adds knots near the middles of border chords while at most `added_max` are added; otherwise drops the
+/// knots that cause such chords.
 ///
-/// Edges between known knots only become fewer, so that at least one end of each is new, but at the very
-/// start.
+/// New knots never create edges between known ones, so that at least one end of each chord is new, except at
+/// the very start.
 pub(super) fn break_border_chords(
     known: &[Point2],
     mut added: Vec<Point2>,
@@ -137,8 +137,8 @@ pub(super) fn break_border_chords(
     Ok(added)
 }
 
-/// Edges through the inside that join two knots of the border, each with a place next to its middle, but not
-/// on it: knots on one line make splines less smooth.
+/// Inner edges that join two knots of the border, each with a place next to its middle. The middle itself
+/// would put knots on one line, which makes splines less smooth.
 fn border_chords(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     let mut is_border = vec![false; mesh.points().len()];
     mesh.hull().iter().for_each(|&knot| is_border[knot as usize] = true);

@@ -1,4 +1,4 @@
-//! Triangulated points: which triangle a place is in, and values between points.
+//! Triangulated points: location, and linear interpolation.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
@@ -50,7 +50,7 @@ impl Mesh {
         self.vertices(triangle).map(|vertex| self.points[vertex as usize])
     }
 
-    /// The edges of a triangle that nothing is beyond.
+    /// The edges of a triangle on the border.
     pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
         let corners = self.corners(triangle);
         self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))

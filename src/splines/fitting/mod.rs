@@ -1,17 +1,22 @@
-//! Fitting of splines to observations.
+//! Fits of splines to observations.
 //!
-//! [`interpolate`] passes through values at Greville sites; everything else is least squares of scattered
-//! [`Observations`], which are read as often as needed and never held: [`NormalEquations`] equations have the
-//! size of the basis. [`Equations`] solves them, smoothed by an energy ([`bending`]) that is that of a thin
-//! plate for the most part; `choice` finds out how much.
+//! [`interpolate`] passes through values at Greville sites. All other fits are least squares of scattered
+//! [`Observations`], which are read as often as needed and never held: [`NormalEquations`] have the size of
+//! the basis. [`Equations`] solves them, smoothed by an energy ([`bending`]), mostly that of a thin plate.
+//! [`generalised_cross_validation`] and [`Folds`] choose how much to smooth. [`robust()`] reduces the weight
+//! of gross errors, and [`refine()`] also finds the knots.
 //!
-//! [`robust()`] weighs observations by their residuals, so that gross errors do not count, and [`refine()`]
-//! finds the knots, too.
-//!
-//! `observations` and `elevations` are what is fitted, `blocks` reads it in parallel, `rows` and `symmetric`
-//! are matrices, `factor` is where they are factored, `trend` is what needs no solution, `energy` and
-//! `control` are what smooths, with `polygon` and `overlaps`; `spread` has medians, `mesh` and `space` are
-//! knots with what is over them, `places` says where knots go, and `triangle_residuals` what asks for them.
+//! | files | what they hold |
+//! |---|---|
+//! | `observations`, `blocks` | the data, and parallel passes over them |
+//! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
+//! | `trend` | the linear part of a fit, which is solved on its own |
+//! | `energy`, `overlaps`, `polygon`, `control_energy` | what smooths: the thin plate and the control mesh |
+//! | `cross_validation` | the choice of the smoothing parameter |
+//! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
+//! | `interpolation` | interpolation at Greville sites |
+//! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
+//! | `goal`, `knot_placement`, `triangle_residuals`, `refine` | the search for knots |
 
 mod blocks;
 mod cholesky;

@@ -1,4 +1,4 @@
-//! NormalEquations equations of weighted least squares, in one pass over the observations.
+//! Normal equations of weighted least squares, in one pass over the observations.
 //!
 //! With the values of functions at an observation as a row of A, its weight on the diagonal of W and its
 //! value in z, they are A'WA c = A'Wz for the coefficients c. Memory is that of A'WA, about 10 entries per
@@ -17,7 +17,7 @@ use crate::bases::{Basis, Scratch};
 use spmesh_core::error::{Error, Result};
 use std::num::NonZeroUsize;
 
-/// NormalEquations equations, and what is needed to know how well they are solved.
+/// Normal equations, and what is needed to know how well they are solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalEquations {
     /// A'WA.
@@ -58,9 +58,9 @@ impl NormalEquations {
         (self.square - 2.0 * mixed + self.matrix.form(coefficients)).max(0.0)
     }
 
-    /// The `lambda` that halves waves of two distances of observations: shorter ones these do not tell from
-    /// longer ones. It does not depend on knots. On terrain, points that were held back are predicted best
-    /// with about as much.
+    /// The default `lambda`: it halves waves as long as two distances of observations, the shortest that
+    /// observations can resolve. It does not depend on knots. On terrain, about this value predicts held-out
+    /// points best.
     ///
     /// Thin plates of a weight W on an area A keep 1 / (1 + lambda k^4 A / W) of waves with the number k,
     /// which is pi over the distance here; n observations are at distances of the root of A / n.
@@ -86,15 +86,15 @@ impl NormalEquations {
     }
 }
 
-/// What an observation counts for.
+/// The weight of an observation, and its residual if it is wanted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighed {
     pub(super) weight: f64,
-    /// What it is that somebody wants to see.
+    /// The residual, if the caller collects them.
     pub(super) residual: Option<f64>,
 }
 
-/// NormalEquations equations of several parts of the observations, from one pass.
+/// Normal equations of several parts of the observations, from one pass.
 #[derive(Debug, Clone)]
 pub(super) struct Parts {
     rows: Rows,
@@ -124,7 +124,7 @@ struct Evaluated {
     totals: Vec<Totals>,
 }
 
-/// What one thread adds to: functions whose number, modulo the number of threads, is that of the thread.
+/// The rows of one thread: functions whose number, modulo the number of threads, is that of the thread.
 struct Shard {
     turn: usize,
     turns: usize,

@@ -24,7 +24,7 @@ impl Observation {
         Observation { point, value, weight: 1.0 }
     }
 
-    /// Refuses what is no observation; `index` is its number.
+    /// Refuses invalid observations; `index` is the number of this one.
     pub(super) fn check(&self, index: u64) -> Result<()> {
         let refuse = |what: String| Err(Error::malformed(what).at(format!("observation {index}")));
         if !self.point.iter().all(|coordinate| coordinate.is_finite()) {
@@ -70,7 +70,7 @@ impl Observations for Vec<Observation> {
     }
 }
 
-/// What is left of a list.
+/// The unread rest of a list.
 struct Listed<'a> {
     rest: &'a [Observation],
 }

@@ -5,7 +5,7 @@ const CLASS_BITS: u32 = 18;
 /// Bits below them.
 const SHIFT: u32 = 63 - CLASS_BITS;
 
-/// How many numbers are in which class. Shape: 2 MB.
+/// Counts of magnitudes in classes of equal relative width. Memory: 2 MB.
 #[derive(Debug, Clone)]
 pub struct QuantileSketch {
     counts: Vec<u64>,

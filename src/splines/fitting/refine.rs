@@ -1,9 +1,10 @@
-//! Knots where they are needed: fits that add knots until residuals are small enough.
+//! The search for knots: fits that add knots until residuals are small enough.
 //!
 //! The knots begin as a coarse grid over the box of the data. Each round fits a spline, and looks for the
 //! greatest residual in each triangle of knots (`triangle_residuals`). Where it is above the tolerance, a new
-//! knot about halfway between the place and the middle of the triangle: near to where it is needed, and away
-//! from knots and edges. Next to the border it is the middle of the border's edge instead (`knot_placement`).
+//! knot is placed about halfway between the residual and the middle of the triangle: close to the residual,
+//! and away from knots and edges. Next to the border, the knot is the middle of the border edge instead
+//! (`knot_placement`).
 
 use super::control_energy::bending;
 use super::goal::{Goal, Round};
@@ -37,7 +38,7 @@ pub struct Refined {
 /// times as many.
 ///
 /// # Errors
-/// Goals that make no sense; observations in no area; those of [`NormalEquations::of`] and
+/// Goals out of range; observations without an area; those of [`NormalEquations::of`] and
 /// [`Equations::solve`].
 pub fn refine<O: Observations + ?Sized>(
     observations: &O,

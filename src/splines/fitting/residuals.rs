@@ -1,4 +1,4 @@
-//! What a spline leaves of observations.
+//! Residuals of observations.
 
 use super::blocks::{self, Block};
 use super::observations::Observations;

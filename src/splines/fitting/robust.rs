@@ -1,4 +1,4 @@
-//! Fits that gross errors do not pull: least squares with weights that depend on residuals, again and again.
+//! Robust fits: iteratively reweighted least squares, so that gross errors count little or not at all.
 
 use super::normal_equations::{NormalEquations, Parts, Weighed};
 use super::observations::Observations;
@@ -27,7 +27,7 @@ const ROUNDS_MAX: usize = 50;
 /// others.
 pub(super) const ROUNDS_FEW: usize = 6;
 
-/// What residuals cost.
+/// The loss function of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loss {
     /// Squares near zero, then linear: convex, so that there is one best fit, which gross errors still pull a
@@ -60,7 +60,7 @@ pub struct RobustFit {
     pub scale: f64,
     /// Passes over the observations, that of the normal equations included.
     pub passes: usize,
-    /// Whether coefficients did not change any more.
+    /// Whether coefficients settled.
     pub has_converged: bool,
 }
 
@@ -129,7 +129,7 @@ impl RobustFit {
     }
 }
 
-/// What all rounds have in common.
+/// The inputs that all rounds share.
 pub(super) struct Rounds<'a, O: ?Sized> {
     pub(super) basis: &'a Basis,
     pub(super) observations: &'a O,

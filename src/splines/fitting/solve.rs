@@ -1,4 +1,4 @@
-//! Coefficients from normal equations, smoothed or not.
+//! Coefficients from normal equations, with or without smoothing.
 
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
@@ -25,9 +25,8 @@ pub struct Undetermined {
 
 /// A penalised least squares problem: (A'WA + lambda E) c = A'Wz for all `lambda`.
 ///
-/// E is the thin-plate energy, or whatever is given in its place. With the weights one over variances and
-/// `lambda` one, c'Ec is taken for a priori knowledge; a greater `lambda` makes smoother splines, up to the
-/// plane of least squares.
+/// E is the thin-plate energy or another energy. If weights are one over variances and `lambda` is one, c'Ec
+/// acts as prior knowledge; a greater `lambda` makes smoother splines, up to the plane of least squares.
 #[derive(Debug)]
 pub struct Equations<'a> {
     basis: &'a Basis,

@@ -1,5 +1,5 @@
-//! Quadratic functions over the convex hull of places: the border pulled apart, so that they sum to one on
-//! all of it.
+//! The space of quadratic splines over the convex hull of given places. The border is pulled apart, so that
+//! functions sum to one on the whole hull.
 
 use super::mesh::Mesh;
 use crate::bases::Basis;

@@ -1,8 +1,8 @@
 //! The linear function that is nearest to observations.
 //!
-//! Linear functions do not bend, so that the smoothest splines are near to one, and a great `lambda` times
-//! the rounding errors of its bend would be more than all observations say. So it is found by itself, and
-//! equations are solved for the rest.
+//! Linear functions do not bend, so that the smoothest splines are near to one. A great `lambda` times the
+//! rounding errors of its bending would outweigh all observations. So the linear part is computed on its own,
+//! and the equations are solved for the rest.
 
 use super::normal_equations::NormalEquations;
 use crate::bases::Basis;

@@ -1,7 +1,7 @@
-//! What a round of a search for knots leaves, triangle by triangle, and where it asks for more of them.
+//! Residuals of one round of the search for knots, triangle by triangle, and the next knots.
 //!
-//! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations ask for no
-//! knot, unless they are a good part of what is in a triangle.
+//! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations cause no knot
+//! unless they are a large part of a triangle.
 
 use super::goal::{Goal, Round};
 use super::knot_placement::knot_for_residual;
@@ -16,16 +16,17 @@ use std::num::NonZeroUsize;
 
 /// Least number of observations in a triangle that gets a knot, which brings two or three functions.
 const OBSERVATIONS_MIN: u32 = 3;
-/// The least part of observations of a triangle that is rejected for want of knots, and not for gross errors.
+/// From this part on, rejected observations of a triangle are taken for a lack of knots, not for gross
+/// errors.
 const REJECTED_MIN: f64 = 0.25;
 
-/// What a round leaves, triangle by triangle.
+/// The residuals of a round in each triangle.
 pub(super) struct TriangleResiduals {
     pub(super) round: Round,
     triangles: Vec<Inside>,
 }
 
-/// What is in a triangle.
+/// The observations in a triangle.
 #[derive(Debug, Clone, Copy, Default)]
 struct Inside {
     observations: u32,
@@ -45,9 +46,9 @@ impl Inside {
         }
     }
 
-    /// The observation that asks for a knot. Rejected ones do if there are many: then they are no gross
-    /// errors.
-    fn asks(&self) -> Option<Residual> {
+    /// The observation that a knot is added for. A rejected one counts if there are many, because then they
+    /// are no gross errors.
+    fn knot_request(&self) -> Option<Residual> {
         if self.observations < OBSERVATIONS_MIN {
             return None;
         }
@@ -94,8 +95,9 @@ impl TriangleResiduals {
 
     /// The next knots, those of greatest residuals first: no more than there are already.
     pub(super) fn knots(&self, mesh: &Mesh, goal: &Goal) -> Vec<Point2> {
-        let candidates =
-            (0u32..).zip(&self.triangles).filter_map(|(triangle, inside)| Some((triangle, inside.asks()?)));
+        let candidates = (0u32..)
+            .zip(&self.triangles)
+            .filter_map(|(triangle, inside)| Some((triangle, inside.knot_request()?)));
         let mut candidates: Vec<(u32, Residual)> = candidates.collect();
         candidates.sort_by(|a, b| b.1.residual.abs().total_cmp(&a.1.residual.abs()).then(a.0.cmp(&b.0)));
         let known = mesh.points().len();

@@ -18,11 +18,10 @@ pub(super) struct Waiting {
 
 impl<W: Write> StreamWriter<W> {
     /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. Blocks
-    /// come out cut as lengths have it, whatever the cuts of `block`.
+    /// are cut by their length, independently of the cuts of `block`.
     ///
     /// # Errors
-    /// If degrees, interior sets or boundaries do not follow each other, or name knots that there are not; or
-    /// if writing fails.
+    /// Malformed, if degrees, interior sets or boundaries are out of order or name unknown knots; I/O.
     pub fn configurations(&mut self, block: &ConfigurationBlock) -> Result<()> {
         self.flush_points()?;
         self.configuration_rules.block(block, self.totals.points)?;

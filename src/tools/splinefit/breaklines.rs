@@ -8,7 +8,7 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Polyline, PolylineKind};
 use spmesh_splines::fitting::SplineSpace;
 
-/// Knots nearer to a polyline than this part of the usual distance of knots are left out: they would make
+/// Knots nearer to a polyline than this part of the usual distance of knots are left out: they would form
 /// slivers.
 const NEAR: f64 = 0.35;
 

@@ -26,7 +26,7 @@ impl<'a> Elevations<'a> {
         Ok(Elevations { input })
     }
 
-    /// A pass that outlives this.
+    /// A pass that does not borrow this value.
     ///
     /// # Errors
     /// Those of [`Input::read`].

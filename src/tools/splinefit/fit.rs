@@ -29,7 +29,7 @@ const POINTS_PER_KNOT: u64 = 4;
 pub struct Fitted {
     /// The spline.
     pub spline: Spline,
-    /// What was done on the way.
+    /// A report of the fit.
     pub report: Report,
     robust: Option<RobustFit>,
 }
@@ -41,19 +41,19 @@ pub struct Report {
     pub points: u64,
     /// The search for knots, if they were not given.
     pub search: Option<Search>,
-    /// How much was smoothed, and why; nothing if values were interpolated.
+    /// The smoothing and the reason for it; `None` if values were interpolated.
     pub chosen: Option<SmoothingChoice>,
     /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients
     /// break_border_chords.
     pub scale: Option<(f64, bool)>,
-    /// What is left of points.
+    /// Residuals of the points.
     pub residuals: Statistics,
 }
 
 /// A search for knots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// What it was to reach.
+    /// The goal of the search.
     pub goal: Goal,
     /// Its rounds.
     pub rounds: Vec<Round>,
@@ -63,11 +63,11 @@ pub struct Search {
 
 /// Fits a spline to points. `done` is told how many points were read since the start, in all passes together.
 ///
-/// Without knots, it looks for them; with points for knots, functions are quadratic, and the border is pulled
-/// apart, so that the domain is the convex hull.
+/// Without knots, the fit searches for them. With points as knots, functions are quadratic and the border is
+/// pulled apart, so that the domain is the convex hull.
 ///
 /// # Errors
-/// Usage, if options do not go together, or points do not determine the spline; those of reading.
+/// Usage, if options exclude each other, or points do not determine the spline; those of reading.
 pub fn fit(
     points: &Points,
     knots: Option<(Opened, String)>,
@@ -117,7 +117,7 @@ impl Fitted {
     }
 }
 
-/// Knots where they are needed.
+/// A search for knots.
 fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
     check_degree(options)?;
     let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;

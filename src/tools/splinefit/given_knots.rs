@@ -1,4 +1,4 @@
-//! Knots that are given, as points or with all that was made of them.
+//! Knots from files: points, streams of configurations, or splines.
 
 use super::breaklines;
 use super::distinct_points::without_copies;

@@ -1,5 +1,4 @@
-//! What splines are made over: knots, configurations, functions, and the basis of them. Read from streams,
-//! and written.
+//! Knots, configurations, functions and their basis, with the coordinate frame; reads and writes streams.
 
 use std::io::Write;
 use std::path::Path;
@@ -15,10 +14,10 @@ use spmesh_stream::{
     Collector, ConfigurationSet, Content, Header, Kind, configurations_header, write_content,
 };
 
-/// Functions, and what they are made of.
+/// Functions with their knots and configurations, in a coordinate frame.
 #[derive(Debug)]
 pub struct Layout {
-    /// What coordinates of knots mean.
+    /// The coordinate frame of the knots.
     pub frame: Frame,
     /// The knots, stored.
     pub knots: Knots,

@@ -1,11 +1,16 @@
-//! `splinefit`: points in, splines out; splines in, values out.
+//! The engine of `splinefit`: fits splines to points in files, and evaluates splines.
 //!
-//! `frame` says what coordinates mean, `layout` what splines are made over, with streams of both. `points`
-//! are observations of their elevations, `given` knots of files, `sharp` breaklines among them, `options`
-//! what is wanted; `choose` finds how much is smoothed, `fit` the coefficients, `statistics` and `lists` what
-//! is left of points. `attributes` are what can be asked of a spline, `values` answers at sites, `raster` in
-//! cells. `summary` says what functions are like, `smoothness` where they are less smooth than others, and
-//! `control` has control meshes.
+//! | files | what they do |
+//! |---|---|
+//! | `options`, `fit` | a fit from points and knots to coefficients, and its report |
+//! | `points`, `elevations` | points of files as observations, in world or knot coordinates |
+//! | `given_knots`, `breaklines`, `distinct_points` | knots from files, and features between them |
+//! | `smoothing_choice` | the choice of the smoothing parameter |
+//! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis, read and written |
+//! | `statistics`, `residual_lists` | residuals, as numbers and as lists |
+//! | `attributes`, `values`, `raster` | values and derivatives, at sites and in cells |
+//! | `summary`, `smoothness` | the domain, condition and smoothness of functions |
+//! | `control` | control meshes |
 
 mod attributes;
 mod breaklines;

@@ -86,13 +86,13 @@ impl Points {
         }
     }
 
-    /// What messages call the input.
+    /// The name of the input in messages.
     #[must_use]
     pub fn name(&self) -> String {
         self.input.name()
     }
 
-    /// What the user should know of the files.
+    /// Notices about the files for the user.
     #[must_use]
     pub fn notices(&self) -> &[String] {
         self.input.notices()
@@ -110,8 +110,8 @@ impl Points {
         self.count
     }
 
-    /// An elevation that most are above, and one that most are below: of a sample, so that a few gross errors
-    /// change little.
+    /// An elevation that most points are above, and one that most are below, from a sample: a few gross
+    /// errors change little.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let ends = [OUTSIDE, 1.0 - OUTSIDE];
@@ -192,7 +192,7 @@ impl ObservationReader for Weighed<'_> {
         let first = observations.len();
         self.reader.append(observations)?;
         if let Some(weights) = self.weights {
-            // If there are too few, the rest has none, which is refused at the end.
+            // If there are too few, the rest keeps weight one; `check_weights` refuses the input at the end.
             let own = weights.iter().skip(self.next);
             observations[first..].iter_mut().zip(own).for_each(|(one, &weight)| one.weight = weight);
         }
@@ -233,7 +233,7 @@ impl ObservationReader for Moved<'_> {
     }
 }
 
-/// World coordinates, elevations and weights of points by increasing numbers.
+/// World coordinates and elevations of points, by increasing numbers.
 pub(super) struct Cursor<'a> {
     reader: Box<dyn ObservationReader + 'a>,
     batch: Vec<Observation>,

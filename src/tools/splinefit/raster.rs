@@ -16,7 +16,7 @@ use spmesh_splines::bases::{Raster, Scratch};
 const ROWS_PER_THREAD: usize = 64;
 
 impl Spline {
-    /// What the domain covers, in world coordinates.
+    /// The box of the domain, in world coordinates.
     ///
     /// # Errors
     /// A domain without an area.

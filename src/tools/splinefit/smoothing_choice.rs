@@ -1,4 +1,4 @@
-//! How much is smoothed.
+//! The choice of the smoothing parameter.
 
 use super::layout::Layout;
 use super::options::{Options, Smoothing};
@@ -7,7 +7,7 @@ use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{self, Choice, Equations, Folds, NormalEquations, Symmetric};
 
-/// How much was smoothed, and why.
+/// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmoothingChoice {
     /// The factor of the thin-plate energy, in world coordinates.

@@ -1,4 +1,4 @@
-//! Residuals of a spline in numbers.
+//! Statistics of residuals.
 
 use super::layout::Spline;
 use super::points::Points;
@@ -7,10 +7,10 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_splines::fitting::{self, QuantileSketch};
 use std::num::NonZeroUsize;
 
-/// Parts of all magnitudes that percentiles are told of.
+/// The parts for which percentiles are reported.
 pub const PERCENTILES: [f64; 5] = [0.5, 0.75, 0.9, 0.95, 0.99];
 
-/// What a spline leaves of points: elevations less values, those outside of the domain not counted.
+/// Statistics of residuals (elevations less values) of the points in the domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     /// Number of points in the domain.

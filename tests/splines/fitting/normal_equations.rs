@@ -1,4 +1,4 @@
-//! NormalEquations equations against dense ones.
+//! Normal equations against dense ones.
 
 use super::bases::{ONE, dense, deviation, grid, pulled_apart, scattered, solve_dense};
 use spmesh_splines::bases::Basis;
