@@ -12,7 +12,7 @@ pub fn spread2(x: u32) -> u64 {
     (x | x << 1) & 0x5555_5555_5555_5555
 }
 
-/// Undoes [`spread2`]: moves bit 2i to bit i, whatever the odd bits are.
+/// Undoes [`spread2`]: moves bit 2i to bit i and ignores odd bits.
 #[inline(always)]
 #[must_use]
 pub(crate) fn gather2(x: u64) -> u32 {
@@ -36,7 +36,7 @@ pub fn spread3(x: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// Undoes [`spread3`]: moves bit 3i to bit i, whatever the other bits are.
+/// Undoes [`spread3`]: moves bit 3i to bit i and ignores the other bits.
 #[inline(always)]
 #[must_use]
 pub fn gather3(x: u64) -> u32 {

@@ -1,4 +1,4 @@
-//! The header: what the stream holds, in which coordinates, and what is known beforehand.
+//! The header: kind, coordinates, and what the producer knew beforehand.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -64,7 +64,7 @@ impl Coordinates {
         }
     }
 
-    /// Whether a stored value fits the encoding: finite, and for integers a whole number of 32 bits.
+    /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
     #[must_use]
     pub fn can_store(&self, value: f64) -> bool {
         match self {

@@ -141,7 +141,7 @@ impl PatchBlocks {
         EncodedPatch { block: &self.bytes[start..end], finalized }
     }
 
-    /// Room for `len` more bytes, whatever is in them.
+    /// Reserves `len` more bytes with unspecified contents.
     fn room(&mut self, len: usize) -> &mut [u8] {
         let start = self.used;
         self.used += len;

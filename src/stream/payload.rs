@@ -138,7 +138,7 @@ pub(super) fn residual_points(
         .collect()
 }
 
-/// Walls of so many corners, one behind the other, between `residual_points` earlier ones.
+/// Walls of `corners` corners each, in one list, between the `residual_points` points so far.
 pub(super) fn walls(corners: usize, residual_points: u64, bytes: &[u8]) -> Result<Vec<u32>> {
     let walls: Vec<u32> = whole_records(bytes, 4 * corners)?
         .flat_map(|record| record.chunks_exact(4).map(LE::read_u32))

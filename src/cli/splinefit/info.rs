@@ -1,4 +1,4 @@
-//! `splinefit info`: flags and what is printed.
+//! `splinefit info`: flags and output.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

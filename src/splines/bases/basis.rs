@@ -82,8 +82,8 @@ impl Basis {
         self.greville[function]
     }
 
-    /// The least box that contains the support of a function, from lower left to upper right: nothing for one
-    /// that is zero.
+    /// The least box that contains the support of a function, from lower left to upper right: `None` for a
+    /// function that is zero.
     #[must_use]
     pub fn support(&self, function: usize) -> Option<[Point2; 2]> {
         let [lower, upper] = self.supports[function];

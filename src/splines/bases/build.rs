@@ -25,8 +25,8 @@ impl Basis {
     /// Source: Neamtu 2004; thesis 8.1.
     ///
     /// # Errors
-    /// Knots with coordinates so great or small that areas are no numbers, too great a degree, configurations
-    /// that leave no links, or of which nothing is not zero.
+    /// Usage, for knots whose coordinates make areas overflow or underflow, too great a degree,
+    /// configurations that leave no links, or of which nothing is not zero.
     pub fn new(knots: &Knots, configurations: &Configurations) -> Result<Basis> {
         check(knots, configurations)?;
         let links = configurations::links(knots, configurations)?;

@@ -152,7 +152,7 @@ fn middle(knots: &Knots, all: &[u32]) -> Point2 {
     [0, 1].map(|axis| all.iter().map(|&id| knots.at(id)[axis] / all.len() as f64).sum())
 }
 
-/// Sorts shares by element, function and edge, sums those of one edge, and drops what is zero.
+/// Sorts shares by element, function and edge, sums those of one edge, and drops zeros.
 fn cancel(shares: &mut Vec<(u32, Share)>) {
     for (_, share) in shares.iter_mut() {
         if share.edge[0] > share.edge[1] {

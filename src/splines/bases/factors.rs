@@ -4,7 +4,7 @@ use super::elements::Elements;
 use super::linear_simplex::{Line, LinearSimplex, line_of, scaled};
 use spmesh_geometry::predicates::Point2;
 
-/// Linear factors of functions in elements, as functions of the offset from the origin of the linear_simplex.
+/// Linear factors of functions in elements, as functions of the offset from the origin of the closed form.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Factors {
     pub(super) offsets: Vec<u32>,
@@ -12,7 +12,7 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// Those of elements that have linear_simplices, over supports of given sizes.
+    /// Those of elements that have closed forms, over supports of given sizes.
     pub(super) fn of(
         elements: &Elements,
         linear_simplices: &[LinearSimplex],

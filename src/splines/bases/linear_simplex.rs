@@ -157,7 +157,7 @@ impl LinearSimplex {
         if least > self.error() { Found::Inside(height) } else { Found::Unclear(height.max(0.0)) }
     }
 
-    /// The least value of what is no wall.
+    /// The least value of the edges that are not walls.
     #[inline]
     fn height(&self, values: [f64; 4]) -> f64 {
         let heights = values.into_iter().enumerate().filter(|&(at, _)| !self.is_wall(at));

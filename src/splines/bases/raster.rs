@@ -103,7 +103,7 @@ impl Basis {
     ///
     /// # Errors
     /// A number of coefficients that is not that of functions, a coefficient that is not finite, numbers of
-    /// the raster that make no sense; those of `visit`.
+    /// the raster out of range; those of `visit`.
     pub fn raster(
         &self,
         coefficients: &[f64],
@@ -154,7 +154,7 @@ struct Sweep<'a> {
     basis: &'a Basis,
     raster: &'a Raster,
     coefficients: &'a [f64],
-    /// The share of each element with a linear_simplex in the spline, as a factor of it.
+    /// The share of each element with a closed form in the spline, as a factor of it.
     factors: Vec<Line>,
     /// Elements in the order in which rows meet them.
     order: Vec<u32>,
@@ -248,7 +248,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Adds a linear_simplex times a linear function where it is not zero.
+/// Adds a closed form times a linear function where it is not zero.
 fn add_inside(linear_simplex: &LinearSimplex, factor: Line, y: f64, abscissae: &[f64], values: &mut [f64]) {
     let up = y - linear_simplex.origin[1];
     let along = |line: Line| [value(&line, [0.0, up]), line[1]];
@@ -306,7 +306,7 @@ impl Basis {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], c| [least.min(c), greatest.max(c)])
     }
 
-    /// The factor of an element with a linear_simplex in a spline.
+    /// The factor of an element with a closed form in a spline.
     pub(super) fn factor_of_spline(&self, element: usize, coefficients: &[f64]) -> Line {
         let factors = self.factors.of_element(element);
         factors.iter().fold([0.0; 3], |sum, (function, line)| {

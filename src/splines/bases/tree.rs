@@ -190,7 +190,7 @@ impl Tree {
         lists + std::mem::size_of_val(&self.nodes[..]) + std::mem::size_of_val(&self.leaves[..])
     }
 
-    /// Makes nodes for a cell, whose leaves shall not have more entries than `entries_max` together.
+    /// Builds the nodes of a cell; the lists of its leaves have at most `entries_max` entries in total.
     fn grow(&mut self, input: &TreeInput, cell: Cell, entries_max: usize, level: usize) {
         let halves = if level < LEVELS_MAX { cell.halves(input.hulls) } else { None };
         let Some(Halves { axis, cut, elements }) = halves else { return self.close(cell) };

@@ -124,7 +124,7 @@ impl<'a> Interpolation<'a> {
         self.norm() * self.inverse_norm().0
     }
 
-    /// The condition in the 2-norm, from all singular values; nothing for more than 2,000 functions.
+    /// The condition in the 2-norm, from all singular values; `None` for more than 2,000 functions.
     #[must_use]
     pub fn condition_2(&self) -> Option<f64> {
         let count = self.basis.len();

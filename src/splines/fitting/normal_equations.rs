@@ -17,7 +17,7 @@ use crate::bases::{Basis, Scratch};
 use spmesh_core::error::{Error, Result};
 use std::num::NonZeroUsize;
 
-/// Normal equations, and what is needed to know how well they are solved.
+/// Normal equations, with the sums that residuals follow from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalEquations {
     /// A'WA.

@@ -32,7 +32,7 @@ impl QuantileSketch {
     }
 
     /// The least magnitude that a part of all magnitudes is not above: the middle of its class, which is half
-    /// a percent off at most. Nothing of no numbers.
+    /// a percent off at most. `None` without numbers.
     ///
     /// Domain: parts above zero, and up to one.
     #[must_use]

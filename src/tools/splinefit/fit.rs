@@ -19,9 +19,9 @@ use spmesh_splines::fitting::{
 const TOLERANCE_PART: f64 = 0.0025;
 /// Residuals below this part of the greatest elevation are rounding errors.
 const ROUNDING: f64 = 1e-9;
-/// Without a number of knots, there are at most so many...
+/// The default maximum of knots...
 const KNOTS_MAX: usize = 20_000;
-/// ...and one for so many points: two or three functions belong to a knot.
+/// ...but at most one for this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
 
 /// A spline that was fitted.
@@ -44,7 +44,7 @@ pub struct Report {
     /// The smoothing and the reason for it; `None` if values were interpolated.
     pub chosen: Option<SmoothingChoice>,
     /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients
-    /// break_border_chords.
+    /// settled.
     pub scale: Option<(f64, bool)>,
     /// Residuals of the points.
     pub residuals: Statistics,

@@ -39,7 +39,7 @@ pub struct Spline {
 }
 
 impl Layout {
-    /// Of a space, whose knots are in a frame.
+    /// From a spline space whose knots are in a frame.
     pub(super) fn of_space(space: SplineSpace, frame: Frame) -> Layout {
         let SplineSpace { knots, configurations, functions, basis, .. } = space;
         Layout { frame, knots, configurations, functions, basis }

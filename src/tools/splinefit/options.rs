@@ -56,7 +56,7 @@ pub enum Smoothing {
     Lambda(f64),
     /// By generalised cross-validation.
     Generalised,
-    /// By cross-validation with so many folds.
+    /// By cross-validation with this number of folds.
     Folds(usize),
 }
 
@@ -70,7 +70,7 @@ impl FromStr for Smoothing {
         match text.split_once(':') {
             Some(("cv", folds)) => match folds.parse() {
                 Ok(folds) if folds >= 2 => Ok(Smoothing::Folds(folds)),
-                _ => Err(format!("{folds:?} folds: expected a whole number above one")),
+                _ => Err(format!("{folds:?} folds: expected an integer above one")),
             },
             _ if text == "cv" => Ok(Smoothing::Folds(FOLDS)),
             _ if text == "gcv" => Ok(Smoothing::Generalised),

@@ -135,7 +135,7 @@ impl Points {
     }
 }
 
-/// Every so many elevations, of any number of them.
+/// A sample of elevations at a regular stride, which doubles when the sample is full.
 #[derive(Default)]
 struct Sample {
     taken: Vec<f64>,

@@ -64,7 +64,7 @@ pub fn write_raster<W: Write + Seek>(
     Ok(unknown)
 }
 
-/// Writes a line for each cell in the domain: its centre, and what is asked; row by row from the top.
+/// Writes a line for each cell in the domain: its centre and the attribute; row by row from the top.
 ///
 /// # Errors
 /// If writing fails.

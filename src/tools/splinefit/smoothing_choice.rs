@@ -40,7 +40,7 @@ impl Problem {
 /// smaller by as much: so the energy is that of the world times a step squared, and lambda is divided by it.
 ///
 /// # Errors
-/// Those of [`NormalEquations::of`], [`fit::bending`] and [`Equations::solve`].
+/// Those of [`NormalEquations::of`], [`fitting::bending`] and [`Equations::solve`].
 pub(super) fn choose_smoothing(
     layout: &Layout,
     all: &PointsInFrame,

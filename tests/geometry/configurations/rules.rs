@@ -107,7 +107,7 @@ fn check_counts(
 
 /// Runs of one test: a quarter of all, so that processors share them.
 const RUNS: u64 = 500;
-const RUNS_QUICK: u64 = 30;
+const RUNS_QUICK: u64 = 12;
 
 /// Runs with `count` seeds from `first` on. Their links must be varied: at least `null_min` null links in
 /// each run on average.
@@ -120,7 +120,7 @@ fn any_rule(first: u64, count: u64, null_min: u64) {
 
 #[test]
 fn any_rule_from_any_triangulation() {
-    any_rule(0, RUNS_QUICK, 8);
+    any_rule(0, RUNS_QUICK, 4);
 }
 
 #[test]
