@@ -1,4 +1,4 @@
-//! Reads a stream of points or of cells of four dimensions whole.
+//! Reads a whole stream of four-dimensional points or cells.
 
 use std::io::Read;
 

@@ -14,7 +14,7 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     for (place, &number) in (0u32..).zip(&order) {
         places[number as usize] = place;
     }
-    let mut cells = Cells4::with_room(unordered.len(), unordered.numbers());
+    let mut cells = Cells4::with_capacity(unordered.len(), unordered.numbers());
     let mut neighbours = Vec::new();
     for (place, &number) in order.iter().enumerate() {
         if let Some(&later) = order.get(place + AHEAD) {

@@ -134,7 +134,7 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
     let (mut vertices, mut neighbours) = (Vec::new(), Vec::new());
     let mut listed = Marks::new(order.len());
     let mut met = Marks::new(classes.len());
-    let mut cells = Cells4::with_room(classes.len(), 2 * FACETS * classes.members.len());
+    let mut cells = Cells4::with_capacity(classes.len(), 2 * FACETS * classes.members.len());
     for class in 0..classes.len() {
         vertices.clear();
         neighbours.clear();

@@ -1,7 +1,7 @@
 //! A pass over observations in blocks of a fixed size, several at a time.
 //!
-//! Blocks are cut by the numbers of observations, whatever batches their source hands out, and what is made of blocks comes
-//! back in their order. So no result depends on the number of threads.
+//! Blocks are cut by the numbers of observations, independently of the batches of the source, and results of
+//! blocks return in order. So no result depends on the number of threads.
 
 use super::observations::{Observation, Observations};
 use spmesh_core::error::Result;
@@ -9,8 +9,8 @@ use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
 /// Observations in a block.
-pub(super) const BLOCK: usize = 1 << 13;
-/// Blocks per thread that are read before they are worked on: memory of a pass is that many.
+const BLOCK: usize = 1 << 13;
+/// Blocks per thread that are read ahead, which bounds the memory of a pass.
 const BLOCKS_PER_THREAD: usize = 4;
 
 /// Consecutive observations.
@@ -28,11 +28,11 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made of some
-/// consecutive blocks, in order.
+/// Reads all observations. `map` processes each block in any thread; `take` receives the results of
+/// consecutive blocks in order.
 ///
 /// # Errors
-/// Those of the source, of `map` and of `take`; an invalid observation.
+/// Those of the source, of `map` and of `take`; malformed, if an observation is invalid.
 pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     observations: &O,
     threads: NonZeroUsize,
@@ -63,7 +63,7 @@ pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     }
 }
 
-/// Appends until there are `enough`; whether that was all.
+/// Appends until there are `enough`; returns whether the source has ended.
 fn fill<T>(
     buffer: &mut Vec<T>,
     enough: usize,

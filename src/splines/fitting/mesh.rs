@@ -1,4 +1,4 @@
-//! Triangulated points: which triangle a place is in, and values between points.
+//! Triangulated points: location, and linear interpolation.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
@@ -14,7 +14,8 @@ pub struct Mesh {
 impl Mesh {
     /// Of points that are not all on one line; of those at one place the first counts.
     ///
-    /// Errors: coordinates that are not finite; no triangle.
+    /// # Errors
+    /// Coordinates that are not finite; no triangle.
     pub fn of(points: Vec<Point2>) -> Result<Mesh> {
         let triangulation = delaunay2::triangulate(&points)?;
         if triangulation.triangles().is_empty() {
@@ -49,7 +50,7 @@ impl Mesh {
         self.vertices(triangle).map(|vertex| self.points[vertex as usize])
     }
 
-    /// The edges of a triangle that nothing is beyond.
+    /// The edges of a triangle on the border.
     pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
         let corners = self.corners(triangle);
         self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))
@@ -68,8 +69,8 @@ impl Mesh {
 
     /// A triangle that contains x, if any does: the walk starts at `near`, which becomes the triangle.
     ///
-    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to a triangle whose circle
-    /// has less power at x (Edelsbrunner 1990).
+    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to
+    /// a triangle whose circle has less power at x (Edelsbrunner 1990).
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
         let mut predicates = FiniteFloatPredicates::default();
         loop {
@@ -86,10 +87,11 @@ impl Mesh {
         }
     }
 
-    /// The value at x of the function that is linear on triangles and has these values at points; nothing outside of the hull.
+    /// The value at x of the function that is linear on triangles and has these values at points; nothing
+    /// outside of the hull.
     ///
-    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if there are fewer values than
-    /// points, or no such triangle.
+    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if
+    /// there are fewer values than points, or no such triangle.
     #[must_use]
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;

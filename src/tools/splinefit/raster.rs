@@ -12,11 +12,12 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
 use spmesh_splines::bases::{Raster, Scratch};
 
-/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
+/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all
+/// elements.
 const ROWS_PER_THREAD: usize = 64;
 
 impl Spline {
-    /// What the domain covers, in world coordinates.
+    /// The box of the domain, in world coordinates.
     ///
     /// # Errors
     /// A domain without an area.
@@ -25,8 +26,8 @@ impl Spline {
     }
 }
 
-/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data. The number of cells
-/// without data.
+/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data.
+/// The number of cells without data.
 ///
 /// # Errors
 /// Usage, if there is more than one number per cell; if writing fails.
@@ -64,7 +65,7 @@ pub fn write_raster<W: Write + Seek>(
     Ok(unknown)
 }
 
-/// Writes a line for each cell in the domain: its centre, and what is asked; row by row from the top.
+/// Writes a line for each cell in the domain: its centre and the attribute; row by row from the top.
 ///
 /// # Errors
 /// If writing fails.

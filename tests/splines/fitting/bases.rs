@@ -31,8 +31,8 @@ pub fn cubic(points: &[[f64; 2]]) -> Basis {
 
 /// Knots of a square grid over the unit square, those inside moved by up to a part of a cell.
 ///
-/// Those next to corners are moved towards them first: an edge that cuts off a corner would join two knots that are pulled apart,
-/// along which splines may be folded.
+/// Those next to corners are moved towards them first: an edge that cuts off a corner would join two knots
+/// that are pulled apart, along which splines may be folded.
 pub fn grid(cells: usize, moved: f64) -> Vec<[f64; 2]> {
     let mut random = Random::new(11);
     let at = |i: usize| i as f64 / cells as f64;

@@ -1,8 +1,9 @@
-//! How much the control mesh of a spline bends.
+//! The bending energy of the control mesh of a spline.
 //!
-//! The thin-plate energy is blind where splines can be folded, for functions that depend on each other, and for those too small to
-//! have an area; and splines of degree 0 and 1 have none. The control mesh, which has the coefficients as elevations at the
-//! triangulated Greville sites, knows every coefficient, and bends only if the spline is no linear function.
+//! The thin-plate energy is blind where splines can be folded, for functions that depend on each other, and
+//! for those too small to have an area; and splines of degree 0 and 1 have none. The control mesh has the
+//! coefficients as elevations at the triangulated Greville sites. It depends on every coefficient, and is
+//! flat only for linear functions.
 
 use super::energy::thin_plate;
 use super::polygon;
@@ -13,28 +14,33 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
 use spmesh_geometry::predicates::{Point2, area};
 
-/// The share of the control mesh in [`bending`]: so little that creases are free to fold where observations want it.
+/// The share of the control mesh in [`bending`]: so little that creases can fold where observations require
+/// it.
 const SHARE: f64 = 1e-3;
 
-/// The matrix of an energy that determines all splines but linear functions: the thin-plate energy, from degree 2 on, with a
-/// thousandth of [`control_bending`]; and that itself below.
+/// The matrix of an energy that determines all splines but linear functions: the thin-plate energy, from
+/// degree 2 on, with a thousandth of [`control_bending`]; and that itself below.
 ///
 /// Units: those of [`thin_plate`].
 ///
-/// Errors: those of [`thin_plate`] and [`control_bending`].
+/// # Errors
+/// Those of [`thin_plate`] and [`control_bending`].
 pub fn bending(basis: &Basis) -> Result<Symmetric> {
     let control = control_bending(basis)?;
     if basis.degree() < 2 { Ok(control) } else { Ok(thin_plate(basis)?.plus(SHARE, &control)) }
 }
 
-/// The matrix of how much the control mesh bends: the sum over inner edges of d^2 / L^2, where d is by how much the diagonals of the
-/// quadrilateral at the edge miss each other, and L^2 the sum of their squares. With L^2 as an area, that is like the square of a
-/// second derivative times the area; but the quadrilateral itself may be as flat as it likes, which sites along the border often
-/// make it.
+/// The matrix of how much the control mesh bends: the sum over inner edges of d^2 / L^2, where d is by how
+/// much the diagonals of the quadrilateral at the edge miss each other, and L^2 the sum of their squares.
+/// With L^2 as an area, that is like the square of a second derivative times the area; but the quadrilateral
+/// itself may be as flat as it likes, which sites along the border often make it.
 ///
 /// Coefficients of functions with one Greville site are tied to each other.
 ///
-/// Units: one over an area. Errors: all Greville sites on one line.
+/// Units: one over an area.
+///
+/// # Errors
+/// Usage, if all Greville sites are on one line.
 pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
     let sites: Vec<Point2> = (0..basis.len()).map(|function| basis.greville(function)).collect();
     let mesh = delaunay2::triangulate(&sites)?;

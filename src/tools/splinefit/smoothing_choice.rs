@@ -1,15 +1,15 @@
-//! How much is smoothed.
+//! The choice of the smoothing parameter.
 
 use super::layout::Layout;
 use super::options::{Options, Smoothing};
-use super::points::InFrame;
+use super::points::PointsInFrame;
 use spmesh_core::error::Result;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{self, Choice, Equations, Folds, Normal, Symmetric};
+use spmesh_splines::fitting::{self, Choice, Equations, Folds, NormalEquations, Symmetric};
 
-/// How much was smoothed, and why.
+/// The smoothing of a fit, and the reason for it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chosen {
+pub struct SmoothingChoice {
     /// The factor of the thin-plate energy, in world coordinates.
     pub lambda: f64,
     /// Number of functions that points leave undetermined without smoothing, if that was looked at.
@@ -20,11 +20,11 @@ pub struct Chosen {
 
 /// Equations whose `lambda` is known.
 pub(super) struct Problem {
-    pub(super) normal: Normal,
+    pub(super) normal: NormalEquations,
     pub(super) energy: Option<Symmetric>,
     /// In stored coordinates.
     pub(super) lambda: f64,
-    pub(super) chosen: Chosen,
+    pub(super) chosen: SmoothingChoice,
 }
 
 impl Problem {
@@ -33,15 +33,22 @@ impl Problem {
     }
 }
 
-/// Sets up the equations of points, and chooses. Given knots are smoothed if points do not determine all functions, others always.
+/// Sets up the equations of points, and chooses. Given knots are smoothed if points do not determine all
+/// functions, others always.
 ///
-/// In stored coordinates, second derivatives are those of the world times a step squared, and areas are smaller by as much: so
-/// the energy is that of the world times a step squared, and lambda is divided by it.
+/// In stored coordinates, second derivatives are those of the world times a step squared, and areas are
+/// smaller by as much: so the energy is that of the world times a step squared, and lambda is divided by it.
 ///
-/// Errors: those of [`Normal::of`], [`fit::bending`] and [`Equations::solve`].
-pub(super) fn choose(layout: &Layout, all: &InFrame, options: &Options, are_given: bool) -> Result<Problem> {
+/// # Errors
+/// Those of [`NormalEquations::of`], [`fitting::bending`] and [`Equations::solve`].
+pub(super) fn choose_smoothing(
+    layout: &Layout,
+    all: &PointsInFrame,
+    options: &Options,
+    are_given: bool,
+) -> Result<Problem> {
     let (basis, threads) = (&layout.basis, options.threads);
-    let normal = Normal::of(basis, all, threads)?;
+    let normal = NormalEquations::of(basis, all, threads)?;
     let (mut undetermined, mut choice) = (None, None);
     if options.smoothing.is_none() && are_given {
         undetermined = Some(Equations::new(basis, &normal, None)?.undetermined(0.0)?.len());
@@ -60,12 +67,12 @@ pub(super) fn choose(layout: &Layout, all: &InFrame, options: &Options, are_give
             let equations = Equations::new(basis, &normal, energy.as_ref())?;
             choice.insert(fitting::generalised_cross_validation(&equations, options.seed)?).best.lambda
         }
-        (_, None) => normal.halving(basis),
+        (_, None) => normal.default_lambda(basis),
     };
     if let Some(choice) = &mut choice {
         choice.best.lambda *= area;
         choice.trials.iter_mut().for_each(|trial| trial.lambda *= area);
     }
-    let chosen = Chosen { lambda: lambda * area, undetermined, choice };
+    let chosen = SmoothingChoice { lambda: lambda * area, undetermined, choice };
     Ok(Problem { normal, energy, lambda, chosen })
 }

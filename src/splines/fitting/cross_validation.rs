@@ -1,7 +1,7 @@
-//! How much to smooth: generalised and k-fold cross-validation.
+//! Choice of the smoothing parameter: generalised and k-fold cross-validation.
 
-use super::factor::Factor;
-use super::normal::{Normal, Parts};
+use super::cholesky::Factor;
+use super::normal_equations::{NormalEquations, Parts};
 use super::observations::Observations;
 use super::solve::Equations;
 use super::symmetric::Symmetric;
@@ -14,8 +14,8 @@ use std::num::NonZeroUsize;
 const EXACT_MAX: usize = 256;
 /// Random vectors for a trace: its relative error is about a percent then.
 const PROBES: usize = 24;
-/// The range that is looked at first, as powers of ten times [`Equations::unit`]: from this, in steps, to its opposite. Planes bend
-/// so much less than functions do that they take a great factor.
+/// The range that is looked at first, as powers of ten times [`Equations::unit`]: from this, in steps, to its
+/// opposite. Planes bend so much less than functions do that they take a great factor.
 const LEAST: f64 = -9.0;
 const STEP: f64 = 1.5;
 /// How near the logarithm to base 10 gets to the best one.
@@ -39,14 +39,16 @@ pub struct Choice {
     pub trials: Vec<Trial>,
 }
 
-/// Chooses by generalised cross-validation: the least of (S / n) / (1 - t / n)^2, for n observations, the weighted sum S of squares
-/// of residuals, and the trace t of the matrix that smooths.
+/// Chooses by generalised cross-validation: the least of (S / n) / (1 - t / n)^2, for n observations, the
+/// weighted sum S of squares of residuals, and the trace t of the matrix that smooths.
 ///
-/// `seed` is for the random vectors that estimate the trace (Hutchinson 1990) of more than 256 functions; below, it is exact.
-///
-/// Errors: those of [`Equations::solve`], if no `lambda` will do.
+/// `seed` is for the random vectors that estimate the trace (Hutchinson 1990) of more than 256 functions;
+/// below, it is exact.
 ///
 /// Cost: about 25 factorisations. Source: Craven and Wahba 1979.
+///
+/// # Errors
+/// Those of [`Equations::solve`], if no `lambda` will do.
 pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<Choice> {
     let normal = equations.normal();
     search(equations.unit(), |lambda| {
@@ -61,9 +63,10 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
     })
 }
 
-/// How many coefficients would do as well, for a `lambda`: the trace of the matrix that smooths.
+/// The effective number of parameters for a `lambda`: the trace of the smoothing matrix.
 ///
-/// Errors: those of [`Equations::solve`]. Accuracy: exact up to 256 functions, about a percent above.
+/// # Errors
+/// Those of [`Equations::solve`]. Accuracy: exact up to 256 functions, about a percent above.
 pub fn degrees_of_freedom(equations: &Equations, lambda: f64, seed: u64) -> Result<f64> {
     equations.with_factor(lambda, |factor| {
         equations.check(factor, lambda)?;
@@ -95,7 +98,7 @@ fn trace(factor: &Factor, matrix: &Symmetric, seed: u64) -> f64 {
 #[derive(Debug)]
 pub struct Folds {
     /// The equations of all folds but one, and of that one.
-    problems: Vec<(Normal, Normal)>,
+    problems: Vec<(NormalEquations, NormalEquations)>,
     weight: f64,
 }
 
@@ -104,7 +107,8 @@ impl Folds {
     ///
     /// Memory: twice that of normal equations for each fold.
     ///
-    /// Errors: fewer than two folds; a fold without observations; those of [`Normal::of`].
+    /// # Errors
+    /// Fewer than two folds; a fold without observations; those of [`NormalEquations::of`].
     pub fn of<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
@@ -117,7 +121,7 @@ impl Folds {
         }
         let fold_of = |index: u64| Random::new(seed ^ index.rotate_left(32)).below(folds as u64) as usize;
         let parts = Parts::unweighed(basis, observations, threads, folds, fold_of)?;
-        let problems: Vec<(Normal, Normal)> =
+        let problems: Vec<(NormalEquations, NormalEquations)> =
             (0..folds).map(|out| (parts.sum(|fold| fold != out), parts.sum(|fold| fold == out))).collect();
         parts.sum(|_| true).check()?;
         if let Some(empty) = problems.iter().position(|(_, left_out)| left_out.count == 0) {
@@ -128,11 +132,14 @@ impl Folds {
         Ok(Folds { problems, weight })
     }
 
-    /// Chooses the `lambda` for which folds that are left out are predicted best, by the weighted mean of squares of errors.
+    /// Chooses the `lambda` for which folds that are left out are predicted best, by the weighted mean of
+    /// squares of errors.
     ///
-    /// Errors: those of [`Equations::solve`], if no `lambda` will do.
+    /// Cost: about 25 factorisations per fold. Relative to the mean square of values, scores are good to
+    /// about 1e-15.
     ///
-    /// Cost: about 25 factorisations per fold. Relative to the mean square of values, scores are good to about 1e-15.
+    /// # Errors
+    /// Those of [`Equations::solve`], if no `lambda` will do.
     pub fn choose(&self, basis: &Basis, energy: &Symmetric) -> Result<Choice> {
         let equations: Vec<Equations> = self
             .problems

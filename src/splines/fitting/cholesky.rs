@@ -1,12 +1,14 @@
 //! Symmetric positive definite equations, solved by sparse Cholesky factors.
 //!
-//! Bases can be linearly dependent, and observations can leave gaps, so nothing is factored as it is. Equations are scaled to a
-//! diagonal of ones, and [`RIDGE`] is added to it; what the ridge does to the solution is removed again by refinement with the
-//! residuals of the true equations, as far as they determine it.
+//! Bases can be linearly dependent, and observations can leave gaps, so matrices are never factored
+//! unchanged. Equations are scaled to a diagonal of ones, and [`RIDGE`] is added to it; refinement with the
+//! residuals of the true equations removes the effect of the ridge, as far as the equations determine the
+//! solution.
 //!
-//! A direction v in which they do not has v'Mv near zero for the scaled matrix M. The function that is eliminated last of those in
-//! it has a small pivot then: about v'(M + ridge)v over the square of its part of v, which may be small. So small pivots are
-//! candidates; the solution for a unit vector at a candidate is nearly such a direction, and tells.
+//! A direction v that the equations do not determine has v'Mv near zero for the scaled matrix M. The function
+//! that is eliminated last of those in it has a small pivot then: about v'(M + ridge)v over the square of its
+//! part of v, which may be small. So small pivots are candidates; the solution for a unit vector at a
+//! candidate is nearly such a direction, and decides.
 
 use super::symmetric::Symmetric;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -17,15 +19,16 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use spmesh_core::error::{Error, ErrorKind, Result};
 
-/// What is added to a diagonal of ones: some hundred times what rounding does to a pivot.
+/// Added to a diagonal of ones: some hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
-/// What it is multiplied by, again and again, while a pivot is not positive for all that: knots near to one line make energies so
-/// stiff that rounding errors of theirs are more than what others add.
+/// The ridge is multiplied by this while a pivot is still not positive: knots near one line make energies so
+/// stiff that their rounding errors exceed what other terms add.
 const RIDGE_STEP: f64 = 100.0;
 const RIDGE_MAX: f64 = 1e-6;
 /// The least v'Mv / v'v of directions that are determined.
 const CURVATURE_MIN: f64 = 1e-12;
-/// Steps of refinement: each takes the error that the ridge makes times itself, for pivots that are not weak.
+/// Steps of refinement: for pivots that are not weak, each multiplies the error by the relative error that
+/// the ridge causes.
 const REFINEMENTS: usize = 3;
 
 /// The order of elimination for a pattern of entries, and the pattern of factors.
@@ -57,7 +60,9 @@ impl Elimination {
 
     /// Factors of a matrix with the pattern.
     ///
-    /// Errors: not enough memory; a pivot that is not positive for all the ridge: entries that are no normal equations.
+    /// # Errors
+    /// Not enough memory; a pivot that is not positive for all the ridge: entries that are no normal
+    /// equations.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
         debug_assert_eq!(self.entries, matrix.entries_len());
         let scale: Vec<f64> =
@@ -77,7 +82,7 @@ impl Elimination {
                 MemStack::new(&mut memory),
                 Default::default(),
             );
-            // The memory is there already, so that only a pivot can be the reason of a failure.
+            // The memory is allocated already, so that only a pivot can fail.
             if factored.is_ok() {
                 return Ok(Factor { elimination: self, matrix, scale, values });
             }
@@ -117,8 +122,8 @@ impl Factor<'_> {
         x
     }
 
-    /// The functions that are not determined, given those eliminated before, in order of their numbers; with the curvature v'Mv / v'v
-    /// in the direction that they are not determined in.
+    /// The functions that are not determined, given those eliminated before, in order of their numbers; with
+    /// the curvature v'Mv / v'v in the direction that they are not determined in.
     pub(super) fn weak(&self) -> Vec<(usize, f64)> {
         let symbolic = &self.elimination.symbolic;
         let original = symbolic.perm().map(|order| order.arrays().0);

@@ -1,4 +1,4 @@
-//! Lists of points with what a spline leaves of them: lines of x, y, elevation and residual.
+//! Lists of points with residuals: lines of x, y, elevation and residual.
 
 use std::io::Write;
 use std::num::NonZeroUsize;
@@ -8,7 +8,7 @@ use super::points::{Cursor, Points};
 use spmesh_core::error::{Error, Result};
 use spmesh_splines::fitting::{self, Residual, RobustFit};
 
-/// What lists begin with.
+/// The first line of a list.
 const TITLE: &str = "x y z residual\n";
 
 /// Writes all points in the domain; their number.

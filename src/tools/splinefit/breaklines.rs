@@ -1,25 +1,26 @@
 //! Breaklines and corners: polylines of the world become knots with features between them.
 
-use super::given::without_copies;
+use super::distinct_points::without_copies;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::special::{Crease, Features};
 use spmesh_geometry::delaunay2;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Polyline, PolylineKind};
-use spmesh_splines::fitting::Cover;
+use spmesh_splines::fitting::SplineSpace;
 
-/// Knots nearer to a polyline than this part of the usual distance of knots are left out: they would make slivers.
+/// Knots nearer to a polyline than this part of the usual distance of knots are left out: they would form
+/// slivers.
 const NEAR: f64 = 0.35;
 
 /// Functions over places, with features along polylines, both in world coordinates.
 ///
-/// Segments that are longer than the usual distance of knots are divided, so that splines can bend along them, and places near to
-/// segments are left out, but for those on the border of the convex hull.
+/// Segments that are longer than the usual distance of knots are divided, so that splines can bend along
+/// them, and places near to segments are left out, but for those on the border of the convex hull.
 ///
 /// # Errors
-/// Usage, if polylines cross where they have no common vertex, touch the border in ways that [`Cover::with_features`] refuses, or
-/// are too near to each other.
-pub(super) fn cover(places: &[Point2], polylines: &[Polyline]) -> Result<Cover> {
+/// Usage, if polylines cross where they have no common vertex, touch the border in ways that
+/// [`SplineSpace::with_features`] refuses, or are too near to each other.
+pub(super) fn space(places: &[Point2], polylines: &[Polyline]) -> Result<SplineSpace> {
     let distance = usual_distance(places)?;
     let divided: Vec<Vec<Point2>> = polylines.iter().map(|polyline| divide(polyline, distance)).collect();
     let far = far_places(places, &divided, NEAR * distance)?;
@@ -37,7 +38,7 @@ pub(super) fn cover(places: &[Point2], polylines: &[Polyline]) -> Result<Cover> 
             PolylineKind::Linear => features.lines.push(ids),
         }
     }
-    Cover::with_features(knots.places, features)
+    SplineSpace::with_features(knots.places, features)
 }
 
 /// The side of a square for each place.
@@ -124,7 +125,8 @@ impl Cells {
         x.map(|coordinate| (coordinate / self.side).floor() as i64)
     }
 
-    /// Calls `visit` with all places in cells around the box of a segment, which is no longer than a few cells.
+    /// Calls `visit` with all places in cells around the box of a segment, which is no longer than a few
+    /// cells.
     fn for_each_near(&self, [p, q]: [Point2; 2], mut visit: impl FnMut(u32)) {
         let ([a, b], [c, d]) = (self.cell(p), self.cell(q));
         for column in a.min(c) - 1..=a.max(c) + 1 {

@@ -1,11 +1,12 @@
 //! Normal equations of weighted least squares, in one pass over the observations.
 //!
-//! With the values of functions at an observation as a row of A, its weight on the diagonal of W and its value in z, they are
-//! A'WA c = A'Wz for the coefficients c. Memory is that of A'WA, about 10 entries per function of degree 2, and of a few blocks
-//! of observations.
+//! With the values of functions at an observation as a row of A, its weight on the diagonal of W and its
+//! value in z, they are A'WA c = A'Wz for the coefficients c. Memory is that of A'WA, about 10 entries per
+//! function of degree 2, and of a few blocks of observations.
 //!
-//! Each round has two steps. Blocks of observations are evaluated, in any thread; then each thread adds all of them, in their
-//! order, to the rows that it has. So each entry is a sum in the order of observations, whatever the number of threads.
+//! Each round has two steps. Blocks of observations are evaluated, in any thread; then each thread adds all
+//! of them, in their order, to the rows that it has. So each entry is a sum in the order of observations,
+//! whatever the number of threads.
 
 use super::blocks::{self, Block};
 use super::observations::{Observation, Observations};
@@ -17,9 +18,9 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
-/// Normal equations, and what is needed to know how well they are solved.
+/// Normal equations, with the sums that residuals follow from.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Normal {
+pub struct NormalEquations {
     /// A'WA.
     pub matrix: Symmetric,
     /// A'Wz.
@@ -34,34 +35,38 @@ pub struct Normal {
     pub outside: u64,
 }
 
-impl Normal {
+impl NormalEquations {
     /// The equations of all observations.
     ///
-    /// Errors: those of the source; numbers that are not finite, weights that are negative, with the number of the observation.
-    ///
     /// Cost: one pass, an evaluation of the basis for each observation.
+    ///
+    /// # Errors
+    /// Those of the source; numbers that are not finite, weights that are negative, with the number of the
+    /// observation.
     pub fn of<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
         threads: NonZeroUsize,
-    ) -> Result<Normal> {
+    ) -> Result<NormalEquations> {
         Ok(Parts::unweighed(basis, observations, threads, 1, |_| 0)?.sum(|_| true))
     }
 
-    /// The sum of the weighted squares of residuals of coefficients. Relative to z'Wz it is good to about 1e-15.
+    /// The sum of the weighted squares of residuals of coefficients. Relative to z'Wz it is good to about
+    /// 1e-15.
     #[must_use]
     pub fn residual_square(&self, coefficients: &[f64]) -> f64 {
         let mixed: f64 = self.right.iter().zip(coefficients).map(|(right, c)| right * c).sum();
         (self.square - 2.0 * mixed + self.matrix.form(coefficients)).max(0.0)
     }
 
-    /// The `lambda` that halves waves of two distances of observations: shorter ones these do not tell from longer ones. It does not
-    /// depend on knots. On terrain, points that were held back are predicted best with about as much.
+    /// The default `lambda`: it halves waves as long as two distances of observations, the shortest that
+    /// observations can resolve. It does not depend on knots. On terrain, about this value predicts held-out
+    /// points best.
     ///
-    /// Thin plates of a weight W on an area A keep 1 / (1 + lambda k^4 A / W) of waves with the number k, which is pi over the distance
-    /// here; n observations are at distances of the root of A / n.
+    /// Thin plates of a weight W on an area A keep 1 / (1 + lambda k^4 A / W) of waves with the number k,
+    /// which is pi over the distance here; n observations are at distances of the root of A / n.
     #[must_use]
-    pub fn halving(&self, basis: &Basis) -> f64 {
+    pub fn default_lambda(&self, basis: &Basis) -> f64 {
         let area = polygon::area(&basis.domain_corners());
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
@@ -82,11 +87,11 @@ impl Normal {
     }
 }
 
-/// What an observation counts for.
+/// The weight of an observation, and its residual if it is wanted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighed {
     pub(super) weight: f64,
-    /// What it is that somebody wants to see.
+    /// The residual, if the caller collects them.
     pub(super) residual: Option<f64>,
 }
 
@@ -120,7 +125,7 @@ struct Evaluated {
     totals: Vec<Totals>,
 }
 
-/// What one thread adds to: functions whose number, modulo the number of threads, is that of the thread.
+/// The rows of one thread: functions whose number, modulo the number of threads, is that of the thread.
 struct Shard {
     turn: usize,
     turns: usize,
@@ -130,8 +135,8 @@ struct Shard {
 }
 
 impl Parts {
-    /// The equations of `count` parts, with the weights of observations; `part_of` says which part an observation is in, by its
-    /// number.
+    /// The equations of `count` parts, with the weights of observations; `part_of` says which part an
+    /// observation is in, by its number.
     pub(super) fn unweighed<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
@@ -146,8 +151,8 @@ impl Parts {
         Parts::of(basis, observations, threads, count, part_of, weigh, |_| ())
     }
 
-    /// The same with other weights: `weigh` gets the number of an observation, the observation, and the functions alive; `see` gets
-    /// the residuals that it returns, in order.
+    /// The same with other weights: `weigh` gets the number of an observation, the observation, and the
+    /// functions alive; `see` gets the residuals that it returns, in order.
     pub(super) fn of<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
@@ -183,7 +188,7 @@ impl Parts {
     }
 
     /// The equations of some parts together.
-    pub(super) fn sum(&self, is_summed: impl Fn(usize) -> bool) -> Normal {
+    pub(super) fn sum(&self, is_summed: impl Fn(usize) -> bool) -> NormalEquations {
         let mut totals = Totals::default();
         let chosen = self.totals.iter().enumerate().filter(|&(part, _)| is_summed(part));
         chosen.for_each(|(_, some)| totals.add(some));
@@ -191,7 +196,7 @@ impl Parts {
             let chosen = parts.iter().enumerate().filter(|&(part, _)| is_summed(part));
             chosen.map(|(_, value)| value).sum()
         });
-        Normal {
+        NormalEquations {
             right: right.collect(),
             matrix: Symmetric::of_rows(&self.rows, &is_summed),
             square: totals.square,

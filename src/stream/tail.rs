@@ -1,4 +1,4 @@
-//! Whether a file ends as streams do, without reading it.
+//! Tests whether a file ends with an END block, without reading the rest.
 
 use std::io::{self, Read, Seek, SeekFrom};
 
@@ -8,7 +8,7 @@ use super::event::Totals;
 /// Bytes of the END block.
 const END_LEN: usize = FRAME_LEN + 8 * Totals::FIELDS;
 
-/// Whether the last bytes of a file are an END block. What is before it is not looked at.
+/// Whether the last bytes of a file are a valid END block. Nothing before it is read.
 ///
 /// # Errors
 /// If the file cannot be read.

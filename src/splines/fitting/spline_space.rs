@@ -1,4 +1,5 @@
-//! Quadratic functions over the convex hull of places: the border pulled apart, so that they sum to one on all of it.
+//! The space of quadratic splines over the convex hull of given places. The border is pulled apart, so that
+//! functions sum to one on the whole hull.
 
 use super::mesh::Mesh;
 use crate::bases::Basis;
@@ -9,7 +10,7 @@ use spmesh_geometry::predicates::Point2;
 
 /// Places of knots with their triangulation, and the functions of degree 2 over them.
 #[derive(Debug)]
-pub struct Cover {
+pub struct SplineSpace {
     /// The triangulation of places.
     pub mesh: Mesh,
     /// The places, and after them the copies that pull some of them apart.
@@ -22,18 +23,21 @@ pub struct Cover {
     pub basis: Basis,
 }
 
-impl Cover {
+impl SplineSpace {
     /// Over distinct places.
     ///
-    /// Errors: places on one line, coordinates that are not finite, and those of [`features`] and [`Basis::of_functions`].
-    pub fn of(places: Vec<Point2>) -> Result<Cover> {
-        Cover::with_features(places, Features::default())
+    /// # Errors
+    /// Places on one line, coordinates that are not finite, and those of [`features`] and
+    /// [`Basis::of_functions`].
+    pub fn of(places: Vec<Point2>) -> Result<SplineSpace> {
+        SplineSpace::with_features(places, Features::default())
     }
 
     /// Over distinct places, with features between some of them.
     ///
-    /// Errors: those of [`Cover::of`].
-    pub fn with_features(places: Vec<Point2>, sharp: Features) -> Result<Cover> {
+    /// # Errors
+    /// Those of [`SplineSpace::of`].
+    pub fn with_features(places: Vec<Point2>, sharp: Features) -> Result<SplineSpace> {
         let mesh = Mesh::of(places)?;
         let places = Knots::new(mesh.points().to_vec())?;
         let corners = [sharp.corners, mesh.hull().to_vec()].concat();
@@ -43,6 +47,6 @@ impl Cover {
         let links = configurations::links(&special.knots, &configurations)?;
         let functions = special.functions(&links)?;
         let basis = Basis::of_functions(&special.knots, &configurations, &functions)?;
-        Ok(Cover { mesh, knots: special.knots, configurations, functions, basis })
+        Ok(SplineSpace { mesh, knots: special.knots, configurations, functions, basis })
     }
 }

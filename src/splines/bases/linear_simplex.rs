@@ -1,23 +1,23 @@
 //! Simplex splines of degrees 0 and 1 in closed form.
 //!
-//! That of degree 1 is the length of the vertical chords of a tetrahedron, a concave function on its support: the least of
-//! linear functions, one for each edge ab of the hull of its four knots,
+//! That of degree 1 is the length of the vertical chords of a tetrahedron, a concave function on its support:
+//! the least of linear functions, one for each edge ab of the hull of its four knots,
 //!
 //! ```text
 //! area(x, a, b) / (area(a, b, c) area(a, b, d)),    c and d the other knots,
 //! ```
 //!
-//! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the fourth knot or over
-//! the crossing of the diagonals, and there it is one over the area of the hull. If c or d is on ab, there is no such
-//! function: the edge is a *wall*, at which the spline jumps to zero. A triangle has three walls, and is capped by a
-//! constant.
+//! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the
+//! fourth knot or over the crossing of the diagonals, and there it is one over the area of the hull. If c or
+//! d is on ab, there is no such function: the edge is a *wall*, at which the spline jumps to zero. A triangle
+//! has three walls and a constant value.
 
-use super::approach::Approach;
+use super::directional_limit::DirectionalLimit;
 use super::elements::hull_edges;
 use spmesh_geometry::predicates::{Extent, Point2, Sign, area, exact_area};
 
-/// Relative to the greatest value, the error from which on linear functions are not good enough. It is a bound: errors that
-/// occur are a tenth of it, and less.
+/// Relative to the greatest value, the error from which on linear functions are not good enough. It is a
+/// bound: errors that occur are a tenth of it, and less.
 const TOLERATED: f64 = f64::EPSILON * 512.0;
 /// A linear function is off by six roundings of 2^-53 at most, if its constant is off by two; and some more.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
@@ -35,7 +35,7 @@ pub(super) fn value(line: &Line, offset: Point2) -> f64 {
 /// Shape: two cache lines, of which the first is enough for points outside of the box.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
-pub(super) struct Tent {
+pub(super) struct LinearSimplex {
     /// Middle of the box of the support.
     pub(super) origin: Point2,
     /// Half the sides of the box, rounded up.
@@ -44,9 +44,10 @@ pub(super) struct Tent {
     error: f32,
     /// Which lines are walls: bits.
     walls: u8,
-    /// Whether lines are good enough for values, and not just as a filter for the sides of edges.
+    /// Whether the lines are accurate enough for values, not only as a filter for the sides of edges.
     pub(super) is_exact_enough: bool,
-    /// Linear functions that are positive inside, by coefficients: for each edge; the last one a constant, if there are three.
+    /// Linear functions that are positive inside, by coefficients: for each edge; the last one a constant, if
+    /// there are three.
     lines: [[f64; 4]; 3],
 }
 
@@ -60,9 +61,9 @@ pub(super) enum Found {
     Unclear(f64),
 }
 
-impl Tent {
+impl LinearSimplex {
     /// Domain: three or four knots, not all on one line, and the area of their hull.
-    pub(super) fn new(knots: &[Point2], edges: &[[Point2; 2]], size: f64) -> Tent {
+    pub(super) fn new(knots: &[Point2], edges: &[[Point2; 2]], size: f64) -> LinearSimplex {
         let (origin, reach) = middle(knots);
         let wide = reach.map(f64::from);
         // Without a fourth edge, the cap of a triangle, or nothing.
@@ -82,7 +83,7 @@ impl Tent {
         let of_factors = ROUNDINGS * 4.0 * wide[0] * wide[1] / size;
         let is_exact_enough = error_of_values <= TOLERATED && of_factors <= TOLERATED;
         let lines = [0, 1, 2].map(|coefficient| all.map(|line| line[coefficient]));
-        Tent { origin, reach, error: rounded_up(error), walls, is_exact_enough, lines }
+        LinearSimplex { origin, reach, error: rounded_up(error), walls, is_exact_enough, lines }
     }
 
     /// Where a point is, seen from the origin.
@@ -119,8 +120,8 @@ impl Tent {
         f64::from(self.error)
     }
 
-    /// The linear function that the spline is in the neighbourhood of an offset, at which it is [`Found::Inside`]; nothing
-    /// if rounding might confuse it with another one.
+    /// The linear function that the spline is in the neighbourhood of an offset, at which it is
+    /// [`Found::Inside`]; nothing if rounding might confuse it with another one.
     pub(super) fn piece(&self, offset: Point2) -> Option<Line> {
         let values = self.values(offset);
         let (mut least, mut next, mut place) = (f64::INFINITY, f64::INFINITY, 0);
@@ -156,7 +157,7 @@ impl Tent {
         if least > self.error() { Found::Inside(height) } else { Found::Unclear(height.max(0.0)) }
     }
 
-    /// The least value of what is no wall.
+    /// The least value of the edges that are not walls.
     #[inline]
     fn height(&self, values: [f64; 4]) -> f64 {
         let heights = values.into_iter().enumerate().filter(|&(at, _)| !self.is_wall(at));
@@ -164,21 +165,21 @@ impl Tent {
     }
 }
 
-/// The lesser one of two numbers: unlike `f64::min`, it has no rule for what is not a number, and costs nothing for it.
+/// The lesser of two numbers. Unlike `f64::min` it has no rule for NaN, which saves instructions.
 #[inline(always)]
 pub(super) fn lesser(p: f64, q: f64) -> f64 {
     if p < q { p } else { q }
 }
 
-/// The least number of fewer bits that is not less.
+/// The least f32 that is not below an f64.
 fn rounded_up(number: f64) -> f32 {
     let near = number as f32;
     if f64::from(near) < number { near.next_up() } else { near }
 }
 
-/// Whether a point, as it is approached, is inside of the hull of knots.
+/// Whether a directional limit is taken inside the hull of knots.
 #[cold]
-pub(super) fn is_inside(at: &Approach, knots: &[Point2]) -> bool {
+pub(super) fn is_inside(at: &DirectionalLimit, knots: &[Point2]) -> bool {
     hull_edges(knots).iter().all(|&[p, q]| at.side(p, q) == Sign::Positive)
 }
 

@@ -30,10 +30,11 @@ pub struct Interpolation<'a> {
 impl<'a> Interpolation<'a> {
     /// The equations of a basis.
     ///
-    /// Errors: two sites at one place, a function that is zero at all sites, or sites at which functions depend on each other, with the
-    /// place; not enough memory.
-    ///
     /// Cost: a sparse LU factorisation.
+    ///
+    /// # Errors
+    /// Two sites at one place, a function that is zero at all sites, or sites at which functions depend on
+    /// each other, with the place; not enough memory.
     pub fn new(basis: &'a Basis) -> Result<Interpolation<'a>> {
         let (mut offsets, mut functions, mut values) = (vec![0], Vec::new(), Vec::new());
         let mut scratch = Scratch::default();
@@ -59,14 +60,16 @@ impl<'a> Interpolation<'a> {
 
     /// Coefficients of the spline that has a function's values at Greville sites.
     ///
-    /// Errors: a value that is not finite, with its place.
+    /// # Errors
+    /// A value that is not finite, with its place.
     pub fn of_function(&self, mut f: impl FnMut(Point2) -> f64) -> Result<Vec<f64>> {
         self.of_values(&(0..self.basis.len()).map(|site| f(self.basis.greville(site))).collect::<Vec<f64>>())
     }
 
     /// Coefficients of the spline that has these values at Greville sites, in the order of functions.
     ///
-    /// Errors: another number of values; one that is not finite, with its place.
+    /// # Errors
+    /// Another number of values; one that is not finite, with its place.
     pub fn of_values(&self, values: &[f64]) -> Result<Vec<f64>> {
         if values.len() != self.basis.len() {
             let (found, needed) = (values.len(), self.basis.len());
@@ -85,11 +88,12 @@ impl<'a> Interpolation<'a> {
         Ok(coefficients)
     }
 
-    /// Coefficients of the spline that has, at Greville sites, the values of the function that is linear on the triangles of a mesh
-    /// and has these values at its points.
+    /// Coefficients of the spline that has, at Greville sites, the values of the function that is linear on
+    /// the triangles of a mesh and has these values at its points.
     ///
-    /// Errors: another number of values than points; sites outside of the hull of the points, with their number and the place
-    /// of the first; a value that is not finite.
+    /// # Errors
+    /// Another number of values than points; sites outside of the hull of the points, with their number and
+    /// the place of the first; a value that is not finite.
     pub fn of_points(&self, mesh: &Mesh, values: &[f64]) -> Result<Vec<f64>> {
         if values.len() != mesh.points().len() {
             let (found, needed) = (values.len(), mesh.points().len());
@@ -111,7 +115,8 @@ impl<'a> Interpolation<'a> {
         self.of_values(&found.into_iter().flatten().collect::<Vec<f64>>())
     }
 
-    /// Estimate of the condition of the equations in the 1-norm. It is a lower bound, and rarely less than a third of the truth.
+    /// Estimate of the condition of the equations in the 1-norm. It is a lower bound, and rarely less than a
+    /// third of the truth.
     ///
     /// Source: Hager 1984; Higham, "Accuracy and Stability of Numerical Algorithms", 2002, algorithm 15.1.
     #[must_use]
@@ -119,7 +124,7 @@ impl<'a> Interpolation<'a> {
         self.norm() * self.inverse_norm().0
     }
 
-    /// The condition in the 2-norm, from all singular values; nothing for more than 2,000 functions.
+    /// The condition in the 2-norm, from all singular values; `None` for more than 2,000 functions.
     #[must_use]
     pub fn condition_2(&self) -> Option<f64> {
         let count = self.basis.len();
@@ -164,7 +169,8 @@ impl<'a> Interpolation<'a> {
         sums.into_iter().fold(0.0, f64::max)
     }
 
-    /// Estimate of the 1-norm of the inverse, and the function with the greatest coefficient in the column that has it.
+    /// Estimate of the 1-norm of the inverse, and the function with the greatest coefficient in the column
+    /// that has it.
     fn inverse_norm(&self) -> (f64, usize) {
         let count = self.basis.len();
         let mut x = vec![1.0 / count as f64; count];
@@ -215,7 +221,8 @@ impl std::fmt::Debug for Interpolation<'_> {
 
 /// Coefficients of the spline that has a function's values at Greville sites.
 ///
-/// Errors: those of [`Interpolation::new`] and [`Interpolation::of_function`].
+/// # Errors
+/// Those of [`Interpolation::new`] and [`Interpolation::of_function`].
 pub fn interpolate(basis: &Basis, f: impl FnMut(Point2) -> f64) -> Result<Vec<f64>> {
     Interpolation::new(basis)?.of_function(f)
 }

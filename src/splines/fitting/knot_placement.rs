@@ -1,7 +1,8 @@
-//! Where knots go: on grids, and next to residuals.
+//! Placement of knots: on grids, and next to residuals.
 //!
-//! Knots inside are moved at random, by a fixed seed, so that no three are on a line and splines are smooth. The border is pulled
-//! apart, so that along edges from border to border splines could be folded. Such edges get a knot, too.
+//! Knots inside are moved at random, by a fixed seed, so that no three are on a line and splines are smooth.
+//! The border is pulled apart, so that splines could fold along *border chords*: inner edges that join two
+//! knots of the border. Such edges get a knot, too.
 
 use super::mesh::Mesh;
 use super::observations::Observations;
@@ -17,13 +18,16 @@ const MOVED: f64 = 0.2;
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
 /// Most cells of a grid.
 const EVEN_MAX: f64 = 5e7;
-/// Attempts to place knots so that no edge through the inside joins two knots of the border.
+/// Attempts to place knots so that there is no border chord.
 const ATTEMPTS: usize = 4;
 
-/// Knots on a grid over the box of all observations, with cells of about this side; those inside are moved a little.
+/// Knots on a grid over the box of all observations, with cells of about this side; those inside are moved a
+/// little.
 ///
-/// Errors: a side that is not above zero, or makes more than 50 million knots; observations in no area; those of the source.
-pub fn even_places<O: Observations + ?Sized>(observations: &O, side: f64) -> Result<Vec<Point2>> {
+/// # Errors
+/// A side that is not above zero, or makes more than 50 million knots; observations in no area; those of the
+/// source.
+pub fn grid_knots<O: Observations + ?Sized>(observations: &O, side: f64) -> Result<Vec<Point2>> {
     if side.is_nan() || side <= 0.0 {
         return Err(Error::usage(format!("cells of {side}: expected a number above zero")));
     }
@@ -34,7 +38,7 @@ pub fn even_places<O: Observations + ?Sized>(observations: &O, side: f64) -> Res
         return Err(Error::usage(what));
     }
     let places = grid([lower, upper], cells.map(|count| count as usize));
-    let middles = settled(&places, Vec::new(), usize::MAX)?;
+    let middles = break_border_chords(&places, Vec::new(), usize::MAX)?;
     Ok([places, middles].concat())
 }
 
@@ -68,7 +72,7 @@ pub(super) fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Poin
 }
 
 /// The grid of the first round: its cells are about square.
-pub(super) fn first_places([lower, upper]: [Point2; 2]) -> Vec<Point2> {
+pub(super) fn first_grid([lower, upper]: [Point2; 2]) -> Vec<Point2> {
     let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
     let longest = sides[0].max(sides[1]);
     grid([lower, upper], sides.map(|side| ((side / longest * CELLS_FIRST as f64).round() as usize).max(2)))
@@ -100,18 +104,24 @@ fn between(from: f64, to: f64, part: f64) -> f64 {
     if part == 1.0 { to } else { from + part * (to - from) }
 }
 
-/// New knots, with more at edges from border to border while there is `room`; otherwise without those that make such edges.
+/// Adds knots near the middles of border chords while at most `added_max` are added; otherwise drops the
+/// knots that cause such chords.
 ///
-/// Edges between known knots only become fewer, so that at least one end of each is new, but at the very start.
-pub(super) fn settled(known: &[Point2], mut added: Vec<Point2>, room: usize) -> Result<Vec<Point2>> {
+/// New knots never create edges between known ones, so that at least one end of each chord is new, except at
+/// the very start.
+pub(super) fn break_border_chords(
+    known: &[Point2],
+    mut added: Vec<Point2>,
+    added_max: usize,
+) -> Result<Vec<Point2>> {
     for attempt in 0.. {
         let mesh = Mesh::of([known, &added].concat())?;
-        let (ends, middles): (Vec<[u32; 2]>, Vec<Point2>) = creases(&mesh).into_iter().unzip();
+        let (ends, middles): (Vec<[u32; 2]>, Vec<Point2>) = border_chords(&mesh).into_iter().unzip();
         let is_new = |knot: u32| knot as usize >= known.len();
         if middles.is_empty() {
             break;
         }
-        if attempt < ATTEMPTS && added.len() + middles.len() <= room {
+        if attempt < ATTEMPTS && added.len() + middles.len() <= added_max {
             added.extend(middles);
             continue;
         }
@@ -127,9 +137,9 @@ pub(super) fn settled(known: &[Point2], mut added: Vec<Point2>, room: usize) -> 
     Ok(added)
 }
 
-/// Edges through the inside that join two knots of the border, each with a place next to its middle, but not on it: knots on one
-/// line make splines less smooth.
-fn creases(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
+/// Inner edges that join two knots of the border, each with a place next to its middle. The middle itself
+/// would put knots on one line, which makes splines less smooth.
+fn border_chords(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     let mut is_border = vec![false; mesh.points().len()];
     mesh.hull().iter().for_each(|&knot| is_border[knot as usize] = true);
     let mut found = Vec::new();
@@ -147,9 +157,9 @@ fn creases(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     found
 }
 
-/// The knot for a residual in a triangle: about halfway between its place and the middle. Exactly there, knots of several rounds
-/// for one residual would be on a line with a corner.
-pub(super) fn knot_in(mesh: &Mesh, triangle: u32, worst: Point2, random: &mut Random) -> Point2 {
+/// The knot for a residual in a triangle: about halfway between its place and the middle. Exactly there,
+/// knots of several rounds for one residual would be on a line with a corner.
+pub(super) fn knot_for_residual(mesh: &Mesh, triangle: u32, worst: Point2, random: &mut Random) -> Point2 {
     let corners = mesh.corners(triangle);
     let mut share = || 1.0 + MOVED * unit(random);
     let shares = [share(), share(), share(), 3.0 * share()];

@@ -5,34 +5,34 @@ const CLASS_BITS: u32 = 18;
 /// Bits below them.
 const SHIFT: u32 = 63 - CLASS_BITS;
 
-/// How many numbers are in which class. Shape: 2 MB.
+/// Counts of magnitudes in classes of equal relative width. Memory: 2 MB.
 #[derive(Debug, Clone)]
-pub struct Spread {
+pub struct QuantileSketch {
     counts: Vec<u64>,
     total: u64,
 }
 
-impl Default for Spread {
-    fn default() -> Spread {
-        Spread { counts: vec![0; 1 << CLASS_BITS], total: 0 }
+impl Default for QuantileSketch {
+    fn default() -> QuantileSketch {
+        QuantileSketch { counts: vec![0; 1 << CLASS_BITS], total: 0 }
     }
 }
 
-impl Spread {
+impl QuantileSketch {
     /// Counts a finite number by its magnitude.
     pub fn add(&mut self, number: f64) {
         self.counts[(number.abs().to_bits() >> SHIFT) as usize] += 1;
         self.total += 1;
     }
 
-    /// The median of magnitudes, the lower one of two. Accuracy: as [`Spread::quantile`].
+    /// The median of magnitudes, the lower one of two. Accuracy: as [`QuantileSketch::quantile`].
     #[must_use]
     pub fn median(&self) -> Option<f64> {
         self.quantile(0.5)
     }
 
-    /// The least magnitude that a part of all magnitudes is not above: the middle of its class, which is half a percent off at
-    /// most. Nothing of no numbers.
+    /// The least magnitude that a part of all magnitudes is not above: the middle of its class, which is half
+    /// a percent off at most. `None` without numbers.
     ///
     /// Domain: parts above zero, and up to one.
     #[must_use]
@@ -61,19 +61,19 @@ mod tests {
         for count in [1, 2, 3, 10, 1001] {
             let mut all: Vec<f64> =
                 (0..count).map(|_| random.bits() as f64 * 2f64.powi(random.below(90) as i32 - 100)).collect();
-            let mut spread = Spread::default();
-            all.iter().enumerate().for_each(|(i, &x)| spread.add(if i % 2 == 0 { x } else { -x }));
+            let mut sketch = QuantileSketch::default();
+            all.iter().enumerate().for_each(|(i, &x)| sketch.add(if i % 2 == 0 { x } else { -x }));
             all.sort_by(f64::total_cmp);
             let expected = all[(count - 1) / 2];
-            let found = spread.median().unwrap();
+            let found = sketch.median().unwrap();
             assert!((found / expected - 1.0).abs() < 0.005, "{count}: {found}, {expected}");
             for (part, at) in [(0.95, (95 * count).div_ceil(100) - 1), (1.0, count - 1)] {
-                let (expected, found) = (all[at], spread.quantile(part).unwrap());
+                let (expected, found) = (all[at], sketch.quantile(part).unwrap());
                 assert!((found / expected - 1.0).abs() < 0.005, "{count} {part}: {found}, {expected}");
             }
         }
-        assert_eq!(Spread::default().median(), None);
-        let mut zeros = Spread::default();
+        assert_eq!(QuantileSketch::default().median(), None);
+        let mut zeros = QuantileSketch::default();
         [0.0, -0.0, 5.0].iter().for_each(|&x| zeros.add(x));
         assert_eq!(zeros.median(), Some(0.0));
     }

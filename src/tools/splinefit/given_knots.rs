@@ -1,13 +1,13 @@
-//! Knots that are given, as points or with all that was made of them.
+//! Knots from files: points, streams of configurations, or splines.
 
+use super::breaklines;
+use super::distinct_points::without_copies;
 use super::frame::Frame;
 use super::layout::Layout;
-use super::sharp;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Input, Opened, Polyline};
-use spmesh_splines::fitting::Cover;
+use spmesh_splines::fitting::SplineSpace;
 
 /// Functions over given knots.
 ///
@@ -51,16 +51,9 @@ fn of_points(input: &Input, polylines: &[Polyline]) -> Result<Layout> {
     }
     let places = without_copies(&places);
     if polylines.is_empty() {
-        return Ok(Layout::of_cover(Cover::of(places)?, frame));
+        return Ok(Layout::of_space(SplineSpace::of(places)?, frame));
     }
     // Polylines have vertices that are on no grid.
     let places: Vec<Point2> = places.into_iter().map(|stored| frame.to_world(stored)).collect();
-    Ok(Layout::of_cover(sharp::cover(&places, polylines)?, Frame::world(frame.crs)))
-}
-
-/// The first point at each place.
-pub(super) fn without_copies(places: &[Point2]) -> Vec<Point2> {
-    let firsts = distinct(places);
-    let own = places.iter().zip(0..).zip(firsts).filter(|((_, id), first)| id == first);
-    own.map(|((&place, _), _)| place).collect()
+    Ok(Layout::of_space(breaklines::space(&places, polylines)?, Frame::world(frame.crs)))
 }
