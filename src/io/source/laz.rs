@@ -9,7 +9,7 @@ use super::laz_codec::{Codec, Decompressor, decompression};
 use super::ordered::Ordered;
 use super::origin::FileView;
 use super::panic_guard::guarded;
-use super::records::RecordReader;
+use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 
 /// Bytes of records that chunks under way decompress to, per thread, and in all.

@@ -4,10 +4,11 @@ use std::collections::VecDeque;
 use std::io::Read;
 
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
 use super::polygon::fan;
-use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
+use super::statements::{fields, parse_decimals, parse_signed, unexpected};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;

@@ -5,12 +5,13 @@ use std::io::Read;
 
 use super::byte_order::ByteOrder;
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents};
 use super::patches::Order;
 use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
 use super::sample_type::SampleType;
-use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
+use super::statements::{expect_no_field, fields, next_field, parse_decimal};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;

@@ -3,11 +3,10 @@
 use std::io::Read;
 
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
-use super::statements::{
-    Lines, expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected,
-};
+use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Reads an SMA mesh, pre-order or post-order: now up to the first element. `name` is what messages call the

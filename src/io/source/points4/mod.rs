@@ -6,10 +6,10 @@
 
 mod condition;
 mod data;
-mod detect;
 mod lattice;
 mod nifti;
 mod nrrd;
+mod opening;
 mod raw;
 mod sample;
 mod scan;
@@ -119,7 +119,7 @@ pub fn read_points4(request: &Request) -> Result<Points4> {
             let path = (!is_stdin).then_some(path.as_path());
             let supply = match &request.from {
                 From4::Raw(_, layout) => raw::open(origin, path, layout).map(Supply::Volume),
-                _ => detect::open(origin, path, &mut warnings),
+                _ => opening::open(origin, path, &mut warnings),
             };
             (supply.map_err(|e| e.of_input(&name))?, name)
         }

@@ -19,13 +19,6 @@ const HEADER2_LEN: u32 = 540;
 /// Where the magic bytes are.
 const MAGIC_AT: usize = 344;
 
-/// Whether `head` starts a NIfTI file, or one of its kin.
-pub(super) fn is_header(head: &[u8]) -> bool {
-    let states = |len: u32| head.starts_with(&len.to_le_bytes()) || head.starts_with(&len.to_be_bytes());
-    let has_magic = head.get(MAGIC_AT..MAGIC_AT + 2).is_some_and(|magic| magic == b"n+" || magic == b"ni");
-    states(HEADER_LEN) && has_magic || states(HEADER2_LEN) && head.get(4..6) == Some(b"n+")
-}
-
 /// Reads the header of a volume.
 ///
 /// # Errors

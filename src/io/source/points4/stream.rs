@@ -4,15 +4,11 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::scan::Supply;
-use crate::source::gzip::Plain;
 use crate::source::origin::Origin;
 use crate::source::{EventSource, TwinSource};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 use spmesh_stream::{Event, StreamReader};
-
-/// First bytes of a stream.
-const MAGIC: &[u8] = b"\x89SPM";
 
 /// First bytes of a text twin.
 const TWIN_MAGIC: &[u8] = b"#spmesh ";
@@ -26,11 +22,6 @@ pub(super) struct Stream {
     name: String,
     is_twin: bool,
     pub has_values: bool,
-}
-
-/// Whether these are the first bytes of a stream or of its text twin.
-pub(super) fn is_head(head: &[u8]) -> bool {
-    head.starts_with(MAGIC) || head.starts_with(TWIN_MAGIC)
 }
 
 /// The points of the stream in `origin`, which starts with `head`, for any number of passes.
@@ -57,8 +48,8 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<S
 
 impl Stream {
     fn read(&self) -> Result<Box<dyn EventSource>> {
-        let plain = Plain::new(self.origin.view()?).map_err(|e| Error::io("reading", e))?;
-        let input: Box<dyn Read + Send> = Box::new(BufReader::with_capacity(BUFFER_LEN, plain));
+        let input: Box<dyn Read + Send> =
+            Box::new(BufReader::with_capacity(BUFFER_LEN, self.origin.plain()?));
         Ok(match self.is_twin {
             true => Box::new(TwinSource::new(input, &self.name)?),
             false => Box::new(StreamReader::new(input, &self.name)?),

@@ -2,7 +2,8 @@
 
 use std::io::Read;
 
-use crate::source::statements::Lines;
+use crate::source::lines::Lines;
+
 use spmesh_core::error::{Error, Result};
 
 /// What a token is.

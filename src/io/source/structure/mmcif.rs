@@ -6,7 +6,8 @@ use std::ops::Range;
 use super::builder::{Oddity, Record, StructureBuilder, printable};
 use super::cif::{Token, Tokens};
 use super::decimal::Number;
-use crate::source::statements::{Lines, unexpected};
+use crate::source::lines::Lines;
+use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
 /// The items of `_atom_site` that matter here, in the order of [`ITEMS`].

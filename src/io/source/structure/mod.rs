@@ -8,7 +8,6 @@ mod builder;
 mod cif;
 mod conformers;
 mod decimal;
-mod detect;
 mod mmcif;
 mod model;
 mod names;
@@ -28,8 +27,11 @@ pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;
 use super::gzip::Plain;
-use super::statements::Lines;
-use super::{open_obj, open_ply};
+use super::lines::Lines;
+
+use super::obj::open_obj;
+use super::ply::open_ply;
+use crate::detect::{self, TESS3, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::STRUCTURE_LINE_MAX;
 use spmesh_stream::Coordinates;
@@ -93,13 +95,11 @@ fn read(
 ) -> Result<Structure> {
     let reading = |e| Error::io("reading", e).of_input(name);
     let mut input = Plain::new(input).map_err(reading)?;
-    let mut head = Vec::new();
-    (&mut input).take(detect::HEAD_LEN).read_to_end(&mut head).map_err(reading)?;
-    let path = path.filter(|_| !input.is_compressed());
+    let mut head = read_head(&mut input).map_err(reading)?;
     if head.starts_with(b"\xef\xbb\xbf") {
         head.drain(..3);
     }
-    let format = format.map_or_else(|| detect::detect(&head), Ok).map_err(|e| e.of_input(name))?;
+    let format = format.map_or_else(|| recognized(&head), Ok).map_err(|e| e.of_input(name))?;
     let input = Cursor::new(head).chain(input);
     let mut builder = StructureBuilder::default();
     let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
@@ -121,4 +121,23 @@ fn read(
     }
     .map_err(|e| e.of_input(name))?;
     builder.finish(name)
+}
+
+/// The format of an input that starts with `head`.
+///
+/// # Errors
+/// If it has nothing but white space, or is of a format that is not read.
+fn recognized(head: &[u8]) -> Result<Format> {
+    if head.trim_ascii().is_empty() {
+        return Err(Error::malformed("empty: found no atom and no point"));
+    }
+    Ok(match TESS3.detect(head)? {
+        detect::Format::Pdb => Format::Pdb,
+        detect::Format::Mmcif => Format::Mmcif,
+        detect::Format::Xyz => Format::Xyz,
+        detect::Format::Ply => Format::Ply,
+        detect::Format::Obj | detect::Format::VertexLines => Format::Obj,
+        detect::Format::Off => Format::Off,
+        _ => Format::Points,
+    })
 }

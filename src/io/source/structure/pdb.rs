@@ -9,8 +9,8 @@ use std::io::Read;
 use super::builder::{Oddity, Record, StructureBuilder};
 use super::decimal::Number;
 use super::serial::{Serials, residue_number};
-use crate::source::lines::quote;
-use crate::source::statements::{Lines, unexpected};
+use crate::source::lines::{Lines, quote};
+use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
 /// Columns of x, y and z, counted from 0.

@@ -3,11 +3,12 @@
 use std::io;
 
 use crate::source::byte_order::ByteOrder;
+use crate::source::lines::Lines;
 use crate::source::numbers::{Writing, next_number};
 use crate::source::origin::FileView;
 use crate::source::point_arrays::{Place, PointArray};
 use crate::source::sample_type::SampleType;
-use crate::source::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
+use crate::source::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Type of the values of an array.
