@@ -10,6 +10,7 @@ mod convert;
 mod dd4;
 mod dem;
 mod finalize;
+mod formats;
 mod output;
 mod pipelines;
 mod points4;

@@ -272,7 +272,7 @@ impl Format {
 /// Malformed, if the input is empty.
 pub fn detect(head: &[u8]) -> Result<Format> {
     if head.is_empty() {
-        return Err(Error::malformed("the input is empty"));
+        return Err(Error::malformed("empty: the input has no bytes"));
     }
     let body = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
     let fits = |row: &&Row| match row.test {

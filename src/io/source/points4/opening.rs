@@ -15,6 +15,9 @@ use spmesh_core::error::{Error, Result};
 pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Supply> {
     let mut plain = origin.plain()?;
     let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
+    if head.is_empty() {
+        return Err(Error::malformed("found no point"));
+    }
     match DD4.detect(&head)? {
         Format::Nrrd => nrrd::open(origin, path, warnings).map(Supply::Volume),
         Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(Supply::Volume),
