@@ -12,6 +12,7 @@ mod las_header;
 mod laz;
 mod laz_chunks;
 mod laz_codec;
+mod laz_table;
 mod lines;
 mod mesh_events;
 mod numbers;

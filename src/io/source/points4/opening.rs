@@ -21,7 +21,7 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<Strin
     match DD4.detect(&head)? {
         Format::Nrrd => nrrd::open(origin, path, warnings).map(Supply::Volume),
         Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(Supply::Volume),
-        Format::Stream | Format::Twin => stream::open(origin, path, &head),
-        _ => text::open(origin),
+        Format::Stream | Format::Twin => stream::open(origin, path, &head).map(Supply::Stream),
+        _ => text::open(origin).map(Supply::Text),
     }
 }

@@ -3,7 +3,6 @@
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use super::scan::Supply;
 use crate::source::origin::Origin;
 use crate::source::{EventSource, TwinSource};
 use spmesh_core::error::{Error, Result};
@@ -28,7 +27,7 @@ pub(super) struct Stream {
 ///
 /// # Errors
 /// If its header is damaged; usage, if its points have fewer dimensions.
-pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Supply> {
+pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Stream> {
     let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
     let is_twin = head.starts_with(TWIN_MAGIC);
     let mut stream = Stream { origin, name, is_twin, has_values: false };
@@ -43,7 +42,7 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<S
         return Err(Error::usage(message));
     }
     stream.has_values = header.has_elevation;
-    Ok(Supply::Stream(stream))
+    Ok(stream)
 }
 
 impl Stream {

@@ -1,6 +1,5 @@
 //! Lines of x y z t, or of x y z t value.
 
-use super::scan::Supply;
 use crate::source::lines::{Lines, number, quote};
 use crate::source::origin::{Bytes, Origin};
 use crate::source::text::{Delimiter, delimiter_of, fields, without_comment};
@@ -29,7 +28,7 @@ struct Columns {
 ///
 /// # Errors
 /// If there is no point, or its columns are not those of one; line and column are named.
-pub(super) fn open(origin: Origin) -> Result<Supply> {
+pub(super) fn open(origin: Origin) -> Result<Text> {
     let mut lines = read(&origin)?;
     let mut names: Option<(u64, Vec<String>)> = None;
     while let Some(line) = lines.next_trimmed()? {
@@ -47,7 +46,7 @@ pub(super) fn open(origin: Origin) -> Result<Supply> {
         }
         let count = fields(line, delimiter).count();
         let columns = columns(delimiter, count, names).map_err(|e| e.at(lines.position()))?;
-        return Ok(Supply::Text(Text { origin, columns }));
+        return Ok(Text { origin, columns });
     }
     Err(match names {
         Some((line, _)) => Error::malformed("expected a line of x y z t").at(format!("line {line}")),
