@@ -8,6 +8,7 @@ mod blocks;
 mod elements;
 mod framed;
 mod legacy;
+mod lengths;
 mod xml;
 
 pub(super) use framed::Framed;

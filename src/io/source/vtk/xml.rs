@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use super::blocks::Compressor;
 use super::elements::{Elements, Tag};
-use super::framed::{Framed, Lengths};
+use super::framed::Framed;
+use super::lengths::Lengths;
 use crate::source::byte_order::ByteOrder;
 use crate::source::numbers::Writing;
 use crate::source::origin::FileView;
