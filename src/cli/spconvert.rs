@@ -27,9 +27,9 @@ Examples:
   spconvert protein.spm -o protein.vtu
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
-The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the output by its name. \
-Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB rounded to 32 bits. \
-A notice says what is lost. \
+The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
+output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB \
+rounded to 32 bits. A notice says what is lost. \
 Of tetrahedra, OBJ and PLY get the hull; VTU has the labels of vertices as point data, Medit as references. \
 Meshes of OBJ and PLY do not say when vertices are final: all of them are at the end.
 
@@ -64,7 +64,7 @@ pub struct Flags {
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for the temporary files that writing PLY, VTU and Medit needs, and reading points through a pipe
+    /// Folder for temporary files: writing PLY, VTU and Medit needs them, and reading points through a pipe
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 

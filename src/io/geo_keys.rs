@@ -1,7 +1,7 @@
 //! Reads the key directories of GeoTIFF, which LAS files and rasters have.
 //!
-//! Source: OGC GeoTIFF 1.1, chapter 7: four numbers for the directory, then four for each key: its number, the tag that
-//! holds its value (0: the key itself), a count, and the value or its place.
+//! Source: OGC GeoTIFF 1.1, chapter 7: four numbers for the directory, then four for each key: its number,
+//! the tag that holds its value (0: the key itself), a count, and the value or its place.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 

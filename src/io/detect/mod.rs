@@ -1,5 +1,5 @@
-//! Recognizes formats by the first bytes of an input: one table for all tools. Names say little: data arrives through
-//! pipes, and endings lie.
+//! Recognizes formats by the first bytes of an input: one table for all tools. Names say little: data arrives
+//! through pipes, and endings lie.
 
 mod binary;
 mod readers;

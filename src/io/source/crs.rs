@@ -38,8 +38,8 @@ pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     Crs::Unknown
 }
 
-/// The system that all files share, each given by its name and its system. A file that states none takes that of the
-/// others.
+/// The system that all files share, each given by its name and its system. A file that states none takes that
+/// of the others.
 ///
 /// # Errors
 /// Usage, if two systems differ.

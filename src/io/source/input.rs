@@ -56,11 +56,11 @@ pub struct Input {
 }
 
 impl Input {
-    /// Opens `paths` ("-" is standard input), recognizes each file by its content, reads its header, and finds
-    /// the encoding that all points share.
+    /// Opens `paths` ("-" is standard input), recognizes each file by its content, reads its header, and
+    /// finds the encoding that all points share.
     ///
-    /// Cost: the headers; what cannot be read twice, and compressed files that are not read in order, are copied to
-    /// unlinked temporary files.
+    /// Cost: the headers; what cannot be read twice, and compressed files that are not read in order, are
+    /// copied to unlinked temporary files.
     ///
     /// # Errors
     /// If a file cannot be opened or its header is damaged (the file is named), or the files or options do
@@ -75,8 +75,8 @@ impl Input {
         Input::of_sources(sources, options, notices)
     }
 
-    /// As `open`, from all that `input` gives, which is copied to an unlinked temporary file; `name` is what messages
-    /// call it.
+    /// As `open`, from all that `input` gives, which is copied to an unlinked temporary file; `name` is what
+    /// messages call it.
     ///
     /// # Errors
     /// As [`Input::open`], and if `input` cannot be read.
@@ -110,8 +110,8 @@ impl Input {
         &self.notices
     }
 
-    /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed files
-    /// and text.
+    /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
+    /// files and text.
     #[must_use]
     pub fn is_costly(&self) -> bool {
         self.sources.iter().any(|source| {
@@ -226,7 +226,8 @@ struct Found {
     is_compressed: bool,
 }
 
-/// Recognizes a file. If it is compressed and its format is not read in order, it is decompressed to a temporary file.
+/// Recognizes a file. If it is compressed and its format is not read in order, it is decompressed to a
+/// temporary file.
 fn find_format(
     origin: Origin,
     name: &str,

@@ -238,7 +238,8 @@ impl Records {
         Ok(records)
     }
 
-    /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before `end`.
+    /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before
+    /// `end`.
     fn read_one(
         &mut self,
         file: &FileView,

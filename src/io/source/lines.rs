@@ -31,7 +31,8 @@ pub(super) struct Lines<R> {
 }
 
 impl<R: Read> Lines<R> {
-    /// Lines of at most [`TEXT_LINE_MAX`] bytes; `name` is what messages call the input, or nothing, if the caller names it.
+    /// Lines of at most [`TEXT_LINE_MAX`] bytes; `name` is what messages call the input, or nothing, if the
+    /// caller names it.
     pub(super) fn new(input: R, name: impl Into<String>) -> Self {
         Lines::with_longest(input, name, TEXT_LINE_MAX)
     }
@@ -86,7 +87,8 @@ impl<R: Read> Lines<R> {
         Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
     }
 
-    /// As `next_line`, for texts that people write: without white space around the line, and without a byte order mark.
+    /// As `next_line`, for texts that people write: without white space around the line, and without a byte
+    /// order mark.
     ///
     /// # Errors
     /// As `next_line`; if the line has a zero byte or a carriage return in it.

@@ -33,7 +33,8 @@ pub fn open_planar(paths: &[PathBuf], options: &SourceOptions) -> Result<Opened>
     }
 }
 
-/// Opens a path ("-" is standard input) as a stream of configurations or of a spline if it is one, and otherwise as points.
+/// Opens a path ("-" is standard input) as a stream of configurations or of a spline if it is one, and
+/// otherwise as points.
 ///
 /// Cost: that of [`open_planar`].
 ///

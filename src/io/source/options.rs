@@ -28,8 +28,8 @@ pub struct SourceOptions {
     pub dims: u8,
     /// Grid to put integer coordinates on: scale and offset per axis, instead of those of the files.
     pub grid: Option<([f64; 3], [f64; 3])>,
-    /// Files hold nothing but numbers of this type, x, y and z of one point after the other; their content does
-    /// not tell.
+    /// Files hold nothing but numbers of this type, x, y and z of one point after the other; their content
+    /// does not tell.
     pub raw: Option<RawType>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
@@ -38,10 +38,12 @@ pub struct SourceOptions {
 }
 
 impl SourceOptions {
+    /// The folder where spools go.
     pub(super) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)
     }
 
+    /// How many threads decompress points.
     pub(super) fn threads(&self) -> usize {
         let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         self.threads.unwrap_or_else(cores).get()

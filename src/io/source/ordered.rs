@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn jobs_that_nobody_waits_for_do_not_block() {
+    fn jobs_without_a_receiver_do_not_block() {
         let mut ordered = Ordered::start(2, |job: u64| job).expect("threads start");
         (0..50).for_each(|job| ordered.give(job));
         assert_eq!(ordered.take(), Some(0));

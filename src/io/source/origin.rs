@@ -65,7 +65,8 @@ impl Origin {
         Plain::new(self.view()?).map_err(|e| Error::io("reading", e))
     }
 
-    /// The decompressed content as a file, for formats that are not read in order; `name` is what messages call it.
+    /// The decompressed content as a file, for formats that are not read in order; `name` is what messages
+    /// call it.
     pub(super) fn unpacked(&self, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
         let (file, size) = spool(self.plain()?, temp_dir)?;
         let place = temp_dir.display();

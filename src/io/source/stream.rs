@@ -1,5 +1,5 @@
-//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the vertices of
-//! PLY and OBJ.
+//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the
+//! vertices of PLY and OBJ.
 
 use std::io::BufReader;
 

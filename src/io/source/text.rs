@@ -1,4 +1,4 @@
-//! Points as lines of text: xyz, csv and their kin.
+//! Points as lines of text: xyz, csv and the like.
 
 use super::lines::{Lines, number, quote};
 use super::origin::Bytes;

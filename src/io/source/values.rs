@@ -18,7 +18,8 @@ pub enum Values {
 /// Reads lines of one number, or of two; the first line tells. Blank lines and comments do not count.
 ///
 /// # Errors
-/// If reading fails, a line has another number of columns or something else than numbers, or there is no line.
+/// If reading fails, a line has another number of columns or something else than numbers, or there is no
+/// line.
 pub fn read_values(input: impl Read) -> Result<Values> {
     let mut lines = Lines::new(input, "");
     let (mut columns, mut all) = (0, Vec::new());

@@ -6,7 +6,8 @@ use super::lines::{Lines, number, quote};
 use super::text::without_comment;
 use spmesh_core::error::{Error, Result};
 
-/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not count.
+/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not
+/// count.
 ///
 /// # Errors
 /// If reading fails, and as `found`, with the position.

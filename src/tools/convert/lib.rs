@@ -30,8 +30,8 @@ pub struct Options {
     pub dims: Option<u8>,
     /// Write PLY as text.
     pub ascii: bool,
-    /// The file that the input is read from, if it is one, compressed or not: points are read there, and otherwise
-    /// from a copy.
+    /// The file that the input is read from, if it is one, compressed or not: points are read there, and
+    /// otherwise from a copy.
     pub path: Option<PathBuf>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,

@@ -26,8 +26,8 @@ pub(super) struct GeoKeys {
 }
 
 impl GeoKeys {
-    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have none; of well-known text
-    /// its EPSG code, or else its name.
+    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have
+    /// none; of well-known text its EPSG code, or else its name.
     pub(super) fn of(crs: &Crs, are_elevations: bool) -> GeoKeys {
         match crs {
             Crs::Unknown => GeoKeys::new(&[]),

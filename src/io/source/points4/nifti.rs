@@ -22,7 +22,8 @@ const MAGIC_AT: usize = 344;
 /// Reads the header of a volume.
 ///
 /// # Errors
-/// If it is of another kind than one file of real numbers in three or four dimensions, or its fields make no sense.
+/// If it is of another kind than one file of real numbers in three or four dimensions, or its fields make no
+/// sense.
 pub(super) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Vec<String>) -> Result<Volume> {
     let order = if head[0] == 0 { ByteOrder::Big } else { ByteOrder::Little };
     let header = Header { bytes: head, order };
@@ -126,7 +127,7 @@ impl Header<'_> {
     /// Where values start (`vox_offset`).
     fn data_start(&self) -> Result<u64> {
         let start = self.f32(108);
-        // Real numbers of 32 bits are exact up to there.
+        // An f32 holds all integers up to there.
         if start.fract() != 0.0 || !(HEADER_LEN as f32 + 4.0..=16_777_216.0).contains(&start) {
             return Err(Error::malformed(format!("values cannot start at byte {start}")).at("vox_offset"));
         }

@@ -1,4 +1,5 @@
-//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are read over.
+//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are
+//! read over.
 
 use std::io::{BufReader, Read};
 use std::path::Path;

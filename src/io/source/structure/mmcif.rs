@@ -168,7 +168,8 @@ impl<R: Read> MmcifReader<'_, R> {
         self.tokens.advance().map(drop)
     }
 
-    /// The item that the current tag names: `None` if it is of another category, `Some(None)` if it does not matter.
+    /// The item that the current tag names: `None` if it is of another category, `Some(None)` if it does not
+    /// matter.
     fn item(&mut self) -> Option<Option<Item>> {
         let tag = self.tokens.text();
         let (category, name) = tag.split_at_checked(CATEGORY.len())?;

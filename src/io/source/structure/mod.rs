@@ -1,8 +1,9 @@
-//! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this project and
-//! its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the content.
+//! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this
+//! project and its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the
+//! content.
 //!
-//! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data, refuses others
-//! that hold all their atoms, and takes longer than the triangulation.
+//! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data,
+//! refuses others that hold all their atoms, and takes longer than the triangulation.
 
 mod builder;
 mod cif;
@@ -51,19 +52,20 @@ pub enum Format {
     Obj,
     /// Vertices of an OFF file.
     Off,
-    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text twins, LAS, VTK.
+    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text
+    /// twins, LAS, VTK.
     Points,
 }
 
-/// Reads the structure or the points in the file `path`; "-" is standard input. The format is told by the content
-/// unless `format` says what it is.
+/// Reads the structure or the points in the file `path`; "-" is standard input. The format is told by the
+/// content unless `format` says what it is.
 ///
-/// Cost: one pass; memory: what is read, in 56 bytes per atom and 24 per point without names. Points that are compressed
-/// or come through a pipe are copied to an unlinked temporary file first.
+/// Cost: one pass; memory: what is read, in 56 bytes per atom and 24 per point without names. Points that are
+/// compressed or come through a pipe are copied to an unlinked temporary file first.
 ///
 /// # Errors
-/// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line (or byte), if it is damaged, has
-/// no atom, or is of no format that is known.
+/// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line (or byte), if
+/// it is damaged, has no atom, or is of no format that is known.
 pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> {
     if path.as_os_str() == "-" {
         return read_structure_from(std::io::stdin(), "stdin", format);

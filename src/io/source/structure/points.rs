@@ -21,7 +21,8 @@ pub(super) fn read_file(path: &Path) -> Result<Structure> {
     read_input(&Input::open(&[path.to_path_buf()], &options())?)
 }
 
-/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call it.
+/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call
+/// it.
 ///
 /// # Errors
 /// As [`Input::open`], and if there is no point.
@@ -55,8 +56,8 @@ fn read_input(input: &Input) -> Result<Structure> {
     structure(points, coordinates, &input.name(), warnings)
 }
 
-/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as those of
-/// points are that stand in a column of their own before the coordinates.
+/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as
+/// those of points are that stand in a column of their own before the coordinates.
 fn numbered(points: &[Point]) -> Option<usize> {
     const FEWEST: usize = 8;
     let first = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);

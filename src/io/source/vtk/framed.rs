@@ -1,4 +1,5 @@
-//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed blocks.
+//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed
+//! blocks.
 
 use std::io::{self, BufReader, Read};
 

@@ -151,7 +151,8 @@ fn skip_values(lines: &mut Lines<FileView>, values: u64, kind: ValueType, writin
     skip_bytes(lines, bytes.ok_or_else(truncated)?)
 }
 
-/// Skips a text behind its length: two bits that tell how many bytes the length has, and the length, big-endian.
+/// Skips a text behind its length: two bits that tell how many bytes the length has, and the length,
+/// big-endian.
 fn skip_binary_text(lines: &mut Lines<FileView>) -> Result<()> {
     let mut bytes = [0; 8];
     read_bytes(lines, &mut bytes[..1])?;

@@ -66,7 +66,8 @@ impl Fields {
     /// Reads the header.
     ///
     /// # Errors
-    /// If a line is none of a header, a field is there twice, or the header is longer than [`NRRD_HEADER_MAX`].
+    /// If a line is none of a header, a field is there twice, or the header is longer than
+    /// [`NRRD_HEADER_MAX`].
     pub(super) fn read(origin: &Origin) -> Result<Fields> {
         let plain = origin.plain()?;
         let is_gzip = plain.is_compressed();
