@@ -32,7 +32,7 @@ fn converted(input: &[u8], to: &str) -> Vec<u8> {
 fn arguments(tool: &str) -> &'static [&'static str] {
     match tool {
         "configgen" => &["--degree", "1"],
-        "splinefit" => &["fit", "--step", "50000"],
+        "splinefit" => &["fit", "--tol", "1000"],
         "spconvert" => &["--to", "text"],
         _ => &[],
     }
@@ -97,7 +97,6 @@ fn compressed_meshes_and_streams_are_read_as_plain_ones() {
         assert_reads_compressed("spconvert", &["--to", "text"], &format!("mesh.{to}"), &converted(&mesh, to));
     }
     assert_reads_compressed("spdelaunay2d", &[], "points.spm", &stream);
-    assert_reads_compressed("spinfo", &[], "mesh.spm", &mesh);
 }
 
 #[test]
@@ -145,7 +144,7 @@ fn start_of(format: Format) -> Vec<u8> {
     let mut nifti = vec![0; 400];
     nifti[..4].copy_from_slice(&348u32.to_le_bytes());
     nifti[344..348].copy_from_slice(b"n+1\0");
-    match format {
+    let start: &[u8] = match format {
         Format::Las => b"LASF\0\0",
         Format::Stream => b"\x89SPM\r\n\x1a\n",
         Format::Twin => b"#spmesh 1\n",
@@ -180,8 +179,8 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::Tiff => b"II*\0",
         Format::Xml => b"<!DOCTYPE html>\n",
         Format::Binary => b"abc\0",
-    }
-    .to_vec()
+    };
+    start.to_vec()
 }
 
 #[test]

@@ -232,7 +232,7 @@ const ROWS: [Row; 34] = [
         "XML or HTML",
         NO_LIST,
         Test::Magic(&[b"<?xml", b"<!DOCTYPE", b"<!doctype", b"<html", b"<HTML"]),
-        "a failed download often is",
+        "it may be the error page of a failed download",
     ),
     row(Format::Spb, "an SPB file", "SPB", Test::Look(binary::is_spb), TO_STREAM),
     row(Format::Smb, "an SMB mesh", "SMB", Test::Look(binary::is_smb), TO_STREAM),
