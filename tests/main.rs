@@ -10,6 +10,7 @@ mod convert;
 mod dd4;
 mod dem;
 mod finalize;
+mod formats;
 mod house;
 mod links;
 mod manifest;

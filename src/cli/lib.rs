@@ -19,9 +19,9 @@ pub mod spview;
 pub mod tess3;
 
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{IsTerminal, Read, Write};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{Args, Parser};
@@ -29,6 +29,7 @@ use clap::{Args, Parser};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
+use spmesh_io::source::{Plain, name_of};
 use spmesh_model::bounds::Bounds;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
@@ -172,19 +173,34 @@ pub fn peak_memory() -> u64 {
     line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
-/// Opens a stream input: stdin for `-`, a file otherwise; with the name that messages use.
+/// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use. gzip data is
+/// decompressed.
 ///
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.
-pub fn open_input(path: &PathBuf) -> spmesh_core::error::Result<(Box<dyn std::io::Read + Send>, String)> {
-    use std::io::IsTerminal;
+pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Send>, String)> {
+    let name = name_of(path);
+    let reading = |e| Error::io("reading", e).of_input(&name);
     if path.as_os_str() == "-" {
-        if std::io::stdin().is_terminal() {
-            return Err(Error::usage("stdin is a terminal: give a file or pipe a stream in (see --help)"));
-        }
-        return Ok((Box::new(std::io::stdin()), "stdin".into()));
+        refuse_terminal()?;
+        return Ok((plain(std::io::stdin()).map_err(reading)?, name));
     }
-    let name = path.display().to_string();
     let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
-    Ok((Box::new(file), name))
+    Ok((plain(file).map_err(reading)?, name))
+}
+
+/// The bytes of `input`, decompressed if they are compressed.
+fn plain(input: impl Read + Send + 'static) -> std::io::Result<Box<dyn Read + Send>> {
+    Plain::new(input).map(|plain| Box::new(plain) as Box<dyn Read + Send>)
+}
+
+/// Refuses to read from a terminal.
+///
+/// # Errors
+/// Usage, if stdin is one.
+pub fn refuse_terminal() -> spmesh_core::error::Result<()> {
+    if std::io::stdin().is_terminal() {
+        return Err(Error::usage("stdin is a terminal: give a file or pipe a stream in (see --help)"));
+    }
+    Ok(())
 }

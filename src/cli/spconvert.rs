@@ -17,17 +17,19 @@ Formats:
   obj   Wavefront OBJ                     ply   Stanford PLY
   spa, spb   Isenburg's streaming points  sma, smb   Isenburg's streaming meshes
   vtu   VTK, for ParaView (written only)  medit  Medit's .mesh (written only)
+  points     LAS, LAZ, COPC, lines of coordinates, VTK (read only)
 
 Examples:
   spconvert mesh.spm --to text | less
   spfinalize tile.laz | spdelaunay2d | spconvert --to ply -o tin.ply
   spconvert old.smb -o mesh.spm
+  spconvert tile.laz --to text | less
   spconvert protein.spm -o protein.vtu
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
-The format of the input is recognized by its content, or its name; that of the output by its name. \
-Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB rounded to 32 bits. \
-A notice says what is lost. \
+The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
+output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB \
+rounded to 32 bits. A notice says what is lost. \
 Of tetrahedra, OBJ and PLY get the hull; VTU has the labels of vertices as point data, Medit as references. \
 Meshes of OBJ and PLY do not say when vertices are final: all of them are at the end.
 
@@ -47,7 +49,7 @@ pub struct Flags {
     output: PathBuf,
 
     /// Format of the output [default: by the name of the output]
-    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names()))]
+    #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names_written()))]
     to: Option<Format>,
 
     /// Format of the input [default: by its content, or its name]
@@ -58,11 +60,11 @@ pub struct Flags {
     #[arg(long)]
     ascii: bool,
 
-    /// Dimensions of SPA and SPB points without a finalization tree: 2 (z is an elevation) or 3
+    /// Dimensions of points in formats that do not say: 2 (z is an elevation, the default) or 3
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
 
-    /// Folder for the temporary files that PLY, VTU and Medit need
+    /// Folder for temporary files: writing PLY, VTU and Medit needs them, and reading points through a pipe
     #[arg(long, value_name = "DIR")]
     temp_dir: Option<PathBuf>,
 
@@ -83,9 +85,14 @@ pub fn run(flags: Flags) -> Result<()> {
     let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;
-    let options =
-        Options { from: flags.from, dims: flags.dims, ascii: flags.ascii, temp_dir: flags.temp_dir };
     let (input, name) = open_input(&flags.input)?;
+    let options = Options {
+        from: flags.from,
+        dims: flags.dims,
+        ascii: flags.ascii,
+        path: flags.input.is_file().then(|| flags.input.clone()),
+        temp_dir: flags.temp_dir,
+    };
     let is_binary = to.is_binary() && !(to == Format::Ply && options.ascii);
     let mut output = Output::create(&flags.output, is_binary)?;
     let mut progress = Progress::new(&flags.common, "converting", None);

@@ -12,6 +12,7 @@ use spmesh_core::error::Error;
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
+use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{Input, RawType, SourceOptions};
 use spmesh_model::bounds::Bounds;
 
@@ -25,8 +26,8 @@ Examples:
       spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
   A grid of 2^6 x 2^6 cells, points in their own order, with the figures of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
-  Points of space from text on stdin:
-      zcat scan.xyz.gz | spfinalize --octree - | spdelaunay3d -o scan.spm
+  Points of space from compressed text:
+      spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
   Particles as floats without a header, the files of two processes as one input:
       spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
@@ -36,7 +37,7 @@ Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budge
 /// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
 ///
 /// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK (VTU, VTP, VTS
-/// or legacy), or numbers without a header (--raw), and writes a stream of points in which tags say which cells no later
+/// or legacy), or numbers without a header (--raw), plain or compressed (.gz), and writes a stream of points in which tags say which cells no later
 /// point lies in. Points of a cell are held back and written together (chunked), unless --preserve is given. The input is
 /// read two times or more: again where headers do not state its bounding box, and where cells are crowded. What cannot be
 /// read again is spooled, and decoded points are where that is cheaper (--spool).
@@ -201,6 +202,7 @@ impl Flags {
 
     fn source_options(&self) -> SourceOptions {
         SourceOptions {
+            reader: &SPFINALIZE,
             keep_class: self.keep_class.clone(),
             drop_class: self.drop_class.clone(),
             first_only: self.first_only,

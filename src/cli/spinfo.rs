@@ -18,6 +18,7 @@ use spmesh_audit::diagram::{self as diagram4, StreamAudit};
 use spmesh_audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_io::detect::SPINFO;
 use spmesh_io::source::{Input, SourceOptions};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
 
@@ -247,7 +248,7 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
         Coordinates::F64 => None,
         Coordinates::I32 { scale, offset } => Some((scale, offset)),
     };
-    let options = SourceOptions { dims: mesh.dims, grid, ..SourceOptions::default() };
+    let options = SourceOptions { reader: &SPINFO, dims: mesh.dims, grid, ..SourceOptions::default() };
     let input = Input::open(&flags.points, &options)?;
     input.notices().iter().for_each(|text| notice("spinfo", &flags.common, text));
     let mut points = PointSet::new(input.description().coordinates, mesh.dims);

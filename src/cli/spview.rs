@@ -4,7 +4,6 @@ mod moment;
 mod outputs;
 mod tee;
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
@@ -18,7 +17,6 @@ use outputs::{Format, Outputs};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::system;
 use spmesh_io::raster::Light;
-use spmesh_io::source::name_of;
 use spmesh_stream::{Kind, StreamReader};
 use spmesh_view::{Fill, Form, Moments, Options, Picture, Survey, When};
 use tee::Tee;
@@ -255,9 +253,8 @@ impl Flags {
         if !(needs_count || needs_bounds) {
             return Ok(None);
         }
-        let name = name_of(&self.input);
-        let file = File::open(&self.input).map_err(|error| Error::io("opening", error).of_input(&name))?;
-        let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, file), name)?;
+        let (input, name) = open_input(&self.input)?;
+        let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
         spmesh_view::survey(&mut reader).map(Some)
     }
 

@@ -14,7 +14,7 @@ use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
-use super::{Common, StatsFormat, notice, open_input, progress::Progress};
+use super::{Common, StatsFormat, notice, open_input, progress::Progress, refuse_terminal};
 use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -316,8 +316,4 @@ impl Flags {
     fn notice(&self, message: &str) {
         notice("tess3", &self.common, message);
     }
-}
-
-fn refuse_terminal() -> Result<()> {
-    open_input(&"-".into()).map(drop)
 }

@@ -1,5 +1,6 @@
 //! Indices of cells in the historical point formats: level by level from the root, which is 0; the children
-//! of cell i are 2^dims i + 1 and on. The lowest bit of a child says "lower x", then "upper y", then "lower z".
+//! of cell i are 2^dims i + 1 and on. The lowest bit of a child says "lower x", then "upper y", then "lower
+//! z".
 
 use spmesh_model::cells::{CellCode, CellTree};
 

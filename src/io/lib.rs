@@ -1,6 +1,8 @@
 //! Files of other programs: points, meshes, molecules, volumes and rasters, read and written.
 
 mod cell_index;
+pub mod detect;
+mod geo_keys;
 pub mod raster;
 pub mod sink;
 pub mod source;

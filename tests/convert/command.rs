@@ -59,7 +59,7 @@ fn wrong_requests_are_told_apart() {
         (&["--to", "sma"], &points, 2, "cannot be written as SMA, which holds triangle mesh"),
         (&["--to", "spm", "--from", "ply"], &points, 3, "expected \"ply\""),
         (&["--to", "spm"], b"no mesh at all\n", 2, "--from"),
-        (&["--to", "spm"], b"", 3, "the input is empty"),
+        (&["--to", "spm"], b"", 3, "empty: the input has no bytes"),
     ];
     for (arguments, input, code, expected) in cases {
         let result = spconvert(arguments, input);

@@ -283,11 +283,11 @@ fn vertices_of_meshes_are_points() {
 
 #[test]
 fn wrong_kinds_of_files_get_advice() {
-    assert_fails(points_of(b"\x1f\x8b\x08\0\0\0"), ErrorKind::Malformed, &["gzip", "zcat"]);
+    assert_fails(points_of(b"\x1f\x8b\x08\0\0\0"), ErrorKind::Malformed, &["gzip data ends early", "byte 6"]);
     assert_fails(points_of(b""), ErrorKind::Malformed, &["empty"]);
     assert_fails(points_of(b"# .PCD v0.7\nVERSION .7\n"), ErrorKind::Malformed, &["PCD", "pdal"]);
     let late = format!("{}f 1 2 3\n", "v 1 2 3\n".repeat(10_000));
-    assert_fails(points_of(late), ErrorKind::Malformed, &["line 10001", "mesh"]);
+    assert_eq!(points_of(late).unwrap().len(), 10_000);
     assert_eq!(points_of(b"v 1 2 3\nv 4 5 6\n").unwrap().len(), 2);
     assert_fails(points_of(b"abc\0"), ErrorKind::Malformed, &["zero byte at byte 3"]);
     let folder = Folder::new();

@@ -1,10 +1,11 @@
 //! Points that are nothing but numbers.
 
 use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::{RawType, SourceOptions};
+use spmesh_io::source::{Input, RawType, SourceOptions};
 use spmesh_model::bounds::Point;
 
-use super::{assert_fails, bits, flat, points};
+use super::structure::gzip;
+use super::{assert_fails, bits, flat, pass, points};
 use crate::programs::{Folder, outcome, run};
 
 const THREE: [Point; 3] = [[1.0, 2.0, 3.0], [2.0, -0.5, 3.0], [1.0, -0.0, -1.5]];
@@ -62,9 +63,17 @@ fn a_part_of_a_point_is_an_error() {
     }
     assert_fails(points_of(&whole[..26], "f32le"), ErrorKind::Malformed, &["point 3 at byte 24"]);
     assert_fails(points_of(b"", "f32le"), ErrorKind::Malformed, &["empty"]);
+}
+
+#[test]
+fn the_name_of_raw_numbers_tells_whether_they_are_compressed() {
+    let whole = bytes(&THREE, |x| (x as f32).to_le_bytes());
     let folder = Folder::new();
-    let compressed = points(&[folder.file("a.raw.GZ", &whole)], &raw("f32le"));
-    assert_fails(compressed, ErrorKind::Usage, &["a.raw.GZ", "zcat"]);
+    let input = Input::open(&[folder.file("a.raw.GZ", gzip(&whole))], &raw("f32le")).unwrap();
+    assert_eq!(pass(&input).unwrap(), points_of(&whole, "f32le").unwrap());
+    assert!(input.notices()[0].contains("decompressed 36 bytes"), "{:?}", input.notices());
+    let plain = points(&[folder.file("b.raw.gz", &whole)], &raw("f32le"));
+    assert_eq!(plain.unwrap(), points_of(&whole, "f32le").unwrap());
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn bad_lines_are_named_and_shown() {
         assert_fails(points_of(text), ErrorKind::Malformed, &[&["points"], parts].concat());
     }
     let long = format!("1 2 3\n{}\n", "1".repeat(1 << 17));
-    assert_fails(points_of(long), ErrorKind::Malformed, &["line 2", "longer than 65536 bytes"]);
+    assert_fails(points_of(long), ErrorKind::Malformed, &["line 2", "more than 65536 bytes"]);
 }
 
 #[test]

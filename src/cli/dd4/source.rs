@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use crate::open_input;
+use crate::refuse_terminal;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::points4::{
     Condition, From4, RawLayout, Request, Selected4, Selection, Share, Spacing, parse_sizes, read_points4,
@@ -100,7 +100,7 @@ impl SourceFlags {
         if let From4::File(path) | From4::Raw(path, _) = &from
             && path.as_os_str() == "-"
         {
-            open_input(path)?;
+            refuse_terminal()?;
         }
         let share = self.sample.map(Share::Part).or(self.count.map(Share::Count));
         let spacing = match self.spacing {

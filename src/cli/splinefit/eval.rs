@@ -9,6 +9,7 @@ use crate::cells::{self, CellFlags, RasterFlags};
 use crate::{Common, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::raster::RasterFormat;
 use spmesh_io::source::{Input, SourceOptions};
 use spmesh_splinefit::{Attribute, Spline};
@@ -88,7 +89,7 @@ impl Flags {
         self.raster.check_unused()?;
         let mut output = Output::create(&self.output, false)?;
         let spline = Spline::open(&self.spline)?;
-        let options = SourceOptions { dims: 2, ..SourceOptions::default() };
+        let options = SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() };
         let sites = Input::open(&[sites.to_path_buf()], &options)?;
         let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
         let counts =

@@ -11,6 +11,7 @@ use super::{Threads, check_stdin, report, say};
 use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{
     Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
 };
@@ -195,6 +196,7 @@ impl Flags {
 
     fn points(&self, common: &Common) -> Result<Points> {
         let source = SourceOptions {
+            reader: &SPLINEFIT,
             keep_class: self.keep_class.clone(),
             drop_class: self.drop_class.clone(),
             bounds: self.bounds,
@@ -211,7 +213,8 @@ impl Flags {
 
     fn knots(&self, common: &Common) -> Result<Option<(Opened, String)>> {
         let Some(path) = &self.knots else { return Ok(None) };
-        let source = open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })?;
+        let source =
+            open_knots(path, &SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() })?;
         if let Opened::Points(input) = &source {
             input.notices().iter().for_each(|text| say(common, text));
         }

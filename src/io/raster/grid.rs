@@ -59,7 +59,8 @@ impl Grid {
     /// As [`Grid::covering`].
     pub fn of(window: Window, cells: Cells) -> Result<Grid> {
         let [width, height] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
-        // A number of cells divides the window, however that is rounded: half a cell less never makes one more.
+        // A number of cells divides the window, however that is rounded: half a cell less never makes one
+        // more.
         let exactly = |step: f64, counts: [Option<u32>; 2]| {
             let inner =
                 [0, 1].map(|axis| window.max[axis] - if counts[axis].is_some() { 0.5 * step } else { 0.0 });
@@ -73,8 +74,8 @@ impl Grid {
         }
     }
 
-    /// The least grid that covers a window and has sides of cells at multiples of `step` from `anchor`: so grids of windows of
-    /// one area fit together.
+    /// The least grid that covers a window and has sides of cells at multiples of `step` from `anchor`: so
+    /// grids of windows of one area fit together.
     ///
     /// # Errors
     /// Usage, if the step is not above zero, numbers are not finite, or there are too many cells.

@@ -1,7 +1,7 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
-//! `grid` says where cells are, and `like` where those of a file are; `geotiff` and `ascii` write files, with a number of `no_data`;
-//! `relief` has what is made of gradients.
+//! `grid` says where cells are, and `like` where those of a file are; `geotiff` and `ascii` write files, with
+//! a number of `no_data`; `relief` has what is made of gradients.
 
 mod ascii;
 mod geotiff;
@@ -27,7 +27,7 @@ pub enum RasterFormat {
     /// Tiles of 256 by 256 cells, compressed; BigTIFF if it may be longer than 4 GiB.
     #[default]
     GeoTiff,
-    /// Text of ESRI, with as many digits as tell numbers of 32 bits apart.
+    /// Text of ESRI, with as many digits as tell f32 values apart.
     Ascii,
 }
 
@@ -38,8 +38,8 @@ pub struct RasterOptions {
     pub format: RasterFormat,
     /// What cells have where nothing is known.
     pub no_data: NoData,
-    /// Whether a GeoTIFF has overviews, and is laid out for readers at the other end of a network: overviews stand before the image,
-    /// and tiles in rows.
+    /// Whether a GeoTIFF has overviews, and is laid out for readers at the other end of a network: overviews
+    /// stand before the image, and tiles in rows.
     pub has_overviews: bool,
     /// Where temporary files go; the system's folder for these if `None`.
     pub temp_dir: Option<PathBuf>,
@@ -58,12 +58,13 @@ pub struct RasterFile<'a> {
     pub are_elevations: bool,
     /// How overviews are made.
     pub reduction: Reduction,
-    /// Tiles wait in a temporary file until all have come, as they do for overviews, and for outputs that cannot be sought: they can
-    /// be read again.
+    /// Tiles wait in a temporary file until all have come, as they do for overviews, and for outputs that
+    /// cannot be sought: they can be read again.
     pub is_staged: bool,
 }
 
-/// Writes a file: `row` is asked for the values of each row, from the top; NaN is a cell where nothing is known.
+/// Writes a file: `row` is asked for the values of each row, from the top; NaN is a cell where nothing is
+/// known.
 ///
 /// Memory: 256 rows.
 ///

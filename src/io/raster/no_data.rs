@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The value of cells where nothing is known, or not a number.
+/// The value of cells without data, or NaN.
 #[derive(Debug, Clone, Copy)]
 pub struct NoData(pub f32);
 
@@ -13,8 +13,9 @@ impl Default for NoData {
 }
 
 impl NoData {
-    /// What is written for a value, of which NaN says that nothing is known. A value that is this number by chance, or so near that
-    /// programs would take it for it (GDAL: within four parts in eight million), moves away from it.
+    /// What is written for a value, of which NaN says that nothing is known. A value that is this number by
+    /// chance, or so near that programs would take it for it (GDAL: within four parts in eight million),
+    /// moves away from it.
     #[inline]
     #[must_use]
     pub fn stored(self, value: f32) -> f32 {

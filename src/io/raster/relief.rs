@@ -6,7 +6,8 @@ pub fn slope([p, q]: [f64; 2]) -> f64 {
     p.hypot(q).atan().to_degrees()
 }
 
-/// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; not a number where the surface is level.
+/// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; not a number
+/// where the surface is level.
 #[must_use]
 pub fn aspect([p, q]: [f64; 2]) -> f64 {
     if p == 0.0 && q == 0.0 {
@@ -33,7 +34,8 @@ impl Light {
         Light { towards: [azimuth.sin() * along, azimuth.cos() * along, altitude.sin()] }
     }
 
-    /// How bright a surface without gloss is (Lambert): from 0, where it faces away, to 255, where it faces the light.
+    /// How bright a surface without gloss is (Lambert): from 0, where it faces away, to 255, where it faces
+    /// the light.
     #[must_use]
     pub fn shade(&self, [p, q]: [f64; 2]) -> f64 {
         let [east, north, up] = self.towards;

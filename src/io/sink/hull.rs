@@ -20,8 +20,8 @@ const FACETS: [[usize; 3]; 4] = {
 /// A facet that was met once: counterclockwise seen from outside of its tetrahedron.
 type Facet = [(u64, Point); 3];
 
-/// Hands the facets that belong to one tetrahedron only to a sink of triangle meshes. The vertices are those of these
-/// facets, in the order of their ids in the stream, numbered anew.
+/// Hands the facets that belong to one tetrahedron only to a sink of triangle meshes. The vertices are those
+/// of these facets, in the order of their ids in the stream, numbered anew.
 ///
 /// Memory: the live vertices and the facets that were met once, at the end those of the hull.
 pub struct HullSink<S> {

@@ -1,7 +1,8 @@
 //! Writes Medit's mesh format as text.
 //!
-//! Source: P. Frey, "MEDIT: an interactive mesh visualization software", INRIA RT-0253 (2001), and what libMeshb and
-//! Gmsh read: version 2 has doubles; entities are numbered from 1, and each ends with a reference.
+//! Source: P. Frey, "MEDIT: an interactive mesh visualization software", INRIA RT-0253 (2001), and what
+//! libMeshb and Gmsh read: version 2 has doubles; entities are numbered from 1, and each ends with a
+//! reference.
 
 use std::io::Write;
 use std::path::Path;
@@ -14,11 +15,11 @@ use spmesh_stream::{Event, Header, Kind, Totals};
 /// Greatest number of a vertex, and greatest reference, in version 2.
 const NUMBER_MAX: u64 = i32::MAX as u64;
 
-/// Writes points or a mesh as Medit's text. The labels of vertices become their references, if all of them fit; other
-/// references are 0. World coordinates; finalization is not written.
+/// Writes points or a mesh as Medit's text. The labels of vertices become their references, if all of them
+/// fit; other references are 0. World coordinates; finalization is not written.
 ///
-/// The format states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers
-/// only.
+/// The format states its counts first, so everything waits in unnamed temporary files until the end. Memory:
+/// buffers only.
 pub struct MeditSink<W> {
     output: W,
     mesh: MeshSpool,

@@ -15,7 +15,7 @@ const START: [u8; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0
 
 /// Writes a triangle mesh as SMB, little-endian, vertices before their triangles.
 ///
-/// SMB has coordinates of 32 bits and vertex numbers of 31 bits, and says that a vertex is final only
+/// SMB has 32-bit coordinates and 31-bit vertex numbers, and says that a vertex is final only
 /// at its last use; notices tell what that lost.
 pub struct SmbSink<W> {
     blocks: ElementBlocks<W>,

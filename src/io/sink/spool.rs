@@ -67,8 +67,8 @@ fn spool_error(cause: std::io::Error) -> Error {
     Error::io("writing a temporary file", cause)
 }
 
-/// Vertices, simplices and labels of a stream, for formats that state their counts first and hold all vertices before
-/// all simplices. Points are vertices without simplices.
+/// Vertices, simplices and labels of a stream, for formats that state their counts first and hold all
+/// vertices before all simplices. Points are vertices without simplices.
 ///
 /// Memory: buffers only. Disk: 24 bytes per vertex, 8 per corner of a simplex and per label.
 pub(super) struct MeshSpool {

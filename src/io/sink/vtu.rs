@@ -1,7 +1,7 @@
 //! Writes VTU, the XML format of VTK for unstructured grids, with the arrays appended as raw bytes.
 //!
-//! Source: "VTK XML file formats" (docs.vtk.org). An array in the appended data is its length in bytes, here a u64,
-//! and then its values; `offset` counts from behind the underscore that starts them.
+//! Source: "VTK XML file formats" (docs.vtk.org). An array in the appended data is its length in bytes, here
+//! a u64, and then its values; `offset` counts from behind the underscore that starts them.
 
 use std::io::Write;
 use std::path::Path;
@@ -19,10 +19,11 @@ const START: &str = "\
 
 pub(super) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
-/// Writes points or a mesh as VTU: the vertices with their labels as the point data `label`, the simplices as cells,
-/// points as cells of one vertex. World coordinates as doubles; finalization is not written.
+/// Writes points or a mesh as VTU: the vertices with their labels as the point data `label`, the simplices as
+/// cells, points as cells of one vertex. World coordinates as doubles; finalization is not written.
 ///
-/// VTU states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers only.
+/// VTU states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers
+/// only.
 pub struct VtuSink<W> {
     output: W,
     mesh: MeshSpool,

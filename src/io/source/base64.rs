@@ -7,8 +7,8 @@ use data_encoding::BASE64;
 /// Characters decoded at once, a multiple of four.
 const CHUNK_LEN: usize = 1 << 15;
 
-/// Decodes base64 up to the first `<` or the end of the input. White space does not count, and what is encoded may
-/// end with padding and go on: VTK encodes the lengths of data apart from data.
+/// Decodes base64 up to the first `<` or the end of the input. White space does not count, and what is
+/// encoded may end with padding and go on: VTK encodes the lengths of data apart from data.
 pub(super) struct Base64Reader<R> {
     input: R,
     /// Characters that were not decoded yet.
@@ -25,7 +25,8 @@ impl<R: BufRead> Base64Reader<R> {
         Base64Reader { input, encoded: Vec::new(), decoded: Vec::new(), used: 0, done: 0 }
     }
 
-    /// Gathers the next characters, behind those that are no group of four yet; fewer than [`CHUNK_LEN`] only at the end.
+    /// Gathers the next characters, behind those that are no group of four yet; fewer than [`CHUNK_LEN`] only
+    /// at the end.
     fn gather(&mut self) -> io::Result<()> {
         while self.encoded.len() < CHUNK_LEN {
             let bytes = match self.input.fill_buf() {

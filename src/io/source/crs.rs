@@ -1,14 +1,12 @@
 //! Coordinate reference systems: a short name for people, and the one that files share.
 
-use super::input::Source;
+use crate::geo_keys::{self, CITATION, GEOGRAPHIC_TYPE, PROJECTED_TYPE};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CRS_LEN_MAX;
 use spmesh_stream::Crs;
 
-/// GeoTIFF keys of a projected and a geographic system, and of citations in the order of preference.
-const PROJECTED: u16 = 3072;
-const GEOGRAPHIC: u16 = 2048;
-const CITATIONS: [u16; 3] = [3073, 1026, 2049];
+/// Keys of citations, in the order of preference.
+const CITATIONS: [u16; 3] = [3073, CITATION, 2049];
 
 /// GeoTIFF's "defined by other keys".
 const USER_DEFINED: u16 = 32767;
@@ -40,27 +38,29 @@ pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     Crs::Unknown
 }
 
-/// The system that all sources share. A file that states none takes that of the others.
-pub(super) fn common_crs(sources: &[Source], notices: &mut Vec<String>) -> Result<Crs> {
-    let mut known = sources.iter().filter(|source| source.stated.crs != Crs::Unknown);
-    let Some(first) = known.next() else { return Ok(Crs::Unknown) };
-    if let Some(other) = known.find(|other| !is_same(&first.stated.crs, &other.stated.crs)) {
-        let name = |source: &Source| crs_name(&source.stated.crs).unwrap_or_else(|| "unnamed".to_string());
+/// The system that all files share, each given by its name and its system. A file that states none takes that
+/// of the others.
+///
+/// # Errors
+/// Usage, if two systems differ.
+pub(super) fn common<'s>(
+    files: impl Iterator<Item = (&'s str, &'s Crs)> + Clone,
+    notices: &mut Vec<String>,
+) -> Result<Crs> {
+    let mut known = files.clone().filter(|(_, crs)| **crs != Crs::Unknown);
+    let Some((first, crs)) = known.next() else { return Ok(Crs::Unknown) };
+    if let Some((other, other_crs)) = known.find(|(_, other)| !is_same(crs, other)) {
+        let name = |crs: &Crs| crs_name(crs).unwrap_or_else(|| "unnamed".to_string());
         return Err(Error::usage(format!(
-            "the coordinate reference systems differ: {} in {}, {} in {}",
-            name(first),
-            first.name,
-            name(other),
-            other.name
+            "the coordinate reference systems differ: {} in {first}, {} in {other}",
+            name(crs),
+            name(other_crs)
         )));
     }
-    if let Some(unknown) = sources.iter().find(|source| source.stated.crs == Crs::Unknown) {
-        notices.push(format!(
-            "{}: states no coordinate reference system, taking that of {}",
-            unknown.name, first.name
-        ));
+    if let Some((unknown, _)) = files.clone().find(|(_, crs)| **crs == Crs::Unknown) {
+        notices.push(format!("{unknown}: states no coordinate reference system, taking that of {first}"));
     }
-    Ok(first.stated.crs.clone())
+    Ok(crs.clone())
 }
 
 fn is_same(a: &Crs, b: &Crs) -> bool {
@@ -106,32 +106,18 @@ fn arguments<'t>(text: &'t str, word: &str) -> Option<&'t str> {
     if found.eq_ignore_ascii_case(word) { rest.split([']', ')']).next() } else { None }
 }
 
-/// The entries of a key directory: key, location, count, value.
-fn entries(directory: &[u8]) -> impl Iterator<Item = [u16; 4]> {
-    directory
-        .chunks_exact(8)
-        .skip(1)
-        .map(|entry| std::array::from_fn(|i| u16::from_le_bytes([entry[2 * i], entry[2 * i + 1]])))
-}
-
 fn geo_keys_code(directory: &[u8]) -> Option<String> {
-    let code = |wanted| {
-        entries(directory)
-            .find(|&[key, location, ..]| key == wanted && location == 0)
-            .map(|[.., value]| value)
-            .filter(|&value| value != 0 && value != USER_DEFINED)
-    };
+    let numbers = geo_keys::numbers(directory);
+    let code =
+        |wanted| geo_keys::short(&numbers, wanted).filter(|&value| value != 0 && value != USER_DEFINED);
     // A projected system defined by other keys is none of EPSG's, although its geographic base is.
-    let is_projected = entries(directory).any(|[key, ..]| key == PROJECTED);
-    let code = if is_projected { code(PROJECTED) } else { code(GEOGRAPHIC) };
+    let is_projected = geo_keys::keys(&numbers).any(|[key, ..]| key == PROJECTED_TYPE);
+    let code = if is_projected { code(PROJECTED_TYPE) } else { code(GEOGRAPHIC_TYPE) };
     code.map(|code| format!("EPSG:{code}"))
 }
 
 fn geo_keys_text(directory: &[u8], ascii: &[u8], wanted: u16) -> Option<String> {
-    let [_, _, count, start] =
-        entries(directory).find(|&[key, location, ..]| key == wanted && location == 34737)?;
-    let text = ascii.get(usize::from(start)..)?.get(..usize::from(count))?;
-    let text = String::from_utf8_lossy(text);
+    let text = String::from_utf8_lossy(geo_keys::text(&geo_keys::numbers(directory), ascii, wanted)?);
     let text = text.trim_end_matches(['|', '\0']).trim();
     (!text.is_empty()).then(|| text.to_string())
 }

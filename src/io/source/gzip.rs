@@ -1,4 +1,4 @@
-//! Inputs as they are or compressed with gzip, which is told by the first bytes.
+//! The one gzip layer: inputs as they are, or compressed with gzip, which the first bytes tell.
 
 use std::io::{self, BufReader, Chain, Cursor, ErrorKind, Read};
 
@@ -10,41 +10,52 @@ const MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
 
-/// The start of an input that was looked at, and the rest.
+/// An input of which the first bytes were looked at.
 type Whole<R> = Chain<Cursor<Vec<u8>>, R>;
 
-/// The plain bytes of an input.
-pub(super) enum Plain<R> {
+/// The plain bytes of an input, compressed with gzip or not.
+///
+/// Damaged or truncated gzip data is an error of kind [`ErrorKind::InvalidData`] that names the byte.
+pub struct Plain<R> {
+    inner: Inner<R>,
+}
+
+enum Inner<R> {
     AsIs(Whole<R>),
     Gzip(Box<Gunzip<Whole<R>>>),
 }
 
 impl<R: Read> Plain<R> {
-    /// Looks at the first bytes of `input`.
-    pub(super) fn new(mut input: R) -> io::Result<Self> {
+    /// Looks at the first two bytes of `input`.
+    ///
+    /// # Errors
+    /// If reading fails.
+    pub fn new(mut input: R) -> io::Result<Self> {
         let mut start = Vec::new();
         (&mut input).take(MAGIC.len() as u64).read_to_end(&mut start)?;
         let is_gzip = start == MAGIC;
         let whole = Cursor::new(start).chain(input);
-        Ok(if is_gzip { Plain::Gzip(Box::new(Gunzip::new(whole))) } else { Plain::AsIs(whole) })
+        let inner = if is_gzip { Inner::Gzip(Box::new(Gunzip::new(whole))) } else { Inner::AsIs(whole) };
+        Ok(Plain { inner })
     }
 
     /// Whether the input is compressed.
-    pub(super) fn is_compressed(&self) -> bool {
-        matches!(self, Plain::Gzip(_))
+    pub fn is_compressed(&self) -> bool {
+        matches!(self.inner, Inner::Gzip(_))
     }
 }
 
 impl<R: Read> Read for Plain<R> {
+    #[inline]
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        match self {
-            Plain::AsIs(input) => input.read(buffer),
-            Plain::Gzip(input) => input.read(buffer),
+        match &mut self.inner {
+            Inner::AsIs(input) => input.read(buffer),
+            Inner::Gzip(input) => input.read(buffer),
         }
     }
 }
 
-/// Decompresses gzip data of any number of members. What is damaged is an error that names the byte.
+/// Decompresses gzip data of any number of members. Damaged data is an error that names the byte.
 pub(super) struct Gunzip<R> {
     decoder: MultiGzDecoder<BufReader<Counted<R>>>,
 }

@@ -1,49 +1,33 @@
 //! Many files as one input that can be read several times.
 
-use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::crs::{self, common_crs};
-use super::detect::{self, detect};
+use super::crs;
 use super::grid::{self, Member};
 use super::las_header::LasHeader;
+use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
+use super::pass::{Pass, Stated};
 use super::placement::Placement;
 use super::point_arrays::{self, ArrayPass, PointArray};
-use super::raw_type::RawType;
+use super::reader::{Description, PointReader};
 use super::records::RecordPass;
 use super::text::Columns;
-use super::{Description, PointReader, SourceOptions, raw, spa, spb, stream, text, vtk};
+use super::{raw, spa, spb, stream, text, vtk};
+use crate::detect::{Format, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{Coordinates, Crs};
-
-/// One pass over the points of one file.
-pub(super) trait Pass: Send {
-    /// Puts the next points into `batch`, about `BATCH_POINTS` of them; none may be left after filters.
-    /// Returns false at the end of the file, with nothing put.
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool>;
-}
-
-/// What a file says of itself.
-#[derive(Debug)]
-pub(super) struct Stated {
-    pub(super) coordinates: Coordinates,
-    /// Whether points have a third coordinate; `None` if the file has no points to tell.
-    pub(super) has_z: Option<bool>,
-    pub(super) crs: Crs,
-    /// Bounding box, in stored coordinates.
-    pub(super) bounds: Option<Bounds>,
-    pub(super) points: Option<u64>,
-}
+use spmesh_stream::Coordinates;
 
 /// One file of an input.
 #[derive(Debug)]
-pub(super) struct Source {
-    pub(super) name: String,
-    pub(super) stated: Stated,
+struct Source {
+    name: String,
+    stated: Stated,
     origin: Origin,
+    is_compressed: bool,
     content: Content,
 }
 
@@ -72,10 +56,11 @@ pub struct Input {
 }
 
 impl Input {
-    /// Opens `paths` ("-" is standard input), recognises each file by its content, reads its header, and finds
-    /// the encoding that all points share.
+    /// Opens `paths` ("-" is standard input), recognizes each file by its content, reads its header, and
+    /// finds the encoding that all points share.
     ///
-    /// Cost: the headers; what cannot be read twice is copied to an unlinked temporary file.
+    /// Cost: the headers; what cannot be read twice, and compressed files that are not read in order, are
+    /// copied to unlinked temporary files.
     ///
     /// # Errors
     /// If a file cannot be opened or its header is damaged (the file is named), or the files or options do
@@ -90,9 +75,14 @@ impl Input {
         Input::of_sources(sources, options, notices)
     }
 
-    /// As `open`, from one file that is open already; `name` is what messages call it.
-    pub(super) fn open_file(file: File, name: &str, options: &SourceOptions) -> Result<Input> {
-        Input::of_origin(Origin::Open(Arc::new(file)), name.to_string(), options)
+    /// As `open`, from all that `input` gives, which is copied to an unlinked temporary file; `name` is what
+    /// messages call it.
+    ///
+    /// # Errors
+    /// As [`Input::open`], and if `input` cannot be read.
+    pub fn copied(input: impl Read, name: &str, options: &SourceOptions) -> Result<Input> {
+        let origin = Origin::spooled(input, &options.temp_dir()).map_err(|e| e.of_input(name))?;
+        Input::of_origin(origin, name.to_string(), options)
     }
 
     /// As `open`, from the bytes of one file; `name` is what messages call it.
@@ -120,15 +110,18 @@ impl Input {
         &self.notices
     }
 
-    /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed files
-    /// and text.
+    /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
+    /// files and text.
     #[must_use]
     pub fn is_costly(&self) -> bool {
-        self.sources.iter().any(|source| match &source.content {
-            Content::Las(header) => header.laz.is_some(),
-            Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
-            Content::Arrays(arrays) => point_arrays::are_costly(arrays),
-            Content::Stream | Content::Spb => false,
+        self.sources.iter().any(|source| {
+            source.is_compressed
+                || match &source.content {
+                    Content::Las(header) => header.laz.is_some(),
+                    Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
+                    Content::Arrays(arrays) => point_arrays::are_costly(arrays),
+                    Content::Stream | Content::Spb => false,
+                }
         })
     }
 
@@ -164,8 +157,7 @@ impl Input {
 
 impl Source {
     fn open(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Source> {
-        let temp_dir = options.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
-        let origin = Origin::new(path, &temp_dir, notices)?;
+        let origin = Origin::new(path, &options.temp_dir(), notices)?;
         let name = name_of(path);
         Source::new(origin, name, options, notices)
     }
@@ -177,11 +169,16 @@ impl Source {
         notices: &mut Vec<String>,
     ) -> Result<Source> {
         let mut own_notices = Vec::new();
-        let (content, mut stated) =
-            Content::read(&origin, &name, options.raw, &mut own_notices).map_err(|e| e.of_input(&name))?;
+        let found = find_format(origin, &name, options, notices).map_err(|e| e.of_input(&name))?;
+        let Found { origin, format, is_compressed } = found;
+        let read = match format {
+            Some(format) => Content::read(&origin, &name, format, &mut own_notices),
+            None => Content::read_raw(&origin, options),
+        };
+        let (content, mut stated) = read.map_err(|e| e.of_input(&name))?;
         stated.crs = crs::fitting(stated.crs, &mut own_notices);
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
-        let source = Source { name, origin, content, stated };
+        let source = Source { name, origin, is_compressed, content, stated };
         source.check(options).map_err(|e| e.of_input(&source.name))?;
         Ok(source)
     }
@@ -206,35 +203,62 @@ impl Source {
     }
 
     fn pass(&self, options: &SourceOptions) -> Result<Box<dyn Pass>> {
-        let view = self.origin.view()?;
+        let origin = &self.origin;
         Ok(match &self.content {
-            Content::Las(header) => Box::new(RecordPass::new(view, header, options)?),
-            Content::Stream => Box::new(stream::pass(view, &self.name)?),
-            Content::Twin => Box::new(stream::pass_of_twin(view, &self.name)?),
-            Content::Spa => Box::new(spa::pass(view)?),
-            Content::Spb => Box::new(spb::pass(view)?),
-            Content::Ply => Box::new(stream::pass_of_ply(view, &self.name)?),
-            Content::Obj => Box::new(stream::pass_of_obj(view, &self.name)),
-            Content::Arrays(arrays) => Box::new(ArrayPass::new(view, Arc::clone(arrays))),
-            Content::Text(columns) => Box::new(text::TextPass::new(view, columns.clone())),
+            Content::Las(header) => Box::new(RecordPass::new(origin.view()?, header, options)?),
+            Content::Stream => Box::new(stream::pass(origin.plain()?, &self.name)?),
+            Content::Twin => Box::new(stream::pass_of_twin(origin.plain()?, &self.name)?),
+            Content::Spa => Box::new(spa::pass(origin.plain()?)?),
+            Content::Spb => Box::new(spb::pass(origin.plain()?)?),
+            Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name)?),
+            Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
+            Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays))),
+            Content::Text(columns) => Box::new(text::TextPass::new(origin.plain()?, columns.clone())),
         })
     }
+}
+
+/// What a file is, and where its bytes are.
+struct Found {
+    origin: Origin,
+    /// `None` for raw numbers.
+    format: Option<Format>,
+    is_compressed: bool,
+}
+
+/// Recognizes a file. If it is compressed and its format is not read in order, it is decompressed to a
+/// temporary file.
+fn find_format(
+    origin: Origin,
+    name: &str,
+    options: &SourceOptions,
+    notices: &mut Vec<String>,
+) -> Result<Found> {
+    let unpacked = |origin: Origin, notices| origin.unpacked(name, &options.temp_dir(), notices);
+    if options.raw.is_some() {
+        let is_compressed = raw::is_compressed(Path::new(name));
+        let origin = if is_compressed { unpacked(origin, notices)? } else { origin };
+        return Ok(Found { origin, format: None, is_compressed });
+    }
+    let mut plain = origin.plain()?;
+    let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
+    let format = options.reader.detect(&head)?;
+    let is_compressed = plain.is_compressed();
+    let is_read_in_order = !matches!(format, Format::Las | Format::VtkLegacy | Format::VtkXml);
+    let origin = if is_compressed && !is_read_in_order { unpacked(origin, notices)? } else { origin };
+    Ok(Found { origin, format: Some(format), is_compressed })
 }
 
 impl Content {
     fn read(
         origin: &Origin,
         name: &str,
-        raw: Option<RawType>,
+        format: Format,
         notices: &mut Vec<String>,
     ) -> Result<(Content, Stated)> {
-        let view = origin.view()?;
-        if let Some(kind) = raw {
-            return Ok(Content::of_arrays(vec![raw::open(&view, name, kind)?]));
-        }
-        Ok(match detect(&view)? {
-            detect::Format::Las => {
-                let header = LasHeader::read(&view, notices)?;
+        Ok(match format {
+            Format::Las => {
+                let header = LasHeader::read(&origin.view()?, notices)?;
                 let stated = Stated {
                     coordinates: header.coordinates,
                     has_z: Some(true),
@@ -244,19 +268,26 @@ impl Content {
                 };
                 (Content::Las(Box::new(header)), stated)
             }
-            detect::Format::Stream => (Content::Stream, stream::state(view, name)?),
-            detect::Format::Twin => (Content::Twin, stream::state_of_twin(view, name)?),
-            detect::Format::Spa => (Content::Spa, spa::state(view)?),
-            detect::Format::Spb => (Content::Spb, spb::state(view)?),
-            detect::Format::Ply => (Content::Ply, stream::state_of_ply(view, name)?),
-            detect::Format::Obj => (Content::Obj, stream::state_of_obj(view, name)?),
-            detect::Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&view, name)?]),
-            detect::Format::VtkXml => Content::of_arrays(vtk::read_xml(&view)?),
-            detect::Format::Text => {
-                let (columns, stated) = text::state(view)?;
+            Format::Stream => (Content::Stream, stream::state(origin.plain()?, name)?),
+            Format::Twin => (Content::Twin, stream::state_of_twin(origin.plain()?, name)?),
+            Format::Spa => (Content::Spa, spa::state(origin.plain()?)?),
+            Format::Spb => (Content::Spb, spb::state(origin.plain()?)?),
+            Format::Ply => (Content::Ply, stream::state_of_ply(origin.plain()?, name)?),
+            Format::Obj | Format::VertexLines => (Content::Obj, stream::state_of_obj(origin.plain()?, name)?),
+            Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&origin.view()?, name)?]),
+            Format::VtkXml => Content::of_arrays(vtk::read_xml(&origin.view()?)?),
+            Format::Text | Format::OtherText => {
+                let (columns, stated) = text::state(origin.plain()?)?;
                 (Content::Text(columns), stated)
             }
+            other => return Err(Error::usage(format!("{} holds no points of space", other.name()))),
         })
+    }
+
+    /// Numbers without a header.
+    fn read_raw(origin: &Origin, options: &SourceOptions) -> Result<(Content, Stated)> {
+        let kind = options.raw.ok_or_else(|| Error::usage("the type of raw numbers is not given"))?;
+        Ok(Content::of_arrays(vec![raw::open(&origin.view()?, kind)?]))
     }
 
     fn of_arrays(arrays: Vec<PointArray>) -> (Content, Stated) {
@@ -311,7 +342,7 @@ fn describe(sources: &[Source], options: &SourceOptions, notices: &mut Vec<Strin
         coordinates,
         dims: options.dims,
         has_elevation: has_z(sources)? && options.dims == 2,
-        crs: common_crs(sources, notices)?,
+        crs: crs::common(sources.iter().map(|source| (&source.name[..], &source.stated.crs)), notices)?,
         stated_bounds: stated_bounds(sources, &coordinates),
         stated_points: sources.iter().map(|source| source.stated.points).sum(),
     })

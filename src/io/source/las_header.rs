@@ -5,7 +5,7 @@ use std::io::BufReader;
 use las::raw;
 use laz::LazVlr;
 
-use super::laz_chunks;
+use super::laz_table;
 use super::origin::FileView;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
@@ -124,7 +124,7 @@ impl LasHeader {
         }
         if self.points == 0 {
             let unused = match self.laz {
-                Some(_) => laz_chunks::room(file, self.points_start, points_end)?,
+                Some(_) => laz_table::room(file, self.points_start, points_end)?,
                 None => points_end.saturating_sub(self.points_start),
             };
             // Compressed points start with a whole record too.
@@ -238,7 +238,8 @@ impl Records {
         Ok(records)
     }
 
-    /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before `end`.
+    /// Reads the record at byte `at` and returns the byte after it, or `None` if it does not end before
+    /// `end`.
     fn read_one(
         &mut self,
         file: &FileView,

@@ -8,7 +8,7 @@ use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
 use super::laz_codec::{Codec, Decompressor, decompression};
 use super::origin::FileView;
 use super::panic_guard::guarded;
-use super::records::RecordReader;
+use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel::OrderedPool;
 
@@ -36,7 +36,8 @@ struct Job {
 }
 
 impl Job {
-    /// Bytes that the job needs about: compressed data may be a little longer than the records, never by much.
+    /// Bytes that the job needs about: compressed data may be a little longer than the records, never by
+    /// much.
     fn len(&self, record_len: u64) -> u64 {
         self.chunks.iter().map(|chunk| (chunk.points * record_len).max(chunk.len)).sum()
     }
@@ -104,7 +105,8 @@ impl LazRecords {
         Ok(Some(records_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX))
     }
 
-    /// Takes chunks from the table until they make up a job; `None` if the next one is no job's, or there is none.
+    /// Takes chunks from the table until they make up a job; `None` if the next one is no job's, or there is
+    /// none.
     fn next_job(&mut self) -> Result<Option<Job>> {
         let record_len = self.codec.record_len as u64;
         let mut job = self.spare.pop().unwrap_or_default();

@@ -5,12 +5,10 @@ use std::io::{BufReader, Seek, SeekFrom};
 use laz::laszip::ChunkTable;
 
 use super::las_header::{LasHeader, Laszip};
+use super::laz_table::{TABLE_POSITION_LEN, table_position};
 use super::origin::FileView;
 use super::panic_guard::guarded;
 use spmesh_core::error::{Error, Result};
-
-/// Length of the position of the chunk table, which precedes the chunks.
-const TABLE_POSITION_LEN: u64 = 8;
 
 /// Records that are compressed together.
 #[derive(Debug, Clone, Copy)]
@@ -80,35 +78,6 @@ impl Chunks {
             .map(Chunks::Table)
             .map_err(|e| e.at(format!("chunk table at byte {table}")))
     }
-}
-
-/// Bytes between the position of the chunk table, which stands at `points_start`, and the table; without a
-/// table, those up to `points_end`.
-pub(super) fn room(file: &FileView, points_start: u64, points_end: u64) -> Result<u64> {
-    let start = points_start.saturating_add(TABLE_POSITION_LEN);
-    if start > file.len() {
-        return Ok(0);
-    }
-    let end = table_position(file, points_start)?.unwrap_or(points_end);
-    Ok(end.saturating_sub(start))
-}
-
-/// The position of the chunk table, from before the points or, if the writer could not go back, from the end
-/// of the file. `None` if neither lies between the points and the end.
-fn table_position(file: &FileView, points_start: u64) -> Result<Option<u64>> {
-    let start = points_start + TABLE_POSITION_LEN;
-    for at in [points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {
-        let mut bytes = [0; TABLE_POSITION_LEN as usize];
-        file.read_at(at, &mut bytes)
-            .map_err(|e| Error::io("reading the position of the chunk table", e).at(format!("byte {at}")))?;
-        let position = i64::from_le_bytes(bytes);
-        if let Ok(position) = u64::try_from(position)
-            && (start..file.len().saturating_sub(7)).contains(&position)
-        {
-            return Ok(Some(position));
-        }
-    }
-    Ok(None)
 }
 
 fn read_table(file: &FileView, header: &LasHeader, laszip: &Laszip, table: u64) -> Result<Vec<Chunk>> {

@@ -23,7 +23,8 @@ pub(super) type Decompressor<R> = Box<dyn RecordDecompressor<R> + Send + Sync>;
 pub(super) struct Codec {
     vlr: LazVlr,
     pub(super) record_len: usize,
-    /// Layers of a chunk, each with its length in the chunk's head; 0 where records are compressed as a whole.
+    /// Layers of a chunk, each with its length in the chunk's head; 0 where records are compressed as a
+    /// whole.
     pub(super) layers: usize,
 }
 

@@ -1,20 +1,134 @@
-//! Lines of text files, of bounded length.
+//! Lines of text inputs, of bounded length, counted for messages.
 
-use std::io::{BufRead, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read};
 
+use super::origin::FileView;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::TEXT_LINE_MAX;
+use spmesh_core::limits::{TEXT_HEADER_LINE_MAX, TEXT_LINE_MAX};
 
-/// Reads lines and counts them.
-pub(super) struct LineReader<R> {
-    input: R,
+/// Bytes read at once.
+const BUFFER_LEN: usize = 1 << 17;
+
+/// Lines that may be longer than others: the header of a text twin holds the CRS.
+const HEADER_START: &[u8] = b"#spmesh ";
+
+/// What some editors write before a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Reads an input line by line. Memory: one line and a buffer.
+pub(super) struct Lines<R> {
+    input: BufReader<R>,
+    /// What messages call the input; empty if the caller names it.
+    name: String,
     line: Vec<u8>,
     number: u64,
+    ended: bool,
+    longest: usize,
+    /// The last line of the input, if it has no line end.
+    unended: Option<u64>,
+    /// Bytes of all lines so far, with their line ends.
+    bytes: u64,
 }
 
-impl<R: BufRead> LineReader<R> {
-    pub(super) fn new(input: R) -> Self {
-        LineReader { input, line: Vec::new(), number: 0 }
+impl<R: Read> Lines<R> {
+    /// Lines of at most [`TEXT_LINE_MAX`] bytes; `name` is what messages call the input, or nothing, if the
+    /// caller names it.
+    pub(super) fn new(input: R, name: impl Into<String>) -> Self {
+        Lines::with_longest(input, name, TEXT_LINE_MAX)
+    }
+
+    /// As `new`, for formats whose lines may have up to `longest` bytes.
+    pub(super) fn with_longest(input: R, name: impl Into<String>, longest: usize) -> Self {
+        Lines {
+            input: BufReader::with_capacity(BUFFER_LEN, input),
+            name: name.into(),
+            line: Vec::new(),
+            number: 0,
+            ended: true,
+            longest,
+            unended: None,
+            bytes: 0,
+        }
+    }
+
+    /// The next line without its line end (LF or CR LF); `None` at the end of the input.
+    ///
+    /// # Errors
+    /// If reading fails, or the line is too long.
+    pub(super) fn next_line(&mut self) -> Result<Option<&[u8]>> {
+        self.line.clear();
+        self.number += 1;
+        self.ended = false;
+        while !self.ended {
+            let bytes = match self.input.fill_buf() {
+                Ok(bytes) => bytes,
+                Err(e) if e.kind() == ErrorKind::Interrupted => continue,
+                Err(e) => return Err(self.locate(Error::io("reading", e))),
+            };
+            if bytes.is_empty() {
+                break;
+            }
+            let end = memchr::memchr(b'\n', bytes);
+            self.line.extend_from_slice(&bytes[..end.unwrap_or(bytes.len())]);
+            let used = end.map_or(bytes.len(), |end| end + 1);
+            self.input.consume(used);
+            self.bytes += used as u64;
+            self.ended = end.is_some();
+            if self.line.len() > self.longest {
+                self.check_len()?;
+            }
+        }
+        if self.line.last() == Some(&b'\r') {
+            self.line.pop();
+        }
+        if !self.ended && !self.line.is_empty() {
+            self.unended = Some(self.number);
+        }
+        Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
+    }
+
+    /// As `next_line`, for texts that people write: without white space around the line, and without a byte
+    /// order mark.
+    ///
+    /// # Errors
+    /// As `next_line`; if the line has a zero byte or a carriage return in it.
+    pub(super) fn next_trimmed(&mut self) -> Result<Option<&[u8]>> {
+        if self.next_line()?.is_none() {
+            return Ok(None);
+        }
+        if memchr::memchr(0, &self.line).is_some() {
+            return Err(self.locate(Error::malformed("zero byte: not a text")));
+        }
+        let line = match self.number {
+            1 => self.line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&self.line),
+            _ => &self.line,
+        };
+        let line = line.trim_ascii();
+        if memchr::memchr(b'\r', line).is_some() {
+            let reason = "carriage return inside of a line: lines must end with LF or CR LF";
+            return Err(self.locate(Error::malformed(reason)));
+        }
+        Ok(Some(line))
+    }
+
+    #[cold]
+    fn check_len(&self) -> Result<()> {
+        let longest = if self.line.starts_with(HEADER_START) { TEXT_HEADER_LINE_MAX } else { self.longest };
+        if self.line.len() <= longest {
+            return Ok(());
+        }
+        let message = format!("line of more than {longest} bytes: not a text of this format");
+        Err(self.locate(Error::malformed(message)))
+    }
+
+    /// What follows the line that was read last, for formats whose header alone is text.
+    pub(super) fn input(&mut self) -> &mut BufReader<R> {
+        &mut self.input
+    }
+
+    /// The line that was read last.
+    pub(super) fn current(&self) -> &[u8] {
+        &self.line
     }
 
     /// Number of the line that was read last, counted from 1.
@@ -22,40 +136,37 @@ impl<R: BufRead> LineReader<R> {
         self.number
     }
 
-    /// The next line without white space around it, whatever its end is; `None` at the end.
-    ///
-    /// # Errors
-    /// If reading fails, the line is too long, or has a zero byte or a carriage return in it.
-    pub(super) fn next_line(&mut self) -> Result<Option<&[u8]>> {
-        self.number += 1;
-        self.line.clear();
-        let mut input = (&mut self.input).take(TEXT_LINE_MAX as u64 + 1);
-        input.read_until(b'\n', &mut self.line).map_err(|e| Error::io("reading", e).at(self.position()))?;
-        if self.line.is_empty() {
-            return Ok(None);
-        }
-        if self.line.len() > TEXT_LINE_MAX {
-            let reason = format!("longer than {TEXT_LINE_MAX} bytes: not a text of points");
-            return Err(Error::malformed(reason).at(self.position()));
-        }
-        if self.line.contains(&0) {
-            return Err(Error::malformed("zero byte: not a text").at(self.position()));
-        }
-        let line = match self.number {
-            1 => self.line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&self.line),
-            _ => &self.line,
-        };
-        let line = line.trim_ascii();
-        if line.contains(&b'\r') {
-            let reason = "carriage return inside of a line: lines must end with LF or CR LF";
-            return Err(Error::malformed(reason).at(self.position()));
-        }
-        Ok(Some(line))
+    /// Number of the line without a line end, at the end of the input.
+    pub(super) fn unended(&self) -> Option<u64> {
+        self.unended
     }
 
-    /// Where the reader is, for messages.
+    /// Whether the line that was read last has a line end: a text that was cut off mostly ends without one.
+    pub(super) fn is_ended(&self) -> bool {
+        self.ended
+    }
+
+    /// Bytes of all lines so far, with their line ends.
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// The line that was read last, for messages.
     pub(super) fn position(&self) -> String {
         format!("line {}", self.number)
+    }
+
+    /// Adds input and line to an error about the line that was read last.
+    pub(super) fn locate(&self, error: Error) -> Error {
+        let error = error.at(self.position());
+        if self.name.is_empty() { error } else { error.of_input(&self.name) }
+    }
+}
+
+impl Lines<FileView> {
+    /// Byte of the file behind what was read last, lines or not.
+    pub(super) fn byte(&self) -> u64 {
+        self.input.get_ref().position() - self.input.buffer().len() as u64
     }
 }
 

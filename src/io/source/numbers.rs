@@ -38,7 +38,8 @@ impl<R: BufRead> NumberReader<R> {
         self.done
     }
 
-    /// Appends the next numbers to `numbers`: `most` of them, fewer only at the end. False if there are no more.
+    /// Appends the next numbers to `numbers`: `most` of them, fewer only at the end. False if there are no
+    /// more.
     ///
     /// # Errors
     /// If reading fails, the input ends before all numbers, or something is no number of the type.

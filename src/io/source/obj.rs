@@ -4,10 +4,11 @@ use std::collections::VecDeque;
 use std::io::Read;
 
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
 use super::polygon::fan;
-use super::statements::{Lines, fields, parse_decimals, parse_signed, unexpected};
+use super::statements::{fields, parse_decimals, parse_signed, unexpected};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -37,8 +38,9 @@ const PASSED_OVER: [&[u8]; 17] = [
 /// Reads OBJ as a triangle mesh; polygons become fans around their first vertex. `name` is what messages call
 /// the input.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line. Memory: one
-/// patch, and the triangles that come before their vertices.
+/// Errors come with the events: [`spmesh_core::error::ErrorKind::Malformed`] (or I/O), with input and line.
+///
+/// Memory: one patch, and the triangles that come before their vertices.
 pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn EventSource> {
     let lines = Lines::new(input, name);
     Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))

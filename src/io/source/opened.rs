@@ -3,12 +3,13 @@
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-use super::detect::{self, detect};
 use super::events::EventSource;
+use super::input::Input;
+use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
 use super::twin::TwinSource;
-use super::{Input, SourceOptions};
-use spmesh_core::error::Result;
+use crate::detect::{Format, read_head};
+use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Kind, StreamReader};
 
 /// What an input is.
@@ -32,7 +33,8 @@ pub fn open_planar(paths: &[PathBuf], options: &SourceOptions) -> Result<Opened>
     }
 }
 
-/// Opens a path ("-" is standard input) as a stream of configurations or of a spline if it is one, and otherwise as points.
+/// Opens a path ("-" is standard input) as a stream of configurations or of a spline if it is one, and
+/// otherwise as points.
 ///
 /// Cost: that of [`open_planar`].
 ///
@@ -43,11 +45,10 @@ pub fn open_knots(path: &Path, options: &SourceOptions) -> Result<Opened> {
 }
 
 fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) -> Result<Opened> {
-    let temp_dir = options.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
-    // That a pipe is copied tells nobody anything: all of it is held in memory later.
-    let origin = Origin::new(path, &temp_dir, &mut Vec::new())?;
+    // A notice of the spool would say nothing of use: all of the input is held in memory later.
+    let origin = Origin::new(path, &options.temp_dir(), &mut Vec::new())?;
     let name = name_of(path);
-    let events = open_events(&origin, &name).map_err(|e| e.of_input(&name))?;
+    let events = open_events(&origin, &name, options).map_err(|e| e.of_input(&name))?;
     match events.filter(|events| is_wanted(events.header().kind)) {
         Some(events) => Ok(Opened::Events(events)),
         None => Ok(Opened::Points(Box::new(Input::of_origin(origin, name, options)?))),
@@ -55,13 +56,12 @@ fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) 
 }
 
 /// `None` if it is neither a stream nor the text twin of one.
-fn open_events(origin: &Origin, name: &str) -> Result<Option<Box<dyn EventSource>>> {
-    let view = origin.view()?;
-    Ok(match detect(&view)? {
-        detect::Format::Stream => {
-            Some(Box::new(StreamReader::new(BufReader::with_capacity(1 << 18, view), name)?))
-        }
-        detect::Format::Twin => Some(Box::new(TwinSource::new(view, name)?)),
+fn open_events(origin: &Origin, name: &str, options: &SourceOptions) -> Result<Option<Box<dyn EventSource>>> {
+    let head = read_head(&mut origin.plain()?).map_err(|e| Error::io("reading", e))?;
+    let events = || origin.plain().map(|plain| BufReader::with_capacity(1 << 18, plain));
+    Ok(match options.reader.detect(&head)? {
+        Format::Stream => Some(Box::new(StreamReader::new(events()?, name)?)),
+        Format::Twin => Some(Box::new(TwinSource::new(origin.plain()?, name)?)),
         _ => None,
     })
 }

@@ -1,12 +1,13 @@
 //! Where the bytes of an input are, so that each pass can read them from the start.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::fd::AsFd;
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::gzip::Plain;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::temporary::TemporaryFile;
 
@@ -14,6 +15,9 @@ use spmesh_core::temporary::TemporaryFile;
 pub fn name_of(path: &Path) -> String {
     if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() }
 }
+
+/// The content of a file: its bytes, decompressed if it is compressed.
+pub(super) type Bytes = Plain<FileView>;
 
 /// Bytes that can be read several times.
 #[derive(Debug)]
@@ -41,7 +45,7 @@ impl Origin {
             if kind.is_file() {
                 return Ok(Origin::Path(path.to_path_buf()));
             }
-            spool(file, &name, temp_dir, notices)
+            spool_pipe(file, &name, temp_dir, notices)
         };
         open().map_err(|e| e.of_input(&name))
     }
@@ -53,10 +57,29 @@ impl Origin {
         if is_file && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::Open(Arc::new(file)));
         }
-        spool(file, "stdin", temp_dir, notices)
+        spool_pipe(file, "stdin", temp_dir, notices)
     }
 
-    /// A view of all the bytes, at their start.
+    /// The content, decompressed if it is compressed, from its start.
+    pub(super) fn plain(&self) -> Result<Bytes> {
+        Plain::new(self.view()?).map_err(|e| Error::io("reading", e))
+    }
+
+    /// The decompressed content as a file, for formats that are not read in order; `name` is what messages
+    /// call it.
+    pub(super) fn unpacked(&self, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+        let (file, size) = spool(self.plain()?, temp_dir)?;
+        let place = temp_dir.display();
+        notices.push(format!("{name}: decompressed {size} to an unlinked temporary file in {place}"));
+        Ok(file)
+    }
+
+    /// All that `input` gives, in an unlinked temporary file.
+    pub(super) fn spooled(input: impl Read, temp_dir: &Path) -> Result<Origin> {
+        spool(input, temp_dir).map(|(file, _)| file)
+    }
+
+    /// A view of all the bytes as they are stored, at their start.
     pub(super) fn view(&self) -> Result<FileView> {
         let file = match self {
             Origin::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
@@ -67,16 +90,33 @@ impl Origin {
     }
 }
 
-fn spool(mut from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+/// Spools what cannot be read twice, and says so in a notice.
+fn spool_pipe(from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+    let (file, size) = spool(from, temp_dir)?;
     let place = temp_dir.display();
-    let file = TemporaryFile::create(Some(temp_dir))?;
-    let bytes = io::copy(&mut from, &mut file.file())
-        .map_err(|e| Error::io(format!("spooling to a temporary file in {place}"), e))?;
-    let size =
-        if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
     notices
         .push(format!("{name}: spooled {size} to an unlinked temporary file in {place} for the second pass"));
-    Ok(Origin::Open(Arc::new(file.into_file())))
+    Ok(file)
+}
+
+/// Copies all that `input` gives to an unlinked temporary file; tells how much it is.
+fn spool(mut input: impl Read, temp_dir: &Path) -> Result<(Origin, String)> {
+    let file = TemporaryFile::create(Some(temp_dir))?;
+    let mut buffer = vec![0; 1 << 17];
+    let mut bytes = 0u64;
+    loop {
+        let len = match input.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(len) => len,
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => continue,
+            Err(e) => return Err(Error::io("reading", e)),
+        };
+        file.file().write_all(&buffer[..len]).map_err(|e| file.error("spooling to it", e))?;
+        bytes += len as u64;
+    }
+    let size =
+        if bytes < 1_000_000 { format!("{bytes} bytes") } else { format!("{:.1} MB", bytes as f64 / 1e6) };
+    Ok((Origin::Open(Arc::new(file.into_file())), size))
 }
 
 /// A reader with a position of its own over a shared file, so that passes do not disturb each other.

@@ -1,5 +1,5 @@
-//! Keeps a panic from ending the program: in a decoder library damaged input is an error, not a crash, and among many
-//! files one must not end the work on the others.
+//! Keeps a panic from ending the program: in a decoder library damaged input is an error, not a crash, and
+//! among many files one must not end the work on the others.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};

@@ -228,8 +228,8 @@ impl PatchBuilder {
     }
 }
 
-/// The patch of vertices from `first_id` on, with ids below the end of those in simplices, one behind the other, and
-/// in finalizations.
+/// The patch of vertices from `first_id` on, with ids below the end of those in simplices, one behind the
+/// other, and in finalizations.
 pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
     let used = simplices.iter().chain(finalized);
     let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();

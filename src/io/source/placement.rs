@@ -4,14 +4,15 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Coordinates;
 
-/// Largest deviation of a ratio of scales from the fraction that it is taken for, relative: 2^-40. Division and
-/// decimal notation of scales cost some 2^-51. Over 32 bits a coordinate moves by 2^-9 of its file's step at most.
+/// Largest deviation of a ratio of scales from the fraction that it is taken for, relative: 2^-40. Division
+/// and decimal notation of scales cost some 2^-51. Over 32 bits a coordinate moves by 2^-9 of its file's step
+/// at most.
 pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Largest factor between steps: stored integers times the factor, and a shift beside them, are exact in f64.
 const FACTOR_MAX: f64 = (1u64 << 21) as f64;
 
-/// Largest deviation of an offset from a whole number of quanta, and of a coordinate from a side of the
+/// Largest deviation of an offset from a multiple of the quantum, and of a coordinate from a side of the
 /// bounds filter, in quanta.
 const QUANTA_TOLERANCE: f64 = 1e-6;
 
@@ -141,8 +142,8 @@ fn whole(value: f64, tolerance: f64) -> Option<f64> {
     ((value - rounded).abs() <= tolerance && rounded.abs() < 2f64.powi(52)).then_some(rounded)
 }
 
-/// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside, however
-/// the products of scale and integer are rounded.
+/// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside,
+/// however the products of scale and integer are rounded.
 fn stored_bounds(from: &Coordinates, bounds: Bounds) -> Bounds {
     let Coordinates::I32 { scale, offset } = from else { return bounds };
     let steps = |side: Point, axis: usize| (side[axis] - offset[axis]) / scale[axis];

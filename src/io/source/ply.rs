@@ -5,12 +5,13 @@ use std::io::Read;
 
 use super::byte_order::ByteOrder;
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents};
 use super::patches::Order;
 use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
 use super::sample_type::SampleType;
-use super::statements::{Lines, expect_no_field, fields, next_field, parse_decimal};
+use super::statements::{expect_no_field, fields, next_field, parse_decimal};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -22,11 +23,11 @@ const LIST_MAX: u64 = 1 << 16;
 /// Reads PLY: a triangle mesh, in which polygons become fans around their first vertex, or points of `dims`
 /// dimensions; `name` is what messages call the input.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and place. Memory: one
-/// patch or batch, and triangles that come before their vertices.
+/// Memory: one patch or batch, and triangles that come before their vertices.
 ///
 /// # Errors
-/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips.
+/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every later
+/// error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and place.
 pub fn open_ply<R: Read + 'static>(
     input: R,
     name: impl Into<String>,
@@ -39,7 +40,8 @@ pub fn open_ply<R: Read + 'static>(
     Ok(Box::new(points(rows, dims)))
 }
 
-/// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call the input.
+/// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call
+/// the input.
 ///
 /// # Errors
 /// If the header is damaged or states no vertices with x, y and z.

@@ -3,8 +3,9 @@
 use std::io::Read;
 
 use super::byte_order::ByteOrder;
+use super::lines::Lines;
 use super::sample_type::SampleType;
-use super::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
+use super::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Elements and properties that a header may have: far more than any has, and no memory to speak of.

@@ -3,10 +3,9 @@
 use std::io::{BufRead, BufReader};
 use std::sync::Arc;
 
-use super::BATCH_POINTS;
-use super::input::{Pass, Stated};
 use super::numbers::{NumberReader, Writing};
 use super::origin::FileView;
+use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
 use super::sample_type::SampleType;
 use super::vtk::Framed;

@@ -43,8 +43,9 @@ const NAMES: [(&str, PolylineKind); 4] = [
 /// The property of GeoJSON features that says what they are.
 const PROPERTY: &str = "spline";
 
-/// Reads lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ...; or GeoJSON, in which
-/// points are corners, and lines and rings of polygons are creases, unless a feature has a property `spline` with one of these words.
+/// Reads lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ...; or
+/// GeoJSON, in which points are corners, and lines and rings of polygons are creases, unless a feature has a
+/// property `spline` with one of these words.
 ///
 /// Coordinates of GeoJSON are taken as they are; third ones do not count.
 ///

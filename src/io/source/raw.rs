@@ -1,20 +1,23 @@
 //! Points of space in files that are nothing but numbers: x, y and z of one after the other.
 
+use std::path::Path;
+
 use super::numbers::Writing;
 use super::origin::FileView;
 use super::point_arrays::{Place, PointArray};
 use super::raw_type::RawType;
 use spmesh_core::error::{Error, Result};
 
-/// The array that the whole file is; `name` is what messages call it.
+/// Whether a file of raw numbers is compressed: its name tells, since numbers may start with any bytes.
+pub(super) fn is_compressed(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
+}
+
+/// The array that the whole file is.
 ///
 /// # Errors
-/// If the file is empty or ends inside of a point; usage, if it is named as compressed files are, because nothing else
-/// would tell.
-pub(super) fn open(view: &FileView, name: &str, kind: RawType) -> Result<PointArray> {
-    if name.to_ascii_lowercase().ends_with(".gz") {
-        return Err(Error::usage("is compressed by its name: decompress it first, for example with zcat"));
-    }
+/// If the file is empty or ends inside of a point.
+pub(super) fn open(view: &FileView, kind: RawType) -> Result<PointArray> {
     let point_len = 3 * kind.sample.len() as u64;
     let (len, points) = (view.len(), view.len() / point_len);
     if len == 0 {
@@ -23,8 +26,8 @@ pub(super) fn open(view: &FileView, name: &str, kind: RawType) -> Result<PointAr
     if len > points * point_len {
         let rest = len - points * point_len;
         let message = format!(
-            "the file ends {rest} bytes into a point, which has {point_len} bytes of type {kind}: it was cut off, or the \
-             type is another"
+            "the file ends {rest} bytes into a point, which has {point_len} bytes of type {kind}: it was cut \
+             off, or the type is another"
         );
         return Err(Error::malformed(message).at(format!("point {} at byte {}", points + 1, len - rest)));
     }

@@ -6,8 +6,8 @@ use std::str::FromStr;
 use super::byte_order::ByteOrder;
 use super::sample_type::SampleType;
 
-/// Type and byte order of raw numbers, as in `f32le`: i, u or f for signed, unsigned and floating point, the bits, and le
-/// or be for little-endian or big-endian, which single bytes do without.
+/// Type and byte order of raw numbers, as in `f32le`: i, u or f for signed, unsigned and floating point, the
+/// bits, and le or be for little-endian or big-endian, which single bytes do without.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawType {
     pub(super) sample: SampleType,

@@ -1,22 +1,17 @@
 //! Points from the records of LAS files, compressed or not.
 
-use super::input::Pass;
 use super::las_header::LasHeader;
 use super::laz::LazRecords;
+use super::options::SourceOptions;
 use super::origin::FileView;
+use super::pass::{BATCH_POINTS, Pass};
 use super::placement::Placement;
-use super::{BATCH_POINTS, SourceOptions};
+use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
 /// Bytes of records that are read at once from a file that is not compressed.
 const READ_LEN: usize = 1 << 18;
-
-/// A supply of point records as they stand in an uncompressed file.
-pub(super) trait RecordReader: Send {
-    /// Replaces the content of `records` with the next whole records; leaves it empty at the end.
-    fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()>;
-}
 
 /// Which records to keep.
 #[derive(Debug, Clone)]

@@ -3,22 +3,21 @@
 use std::io::Read;
 
 use super::events::EventSource;
+use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
-use super::statements::{
-    Lines, expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected,
-};
+use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Reads an SMA mesh, pre-order or post-order: now up to the first element. `name` is what messages call the
 /// input.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line. The counts of
-/// the header are verified where it has them; without them a mesh that is cut off behind a whole line
-/// cannot be told from a short one.
+/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole line looks like a
+/// short one.
 ///
 /// # Errors
-/// If the lines before the first element are no header of SMA.
+/// If the lines before the first element are no header of SMA. This and every later error is
+/// [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line.
 pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
     let lines = Lines::new(input, name);
     let mut elements =

@@ -15,12 +15,12 @@ use spmesh_core::limits::HEADER_BODY_MAX;
 /// from what header and first block say in each, because the flag in the file is often wrong. `name` is what
 /// messages call the input.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and byte. The counts of
-/// the header are verified where it has them; without them a mesh that is cut off behind a whole element
-/// cannot be told from a short one.
+/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole element looks
+/// like a short one.
 ///
 /// # Errors
-/// If the header makes sense in neither byte order.
+/// If the header makes sense in neither byte order. This and every later error is
+/// [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and byte.
 pub fn open_smb<R: Read + 'static>(mut input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
     let name = name.into();
     let mut head = Vec::new();

@@ -1,7 +1,6 @@
 //! What the streaming point formats SPA and SPB have in common; `formats/historical.md` describes both.
 
-use super::BATCH_POINTS;
-use super::input::{Pass, Stated};
+use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};

@@ -28,8 +28,8 @@ pub struct SpEvents<S> {
 }
 
 impl<S: SpReader> SpEvents<S> {
-    /// Events of `reader`; `name` is what messages call it. Without a finalization tree that tells, the points
-    /// have `dims` dimensions; with 2, z is an elevation.
+    /// Events of `reader`; `name` is what messages call it. Without a finalization tree that tells, the
+    /// points have `dims` dimensions; with 2, z is an elevation.
     pub fn new(reader: S, name: impl Into<String>, dims: u8) -> Self {
         let dims = match reader.header().finalization {
             SpFinalization::QuadTree => 2,

@@ -1,10 +1,10 @@
 //! SPA: streaming points as text.
 
-use std::io::{BufRead, BufReader};
+use std::io::Read;
 
-use super::input::Stated;
-use super::lines::{LineReader, number, quote};
-use super::origin::FileView;
+use super::lines::{Lines, number, quote};
+use super::origin::Bytes;
+use super::pass::Stated;
 use super::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
@@ -14,7 +14,7 @@ const COMMENTS_MAX: usize = 1 << 20;
 
 /// Reads an SPA file.
 pub struct SpaReader<R> {
-    lines: LineReader<R>,
+    lines: Lines<R>,
     header: SpHeader,
     /// The first event, which ends the header.
     first: Option<SpEvent>,
@@ -22,7 +22,7 @@ pub struct SpaReader<R> {
     ended: bool,
 }
 
-impl<R: BufRead> SpaReader<R> {
+impl<R: Read> SpaReader<R> {
     /// Reads the header: all comment lines before the first event.
     ///
     /// # Errors
@@ -35,11 +35,11 @@ impl<R: BufRead> SpaReader<R> {
             points: None,
             bounds: None,
         };
-        let lines = LineReader::new(input);
+        let lines = Lines::new(input, "");
         let mut reader = SpaReader { lines, header, first: None, points: 0, ended: false };
         let mut fields = HeaderFields::default();
         loop {
-            let Some(line) = reader.lines.next_line()? else {
+            let Some(line) = reader.lines.next_trimmed()? else {
                 reader.ended = true;
                 break;
             };
@@ -55,7 +55,7 @@ impl<R: BufRead> SpaReader<R> {
     }
 }
 
-impl<R: BufRead> SpReader for SpaReader<R> {
+impl<R: Read> SpReader for SpaReader<R> {
     fn header(&self) -> &SpHeader {
         &self.header
     }
@@ -63,7 +63,7 @@ impl<R: BufRead> SpReader for SpaReader<R> {
     fn next_event(&mut self) -> Result<Option<SpEvent>> {
         let mut event = self.first.take();
         while event.is_none() && !self.ended {
-            match self.lines.next_line()? {
+            match self.lines.next_trimmed()? {
                 Some(line) => event = parse(line).map_err(|e| e.at(self.lines.position()))?,
                 None => self.ended = true,
             }
@@ -158,11 +158,11 @@ impl HeaderFields {
 }
 
 /// Reads the header of a file. Its bounding box is rounded, and so not the one of the points.
-pub(super) fn state(file: FileView) -> Result<Stated> {
-    Ok(SpaReader::new(BufReader::new(file))?.header().state(None))
+pub(super) fn state(file: Bytes) -> Result<Stated> {
+    Ok(SpaReader::new(file)?.header().state(None))
 }
 
 /// Starts a pass over the points.
-pub(super) fn pass(file: FileView) -> Result<SpPass<SpaReader<BufReader<FileView>>>> {
-    SpaReader::new(BufReader::with_capacity(1 << 18, file)).map(SpPass)
+pub(super) fn pass(file: Bytes) -> Result<SpPass<SpaReader<Bytes>>> {
+    SpaReader::new(file).map(SpPass)
 }

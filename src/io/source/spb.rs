@@ -3,8 +3,8 @@
 use std::io::{BufReader, Cursor, Read};
 
 use super::byte_order::{ByteOrder, parse_in_either};
-use super::input::Stated;
-use super::origin::FileView;
+use super::origin::Bytes;
+use super::pass::Stated;
 use super::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
@@ -221,12 +221,12 @@ fn plausibility(order: ByteOrder, header: &SpHeader, body: &[u8]) -> u32 {
 }
 
 /// Reads the header of a file.
-pub(super) fn state(file: FileView) -> Result<Stated> {
+pub(super) fn state(file: Bytes) -> Result<Stated> {
     let reader = SpbReader::new(file)?;
     Ok(reader.header().state(reader.header().bounds))
 }
 
 /// Starts a pass over the points.
-pub(super) fn pass(file: FileView) -> Result<SpPass<SpbReader<BufReader<FileView>>>> {
+pub(super) fn pass(file: Bytes) -> Result<SpPass<SpbReader<BufReader<Bytes>>>> {
     SpbReader::new(BufReader::with_capacity(1 << 18, file)).map(SpPass)
 }

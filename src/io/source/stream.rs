@@ -1,12 +1,12 @@
-//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the vertices of
-//! PLY and OBJ.
+//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the
+//! vertices of PLY and OBJ.
 
 use std::io::BufReader;
 
 use super::events::EventSource;
-use super::input::{Pass, Stated};
 use super::obj::{self, ObjVertices};
-use super::origin::FileView;
+use super::origin::Bytes;
+use super::pass::{Pass, Stated};
 use super::placement::Placement;
 use super::ply::{self, PlyVertices};
 use super::twin::TwinSource;
@@ -16,22 +16,22 @@ use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Kind, StreamReader};
 
 /// Reads the header of a stream.
-pub(super) fn state(file: FileView, name: &str) -> Result<Stated> {
+pub(super) fn state(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&StreamReader::new(BufReader::new(file), name)?)
 }
 
 /// Reads the header of a text twin.
-pub(super) fn state_of_twin(file: FileView, name: &str) -> Result<Stated> {
+pub(super) fn state_of_twin(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&TwinSource::new(file, name)?)
 }
 
 /// Reads the header of a PLY, whose vertices are the points.
-pub(super) fn state_of_ply(file: FileView, name: &str) -> Result<Stated> {
+pub(super) fn state_of_ply(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&ply::open_vertices(file, name)?)
 }
 
 /// What there is to know of an OBJ, whose vertices are the points, before it is read.
-pub(super) fn state_of_obj(file: FileView, name: &str) -> Result<Stated> {
+pub(super) fn state_of_obj(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&obj::open_vertices(file, name))
 }
 
@@ -53,25 +53,22 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
 pub(super) struct EventPass<S>(S);
 
 /// Starts a pass over a stream.
-pub(super) fn pass(file: FileView, name: &str) -> Result<EventPass<StreamReader<BufReader<FileView>>>> {
+pub(super) fn pass(file: Bytes, name: &str) -> Result<EventPass<StreamReader<BufReader<Bytes>>>> {
     StreamReader::new(BufReader::with_capacity(1 << 18, file), name).map(EventPass)
 }
 
 /// Starts a pass over a text twin.
-pub(super) fn pass_of_twin(file: FileView, name: &str) -> Result<EventPass<TwinSource<FileView>>> {
+pub(super) fn pass_of_twin(file: Bytes, name: &str) -> Result<EventPass<TwinSource<Bytes>>> {
     TwinSource::new(file, name).map(EventPass)
 }
 
 /// Starts a pass over the vertices of a PLY.
-pub(super) fn pass_of_ply(
-    file: FileView,
-    name: &str,
-) -> Result<EventPass<VertexPoints<PlyVertices<FileView>>>> {
+pub(super) fn pass_of_ply(file: Bytes, name: &str) -> Result<EventPass<VertexPoints<PlyVertices<Bytes>>>> {
     ply::open_vertices(file, name).map(EventPass)
 }
 
 /// Starts a pass over the vertices of an OBJ.
-pub(super) fn pass_of_obj(file: FileView, name: &str) -> EventPass<VertexPoints<ObjVertices<FileView>>> {
+pub(super) fn pass_of_obj(file: Bytes, name: &str) -> EventPass<VertexPoints<ObjVertices<Bytes>>> {
     EventPass(obj::open_vertices(file, name))
 }
 

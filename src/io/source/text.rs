@@ -1,11 +1,8 @@
-//! Points as lines of text: xyz, csv and their kin.
+//! Points as lines of text: xyz, csv and the like.
 
-use std::io::BufReader;
-
-use super::BATCH_POINTS;
-use super::input::{Pass, Stated};
-use super::lines::{LineReader, number, quote};
-use super::origin::FileView;
+use super::lines::{Lines, number, quote};
+use super::origin::Bytes;
+use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -43,11 +40,11 @@ struct Names {
 /// # Errors
 /// If the first line is neither a point nor can be the names of the columns, or if those do not tell which
 /// columns are x and y.
-pub(super) fn state(file: FileView) -> Result<(Columns, Stated)> {
-    let mut lines = LineReader::new(BufReader::new(file));
+pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
+    let mut lines = Lines::new(file, "");
     let mut names: Option<Names> = None;
     let mut columns = None;
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_trimmed()? {
         let line = without_comment(line);
         if line.is_empty() {
             continue;
@@ -156,20 +153,20 @@ pub(super) fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = 
 
 /// One pass over the lines of a file.
 pub(super) struct TextPass {
-    lines: LineReader<BufReader<FileView>>,
+    lines: Lines<Bytes>,
     columns: Columns,
 }
 
 impl TextPass {
-    pub(super) fn new(file: FileView, columns: Columns) -> Self {
-        TextPass { lines: LineReader::new(BufReader::with_capacity(1 << 18, file)), columns }
+    pub(super) fn new(file: Bytes, columns: Columns) -> Self {
+        TextPass { lines: Lines::new(file, ""), columns }
     }
 }
 
 impl Pass for TextPass {
     fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
         for count in 0..BATCH_POINTS {
-            let Some(line) = self.lines.next_line()? else { return Ok(count > 0) };
+            let Some(line) = self.lines.next_trimmed()? else { return Ok(count > 0) };
             let line = without_comment(line);
             if line.is_empty() {
                 continue;

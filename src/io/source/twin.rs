@@ -3,10 +3,9 @@
 use std::io::Read;
 
 use super::events::EventSource;
+use super::lines::Lines;
 use super::patches::patch_of_ids;
-use super::statements::{
-    Lines, expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected,
-};
+use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
 use super::twin_configurations::{self, ConfigurationLine, OpenLines};
 use super::twin_functions::{self, FunctionGroup, FunctionLine};
 use super::twin_header::TwinHeader;

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::lines::{LineReader, number, quote};
+use super::lines::{Lines, number, quote};
 use super::text::{delimiter_of, fields, without_comment};
 use spmesh_core::error::{Error, Result};
 
@@ -18,11 +18,12 @@ pub enum Values {
 /// Reads lines of one number, or of two; the first line tells. Blank lines and comments do not count.
 ///
 /// # Errors
-/// If reading fails, a line has another number of columns or something else than numbers, or there is no line.
+/// If reading fails, a line has another number of columns or something else than numbers, or there is no
+/// line.
 pub fn read_values(input: impl Read) -> Result<Values> {
-    let mut lines = LineReader::new(std::io::BufReader::new(input));
+    let mut lines = Lines::new(input, "");
     let (mut columns, mut all) = (0, Vec::new());
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_trimmed()? {
         let line = without_comment(line);
         if line.is_empty() {
             continue;

@@ -2,18 +2,19 @@
 
 use std::io::Read;
 
-use super::lines::{LineReader, number, quote};
+use super::lines::{Lines, number, quote};
 use super::text::without_comment;
 use spmesh_core::error::{Error, Result};
 
-/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not count.
+/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not
+/// count.
 ///
 /// # Errors
 /// If reading fails, and as `found`, with the position.
 pub fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
-    let mut lines = LineReader::new(std::io::BufReader::new(input));
+    let mut lines = Lines::new(input, "");
     let mut count = 0;
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_trimmed()? {
         let separators = |byte: &u8| byte.is_ascii_whitespace() || b",;:".contains(byte);
         let words = without_comment(line).split(separators).filter(|word| !word.is_empty());
         let words: Vec<&[u8]> = words.collect();

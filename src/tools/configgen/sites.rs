@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::MAX_POINTS;
 use spmesh_geometry::predicates::Point2;
+use spmesh_io::detect::CONFIGGEN;
 use spmesh_io::source::{EventSource, Input, Opened, SourceOptions, name_of, open_planar};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs, Event, LiveVertices};
@@ -40,7 +41,7 @@ pub struct Sites {
 /// # Errors
 /// As [`open_planar`]; input that cannot be read or is malformed; more knots than can be handled.
 pub fn read_sites(paths: &[PathBuf], mut done: impl FnMut(u64)) -> Result<Sites> {
-    let options = SourceOptions { dims: 2, ..SourceOptions::default() };
+    let options = SourceOptions { reader: &CONFIGGEN, dims: 2, ..SourceOptions::default() };
     match open_planar(paths, &options)? {
         Opened::Points(input) => read_points(&input, &mut done),
         Opened::Events(mesh) => read_mesh(mesh, name_of(&paths[0]), &mut done),

@@ -25,27 +25,109 @@ pub enum Format {
     Vtu,
     /// Medit's meshes as text; written only.
     Medit,
+    /// Points as `spfinalize` reads them: LAS, LAZ, COPC, lines of coordinates, VTK; read only.
+    Points,
 }
 
 struct Row {
     format: Format,
     name: &'static str,
+    /// Empty if several extensions or none stand for it.
     extension: &'static str,
     is_binary: bool,
     is_read: bool,
+    is_written: bool,
 }
 
-const ROWS: [Row; 10] = [
-    Row { format: Format::Spm, name: "spm", extension: "spm", is_binary: true, is_read: true },
-    Row { format: Format::Text, name: "text", extension: "txt", is_binary: false, is_read: true },
-    Row { format: Format::Obj, name: "obj", extension: "obj", is_binary: false, is_read: true },
-    Row { format: Format::Ply, name: "ply", extension: "ply", is_binary: true, is_read: true },
-    Row { format: Format::Spa, name: "spa", extension: "spa", is_binary: false, is_read: true },
-    Row { format: Format::Spb, name: "spb", extension: "spb", is_binary: true, is_read: true },
-    Row { format: Format::Sma, name: "sma", extension: "sma", is_binary: false, is_read: true },
-    Row { format: Format::Smb, name: "smb", extension: "smb", is_binary: true, is_read: true },
-    Row { format: Format::Vtu, name: "vtu", extension: "vtu", is_binary: true, is_read: false },
-    Row { format: Format::Medit, name: "medit", extension: "mesh", is_binary: false, is_read: false },
+const ROWS: [Row; 11] = [
+    Row {
+        format: Format::Spm,
+        name: "spm",
+        extension: "spm",
+        is_binary: true,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Text,
+        name: "text",
+        extension: "txt",
+        is_binary: false,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Obj,
+        name: "obj",
+        extension: "obj",
+        is_binary: false,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Ply,
+        name: "ply",
+        extension: "ply",
+        is_binary: true,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Spa,
+        name: "spa",
+        extension: "spa",
+        is_binary: false,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Spb,
+        name: "spb",
+        extension: "spb",
+        is_binary: true,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Sma,
+        name: "sma",
+        extension: "sma",
+        is_binary: false,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Smb,
+        name: "smb",
+        extension: "smb",
+        is_binary: true,
+        is_read: true,
+        is_written: true,
+    },
+    Row {
+        format: Format::Vtu,
+        name: "vtu",
+        extension: "vtu",
+        is_binary: true,
+        is_read: false,
+        is_written: true,
+    },
+    Row {
+        format: Format::Medit,
+        name: "medit",
+        extension: "mesh",
+        is_binary: false,
+        is_read: false,
+        is_written: true,
+    },
+    Row {
+        format: Format::Points,
+        name: "points",
+        extension: "",
+        is_binary: false,
+        is_read: true,
+        is_written: false,
+    },
 ];
 
 impl Format {
@@ -53,9 +135,9 @@ impl Format {
         ROWS.iter().find(|row| row.format == self).expect("every format has its row")
     }
 
-    /// Names of all formats, each of which is written.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        ROWS.iter().map(|row| row.name)
+    /// Names of the formats that are written.
+    pub fn names_written() -> impl Iterator<Item = &'static str> {
+        ROWS.iter().filter(|row| row.is_written).map(|row| row.name)
     }
 
     /// Names of the formats that are read.
@@ -79,6 +161,9 @@ impl Format {
     #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let extension = path.extension()?.to_str()?;
+        if extension.is_empty() {
+            return None;
+        }
         ROWS.iter().find(|row| row.extension.eq_ignore_ascii_case(extension)).map(|row| row.format)
     }
 

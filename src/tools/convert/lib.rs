@@ -1,8 +1,8 @@
 //! Conversion between formats: every input becomes the events of a stream, which go to every output that
 //! can hold their kind.
 
-mod detect;
 mod format;
+mod recognition;
 
 pub use format::Format;
 
@@ -10,12 +10,14 @@ use std::io::{BufReader, Cursor, Read, Write};
 use std::path::{Path, PathBuf};
 
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_io::detect::{SPCONVERT, read_head};
 use spmesh_io::sink::{
     EventSink, HullSink, MeditSink, ObjSink, PlyEncoding, PlySink, SmaSink, SmbSink, SpaSink, SpbSink,
     SpmSink, TwinSink, VtuSink, surface_header,
 };
 use spmesh_io::source::{
-    EventSource, SpEvents, SpaReader, SpbReader, TwinSource, open_obj, open_ply, open_sma, open_smb,
+    EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader, TwinSource, open_obj,
+    open_ply, open_sma, open_smb,
 };
 use spmesh_stream::{Event, Kind, StreamReader};
 
@@ -24,10 +26,13 @@ use spmesh_stream::{Event, Kind, StreamReader};
 pub struct Options {
     /// Format of the input; by its content and its name if `None`.
     pub from: Option<Format>,
-    /// Dimensions of points in historical formats that do not say: 3, or else 2 with an elevation.
+    /// Dimensions of points in formats that do not say: 3, or else 2 with an elevation.
     pub dims: Option<u8>,
     /// Write PLY as text.
     pub ascii: bool,
+    /// The file that the input is read from, if it is one, compressed or not: points are read there, and
+    /// otherwise from a copy.
+    pub path: Option<PathBuf>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
 }
@@ -78,38 +83,50 @@ pub fn open_source(
     name: &str,
     options: &Options,
 ) -> Result<Box<dyn EventSource>> {
+    let in_input = |error: Error| error.of_input(name);
+    let reading = |e| in_input(Error::io("reading", e));
     let (format, head) = match options.from {
         Some(format) => (format, Vec::new()),
         None => {
-            let mut head = Vec::new();
-            let mut start = (&mut input).take(detect::HEAD_LEN);
-            start.read_to_end(&mut head).map_err(|e| Error::io("reading", e).of_input(name))?;
-            (detect::detect(&head, Path::new(name)).map_err(|e| e.of_input(name))?, head)
+            let head = read_head(&mut input).map_err(reading)?;
+            (recognition::recognize(&head, Path::new(name)).map_err(in_input)?, head)
         }
     };
     let input = Cursor::new(head).chain(input);
     let dims = options.dims.unwrap_or(2);
-    let in_input = |error: Error| error.of_input(name);
     Ok(match format {
         Format::Spm => Box::new(StreamReader::new(BufReader::with_capacity(1 << 18, input), name)?),
         Format::Text => Box::new(TwinSource::new(input, name)?),
         Format::Obj => open_obj(input, name),
         Format::Sma => open_sma(input, name)?,
         Format::Smb => open_smb(BufReader::new(input), name)?,
-        Format::Spa => {
-            let reader = SpaReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
-            Box::new(SpEvents::new(reader, name, dims))
-        }
+        Format::Spa => Box::new(SpEvents::new(SpaReader::new(input).map_err(in_input)?, name, dims)),
         Format::Spb => {
             let reader = SpbReader::new(BufReader::with_capacity(1 << 18, input)).map_err(in_input)?;
             Box::new(SpEvents::new(reader, name, dims))
         }
         Format::Ply => open_ply(input, name, dims)?,
+        Format::Points => open_points(input, name, options)?,
         Format::Vtu | Format::Medit => {
             let name = format.name();
             return Err(in_input(Error::usage(format!("{name} is written by this program, but not read"))));
         }
     })
+}
+
+/// Points that are read as `spfinalize` does, in order and without finalization.
+fn open_points(input: impl Read, name: &str, options: &Options) -> Result<Box<dyn EventSource>> {
+    let source = SourceOptions {
+        reader: &SPCONVERT,
+        dims: options.dims.unwrap_or(2),
+        temp_dir: options.temp_dir.clone(),
+        ..SourceOptions::default()
+    };
+    let input = match &options.path {
+        Some(path) => Input::open(std::slice::from_ref(path), &source)?,
+        None => Input::copied(input, name, &source)?,
+    };
+    Ok(Box::new(PointEvents::new(input)?))
 }
 
 fn open_sink<'a>(
@@ -143,5 +160,8 @@ fn open_sink<'a>(
         Format::Spb => Box::new(SpbSink::new(output, header)?),
         Format::Sma => Box::new(SmaSink::new(output, header)?),
         Format::Smb => Box::new(SmbSink::new(output, header)?),
+        Format::Points => {
+            return Err(Error::usage("points is a format that this program reads, but does not write"));
+        }
     })
 }

@@ -6,6 +6,7 @@ use std::path::Path;
 use super::frame::Frame;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{Configurations, Knots};
+use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use spmesh_model::functions::Function;
 use spmesh_splines::bases::Basis;
@@ -108,7 +109,7 @@ impl Layout {
     /// Usage, if it is something else; as [`open_knots`].
     pub fn open(path: &Path) -> Result<(Layout, Vec<f64>)> {
         let name = name_of(path);
-        match open_knots(path, &SourceOptions { dims: 2, ..SourceOptions::default() })? {
+        match open_knots(path, &SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() })? {
             Opened::Events(source) => Layout::read(source, &name, None),
             Opened::Points(_) => {
                 Err(Error::usage("these are points, expected a spline: splinefit fit makes one of them")

@@ -1,7 +1,7 @@
 //! Directories of TIFF files: what stands before the data (TIFF 6.0, section 2; BigTIFF).
 //!
-//! They come first in our files, so that a reader at the other end of a network has all it needs at once; libraries write them when
-//! all data are written, after them.
+//! They come first in our files, so that a reader at the other end of a network has all it needs at once;
+//! libraries write them when all data are written, after them.
 
 /// Numbers or text of a tag.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +33,8 @@ const LONG: u16 = 4;
 const DOUBLE: u16 = 12;
 const LONG8: u16 = 16;
 
-/// The bytes of a file before its data: header, and directories one after the other. Their number depends on the numbers of values
-/// only, not on the values.
+/// The bytes of a file before its data: header, and directories one after the other. Their number depends on
+/// the numbers of values only, not on the values.
 pub(super) fn encode(directories: &[Directory], size: Size) -> Vec<u8> {
     let mut bytes = match size {
         Size::Classic => vec![b'I', b'I', 42, 0],

@@ -2,15 +2,9 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use crate::geo_keys::{self, CITATION, GEOGRAPHIC_TYPE, MODEL_TYPE, PROJECTED_TYPE, RASTER_TYPE, TEXTS_TAG};
 use crate::source::crs_name;
 use spmesh_stream::Crs;
-
-/// Numbers of keys.
-const MODEL_TYPE: u16 = 1024;
-const RASTER_TYPE: u16 = 1025;
-const CITATION: u16 = 1026;
-const GEOGRAPHIC_TYPE: u16 = 2048;
-const PROJECTED_TYPE: u16 = 3072;
 
 /// Values of keys.
 const PROJECTED: u16 = 1;
@@ -19,8 +13,6 @@ const PIXEL_IS_AREA: u16 = 1;
 const PIXEL_IS_POINT: u16 = 2;
 /// Numbers of keys that say what elevations are.
 const OF_ELEVATIONS: std::ops::RangeInclusive<u16> = 4096..=4099;
-/// Where the text of a key is.
-const TEXTS_TAG: u16 = 34737;
 /// The first numbers of a directory: version and revision of keys.
 const VERSION: [u16; 3] = [1, 1, 0];
 
@@ -34,18 +26,16 @@ pub(super) struct GeoKeys {
 }
 
 impl GeoKeys {
-    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have none; of well-known text
-    /// its EPSG code, or else its name.
+    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have
+    /// none; of well-known text its EPSG code, or else its name.
     pub(super) fn of(crs: &Crs, are_elevations: bool) -> GeoKeys {
         match crs {
             Crs::Unknown => GeoKeys::new(&[]),
             Crs::Wkt(text) => GeoKeys::of_text(text, crs),
             Crs::GeoKeys { directory, doubles, ascii } => {
-                let numbers: Vec<u16> = directory.chunks_exact(2).map(LE::read_u16).collect();
-                let keys = numbers.get(4..).unwrap_or_default().chunks_exact(4);
-                let keys = keys.map(|key| [key[0], key[1], key[2], key[3]]);
+                let is_kept = |key: &[u16; 4]| are_elevations || !OF_ELEVATIONS.contains(&key[0]);
                 let keys: Vec<[u16; 4]> =
-                    keys.filter(|key| are_elevations || !OF_ELEVATIONS.contains(&key[0])).collect();
+                    geo_keys::keys(&geo_keys::numbers(directory)).filter(is_kept).collect();
                 GeoKeys {
                     doubles: doubles.chunks_exact(8).map(LE::read_f64).collect(),
                     texts: String::from_utf8_lossy(ascii).trim_end_matches('\0').to_string(),
@@ -84,7 +74,7 @@ impl GeoKeys {
 
 /// Whether a directory of keys says that places are those of the centres of cells.
 pub(in crate::raster) fn is_of_points(directory: &[u16]) -> bool {
-    directory.chunks_exact(4).skip(1).any(|key| key == [RASTER_TYPE, 0, 1, PIXEL_IS_POINT])
+    geo_keys::short(directory, RASTER_TYPE) == Some(PIXEL_IS_POINT)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! GeoTIFF files of one band of 32-bit numbers (OGC 19-008r4, GeoTIFF 1.1), with overviews if they are wanted.
+//! GeoTIFF files of one band of 32-bit numbers (OGC 19-008r4, GeoTIFF 1.1), with overviews if they are
+//! wanted.
 //!
-//! Tiles come in any order. `tile_code` is what becomes of their values, on the thread of `compressor`; `overviews` reduces them;
-//! `store` has their bytes until all have come. `directory` writes what stands before them, of which `geo_keys` are the part that
-//! says where on the earth the image is.
+//! Tiles come in any order. `tile_code` is what becomes of their values, on the thread of `compressor`;
+//! `overviews` reduces them; `store` has their bytes until all have come. `directory` writes what stands
+//! before them, of which `geo_keys` are the part that says where on the earth the image is.
 
 mod compressor;
 mod directory;

@@ -1,7 +1,8 @@
 //! Overviews: the same image with half as many cells along each axis, and half of that, until it fits a tile.
 //!
-//! They are made while tiles come: a tile is reduced to a quarter of one of the next level, which waits in a temporary file until all
-//! of its quarters have come. So overviews need no second pass, and no memory to speak of.
+//! They are made while tiles come: a tile is reduced to a quarter of one of the next level, which waits in a
+//! temporary file until all of its quarters have come. So overviews need no second pass, and no memory to
+//! speak of.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -66,7 +67,8 @@ impl Overviews {
         Overviews { reduction, sizes, open: HashMap::new(), quarters }
     }
 
-    /// Adds a tile to the one of the next level that it is a quarter of, and gives that one, if it is complete.
+    /// Adds a tile to the one of the next level that it is a quarter of, and gives that one, if it is
+    /// complete.
     ///
     /// # Errors
     /// If the temporary file fails.

@@ -1,4 +1,5 @@
-//! Where the bytes of tiles go: to the output at once, or to a temporary file, to be read again and brought into order.
+//! Where the bytes of tiles go: to the output at once, or to a temporary file, to be read again and brought
+//! into order.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -82,8 +83,8 @@ impl<'a> Store<'a> {
         Ok(())
     }
 
-    /// Says where pieces are going to be in the output, after so many bytes: where they are, or, if they were staged, in the order of
-    /// `extents`. Gives where staged ones are now.
+    /// Says where pieces are going to be in the output, after so many bytes: where they are, or, if they were
+    /// staged, in the order of `extents`. Gives where staged ones are now.
     pub(super) fn arrange<'b>(
         &self,
         extents: impl Iterator<Item = &'b mut Extent>,

@@ -1,4 +1,5 @@
-//! The bytes of a tile: deflated after the predictor for floating-point numbers (Adobe Photoshop TIFF technical note 3).
+//! The bytes of a tile: deflated after the predictor for floating-point numbers (Adobe Photoshop TIFF
+//! technical note 3).
 //!
 //! Bytes of equal weight stand together, as differences, which slowly varying values make small.
 

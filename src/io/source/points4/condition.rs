@@ -41,7 +41,7 @@ enum Relation {
 }
 
 impl Condition {
-    /// Whether a point with this value fulfils it. No comparison with a value that is not a number is true.
+    /// Whether a point with this value fulfils it. No comparison with NaN is true.
     #[must_use]
     pub fn holds(&self, point: &Point4, value: f64) -> bool {
         self.rule.holds(point, value)
@@ -241,8 +241,8 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '.' | '_' | '+' | '-')
 }
 
-/// Length of the word or the number that `text` starts with. A sign is part of it at its start and behind the `e` of a
-/// number only.
+/// Length of the word or the number that `text` starts with. A sign is part of it at its start and behind the
+/// `e` of a number only.
 fn word_len(text: &str) -> usize {
     let mut before = None;
     for (at, c) in text.char_indices() {

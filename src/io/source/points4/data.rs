@@ -58,7 +58,8 @@ pub(super) struct Part {
 impl Data {
     /// Gives all `total` values to `visit`, in batches.
     ///
-    /// Memory: a batch. Reads no more than `total` values and a byte, however much a compressed file would give.
+    /// Memory: a batch. Reads no more than `total` values and a byte, however much a compressed file would
+    /// give.
     ///
     /// # Errors
     /// If there are fewer values, or one of them is none; or whatever `visit` returns.

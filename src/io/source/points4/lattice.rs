@@ -120,8 +120,8 @@ impl Lattice {
         largest
     }
 
-    /// Whether every coordinate is exactly `min + index * step`: both are multiples of a power of two that no coordinate
-    /// has more than 2^53 of.
+    /// Whether every coordinate is exactly `min + index * step`: both are multiples of a power of two that no
+    /// coordinate has more than 2^53 of.
     pub(super) fn is_exact(&self) -> bool {
         let Frame { mins, steps } = &self.frame;
         let largest = self.largest();

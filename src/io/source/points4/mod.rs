@@ -1,15 +1,15 @@
-//! Points of four dimensions: lines of x y z t, grids, and volumes that change over time (NRRD, NIfTI, raw), and streams,
-//! whole or chosen by a condition and at random.
+//! Points of four dimensions: lines of x y z t, grids, and volumes that change over time (NRRD, NIfTI, raw),
+//! and streams, whole or chosen by a condition and at random.
 //!
-//! Coordinates are grid indices unless the world is asked for, so that they are integers and cells are cospherical
-//! exactly where the grid is. What is chosen depends on the input and the seed alone.
+//! Coordinates are grid indices unless the world is asked for, so that they are integers and cells are
+//! cospherical exactly where the grid is. What is chosen depends on the input and the seed alone.
 
 mod condition;
 mod data;
-mod detect;
 mod lattice;
 mod nifti;
 mod nrrd;
+mod opening;
 mod raw;
 mod sample;
 mod scan;
@@ -30,8 +30,8 @@ use super::origin::{Origin, name_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// The points that a request selects, in the order of the input. Sites of a grid come in the order of volume files, where
-/// x changes fastest. Equal points of a text are kept.
+/// Points of four dimensions, in the order of the input: in that of volume files, where x changes fastest, if
+/// they are sites of a grid. Equal points of a text stay as they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected4 {
     /// The points, finite; none is -0.
@@ -85,7 +85,7 @@ pub enum Spacing {
 pub struct Selection {
     /// Only points that fulfil it.
     pub condition: Option<Condition>,
-    /// Whether points whose value is missing (not a number) are wanted, too.
+    /// Whether points whose value is missing (NaN) are wanted, too.
     pub keep_nan: bool,
     /// Only so many of them, chosen at random.
     pub share: Option<Share>,
@@ -95,13 +95,14 @@ pub struct Selection {
 
 /// Reads or makes the points that are asked for.
 ///
-/// Cost: a pass over the input, and a second one if points are chosen at random from a file; from a whole grid they are
-/// chosen without a pass. Memory: what is kept, in 32 bytes per point, 8 per value, and some 24 more for each that is
-/// chosen at random. An input that cannot be read twice is copied to an unlinked temporary file.
+/// Cost: a pass over the input, and a second one if points are chosen at random from a file; from a whole
+/// grid they are chosen without a pass. Memory: what is kept, in 32 bytes per point, 8 per value, and some 24
+/// more for each that is chosen at random. An input that cannot be read twice is copied to an unlinked
+/// temporary file.
 ///
 /// # Errors
-/// If the input cannot be read, is malformed (with the position), or of no known format; if what is asked for does not
-/// go with it, or would be more than [`spmesh_core::limits`] allows.
+/// If the input cannot be read, is malformed (with the position), or of no known format; if what is asked for
+/// does not go with it, or would be more than [`spmesh_core::limits`] allows.
 pub fn read_points4(request: &Request) -> Result<Selected4> {
     let mut warnings = Vec::new();
     let (supply, name) = match &request.from {
@@ -119,7 +120,7 @@ pub fn read_points4(request: &Request) -> Result<Selected4> {
             let path = (!is_stdin).then_some(path.as_path());
             let supply = match &request.from {
                 From4::Raw(_, layout) => raw::open(origin, path, layout).map(Supply::Volume),
-                _ => detect::open(origin, path, &mut warnings),
+                _ => opening::open(origin, path, &mut warnings),
             };
             (supply.map_err(|e| e.of_input(&name))?, name)
         }

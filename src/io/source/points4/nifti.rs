@@ -19,17 +19,11 @@ const HEADER2_LEN: u32 = 540;
 /// Where the magic bytes are.
 const MAGIC_AT: usize = 344;
 
-/// Whether `head` starts a NIfTI file, or one of its kin.
-pub(super) fn is_header(head: &[u8]) -> bool {
-    let states = |len: u32| head.starts_with(&len.to_le_bytes()) || head.starts_with(&len.to_be_bytes());
-    let has_magic = head.get(MAGIC_AT..MAGIC_AT + 2).is_some_and(|magic| magic == b"n+" || magic == b"ni");
-    states(HEADER_LEN) && has_magic || states(HEADER2_LEN) && head.get(4..6) == Some(b"n+")
-}
-
 /// Reads the header of a volume.
 ///
 /// # Errors
-/// If it is of another kind than one file of real numbers in three or four dimensions, or its fields make no sense.
+/// If it is of another kind than one file of real numbers in three or four dimensions, or its fields make no
+/// sense.
 pub(super) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Vec<String>) -> Result<Volume> {
     let order = if head[0] == 0 { ByteOrder::Big } else { ByteOrder::Little };
     let header = Header { bytes: head, order };
@@ -133,7 +127,7 @@ impl Header<'_> {
     /// Where values start (`vox_offset`).
     fn data_start(&self) -> Result<u64> {
         let start = self.f32(108);
-        // Real numbers of 32 bits are exact up to there.
+        // An f32 holds all integers up to there.
         if start.fract() != 0.0 || !(HEADER_LEN as f32 + 4.0..=16_777_216.0).contains(&start) {
             return Err(Error::malformed(format!("values cannot start at byte {start}")).at("vox_offset"));
         }

@@ -52,7 +52,8 @@ pub fn parse_sizes(text: &str) -> std::result::Result<[u64; 4], String> {
     sizes.next().map_or(Ok(lens), |_| Err(expected()))
 }
 
-/// The volume in `origin`. It is decompressed if the name of the file ends with .gz: numbers may start with anything.
+/// The volume in `origin`. It is decompressed if the name of the file ends with .gz: numbers may start with
+/// anything.
 ///
 /// # Errors
 /// Usage, if the sizes are too large.

@@ -51,7 +51,8 @@ impl fmt::Display for Share {
 
 /// `count` of the numbers below `total`, increasing; every set of so many is as likely as the others.
 ///
-/// Cost: O(n log n) for n = `count`, whatever the total is (Floyd; Bentley and Floyd, Communications of the ACM 1987).
+/// Cost: O(n log n) for n = `count`, whatever the total is (Floyd; Bentley and Floyd, Communications of the
+/// ACM 1987).
 ///
 /// # Errors
 /// [`ErrorKind::Memory`], if there is not enough for so many.

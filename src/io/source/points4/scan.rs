@@ -43,7 +43,8 @@ impl Supply {
     /// Puts the sites of a volume where they are in the world.
     ///
     /// # Errors
-    /// Usage, if that is not known or not along the axes. The coordinates of texts and streams are what they are.
+    /// Usage, if that is not known or not along the axes. The coordinates of texts and streams are what they
+    /// are.
     pub(super) fn place_in_world(&mut self) -> Result<()> {
         match self {
             Supply::Grid(_) => {

@@ -1,18 +1,14 @@
-//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are read over.
+//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are
+//! read over.
 
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-use super::scan::Supply;
-use crate::source::gzip::Plain;
 use crate::source::origin::Origin;
 use crate::source::{EventSource, TwinSource};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 use spmesh_stream::{Event, StreamReader};
-
-/// First bytes of a stream.
-const MAGIC: &[u8] = b"\x89SPM";
 
 /// First bytes of a text twin.
 const TWIN_MAGIC: &[u8] = b"#spmesh ";
@@ -28,16 +24,11 @@ pub(super) struct Stream {
     pub has_values: bool,
 }
 
-/// Whether these are the first bytes of a stream or of its text twin.
-pub(super) fn is_head(head: &[u8]) -> bool {
-    head.starts_with(MAGIC) || head.starts_with(TWIN_MAGIC)
-}
-
 /// The points of the stream in `origin`, which starts with `head`, for any number of passes.
 ///
 /// # Errors
 /// If its header is damaged; usage, if its points have fewer dimensions.
-pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Supply> {
+pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Stream> {
     let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
     let is_twin = head.starts_with(TWIN_MAGIC);
     let mut stream = Stream { origin, name, is_twin, has_values: false };
@@ -52,13 +43,13 @@ pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<S
         return Err(Error::usage(message));
     }
     stream.has_values = header.has_elevation;
-    Ok(Supply::Stream(stream))
+    Ok(stream)
 }
 
 impl Stream {
     fn read(&self) -> Result<Box<dyn EventSource>> {
-        let plain = Plain::new(self.origin.view()?).map_err(|e| Error::io("reading", e))?;
-        let input: Box<dyn Read + Send> = Box::new(BufReader::with_capacity(BUFFER_LEN, plain));
+        let input: Box<dyn Read + Send> =
+            Box::new(BufReader::with_capacity(BUFFER_LEN, self.origin.plain()?));
         Ok(match self.is_twin {
             true => Box::new(TwinSource::new(input, &self.name)?),
             false => Box::new(StreamReader::new(input, &self.name)?),

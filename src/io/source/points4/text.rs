@@ -1,11 +1,7 @@
 //! Lines of x y z t, or of x y z t value.
 
-use std::io::BufReader;
-
-use super::scan::Supply;
-use crate::source::gzip::Plain;
-use crate::source::lines::{LineReader, number, quote};
-use crate::source::origin::{FileView, Origin};
+use crate::source::lines::{Lines, number, quote};
+use crate::source::origin::{Bytes, Origin};
 use crate::source::text::{Delimiter, delimiter_of, fields, without_comment};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
@@ -28,16 +24,14 @@ struct Columns {
     names_line: Option<u64>,
 }
 
-type Lines = LineReader<BufReader<Plain<FileView>>>;
-
 /// Finds the columns from the first line of points and the names above it, if there are some.
 ///
 /// # Errors
 /// If there is no point, or its columns are not those of one; line and column are named.
-pub(super) fn open(origin: Origin) -> Result<Supply> {
+pub(super) fn open(origin: Origin) -> Result<Text> {
     let mut lines = read(&origin)?;
     let mut names: Option<(u64, Vec<String>)> = None;
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_trimmed()? {
         let line = without_comment(line);
         if line.is_empty() {
             continue;
@@ -52,7 +46,7 @@ pub(super) fn open(origin: Origin) -> Result<Supply> {
         }
         let count = fields(line, delimiter).count();
         let columns = columns(delimiter, count, names).map_err(|e| e.at(lines.position()))?;
-        return Ok(Supply::Text(Text { origin, columns }));
+        return Ok(Text { origin, columns });
     }
     Err(match names {
         Some((line, _)) => Error::malformed("expected a line of x y z t").at(format!("line {line}")),
@@ -105,9 +99,8 @@ fn is_name(name: &str, usual: &[&str]) -> bool {
     usual.iter().any(|usual| name.eq_ignore_ascii_case(usual))
 }
 
-fn read(origin: &Origin) -> Result<Lines> {
-    let plain = Plain::new(origin.view()?).map_err(|e| Error::io("reading", e))?;
-    Ok(LineReader::new(BufReader::with_capacity(1 << 17, plain)))
+fn read(origin: &Origin) -> Result<Lines<Bytes>> {
+    Ok(Lines::new(origin.plain()?, ""))
 }
 
 impl Text {
@@ -122,7 +115,7 @@ impl Text {
     /// If a line is no point, or has other columns than the first; line and column are named.
     pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut lines = read(&self.origin)?;
-        while let Some(line) = lines.next_line()? {
+        while let Some(line) = lines.next_trimmed()? {
             let line = without_comment(line);
             if line.is_empty() {
                 continue;

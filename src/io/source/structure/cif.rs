@@ -2,7 +2,8 @@
 
 use std::io::Read;
 
-use crate::source::statements::Lines;
+use crate::source::lines::Lines;
+
 use spmesh_core::error::{Error, Result};
 
 /// What a token is.
@@ -59,7 +60,8 @@ impl<R: Read> Tokens<R> {
         self.token
     }
 
-    /// The text of the current token: of values without their quotes, of tags as they are, of blocks their name.
+    /// The text of the current token: of values without their quotes, of tags as they are, of blocks their
+    /// name.
     pub(super) fn text(&self) -> &[u8] {
         if self.is_field { &self.field } else { &self.lines.current()[self.start..self.end] }
     }

@@ -37,9 +37,9 @@ impl Conformer {
     }
 }
 
-/// For each atom, whether it belongs to one conformer of the model: atoms with one location, those of the conformer that
-/// is preferred at each site, and where an atom of its residue is not in that conformer, the location that is
-/// preferred among the others.
+/// For each atom, whether it belongs to one conformer of the model: atoms with one location, those of the
+/// conformer that is preferred at each site, and where an atom of its residue is not in that conformer, the
+/// location that is preferred among the others.
 pub(super) fn one_conformer(residues: &[Residue], atoms: &[Atom], preference: Preference) -> Vec<bool> {
     let residue = |atom: &Atom| residues[atom.residue as usize];
     let mut wanted: Vec<bool> = atoms.iter().map(|atom| atom.altloc.is_empty()).collect();

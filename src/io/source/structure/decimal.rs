@@ -143,7 +143,7 @@ impl Quantum {
     }
 }
 
-/// The number in units of a quantum, if it is a whole number of 32 bits.
+/// The number in units of a quantum, if it is a 32-bit integer.
 fn multiple(number: Number, places: usize) -> Option<f64> {
     let Number::Decimal { digits, places: own } = number else { return None };
     let multiple = if own <= places {

@@ -6,7 +6,8 @@ use std::ops::Range;
 use super::builder::{Oddity, Record, StructureBuilder, printable};
 use super::cif::{Token, Tokens};
 use super::decimal::Number;
-use crate::source::statements::{Lines, unexpected};
+use crate::source::lines::Lines;
+use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
 /// The items of `_atom_site` that matter here, in the order of [`ITEMS`].
@@ -167,7 +168,8 @@ impl<R: Read> MmcifReader<'_, R> {
         self.tokens.advance().map(drop)
     }
 
-    /// The item that the current tag names: `None` if it is of another category, `Some(None)` if it does not matter.
+    /// The item that the current tag names: `None` if it is of another category, `Some(None)` if it does not
+    /// matter.
     fn item(&mut self) -> Option<Option<Item>> {
         let tag = self.tokens.text();
         let (category, name) = tag.split_at_checked(CATEGORY.len())?;

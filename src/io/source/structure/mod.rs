@@ -1,14 +1,14 @@
-//! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this project and
-//! its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the content.
+//! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this
+//! project and its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the
+//! content.
 //!
-//! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data, refuses others
-//! that hold all their atoms, and takes longer than the triangulation.
+//! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data,
+//! refuses others that hold all their atoms, and takes longer than the triangulation.
 
 mod builder;
 mod cif;
 mod conformers;
 mod decimal;
-mod detect;
 mod mmcif;
 mod model;
 mod names;
@@ -28,8 +28,11 @@ pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 
 use self::builder::StructureBuilder;
 use super::gzip::Plain;
-use super::statements::Lines;
-use super::{open_obj, open_ply};
+use super::lines::Lines;
+
+use super::obj::open_obj;
+use super::ply::open_ply;
+use crate::detect::{self, TESS3, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::STRUCTURE_LINE_MAX;
 use spmesh_stream::Coordinates;
@@ -49,19 +52,20 @@ pub enum Format {
     Obj,
     /// Vertices of an OFF file.
     Off,
-    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text twins, LAS, VTK.
+    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text
+    /// twins, LAS, VTK.
     Points,
 }
 
-/// Reads the structure or the points in the file `path`; "-" is standard input. The format is told by the content
-/// unless `format` says what it is.
+/// Reads the structure or the points in the file `path`; "-" is standard input. The format is told by the
+/// content unless `format` says what it is.
 ///
-/// Cost: one pass; memory: what is read, in 56 bytes per atom and 24 per point without names. Points that are compressed
-/// or come through a pipe are copied to an unlinked temporary file first.
+/// Cost: one pass; memory: what is read, in 56 bytes per atom and 24 per point without names. Points that are
+/// compressed or come through a pipe are copied to an unlinked temporary file first.
 ///
 /// # Errors
-/// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line (or byte), if it is damaged, has
-/// no atom, or is of no format that is known.
+/// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line (or byte), if
+/// it is damaged, has no atom, or is of no format that is known.
 pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> {
     if path.as_os_str() == "-" {
         return read_structure_from(std::io::stdin(), "stdin", format);
@@ -93,13 +97,11 @@ fn read(
 ) -> Result<Structure> {
     let reading = |e| Error::io("reading", e).of_input(name);
     let mut input = Plain::new(input).map_err(reading)?;
-    let mut head = Vec::new();
-    (&mut input).take(detect::HEAD_LEN).read_to_end(&mut head).map_err(reading)?;
-    let path = path.filter(|_| !input.is_compressed());
+    let mut head = read_head(&mut input).map_err(reading)?;
     if head.starts_with(b"\xef\xbb\xbf") {
         head.drain(..3);
     }
-    let format = format.map_or_else(|| detect::detect(&head), Ok).map_err(|e| e.of_input(name))?;
+    let format = format.map_or_else(|| recognized(&head), Ok).map_err(|e| e.of_input(name))?;
     let input = Cursor::new(head).chain(input);
     let mut builder = StructureBuilder::default();
     let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
@@ -121,4 +123,23 @@ fn read(
     }
     .map_err(|e| e.of_input(name))?;
     builder.finish(name)
+}
+
+/// The format of an input that starts with `head`.
+///
+/// # Errors
+/// If it has nothing but white space, or is of a format that is not read.
+fn recognized(head: &[u8]) -> Result<Format> {
+    if head.trim_ascii().is_empty() {
+        return Err(Error::malformed("empty: found no atom and no point"));
+    }
+    Ok(match TESS3.detect(head)? {
+        detect::Format::Pdb => Format::Pdb,
+        detect::Format::Mmcif => Format::Mmcif,
+        detect::Format::Xyz => Format::Xyz,
+        detect::Format::Ply => Format::Ply,
+        detect::Format::Obj | detect::Format::VertexLines => Format::Obj,
+        detect::Format::Off => Format::Off,
+        _ => Format::Points,
+    })
 }

@@ -2,17 +2,11 @@
 
 use std::io::Read;
 
-use crate::source::statements::{Lines, fields, next_field, parse_decimals, parse_integer, unexpected};
+use crate::detect::is_off;
+use crate::source::lines::Lines;
+use crate::source::statements::{fields, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
-
-/// First words of files that have a vertex in three dimensions per line, whatever follows it.
-const KINDS: [&[u8]; 8] = [b"OFF", b"COFF", b"NOFF", b"CNOFF", b"STOFF", b"STCOFF", b"STNOFF", b"STCNOFF"];
-
-/// Whether the word starts an OFF file that is read here.
-pub(super) fn is_kind(word: &[u8]) -> bool {
-    KINDS.contains(&word)
-}
 
 /// The vertices.
 ///
@@ -37,7 +31,7 @@ fn read_count(lines: &mut Lines<impl Read>) -> Result<u64> {
     next_content(lines)?;
     let mut words = content(lines.current());
     let kind = next_field(&mut words)?;
-    if !is_kind(kind) {
+    if !is_off(kind) {
         return Err(unexpected(kind, "OFF"));
     }
     if let Some(count) = words.next() {

@@ -1,16 +1,16 @@
 //! Reads PDB: records of fixed columns.
 //!
-//! Files by many programs are read, not only those of the archive: lines may end after the coordinates, serial and
-//! residue numbers may go beyond their columns in the ways that are in use (hybrid-36, hexadecimal, one column more,
-//! asterisks). What is not forgiven is a coordinate that is not certain.
+//! Files by many programs are read, not only those of the archive: lines may end after the coordinates,
+//! serial and residue numbers may go beyond their columns in the ways that are in use (hybrid-36,
+//! hexadecimal, one column more, asterisks). What is not forgiven is a coordinate that is not certain.
 
 use std::io::Read;
 
 use super::builder::{Oddity, Record, StructureBuilder};
 use super::decimal::Number;
 use super::serial::{Serials, residue_number};
-use crate::source::lines::quote;
-use crate::source::statements::{Lines, unexpected};
+use crate::source::lines::{Lines, quote};
+use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
 /// Columns of x, y and z, counted from 0.
@@ -161,8 +161,8 @@ fn place(line: &[u8]) -> Result<[Number; 3]> {
     if is_apart(line, end) { Ok(place) } else { Err(overflow(line, "z in columns 47 to 54")) }
 }
 
-/// Whether the number that starts at `start` is not one with what stands before it. Numbers of eight columns with
-/// three decimal places may touch; other numbers that touch may have overflowed their columns.
+/// Whether the number that starts at `start` is not one with what stands before it. Numbers of eight columns
+/// with three decimal places may touch; other numbers that touch may have overflowed their columns.
 fn is_apart(line: &[u8], start: usize) -> bool {
     let is_part = |byte: u8| byte.is_ascii_digit() || byte == b'.';
     let starts_within = line.get(start).is_some_and(|&byte| is_part(byte));

@@ -5,9 +5,11 @@ use std::path::Path;
 
 use super::model::{Model, Structure};
 use super::names::Names;
-use crate::source::{EventSource, Input, SourceOptions};
+use crate::detect::TESS3;
+use crate::source::events::EventSource;
+use crate::source::input::Input;
+use crate::source::options::SourceOptions;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::temporary::TemporaryFile;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Event};
 
@@ -19,34 +21,17 @@ pub(super) fn read_file(path: &Path) -> Result<Structure> {
     read_input(&Input::open(&[path.to_path_buf()], &options())?)
 }
 
-/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call it.
+/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call
+/// it.
 ///
 /// # Errors
 /// As [`Input::open`], and if there is no point.
-pub(super) fn read_copy(mut input: impl Read, name: &str) -> Result<Structure> {
-    let file = TemporaryFile::create(None)?;
-    copy(&mut input, &file).map_err(|e| e.of_input(name))?;
-    read_input(&Input::open_file(file.into_file(), name, &options())?)
+pub(super) fn read_copy(input: impl Read, name: &str) -> Result<Structure> {
+    read_input(&Input::copied(input, name, &options())?)
 }
 
 fn options() -> SourceOptions {
-    SourceOptions { dims: 3, ..SourceOptions::default() }
-}
-
-/// Copies all bytes. What fails is told apart: reading, or writing.
-fn copy(input: &mut impl Read, file: &TemporaryFile) -> Result<()> {
-    use std::io::Write;
-    let mut buffer = vec![0; 1 << 16];
-    loop {
-        match input.read(&mut buffer) {
-            Ok(0) => return Ok(()),
-            Ok(len) => {
-                file.file().write_all(&buffer[..len]).map_err(|e| file.error("writing to it", e))?;
-            }
-            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(e) => return Err(Error::io("reading", e)),
-        }
-    }
+    SourceOptions { reader: &TESS3, dims: 3, ..SourceOptions::default() }
 }
 
 fn read_input(input: &Input) -> Result<Structure> {
@@ -71,8 +56,8 @@ fn read_input(input: &Input) -> Result<Structure> {
     structure(points, coordinates, &input.name(), warnings)
 }
 
-/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as those of
-/// points are that stand in a column of their own before the coordinates.
+/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as
+/// those of points are that stand in a column of their own before the coordinates.
 fn numbered(points: &[Point]) -> Option<usize> {
     const FEWEST: usize = 8;
     let first = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);

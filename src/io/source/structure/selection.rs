@@ -92,12 +92,12 @@ enum Members {
 }
 
 impl Structure {
-    /// The atoms that `selection` wants. To select a whole model costs nothing; points without names are in every
-    /// selection of their model that does not ask for chains or alpha carbons.
+    /// The atoms that `selection` wants. To select a whole model costs nothing; points without names are in
+    /// every selection of their model that does not ask for chains or alpha carbons.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to select by; none
-    /// if no atom is left.
+    /// [`spmesh_core::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to
+    /// select by; none if no atom is left.
     pub fn select(&self, selection: &Selection) -> Result<Selected<'_>> {
         let models = self.models_of(selection)?;
         let chains = self.chains_of(selection)?;
@@ -224,7 +224,8 @@ impl<'s> Filter<'s> {
             && is_kind()
     }
 
-    /// By the element; where it is not stated, by the name, digits aside: that of an ion is that of its residue.
+    /// By the element; where it is not stated, by the name, digits aside: that of an ion is that of its
+    /// residue.
     fn is_hydrogen(&self, atom: &Atom) -> bool {
         let names = &self.structure.names;
         match names.text(atom.element) {
@@ -260,8 +261,8 @@ impl<'s> Selected<'s> {
         self.structure
     }
 
-    /// The label of the point at `index`: the serial number of its atom, or for points without names its number
-    /// in the input, counted from 1.
+    /// The label of the point at `index`: the serial number of its atom, or for points without names its
+    /// number in the input, counted from 1.
     #[must_use]
     pub fn label(&self, index: usize) -> u64 {
         let [model, atom] = self.place(index);

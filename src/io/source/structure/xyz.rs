@@ -4,7 +4,8 @@ use std::io::Read;
 
 use super::builder::{Record, StructureBuilder, printable};
 use super::decimal::Number;
-use crate::source::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
+use crate::source::lines::Lines;
+use crate::source::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Reads all frames, each as a model. Atoms are numbered from 1 in each; their name is their element.

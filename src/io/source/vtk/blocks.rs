@@ -4,7 +4,7 @@ use std::io::{self, BufRead, Cursor, Read, Take};
 
 use flate2::bufread::ZlibDecoder;
 
-use super::framed::Lengths;
+use super::lengths::Lengths;
 use crate::source::panic_guard::guarded;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::limits::VTK_BLOCK_MAX;

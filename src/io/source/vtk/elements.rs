@@ -64,8 +64,9 @@ impl Elements {
         Ok(Elements { reader, start, path: Vec::new(), buffer: Vec::new() })
     }
 
-    /// The next element within the one that was opened last, or the one of the file; `None` at the end of that. What is
-    /// between does not count. The caller goes to the end of the element before it asks for the next.
+    /// The next element within the one that was opened last, or the one of the file; `None` at the end of
+    /// that. What is between does not count. The caller goes to the end of the element before it asks for the
+    /// next.
     pub(super) fn child(&mut self) -> Result<Option<Tag>> {
         loop {
             self.text()?;
@@ -86,7 +87,8 @@ impl Elements {
         Ok(())
     }
 
-    /// Goes to the end of the element that was opened last, and tells where its text is, between its other elements.
+    /// Goes to the end of the element that was opened last, and tells where its text is, between its other
+    /// elements.
     pub(super) fn only_text(&mut self) -> Result<Range<u64>> {
         let mut found = 0..0;
         loop {

@@ -1,39 +1,17 @@
-//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed blocks.
+//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed
+//! blocks.
 
 use std::io::{self, BufReader, Read};
 
 use super::blocks::{Blocks, Compressor};
+use super::lengths::Lengths;
 use crate::source::base64::Base64Reader;
-use crate::source::byte_order::ByteOrder;
 use crate::source::origin::FileView;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::error::{Error, Result};
 
 /// Bytes that are read at once.
 const BUFFER_LEN: usize = 1 << 17;
-
-/// How lengths are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Lengths {
-    /// Whether they have 8 bytes, or else 4.
-    pub(super) is_wide: bool,
-    pub(super) order: ByteOrder,
-}
-
-impl Lengths {
-    /// Bytes of a length.
-    pub(super) fn len(self) -> u64 {
-        if self.is_wide { 8 } else { 4 }
-    }
-
-    /// The next length.
-    pub(super) fn read(self, input: &mut impl Read) -> io::Result<u64> {
-        let mut bytes = [0; 8];
-        let bytes = &mut bytes[..self.len() as usize];
-        input.read_exact(bytes)?;
-        Ok(if self.is_wide { self.order.u64(bytes) } else { u64::from(self.order.u32(bytes)) })
-    }
-}
 
 /// Where a binary array is, and how it is packed.
 #[derive(Debug, Clone)]

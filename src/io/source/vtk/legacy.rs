@@ -3,11 +3,12 @@
 use std::io;
 
 use crate::source::byte_order::ByteOrder;
+use crate::source::lines::Lines;
 use crate::source::numbers::{Writing, next_number};
 use crate::source::origin::FileView;
 use crate::source::point_arrays::{Place, PointArray};
 use crate::source::sample_type::SampleType;
-use crate::source::statements::{Lines, expect_no_field, fields, next_field, parse_integer, unexpected};
+use crate::source::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
 /// Type of the values of an array.
@@ -150,7 +151,8 @@ fn skip_values(lines: &mut Lines<FileView>, values: u64, kind: ValueType, writin
     skip_bytes(lines, bytes.ok_or_else(truncated)?)
 }
 
-/// Skips a text behind its length: two bits that tell how many bytes the length has, and the length, big-endian.
+/// Skips a text behind its length: two bits that tell how many bytes the length has, and the length,
+/// big-endian.
 fn skip_binary_text(lines: &mut Lines<FileView>) -> Result<()> {
     let mut bytes = [0; 8];
     read_bytes(lines, &mut bytes[..1])?;

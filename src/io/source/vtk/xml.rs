@@ -1,14 +1,15 @@
 //! Where the arrays of points are in an XML file of VTK.
 //!
-//! `VTKFile` holds an element named after the sort of data, that holds pieces, and each piece has its points as one array:
-//! as text, as base64, or at an offset into the data that are appended to all elements.
+//! `VTKFile` holds an element named after the sort of data, that holds pieces, and each piece has its points
+//! as one array: as text, as base64, or at an offset into the data that are appended to all elements.
 
 use std::io::Read;
 use std::ops::Range;
 
 use super::blocks::Compressor;
 use super::elements::{Elements, Tag};
-use super::framed::{Framed, Lengths};
+use super::framed::Framed;
+use super::lengths::Lengths;
 use crate::source::byte_order::ByteOrder;
 use crate::source::numbers::Writing;
 use crate::source::origin::FileView;
@@ -62,8 +63,8 @@ struct Appended {
 /// Cost: a pass over all that is not appended. Memory: one tag, and 100 bytes for each piece.
 ///
 /// # Errors
-/// If the XML is damaged or cut off, there are no pieces, or an array is not described as VTK does it; usage, if the data
-/// are of a sort that lists no points, or compressed in a way that is not read.
+/// If the XML is damaged or cut off, there are no pieces, or an array is not described as VTK does it; usage,
+/// if the data are of a sort that lists no points, or compressed in a way that is not read.
 pub(in crate::source) fn read(file: &FileView) -> Result<Vec<PointArray>> {
     let mut elements = Elements::new(file)?;
     let root = elements.child()?.filter(|root| root.name == "VTKFile");

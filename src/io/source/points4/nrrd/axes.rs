@@ -60,8 +60,8 @@ fn coordinates(fields: &Fields, dimension: usize) -> Result<[usize; 4]> {
     Ok([0, 1, 2, 3].map(|axis| if axis == time { 3 } else { space.next().unwrap_or(3) }))
 }
 
-/// Where samples are, or why that is not known: by `space directions` and `space origin`, or by `spacings`, `axis mins`
-/// and `axis maxs`. Axes of which nothing is said keep their indices.
+/// Where samples are, or why that is not known: by `space directions` and `space origin`, or by `spacings`,
+/// `axis mins` and `axis maxs`. Axes of which nothing is said keep their indices.
 pub(super) fn world(fields: &Fields) -> std::result::Result<Frame, String> {
     let text = |e: Error| e.to_string();
     let coordinates = dimension(fields).and_then(|dimension| coordinates(fields, dimension)).map_err(text)?;

@@ -1,9 +1,8 @@
 //! The fields of an NRRD header.
 
-use std::io::{BufRead, BufReader, Read};
+use std::io::Read;
 
-use crate::source::gzip::Plain;
-use crate::source::lines::quote;
+use crate::source::lines::{Lines, quote};
 use crate::source::origin::Origin;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{NRRD_FILES_MAX, NRRD_HEADER_MAX};
@@ -67,31 +66,34 @@ impl Fields {
     /// Reads the header.
     ///
     /// # Errors
-    /// If a line is none of a header, a field is there twice, or the header is longer than [`NRRD_HEADER_MAX`].
+    /// If a line is none of a header, a field is there twice, or the header is longer than
+    /// [`NRRD_HEADER_MAX`].
     pub(super) fn read(origin: &Origin) -> Result<Fields> {
-        let plain = Plain::new(origin.view()?).map_err(|e| Error::io("reading", e))?;
+        let plain = origin.plain()?;
         let is_gzip = plain.is_compressed();
         let mut fields = Fields { fields: Vec::new(), listed: Vec::new(), len: 0, is_gzip, is_ended: false };
-        fields.read_lines(&mut BufReader::new(plain.take(NRRD_HEADER_MAX + 1)))?;
+        fields.read_lines(&mut Lines::with_longest(
+            plain.take(NRRD_HEADER_MAX + 1),
+            "",
+            NRRD_HEADER_MAX as usize + 1,
+        ))?;
         Ok(fields)
     }
 
-    fn read_lines(&mut self, input: &mut impl BufRead) -> Result<()> {
-        let mut line = Vec::new();
+    fn read_lines(&mut self, lines: &mut Lines<impl Read>) -> Result<()> {
         let mut is_list = false;
-        for number in 1.. {
-            line.clear();
+        loop {
+            let is_line = lines.next_line()?.is_some();
+            let number = lines.number();
             let at = |e: Error| e.at(format!("line {number}"));
-            let read = input.read_until(b'\n', &mut line).map_err(|e| at(Error::io("reading", e)))?;
-            self.len += read as u64;
+            self.len = lines.bytes();
             if self.len > NRRD_HEADER_MAX {
                 let message = format!("the header has more than {NRRD_HEADER_MAX} bytes");
                 return Err(at(Error::malformed(message)));
             }
-            let text = line.strip_suffix(b"\n").unwrap_or(&line);
-            let text = text.strip_suffix(b"\r").unwrap_or(text);
+            let text = lines.current();
             if text.is_empty() {
-                self.is_ended = read > 0;
+                self.is_ended = is_line;
                 return Ok(());
             }
             let Ok(text) = std::str::from_utf8(text) else {
@@ -111,7 +113,6 @@ impl Fields {
                 return Err(at(Error::malformed(format!("more than {NRRD_FILES_MAX} data files"))));
             }
         }
-        Ok(())
     }
 
     /// Takes a line in. True if the lines behind it are names of files.

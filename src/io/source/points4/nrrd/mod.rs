@@ -1,8 +1,9 @@
-//! NRRD: a header of lines `field: description`, then the values, or the names of the files that hold them (Teem,
-//! "Definition of NRRD File Format").
+//! NRRD: a header of lines `field: description`, then the values, or the names of the files that hold them
+//! (Teem, "Definition of NRRD File Format").
 //!
-//! Read are volumes of single numbers in three or four dimensions, in the encodings raw, gzip and text. The axis of kind
-//! `time` is t, or else the only one of kind `list`, or else the fourth; the others are x, y and z in the order of the file.
+//! Read are volumes of single numbers in three or four dimensions, in the encodings raw, gzip and text. The
+//! axis of kind `time` is t, or else the only one of kind `list`, or else the fourth; the others are x, y and
+//! z in the order of the file.
 
 mod axes;
 mod fields;

@@ -1,0 +1,31 @@
+//! Formats that their first bytes tell, where a fixed start does not.
+
+/// First bytes of the legacy format of VTK.
+pub(super) const VTK_LEGACY_START: &[u8] = b"# vtk DataFile";
+
+/// Whether the root element is that of VTK.
+pub(super) fn is_vtk_xml(head: &[u8]) -> bool {
+    const ROOT: &[u8] = b"<VTKFile";
+    let text = head.trim_ascii_start();
+    text.starts_with(ROOT)
+        || (text.starts_with(b"<?xml") || text.starts_with(b"<!--"))
+            && text.windows(ROOT.len()).any(|window| window == ROOT)
+}
+
+/// Whether it is the header of NIfTI-1 or NIfTI-2: its length comes first, in either byte order.
+pub(super) fn is_nifti(head: &[u8]) -> bool {
+    const MAGIC_AT: usize = 344;
+    let states = |len: u32| head.starts_with(&len.to_le_bytes()) || head.starts_with(&len.to_be_bytes());
+    let has_magic = head.get(MAGIC_AT..MAGIC_AT + 2).is_some_and(|magic| magic == b"n+" || magic == b"ni");
+    states(348) && has_magic || states(540) && head.get(4..6) == Some(b"n+")
+}
+
+/// Version 7, byte order 0 or 1, then data type (two bits) and finalization method.
+pub(super) fn is_spb(head: &[u8]) -> bool {
+    matches!(*head, [7, 0 | 1, flags, ..] if flags & 3 < 3 && flags >> 2 <= 4)
+}
+
+/// Version 0, byte order 0 or 1, no compression. Bytes that are all zero are none.
+pub(super) fn is_smb(head: &[u8]) -> bool {
+    matches!(head, [0, 0 | 1, 0, 0, ..]) && head.iter().any(|&byte| byte != 0)
+}

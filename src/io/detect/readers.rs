@@ -1,0 +1,151 @@
+//! Which tool reads which formats, and what it says of any other.
+
+use spmesh_core::error::{Error, Result};
+
+use super::{Format, detect};
+
+/// A tool that reads inputs of several formats.
+#[derive(Debug)]
+pub struct Reader {
+    /// Name of the tool.
+    pub tool: &'static str,
+    /// The formats that it reads, in the order of its messages.
+    pub formats: &'static [Format],
+    /// Whether `--raw` makes it read numbers without a header.
+    pub has_raw: bool,
+}
+
+/// Formats that hold points of space: those of every tool that takes points.
+const POINTS: &[Format] = &[
+    Format::Las,
+    Format::Text,
+    Format::OtherText,
+    Format::Stream,
+    Format::Twin,
+    Format::Spa,
+    Format::Spb,
+    Format::Ply,
+    Format::Obj,
+    Format::VertexLines,
+    Format::VtkLegacy,
+    Format::VtkXml,
+];
+
+/// `spfinalize`.
+pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: POINTS, has_raw: true };
+
+/// `configgen`.
+pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: POINTS, has_raw: false };
+
+/// `splinefit`.
+pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: POINTS, has_raw: false };
+
+/// `spinfo`, for the points that an audit compares with.
+pub const SPINFO: Reader = Reader { tool: "spinfo", formats: POINTS, has_raw: false };
+
+/// `spconvert`.
+pub const SPCONVERT: Reader = Reader {
+    tool: "spconvert",
+    formats: &[
+        Format::Stream,
+        Format::Twin,
+        Format::Obj,
+        Format::Ply,
+        Format::Spa,
+        Format::Spb,
+        Format::Sma,
+        Format::Smb,
+        Format::Las,
+        Format::VtkLegacy,
+        Format::VtkXml,
+        Format::Text,
+    ],
+    has_raw: false,
+};
+
+/// `tess3`.
+pub const TESS3: Reader = Reader {
+    tool: "tess3",
+    formats: &[
+        Format::Pdb,
+        Format::Mmcif,
+        Format::Xyz,
+        Format::Off,
+        Format::Las,
+        Format::Text,
+        Format::OtherText,
+        Format::Stream,
+        Format::Twin,
+        Format::Spa,
+        Format::Spb,
+        Format::Ply,
+        Format::Obj,
+        Format::VertexLines,
+        Format::VtkLegacy,
+        Format::VtkXml,
+    ],
+    has_raw: false,
+};
+
+/// `dd4`.
+pub const DD4: Reader = Reader {
+    tool: "dd4",
+    formats: &[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin],
+    has_raw: true,
+};
+
+/// All of them.
+pub const READERS: [&Reader; 7] = [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &TESS3, &DD4];
+
+/// Formats that hold points of space.
+#[must_use]
+pub fn formats_of_points() -> &'static [Format] {
+    POINTS
+}
+
+/// The reader of a caller that does not say which tool it is.
+static ANY: Reader = Reader { tool: "this program", formats: POINTS, has_raw: true };
+
+impl Default for &'static Reader {
+    fn default() -> Self {
+        &ANY
+    }
+}
+
+impl Reader {
+    /// The format of an input that starts with `head`, if the tool reads it.
+    ///
+    /// # Errors
+    /// Malformed, if the input is empty, or of a format that the tool does not read.
+    pub fn detect(&self, head: &[u8]) -> Result<Format> {
+        let format = detect(head)?;
+        if self.reads(format) { Ok(format) } else { Err(Error::malformed(self.refusal(format, head))) }
+    }
+
+    /// Whether the tool reads this format.
+    #[must_use]
+    pub fn reads(&self, format: Format) -> bool {
+        self.formats.contains(&format)
+    }
+
+    /// What the tool says of a file of this format, which starts with `head`.
+    #[must_use]
+    pub fn refusal(&self, format: Format, head: &[u8]) -> String {
+        let mut listed: Vec<&str> = Vec::new();
+        for format in self.formats {
+            let name = format.row().listed;
+            if !listed.contains(&name) {
+                listed.push(name);
+            }
+        }
+        let reads = format!("{} reads {}", self.tool, listed.join(", "));
+        if format == Format::Binary {
+            let at = head.iter().position(|&byte| byte == 0).unwrap_or_default();
+            let raw = if self.has_raw { "; raw numbers need --raw" } else { "" };
+            return format!("zero byte at byte {at}: not text, and of no known format; {reads}{raw}");
+        }
+        let hint = format.row().hint;
+        let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
+        format!("this is {}; {reads}{hint}", format.name())
+    }
+}

@@ -1,0 +1,51 @@
+//! What callers can choose of an input.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use super::raw_type::RawType;
+use crate::detect::Reader;
+use spmesh_core::parallel::available_threads;
+use spmesh_model::bounds::Bounds;
+
+/// What to read of the files, and how.
+#[derive(Debug, Clone, Default)]
+pub struct SourceOptions {
+    /// The tool that reads, for messages.
+    pub reader: &'static Reader,
+    /// Keep only points of these classes, if any are given.
+    pub keep_class: Vec<u8>,
+    /// Drop points of these classes.
+    pub drop_class: Vec<u8>,
+    /// Keep only first returns.
+    pub first_only: bool,
+    /// Keep only last returns.
+    pub last_only: bool,
+    /// Keep only points that lie in this closed box of the world; sides may be infinite.
+    pub bounds: Option<Bounds>,
+    /// Drop and count points with a coordinate that is not finite, instead of failing.
+    pub skip_invalid: bool,
+    /// Dimensions of the geometry: 2 (z is an elevation) or 3.
+    pub dims: u8,
+    /// Grid to put integer coordinates on: scale and offset per axis, instead of those of the files.
+    pub grid: Option<([f64; 3], [f64; 3])>,
+    /// Files hold nothing but numbers of this type, x, y and z of one point after the other; their content
+    /// does not tell.
+    pub raw: Option<RawType>,
+    /// Where spools go; the system's folder for temporary files if `None`.
+    pub temp_dir: Option<PathBuf>,
+    /// Threads that decompress points; one per core if `None`.
+    pub threads: Option<NonZeroUsize>,
+}
+
+impl SourceOptions {
+    /// The folder where spools go.
+    pub(super) fn temp_dir(&self) -> PathBuf {
+        self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)
+    }
+
+    /// How many threads decompress points.
+    pub(super) fn threads(&self) -> usize {
+        self.threads.unwrap_or_else(available_threads).get()
+    }
+}

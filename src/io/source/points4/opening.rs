@@ -1,0 +1,27 @@
+//! Opens an input by its format.
+
+use std::path::Path;
+
+use super::scan::Supply;
+use super::{nifti, nrrd, stream, text};
+use crate::detect::{DD4, Format, read_head};
+use crate::source::origin::Origin;
+use spmesh_core::error::{Error, Result};
+
+/// Recognizes what `origin` holds and reads its header; `path` is where it is, if it has a name.
+///
+/// # Errors
+/// If it is of no known format, or its header is malformed.
+pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Supply> {
+    let mut plain = origin.plain()?;
+    let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
+    if head.is_empty() {
+        return Err(Error::malformed("found no point"));
+    }
+    match DD4.detect(&head)? {
+        Format::Nrrd => nrrd::open(origin, path, warnings).map(Supply::Volume),
+        Format::Nifti => nifti::open(origin, &head, plain.is_compressed(), warnings).map(Supply::Volume),
+        Format::Stream | Format::Twin => stream::open(origin, path, &head).map(Supply::Stream),
+        _ => text::open(origin).map(Supply::Text),
+    }
+}

@@ -1,0 +1,35 @@
+//! What an input of points is to its readers.
+
+use spmesh_core::error::Result;
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_stream::{Coordinates, Crs};
+
+/// What is known of an input before its points are read.
+#[derive(Debug, Clone)]
+pub struct Description {
+    /// Encoding that all points of the input share.
+    pub coordinates: Coordinates,
+    /// Dimensions of the geometry: 2 or 3.
+    pub dims: u8,
+    /// Whether two-dimensional points carry an elevation.
+    pub has_elevation: bool,
+    /// Coordinate reference system that all files share.
+    pub crs: Crs,
+    /// Bounding box that the headers state, in stored coordinates: to be verified.
+    pub stated_bounds: Option<Bounds>,
+    /// Number of points that the headers state, before filters.
+    pub stated_points: Option<u64>,
+}
+
+/// One pass over an input.
+pub trait PointReader: Send {
+    /// Replaces the content of `batch` with the next points, in stored coordinates of the description;
+    /// an empty batch after the call means the end of the input.
+    ///
+    /// # Errors
+    /// If the input cannot be read, is malformed, or has an invalid point (file and record are named).
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()>;
+
+    /// Points dropped so far because a coordinate is not finite.
+    fn invalid(&self) -> u64;
+}

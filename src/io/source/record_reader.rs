@@ -1,0 +1,12 @@
+//! What gives the point records of a LAS file, compressed or not.
+
+use spmesh_core::error::Result;
+
+/// A supply of point records as they stand in an uncompressed file.
+pub(super) trait RecordReader: Send {
+    /// Replaces the content of `records` with the next whole records; leaves it empty at the end.
+    ///
+    /// # Errors
+    /// If reading fails, or compressed records are damaged; the byte is named.
+    fn next_records(&mut self, records: &mut Vec<u8>) -> Result<()>;
+}

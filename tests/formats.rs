@@ -1,0 +1,242 @@
+//! Formats, plain and compressed, through every tool that reads several: one table of formats, one gzip layer.
+
+use std::io::Write;
+
+use spmesh_io::detect::{Format, READERS, Reader, SPCONVERT, detect};
+
+use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample};
+
+/// gzip data with two members.
+fn gzip(content: &[u8]) -> Vec<u8> {
+    let member = |part: &[u8]| {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(part).expect("memory takes all");
+        encoder.finish().expect("memory takes all")
+    };
+    let (first, second) = content.split_at(content.len() / 2);
+    [member(first), member(second)].concat()
+}
+
+/// What a tool writes; it must succeed.
+fn output(tool: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
+    let output = run(tool, arguments, input);
+    assert!(output.status.success(), "{tool} {arguments:?}: {:?}", outcome(&output));
+    output.stdout
+}
+
+fn converted(input: &[u8], to: &str) -> Vec<u8> {
+    output("spconvert", &["--to", to], input)
+}
+
+/// Arguments of each tool for an input of points.
+fn arguments(tool: &str) -> &'static [&'static str] {
+    match tool {
+        "configgen" => &["--degree", "1"],
+        "splinefit" => &["fit", "--tol", "1000"],
+        "spconvert" => &["--to", "text"],
+        _ => &[],
+    }
+}
+
+/// Small files of all formats that hold points of space, with their names.
+fn point_files() -> Vec<(&'static str, Vec<u8>)> {
+    let text = cloud(300).into_bytes();
+    let stream = output("spfinalize", &["-"], &text);
+    let read = |name: &str| std::fs::read(sample(name)).expect("a sample");
+    let mut files = vec![
+        ("points.las", read("point10.las")),
+        ("points.laz", read("point10.laz")),
+        ("points.vtu", read("vtk_zlib.vtu")),
+        ("points.vtk", read("vtk_fields.vtk")),
+        ("points.xyz", text),
+    ];
+    for (name, to) in
+        [("p.ply", "ply"), ("p.spa", "spa"), ("p.spb", "spb"), ("p.txt", "text"), ("p.spm", "spm")]
+    {
+        files.push((name, converted(&stream, to)));
+    }
+    let mesh = output("spdelaunay2d", &[], &stream);
+    files.push(("mesh.obj", converted(&mesh, "obj")));
+    files
+}
+
+/// Runs a tool on a file, plain and compressed, by its name and through a pipe: what it writes must be the same.
+fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: &[u8]) {
+    let folder = Folder::new();
+    let compressed = gzip(content);
+    let (plain_path, path) = (folder.write(name, content), folder.write(&format!("{name}.gz"), &compressed));
+    let expected = output(tool, &[arguments, &[&plain_path]].concat(), &[]);
+    assert!(!expected.is_empty(), "{tool} {name}");
+    assert!(expected == output(tool, &[arguments, &[&path]].concat(), &[]), "{tool} {name}.gz");
+    assert!(expected == output(tool, &[arguments, &["-"]].concat(), &compressed), "{tool} of {name}.gz");
+}
+
+#[test]
+fn compressed_points_are_read_as_plain_ones() {
+    for (name, content) in point_files() {
+        assert_reads_compressed("spfinalize", &[], name, &content);
+        // A file on stdin has no name that would tell SPA from OBJ.
+        assert_reads_compressed("spconvert", arguments("spconvert"), name, &content);
+        let is_2d = ["p.txt", "p.spm"].contains(&name);
+        if !is_2d {
+            assert_reads_compressed("tess3", &[], name, &content);
+        }
+    }
+    let text = cloud(60).into_bytes();
+    for tool in ["configgen", "splinefit"] {
+        assert_reads_compressed(tool, arguments(tool), "points.xyz", &text);
+        assert_reads_compressed(tool, arguments(tool), "p.spm", &output("spfinalize", &["-"], &text));
+    }
+}
+
+#[test]
+fn compressed_meshes_and_streams_are_read_as_plain_ones() {
+    let stream = output("spfinalize", &["-"], cloud(300).as_bytes());
+    let mesh = output("spdelaunay2d", &[], &stream);
+    for to in ["obj", "ply", "sma", "smb", "text", "spm"] {
+        assert_reads_compressed("spconvert", &["--to", "text"], &format!("mesh.{to}"), &converted(&mesh, to));
+    }
+    assert_reads_compressed("spdelaunay2d", &[], "points.spm", &stream);
+}
+
+#[test]
+fn compressed_structures_and_volumes_are_read_as_plain_ones() {
+    for name in ["1aki.pdb", "1aki.cif"] {
+        let content = std::fs::read(sample(name)).expect("a sample");
+        assert_reads_compressed("tess3", &["--table", "--atoms", "ca"], name, &content);
+    }
+    let off = b"OFF\n5 0 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 2\n";
+    assert_reads_compressed("tess3", &[], "points.off", off);
+    assert_reads_compressed("tess3", &[], "atoms.xyz", b"4\n\nC 0 0 0\nC 1 0 0\nC 0 1 0\nC 0 0 1\n");
+    let nrrd = b"NRRD0001\ntype: uchar\ndimension: 4\nsizes: 2 2 2 2\nencoding: raw\n\n0123456789abcdef";
+    assert_reads_compressed("dd4", &[], "volume.nrrd", nrrd);
+    let text: String =
+        (0..40u64).map(|i| format!("{} {} {} {}\n", i, i * i % 7, i * 3 % 11, i * i % 13)).collect();
+    assert_reads_compressed("dd4", &[], "points.txt", text.as_bytes());
+}
+
+#[test]
+fn damaged_gzip_data_is_named_with_its_place() {
+    let folder = Folder::new();
+    let tools: [(&str, Vec<u8>); 6] = [
+        ("spfinalize", cloud(5000).into_bytes()),
+        ("configgen", cloud(60).into_bytes()),
+        ("splinefit", cloud(60).into_bytes()),
+        ("spconvert", cloud(5000).into_bytes()),
+        ("tess3", std::fs::read(sample("1aki.pdb")).expect("a sample")),
+        ("dd4", b"0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n".repeat(3)),
+    ];
+    for (tool, content) in tools {
+        let whole = gzip(&content);
+        let cut = &whole[..whole.len() - 9];
+        let mut damaged = whole.clone();
+        *damaged.iter_mut().nth_back(5).expect("a checksum") ^= 1;
+        for (bytes, part) in [(cut, "ends early: it was cut off at byte "), (&damaged[..], "is damaged")] {
+            let path = folder.write("input.gz", bytes);
+            assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], 3, part);
+            assert_outcome(tool, &[arguments(tool), &["-"]].concat(), bytes, 3, "stdin");
+        }
+    }
+}
+
+/// The start of a file of each format, as far as it is told by that.
+fn start_of(format: Format) -> Vec<u8> {
+    let mut nifti = vec![0; 400];
+    nifti[..4].copy_from_slice(&348u32.to_le_bytes());
+    nifti[344..348].copy_from_slice(b"n+1\0");
+    let start: &[u8] = match format {
+        Format::Las => b"LASF\0\0",
+        Format::Stream => b"\x89SPM\r\n\x1a\n",
+        Format::Twin => b"#spmesh 1\n",
+        Format::Spa => b"# npoints 2\nv 1 2 3\n",
+        Format::Spb => b"\x07\0\x06\0\0\0\0",
+        Format::Sma => b"# nverts 3\nv 1 2 3\n",
+        Format::Smb => b"\0\0\0\0\0\0\0\0\x03\0\0\0",
+        Format::Ply => b"ply\nformat ascii 1.0\n",
+        Format::Obj => b"o thing\nv 1 2 3\n",
+        Format::VertexLines => b"v 1 2 3\nv 2 3 4\nv 3 4 5\nf 1 2 3\n",
+        Format::Off => b"OFF\n3 1 0\n",
+        Format::VtkLegacy => b"# vtk DataFile Version 3.0\n",
+        Format::VtkXml => b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">",
+        Format::Pdb => b"HEADER    A MOLECULE\nATOM      1  N   LYS A   1\n",
+        Format::Mmcif => b"data_1AKI\n#\nloop_\n",
+        Format::Xyz => b"2\nhydrogen\nH 0 0 0\nH 0 0 1\n",
+        Format::Nrrd => b"NRRD0004\n",
+        Format::Nifti => &nifti,
+        Format::Text => b"# cloud\n1 2 3\n",
+        Format::OtherText => b"no points at all\n",
+        Format::Gzip => b"\x1f\x8b\x08",
+        Format::Zstd => b"\x28\xb5\x2f\xfd",
+        Format::Zip => b"PK\x03\x04",
+        Format::Bzip2 => b"BZh91AY",
+        Format::Xz => b"\xfd7zXZ\0",
+        Format::Utf16 => b"\xff\xfe1\0",
+        Format::Pcd => b"# .PCD v0.7\n",
+        Format::Hdf5 => b"\x89HDF\r\n",
+        Format::Netcdf => b"CDF\x01",
+        Format::Medit => b"MeshVersionFormatted 2\n",
+        Format::Inrimage => b"#INRIMAGE-4#{\n",
+        Format::Tiff => b"II*\0",
+        Format::Xml => b"<!DOCTYPE html>\n",
+        Format::Binary => b"abc\0",
+    };
+    start.to_vec()
+}
+
+#[test]
+fn each_format_is_told_from_all_others() {
+    for format in Format::all() {
+        assert_eq!(detect(&start_of(format)).unwrap(), format);
+        let marked = [b"\xef\xbb\xbf", &start_of(format)[..]].concat();
+        assert_eq!(detect(&marked).unwrap(), format);
+    }
+    assert!(detect(b"").unwrap_err().to_string().contains("empty"));
+}
+
+#[test]
+fn formats_that_a_tool_does_not_read_are_named_with_those_it_reads() {
+    let folder = Folder::new();
+    for Reader { tool, .. } in READERS.iter().filter(|reader| reader.tool != "spinfo") {
+        let reader = READERS.iter().find(|reader| reader.tool == *tool).expect("a reader");
+        for format in Format::all().filter(|&format| !reader.reads(format)) {
+            let bytes = start_of(format);
+            // The outer layer of compression is no format to the tools.
+            let bytes = if format == Format::Gzip { gzip(&bytes) } else { bytes };
+            let path = folder.write("input", bytes);
+            let found = if format == Format::Binary {
+                "zero byte at byte 3".to_string()
+            } else {
+                format!("input: this is {}; {tool} reads ", format.name())
+            };
+            let by_name = [Format::Binary, Format::VertexLines, Format::OtherText].contains(&format);
+            let (code, part) = match *tool {
+                "spconvert" if by_name => (2, "give it with --from"),
+                "spconvert" => (2, &found[..]),
+                _ => (3, &found[..]),
+            };
+            assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], code, part);
+        }
+    }
+}
+
+#[test]
+fn points_of_any_source_are_converted() {
+    let folder = Folder::new();
+    let path = sample("point10.las");
+    let twin = String::from_utf8(output("spconvert", &["--to", "text", &path], &[])).expect("text");
+    let through_pipe = output("spconvert", &["--to", "text"], &std::fs::read(&path).expect("a sample"));
+    assert_eq!(twin.as_bytes(), through_pipe);
+    // The points of a stream without tags, in the order and the coordinates of the file.
+    let preserved = output("spfinalize", &["--preserve", &path], &[]);
+    let preserved = String::from_utf8(converted(&preserved, "text")).expect("text");
+    let points = |text: &str| -> Vec<String> {
+        text.lines().filter(|line| line.starts_with("v ")).map(str::to_string).collect()
+    };
+    assert!(points(&twin) == points(&preserved) && !points(&twin).is_empty(), "{twin}");
+    let solid = folder.write("points.csv", "x,y,z\n1,2,3\n4,5,6.5\n");
+    let twin =
+        String::from_utf8(output("spconvert", &["--to", "text", "--dims", "3", &solid], &[])).expect("text");
+    assert!(twin.contains("v 1 2 3\nv 4 5 6.5\n"), "{twin}");
+    assert_outcome("spconvert", &["--to", "points", &solid], &[], 2, "possible values");
+    assert!(SPCONVERT.reads(Format::Las));
+}
