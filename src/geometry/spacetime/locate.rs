@@ -3,6 +3,7 @@
 use super::faces::Faces;
 use crate::diagram4::orient4d;
 use spmesh_model::cells4::{Cells4, Point4};
+use spmesh_model::diagram4::Diagram4;
 
 /// Finds cells by walking from the one that was found last.
 #[derive(Debug)]
