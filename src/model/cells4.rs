@@ -37,7 +37,7 @@ pub struct Cell4<'a> {
 impl Cells4 {
     /// No cells, with room for so many, and so many vertices and neighbours in all.
     #[must_use]
-    pub fn with_room(cells: usize, numbers: usize) -> Cells4 {
+    pub fn with_capacity(cells: usize, numbers: usize) -> Cells4 {
         Cells4 { words: Vec::with_capacity(2 * cells + numbers), starts: Vec::with_capacity(cells) }
     }
 

@@ -9,7 +9,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_tess3::{Arithmetic, Method};
 
-/// How the kernel works. With exact arithmetic none of these changes the triangulation.
+/// How the kernel works. With exact arithmetic, the triangulation is always the same.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub(super) struct MethodFlags {
@@ -40,7 +40,7 @@ pub(super) struct MethodFlags {
     #[arg(long)]
     check_signs: bool,
 
-    /// For --stats, measure the time for point location, predicates and update; it takes some itself
+    /// For --stats, measure the time for point location, predicates and update, which slows the run
     #[arg(long)]
     timed: bool,
 }
@@ -77,7 +77,7 @@ enum SequenceFlag {
 
 impl MethodFlags {
     /// # Errors
-    /// Usage, if signs that are never wrong are to be checked.
+    /// Usage, if exact signs are to be checked.
     pub(super) fn method(&self) -> Result<Method> {
         let curve = match self.order {
             OrderFlag::Hilbert | OrderFlag::Random => Curve::Hilbert,
@@ -102,7 +102,7 @@ impl MethodFlags {
     }
 }
 
-/// What of it decides on the content of the outputs.
+/// The options that affect the content of the outputs.
 impl fmt::Display for MethodFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Ok(Method { arithmetic: Arithmetic::Float { .. }, curve, sequence, by_bit_levels, seed, .. }) =

@@ -1,4 +1,4 @@
-//! How points are triangulated: by the exact kernel, or as the program of the thesis did.
+//! How points are triangulated: by the exact kernel, or in floating point as by the program of the thesis.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -11,23 +11,23 @@ use spmesh_geometry::delaunay3_float;
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::predicates::Point3;
 
-/// Which arithmetic decides.
+/// The arithmetic of the predicates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Arithmetic {
     /// Signs are never wrong.
     #[default]
     Exact,
-    /// That of `f64`, with errors where rounding matters.
+    /// Signs of `f64` values, with rounding errors.
     Float {
         /// Whether signs are compared with the exact ones.
         check_signs: bool,
     },
 }
 
-/// How the kernel works, for experiments. With exact arithmetic nothing of it changes the result.
+/// How the kernel works, for experiments. With exact arithmetic, the result is always the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Method {
-    /// Which arithmetic decides.
+    /// The arithmetic of the predicates.
     pub arithmetic: Arithmetic,
     /// The curve along which points are stored and inserted.
     pub curve: Curve,
@@ -37,12 +37,12 @@ pub struct Method {
     pub by_bit_levels: bool,
     /// Seed of the walks in floating-point arithmetic.
     pub seed: u64,
-    /// Measure the parts of exact insertions, too, which takes some time itself.
+    /// Whether to time the parts of exact insertions too, which slows them down.
     pub is_timed: bool,
 }
 
 impl Method {
-    /// Triangulates, and says in `report` what that took.
+    /// Triangulates, and records counts and times in `report`.
     ///
     /// # Errors
     /// Those of the kernels.
