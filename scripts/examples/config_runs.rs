@@ -4,29 +4,20 @@
 //! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
 //! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
 
-use spmesh_audit::config as audit;
+use spmesh_audit::configurations as audit;
 use spmesh_core::error::Result;
+use spmesh_core::random::Random;
 use spmesh_geometry::configurations::special::{self, ZpSplit};
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 
-/// SplitMix64.
-struct Random(u64);
+/// The generator of a run.
+fn random_of(seed: u64) -> Random {
+    Random::new(seed.wrapping_mul(0xd134_2543_de82_ef95))
+}
 
-impl Random {
-    fn new(seed: u64) -> Random {
-        Random(seed.wrapping_mul(0xd134_2543_de82_ef95))
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count
-    }
+/// A number below `count`; almost uniform.
+fn below(random: &mut Random, count: u64) -> u64 {
+    random.bits() % count
 }
 
 /// What happened at one degree.
@@ -50,7 +41,7 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
             let (degree, seed) = (degree.parse()?, seed.parse()?);
             match source.split_once(':') {
                 Some(("random", count)) => {
-                    let knots = Knots::new(points(&mut Random::new(seed), count.parse()?, 0))?;
+                    let knots = Knots::new(points(&mut random_of(seed), count.parse()?, 0))?;
                     let start = flipped(&knots, count.parse::<usize>()? / 3, seed)?;
                     print(&knots, &configurations::generate(&knots, start, &Rule::Random(seed), degree)?);
                 }
@@ -77,23 +68,22 @@ fn flipped(knots: &Knots, flips: usize, seed: u64) -> Result<Configurations> {
 
 /// Random knots: in general position, on a small grid, or with copies.
 fn points(random: &mut Random, count: usize, family: u64) -> Vec<[f64; 2]> {
-    let unit = |random: &mut Random| (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
     let mut coordinate = || match family {
-        0 => unit(random),
-        1 => random.below(7) as f64,
-        _ => random.below(4) as f64,
+        0 => random.unit(),
+        1 => below(random, 7) as f64,
+        _ => below(random, 4) as f64,
     };
     (0..count).map(|_| [coordinate(), coordinate()]).collect()
 }
 
 fn rule(random: &mut Random, count: usize) -> Rule {
-    match random.below(7) {
+    match below(random, 7) {
         0 => Rule::Delaunay,
         1 => Rule::MinWeight,
         2 => Rule::Ear,
         3 => Rule::Fan,
-        4 => Rule::Aligned(random.below(180) as f64),
-        5 => Rule::Data((0..count).map(|_| random.below(1000) as f64).collect()),
+        4 => Rule::Aligned(below(random, 180) as f64),
+        5 => Rule::Data((0..count).map(|_| below(random, 1000) as f64).collect()),
         _ => Rule::Random(random.bits()),
     }
 }
@@ -101,12 +91,12 @@ fn rule(random: &mut Random, count: usize) -> Rule {
 fn runs(count: u64, degree: usize, seed: u64) {
     let mut rows = vec![Row::default(); degree + 1];
     for run in 0..count {
-        let mut random = Random::new(seed.wrapping_add(run));
-        let knots = (degree + 4) as u64 + random.below(20);
+        let mut random = random_of(seed.wrapping_add(run));
+        let knots = (degree + 4) as u64 + below(&mut random, 20);
         let points = points(&mut random, knots as usize, run % 3);
         let Ok(knots) = Knots::new(points) else { continue };
         // Knots on one line have no configurations.
-        let Ok(mut lower) = flipped(&knots, random.below(60) as usize, random.bits()) else { continue };
+        let Ok(mut lower) = flipped(&knots, below(&mut random, 60) as usize, random.bits()) else { continue };
         for row in rows.iter_mut().skip(1) {
             match step(&knots, &lower, &rule(&mut random, knots.len()), row) {
                 Ok(upper) => lower = upper,

@@ -10,6 +10,7 @@ mod files;
 use std::path::PathBuf;
 
 use files::{Paths, timed};
+use spmesh_core::random::Random;
 use spmesh_geometry::configurations::{self, Knots, Rule};
 use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
@@ -53,17 +54,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Knots of a file, or uniform in the unit square, by a sequence of SplitMix64 with the seed 1.
+/// Knots of a file, or uniform in the unit square, with the seed 1.
 fn read(source: &str) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
     let Some(count) = source.strip_prefix("uniform:") else {
         return Ok(Paths { points: source.into(), triangles: PathBuf::new() }.read_points()?);
     };
-    let mut state = 1u64;
-    let mut unit = || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random::new(1);
+    let mut unit = || random.unit();
     Ok((0..count.parse()?).map(|_| [unit(), unit()]).collect())
 }

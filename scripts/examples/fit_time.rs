@@ -5,6 +5,7 @@
 //! of the energy of a thin plate, and of the solution, with the greatest residual and the peak of memory.
 
 use spmesh_core::error::Result;
+use spmesh_core::random::Random;
 use spmesh_splines::fitting::{
     Equations, NormalEquations, Observation, ObservationReader, Observations, SplineSpace, summarise,
     thin_plate,
@@ -44,12 +45,10 @@ fn value([x, y]: [f64; 2]) -> f64 {
     (9.0 * x).sin() * (7.0 * y).cos() + (x - y) * (x - y)
 }
 
-/// Number `index` of a sequence of SplitMix64, in the unit interval.
+/// A random number from the unit interval, a function of `index` alone.
 fn unit(index: u64) -> f64 {
-    let z = index.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    let z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
+    // The state of the generator after `index` steps from 0.
+    Random::new(index.wrapping_mul(0x9e37_79b9_7f4a_7c15)).unit()
 }
 
 /// A grid of the unit square whose inner knots are moved.

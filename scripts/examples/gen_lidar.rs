@@ -11,6 +11,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use las::point::Format;
 use las::{Builder, PointDataBuilder, Vlr, Writer};
+use spmesh_core::random::Random;
 
 /// Meters per step of the integer coordinates.
 const SCALE: f64 = 0.01;
@@ -76,26 +77,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// SplitMix64 by Steele, Lea and Flood.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// Uniform in [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    /// Uniform in [-1, 1).
-    fn signed(&mut self) -> f64 {
-        2.0 * self.unit() - 1.0
-    }
+/// Uniform in [-1, 1).
+fn signed(random: &mut Random) -> f64 {
+    2.0 * random.unit() - 1.0
 }
 
 /// One hill range: height, wave numbers and phase of a wave.
@@ -131,7 +115,7 @@ impl Survey {
         let side = (points.max(1) as f64 * (1.0 - OVERLAP) / DENSITY).sqrt();
         let swath_width = SWATH_WIDTH_MAX.min(side / (1.0 + (LINES_MIN - 1) as f64 * (1.0 - OVERLAP)));
         let lines = ((side - swath_width) / (swath_width * (1.0 - OVERLAP))).round() as u64 + 1;
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let mut wave = |scale: f64| {
             let direction = random.unit() * TAU;
             let number = TAU / (scale * (0.7 + 0.6 * random.unit()));
@@ -166,7 +150,7 @@ impl Survey {
         points: u64,
         put: &mut impl FnMut(Return) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let mut random = Random(self.seed ^ (line + 1).wrapping_mul(0xd6e8_feb8_6659_fd93));
+        let mut random = Random::new(self.seed ^ (line + 1).wrapping_mul(0xd6e8_feb8_6659_fd93));
         let per_sweep = (points as f64 * self.swath_width / self.side).sqrt().max(1.0);
         let spacing = self.swath_width / per_sweep;
         let centre = self.swath_width * (0.5 + line as f64 * (1.0 - OVERLAP));
@@ -179,10 +163,10 @@ impl Survey {
             let swing = 2.0 * (sweep.fract() - 0.5);
             let across = if (sweep as u64).is_multiple_of(2) { swing } else { -swing };
             let wander = 0.02 * self.swath_width * (along * 5.0 + drift).sin();
-            let x = centre + wander + 0.5 * self.swath_width * across + 0.2 * spacing * random.signed();
+            let x = centre + wander + 0.5 * self.swath_width * across + 0.2 * spacing * signed(&mut random);
             let north = if line.is_multiple_of(2) { along } else { 1.0 - along };
-            let y = north * self.side + 0.2 * spacing * random.signed();
-            let ground = self.ground(x, y) + 0.03 * random.signed();
+            let y = north * self.side + 0.2 * spacing * signed(&mut random);
+            let ground = self.ground(x, y) + 0.03 * signed(&mut random);
             let canopy = ground + VEGETATION_HEIGHT * random.unit();
             let has_canopy = random.unit() < VEGETATION;
             let is_split = random.unit() < DUPLICATES && left > 1;

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use spmesh_core::random::Random;
 use spmesh_model::bits::spread3;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
@@ -67,20 +68,8 @@ enum Order {
     Curve,
 }
 
-/// Random numbers that depend on the seed alone (SplitMix64 of Steele, Lea and Flood, 2014).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn point(&mut self) -> Point {
-        [self.unit(), self.unit(), self.unit()]
-    }
+fn point(random: &mut Random) -> Point {
+    [random.unit(), random.unit(), random.unit()]
 }
 
 fn main() -> ExitCode {
@@ -107,7 +96,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         stream: StreamWriter::new(BufWriter::new(File::create(&arguments.output)?), header)?,
         batch: Vec::with_capacity(BATCH),
     };
-    let mut random = Random(arguments.seed);
+    let mut random = Random::new(arguments.seed);
     match arguments.family {
         Family::Random => spread(arguments, &mut random, &mut sink)?,
         Family::Grid => sink.put_sorted(lattice(side), size, arguments.order)?,
@@ -173,7 +162,7 @@ fn spread(arguments: &Arguments, random: &mut Random, sink: &mut Sink) -> Result
     for part in 0..parts {
         let count = (part + 1) * points / parts - part * points / parts;
         for _ in 0..count {
-            let mut point = random.point();
+            let mut point = point(random);
             if is_curve {
                 let side = f64::from(1 << level);
                 for (axis, x) in point.iter_mut().enumerate() {
@@ -221,7 +210,7 @@ fn sphere(count: u64, random: &mut Random) -> Vec<Point> {
 fn gyroid(count: u64, random: &mut Random) -> Vec<Point> {
     let mut points = Vec::with_capacity(count as usize);
     while (points.len() as u64) < count {
-        let mut p = random.point().map(|x| x * WAVES * TAU);
+        let mut p = point(random).map(|x| x * WAVES * TAU);
         let mut value = f64::INFINITY;
         for _ in 0..8 {
             let [x, y, z] = p;

@@ -4,6 +4,7 @@
 //! least of three rounds: seconds for the basis; microseconds for each point of a million at random and along a curve, values and
 //! derivatives; nanoseconds for each pixel of a raster of 2000 x 2000.
 
+use spmesh_core::random::Random;
 use spmesh_geometry::configurations::{self, Knots, Rule};
 use spmesh_splines::bases::{Basis, Raster, Scratch};
 use std::hint::black_box;
@@ -78,15 +79,10 @@ fn least<T>(mut work: impl FnMut() -> T) -> (T, f64) {
     (result, best)
 }
 
-/// Numbers in the unit interval, by a sequence of SplitMix64.
+/// Numbers in the unit interval.
 fn units(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ z >> 31) >> 11) as f64 / (1u64 << 53) as f64
-    }
+    let mut random = Random::new(seed);
+    move || random.unit()
 }
 
 fn read(source: &str) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {

@@ -1,7 +1,7 @@
 //! The part of space that is tagged final, as intervals of the deepest cells in Morton order.
 //!
-//! Own arithmetic: a point is located by halving the cube, where every border is exact because the tree
-//! admits no other.
+//! The arithmetic is its own: a point is located by halving the cube. Every border is exact, because the tree
+//! admits no others.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,4 +1,4 @@
-//! What an audit checks, how often it did, and what it found.
+//! The checks of an audit, their counts, and the first violation.
 
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_model::bounds::Point;
@@ -36,7 +36,7 @@ pub enum Check {
     Labels,
     /// Points lie in the region, or in the cube of the finalization tree.
     Region,
-    /// No point follows the tag of its cell, and every tag is news.
+    /// No point follows the tag of its cell, and no tag repeats another.
     Cells,
     /// The points between tags lie in one of the cells that are tagged next.
     Chunks,
@@ -47,7 +47,7 @@ pub enum Check {
 }
 
 impl Check {
-    /// Every check, in the order of reports.
+    /// All checks, in the order of reports.
     pub const ALL: [Check; 18] = [
         Check::Orientation,
         Check::Edges,
@@ -75,7 +75,7 @@ impl Check {
         self.row().0
     }
 
-    /// What holds if the check passes.
+    /// The claim that the check proves.
     #[must_use]
     pub fn claim(self) -> &'static str {
         self.row().1
@@ -165,12 +165,12 @@ pub struct CheckLine {
     pub exactly: u64,
 }
 
-/// The first thing that is wrong with a stream.
+/// The first violation in a stream.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
     /// The check that failed.
     pub check: Check,
-    /// What is wrong, with the ids of the vertices concerned.
+    /// Describes the violation, with the ids of the vertices concerned.
     pub message: String,
     /// The vertices or points concerned, each with its id where it has one, in stored coordinates.
     pub vertices: Vec<(Option<u64>, Point)>,

@@ -22,7 +22,7 @@ impl<const D: usize> Corner<D> {
     }
 }
 
-/// Adds the corners to what a violation concerns.
+/// Adds the corners to the points of a violation.
 pub(super) fn name_corners<const D: usize>(violation: Violation, corners: &[Corner<D>]) -> Violation {
     corners.iter().fold(violation, |violation, corner| violation.with(corner.id, corner.point()))
 }

@@ -1,4 +1,4 @@
-//! Whether the bounding box of the header holds the points.
+//! Checks that the bounding box of the header holds the points.
 
 use super::check::{Check, Ledger, Violation};
 use spmesh_model::bounds::{Bounds, Point};

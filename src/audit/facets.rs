@@ -1,23 +1,23 @@
-//! The oriented facets of simplices that wait for their twin: edges of triangles, triangles of tetrahedra.
+//! The oriented facets of simplices whose twin is yet to come: edges of triangles, triangles of tetrahedra.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use foldhash::fast::RandomState;
 
-/// What adding a facet did.
+/// The result of adding a facet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Meeting<T> {
     /// Its twin has not come yet.
     Open,
-    /// Its twin was open and is not any more; what is known of the twin's simplex.
+    /// Its twin was open and is now closed; the data of the twin's simplex.
     Twin(T),
     /// Another simplex on the same side has the same facet open.
     Twice(T),
 }
 
-/// Facets of `N` corners between their simplex and that of their twin, each with what is to be known of its
-/// simplex: the apex at least.
+/// Facets of `N` corners between their simplex and that of their twin, each with data of its simplex: at
+/// least the apex.
 ///
 /// Memory: the boundary of the simplices seen so far, which is the front of the stream and the hull.
 #[derive(Debug)]
@@ -29,8 +29,7 @@ pub(super) struct OpenFacets<const N: usize, T> {
 #[derive(Debug, Clone, Copy)]
 struct Side<T> {
     simplex: T,
-    /// Whether the corners in increasing order are in the order that the simplex has them, but for even
-    /// permutations.
+    /// Whether the corners in increasing order are an even permutation of their order in the simplex.
     is_increasing: bool,
 }
 
@@ -55,7 +54,7 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         }
     }
 
-    /// Takes a facet away; whether it was open.
+    /// Removes a facet; returns whether it was open.
     pub(super) fn close(&mut self, facet: [u64; N]) -> bool {
         let (sorted, is_increasing) = increasing(facet);
         match self.open.entry(sorted) {

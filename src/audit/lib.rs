@@ -1,7 +1,8 @@
-//! Proves what a stream claims, block by block, in memory of the stream's width and its boundary.
+//! Proves the claims of a stream, block by block, in memory proportional to the width of the stream and its
+//! boundary.
 //!
 //! The audit shares nothing with the code that makes meshes: it has its own exact arithmetic and its own view
-//! of vertices, edges, facets and cells. Only the reader of the container is common ground.
+//! of vertices, edges, facets and cells. Only the reader of the container is shared.
 //!
 //! # Why the checks of a whole mesh are enough
 //! (Of a triangle mesh; [`tetrahedra`] has the argument for tetrahedral meshes.)
@@ -11,9 +12,9 @@
 //! the edges of one cycle, around a convex polygon, once; let every vertex have a triangle.
 //!
 //! *The triangles tile the polygon.* The boundaries of the triangles, added up as chains, cancel along every
-//! pair of twins, and what is left is the cycle. So for every point off all edges, the number of triangles
-//! that cover it (each winds around it once) is the winding number of the cycle: one inside of the polygon,
-//! zero outside. No two triangles overlap and none is missing.
+//! pair of twins, which leaves the cycle. So for every point off all edges, the number of triangles that
+//! cover it (each winds around it once) is the winding number of the cycle: one inside of the polygon, zero
+//! outside. No two triangles overlap and none is missing.
 //!
 //! *No two vertices coincide, and none lies inside of an edge or a triangle of others.* Around a vertex
 //! without open edges, its triangles are joined edge to edge in closed fans, which cover its neighbourhood
@@ -34,21 +35,21 @@
 
 mod cells;
 mod check;
-pub mod config;
+pub mod configurations;
 mod corner;
 pub mod diagram;
 mod exact;
 mod extent;
 mod facets;
 mod hull;
+mod inventory;
+mod inventory4;
+mod inventory_configurations;
 mod mesh;
 mod partial;
 mod partial_triangles;
 mod point_set;
 mod points;
-mod survey;
-mod survey4;
-mod survey_configurations;
 mod tetrahedra;
 mod totals;
 mod triangles;
@@ -58,11 +59,11 @@ mod winding;
 
 pub use check::shortest;
 pub use check::{Check, CheckLine, Violation};
+pub use inventory::{CellPoints, Inventory, PatchSize};
+pub use inventory_configurations::{ConfigurationInventory, DegreeInventory};
+pub use inventory4::Inventory4;
 pub use point_set::PointSet;
-pub use survey::{CellPoints, PatchSize, Survey};
-pub use survey_configurations::{ConfigurationSurvey, DegreeSurvey};
-pub use survey4::Survey4;
-pub use tetrahedra::{Census, Faults, Figures};
+pub use tetrahedra::{Census, Counts, Faults};
 pub use triangles::Standard;
 
 use check::Ledger;
@@ -76,8 +77,8 @@ use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind};
 
-/// Audit of one stream of two or three dimensions: give it every event, and ask for the report. Those of four
-/// dimensions have [`diagram::StreamAudit`], configurations [`config::StreamAudit`].
+/// Audit of one stream of two or three dimensions: pass it every event, then get the report. Those of four
+/// dimensions have [`diagram::StreamAudit`], configurations [`configurations::StreamAudit`].
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
 /// block.
@@ -97,7 +98,7 @@ enum State {
     Tetrahedra(TetrahedraAudit),
 }
 
-/// What an audit found so far.
+/// The results of an audit so far.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// The checks that were made.
@@ -185,7 +186,7 @@ impl Audit {
         }
     }
 
-    /// Takes the vertices of the event off the given points.
+    /// Removes the vertices of the event from the given points.
     fn check_given(&mut self, event: &Event) -> Result<(), Violation> {
         let Some(given) = &mut self.given else { return Ok(()) };
         let mut take = |id: Option<u64>, at: Point| given.take(id, at, &mut self.ledger);

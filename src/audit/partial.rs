@@ -1,8 +1,8 @@
 //! Audit of the final simplices of a region and its residual.
 //!
-//! It proves what another program needs to finish the mesh: the simplices are correct as far as they go, the
-//! walls and the residual are all that is open, and nothing of the region is lost or outside of it. Whether
-//! the rest fits is proved when the merged mesh is audited.
+//! It proves what another program needs to complete the mesh: the final simplices are correct, exactly the
+//! walls and the residual are open, and the region loses no point and has none outside it. The audit of the
+//! merged mesh proves that the rest fits.
 
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -20,13 +20,13 @@ use spmesh_stream::{Event, Header, Patch, Totals};
 /// What can be proved of final simplices one by one, with the vertices that are live and the facets that are
 /// open.
 pub(super) trait FinalSimplices<const D: usize> {
-    /// What simplices and their facets are called.
+    /// Names of simplices and their facets in messages.
     const NAMES: [&'static str; 2];
 
     /// The check that facets meet their twins.
     const FACETS: Check;
 
-    /// What is known of a vertex.
+    /// The data of a vertex.
     type Star: Copy + Default;
 
     fn new(standard: Standard) -> Self;

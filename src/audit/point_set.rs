@@ -14,7 +14,7 @@ pub struct PointSet {
     found: Vec<u64>,
 }
 
-/// What tells positions apart, in order.
+/// Sorted keys of positions.
 enum Keys {
     I32InPlane(Vec<[i32; 2]>),
     F64InPlane(Vec<[u64; 2]>),
@@ -52,7 +52,7 @@ impl PointSet {
         of_keys!(&mut self.keys, keys => add_keys(keys, points));
     }
 
-    /// Puts the positions in order. `mesh` is the encoding of the mesh that will be compared.
+    /// Sorts the positions. `mesh` is the encoding of the mesh that will be compared.
     ///
     /// # Errors
     /// Usage, if the mesh stores its coordinates in another way, so that they cannot be equal.
@@ -67,7 +67,7 @@ impl PointSet {
         Ok(self)
     }
 
-    /// Takes the vertex `id` off the points that are still to come.
+    /// Removes the vertex `id` from the points that are still missing.
     pub(super) fn take(
         &mut self,
         id: Option<u64>,

@@ -1,4 +1,4 @@
-//! Whether END accounts for all points of the input.
+//! Checks that END accounts for all points of the input.
 
 use super::check::{Check, Ledger, Violation};
 use spmesh_stream::Totals;

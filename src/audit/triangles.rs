@@ -17,12 +17,12 @@ pub(super) type Corner = corner::Corner<2>;
 /// Directed edges between their triangle and that of their twin, with the third corner of their triangle.
 pub(super) type OpenEdges = OpenFacets<2, Corner>;
 
-/// What is asked of the edges of a triangulation.
+/// The standard for the edges of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Standard {
     /// Interior edges are locally Delaunay.
     Delaunay,
-    /// They are, and ties are resolved canonically, so that the triangulation is the only one.
+    /// They are, and ties are resolved canonically, so that the triangulation is unique.
     Canonical,
 }
 

@@ -28,7 +28,7 @@ pub(super) struct Vertices<S> {
 }
 
 impl<S: Copy + Default> Vertices<S> {
-    /// Takes up the vertices of a patch.
+    /// Adds the vertices of a patch.
     pub(super) fn enter(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation> {
         self.local.clear();
         for (&at, id) in patch.new.iter().zip(patch.first_id..) {
@@ -47,7 +47,7 @@ impl<S: Copy + Default> Vertices<S> {
         Ok(())
     }
 
-    /// Gives the vertices that the patch finalizes to `finalize` and keeps the others.
+    /// Passes the vertices that the patch finalizes to `finalize` and keeps the others.
     pub(super) fn leave(
         &mut self,
         patch: &Patch,

@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
-use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, Purpose, RuleName, Sites};
+use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use spmesh_configgen::{read_features, read_patches};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
@@ -62,7 +62,7 @@ creases. Knots of --patches come first, row by row.
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed or truncated \
 input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
 
-/// What is said after the number of bytes that could not be had.
+/// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a lower degree\n";
 
 /// Delaunay configurations of any degree, and their generalisation.
@@ -142,7 +142,7 @@ pub struct Flags {
     common: Common,
 }
 
-/// What `--boundary` can say.
+/// Values of `--boundary`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum BorderFlag {
     /// Corners
@@ -164,7 +164,7 @@ impl Flags {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let options = self.options()?;
-        // An output that cannot be is better known before the work.
+        // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let mut progress = Progress::new(&self.common, "reading", None);
         let sites = self.sites(|points| progress.set(points))?;
@@ -173,11 +173,12 @@ impl Flags {
         sites.notices.iter().for_each(|text| self.notice(text));
         let progress = Progress::waiting(&self.common, "configurations");
         let made = spmesh_configgen::make(sites, &options)?;
-        let begun = Instant::now();
+        let write_started = Instant::now();
         self.write(&made, &mut output)?;
         let output_bytes = output.bytes_written();
         output.commit()?;
-        let times = report::Times { read: read_time, write: begun.elapsed(), total: started.elapsed() };
+        let times =
+            report::Times { read: read_time, write: write_started.elapsed(), total: started.elapsed() };
         drop(progress);
         report::notices(&made.report, &options).iter().for_each(|text| self.notice(text));
         report::print(self.stats, &made, &options, &times, output_bytes)
@@ -199,10 +200,10 @@ impl Flags {
         }
         let values = read(self.values.as_ref(), read_values)?;
         let boxes = self.boxes.unwrap_or_default();
-        let purpose = match (read(self.patches.as_ref(), read_patches)?, &self.boxes) {
-            (Some(patches), _) => Some(Purpose::Patches(patches, boxes.0)),
-            (None, Some(_)) => Some(Purpose::Boxes(boxes.0)),
-            (None, None) => read(self.features.as_ref(), read_features)?.map(Purpose::Features),
+        let special = match (read(self.patches.as_ref(), read_patches)?, &self.boxes) {
+            (Some(patches), _) => Some(SpecialKind::Patches(patches, boxes.0)),
+            (None, Some(_)) => Some(SpecialKind::Boxes(boxes.0)),
+            (None, None) => read(self.features.as_ref(), read_features)?.map(SpecialKind::Features),
         };
         Ok(Options {
             degree: self.degree as usize,
@@ -215,12 +216,12 @@ impl Flags {
                 Some(BorderFlag::PulledApart) => Border::PulledApart,
             },
             pull_apart: self.pull_apart.clone(),
-            purpose,
+            special,
             values,
         })
     }
 
-    /// What is read: stdin, if nothing else is said and knots are needed.
+    /// The inputs: stdin by default, if knots are needed.
     fn inputs(&self) -> Vec<PathBuf> {
         match self.inputs.is_empty() && self.patches.is_none() {
             true => vec!["-".into()],
@@ -251,7 +252,7 @@ fn is_stdin(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// What `parse` makes of a file, if there is one.
+/// Parses a file, if there is one.
 fn read<T>(path: Option<&PathBuf>, parse: impl FnOnce(Box<dyn Read>) -> Result<T>) -> Result<Option<T>> {
     let parsed = path.map(|path| {
         let (input, name) = open_input(path)?;

@@ -35,7 +35,7 @@ one for each facet of a cell on the hull. Without --quantum, coordinates are tak
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated \
 input, 5 not enough memory for the points, 141 output closed by its reader.";
 
-/// What is said after the number of bytes that could not be had.
+/// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";
 
 /// Exact Delaunay diagrams of points in four dimensions.
@@ -49,13 +49,13 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of
-    /// the coordinates, which f64 rounds, so that no grid would be cospherical
+    /// All coordinates are multiples of Q, like 0.1: compute with the integer multiples, and write these. The
+    /// coordinates themselves are rounded to f64, so that points of a grid would not be cospherical
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 
-    /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008)
-    /// did, which is slower. The result is the same
+    /// How cells are found: by way of simplices, or directly in integers as by the first dd4 (2008), which is
+    /// slower and needs a build with experiments. The result is the same
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
 
@@ -74,7 +74,7 @@ pub struct Flags {
     product: ProductFlags,
 }
 
-/// What `--route` can say.
+/// Values of `--route`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum RouteFlag {
     /// Simplices, then cells
@@ -119,24 +119,24 @@ impl Flags {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }
         let product = self.product.product(&self.output)?;
-        // An output that cannot be is better known before the work.
+        // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, product.is_binary())?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();
         drop(progress);
         for warning in &points.warnings {
-            // Of a spool it is said already where it came from.
+            // Warnings about a spool already name the input.
             let warning = warning.strip_prefix(&format!("{}: ", points.name)).unwrap_or(warning);
             self.notice(&format!("{}: {warning}", points.name));
         }
         let progress = Progress::waiting(&self.common, "triangulating");
         let (diagram, mut report) = spmesh_dd4::make(points, &product, &options)?;
-        let begun = Instant::now();
+        let write_started = Instant::now();
         let notices = product.write(&diagram, &mut output)?;
         report.output_bytes = output.bytes_written();
         output.commit()?;
-        report.write_time = begun.elapsed();
+        report.write_time = write_started.elapsed();
         drop(progress);
         notices.iter().for_each(|text| self.notice(text));
         report::merged(&report).into_iter().for_each(|text| self.notice(&text));

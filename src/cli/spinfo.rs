@@ -13,9 +13,9 @@ use clap::{Parser, ValueEnum};
 use super::progress::Progress;
 use super::{Common, notice, open_input};
 use report::Summary;
-use spmesh_audit::config::{self as config_audit};
+use spmesh_audit::configurations::{self as config_audit};
 use spmesh_audit::diagram::{self as diagram4, StreamAudit};
-use spmesh_audit::{Audit, Census, Figures, PointSet, Report, Standard, Survey};
+use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_io::detect::SPINFO;
@@ -110,7 +110,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
     let header = reader.header().clone();
     let mut proof = Proof::of(&flags, &header)?;
-    let mut survey = Survey::new(&header);
+    let mut inventory = Inventory::new(&header);
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
@@ -121,8 +121,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             failure = Some(reader.locate(error));
             break;
         }
-        survey.event(&event).map_err(|error| reader.locate(error))?;
-        progress.set(survey.totals().points.max(survey.totals().vertices));
+        inventory.event(&event).map_err(|error| reader.locate(error))?;
+        progress.set(inventory.totals().points.max(inventory.totals().vertices));
     }
     drop(progress);
     let mut failure = failure.or_else(|| Some(proof.verdict()?.of_input(reader.name())));
@@ -132,9 +132,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let summary = Summary {
         name: reader.name(),
         header: &header,
-        survey: &survey,
+        inventory: &inventory,
         audit: proof.report(),
-        census: proof.figures(),
+        census: proof.counts(),
         diagram: proof.diagram(),
         configurations: proof.configurations(),
         failure: failure.as_ref(),
@@ -196,7 +196,7 @@ impl Proof {
                 audit.prove().err().map(|violation| Error::new(ErrorKind::Audit, violation.to_string()))
             }
             Proof::Configurations(audit) => audit.prove().err(),
-            Proof::Census(census, standard) if !census.figures().is_clean(*standard) => {
+            Proof::Census(census, standard) if !census.counts().is_clean(*standard) => {
                 Some(Error::new(ErrorKind::Audit, "the mesh is wrong: the counts are in the report"))
             }
             _ => None,
@@ -224,9 +224,9 @@ impl Proof {
         }
     }
 
-    fn figures(&self) -> Option<&Figures> {
+    fn counts(&self) -> Option<&Counts> {
         match self {
-            Proof::Census(census, _) => Some(census.figures()),
+            Proof::Census(census, _) => Some(census.counts()),
             _ => None,
         }
     }

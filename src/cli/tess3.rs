@@ -77,7 +77,7 @@ pub struct Flags {
     #[arg(long, value_name = "RADIUS")]
     alpha: Option<Radius>,
 
-    /// What the input is, if its content does not tell
+    /// Format of the input, if its content does not tell
     #[arg(long, value_enum, value_name = "FORMAT")]
     from: Option<FormatFlag>,
 
@@ -89,7 +89,7 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     lof: Option<PathBuf>,
 
-    /// Files of a sweep that are worked on at the same time [default: one per core]
+    /// Number of files of a sweep in parallel [default: one per core]
     #[arg(long, value_name = "N", requires = "out_dir", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -97,7 +97,7 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", requires = "out_dir")]
     summary: Option<PathBuf>,
 
-    /// Leave out the files that an earlier sweep to the same folder has done with the same flags
+    /// Skip the files that an earlier sweep to the same folder has done with the same flags
     #[arg(long, requires = "out_dir")]
     resume: bool,
 
@@ -112,7 +112,7 @@ pub struct Flags {
     #[command(flatten)]
     method: MethodFlags,
 
-    /// Print what the run did on stderr
+    /// Print statistics on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
 
@@ -120,7 +120,7 @@ pub struct Flags {
     common: Common,
 }
 
-/// What `--from` can say.
+/// Values of `--from`.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum FormatFlag {
     /// PDB
@@ -167,7 +167,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     stats.failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
-/// What was done, and why it is not a success for all that.
+/// Sums of a run, and its failure, if any.
 struct Finished {
     stats: Stats,
     failure: Option<Error>,

@@ -22,13 +22,18 @@ impl Random {
 
     /// A number below `end`, each as likely as the others (Lemire 2019); `end` must not be 0.
     pub fn below(&mut self, end: u64) -> u64 {
-        let biased = end.wrapping_neg() % end;
         loop {
             let product = u128::from(self.bits()) * u128::from(end);
-            if product as u64 >= biased {
+            // The division is slow, and almost never needed: the threshold is below `end`.
+            if product as u64 >= end || product as u64 >= end.wrapping_neg() % end {
                 return (product >> 64) as u64;
             }
         }
+    }
+
+    /// A number from [0, 1), a multiple of 2^-53.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Puts items in random order, each as likely as the others (Fisher and Yates; Durstenfeld, 1964).

@@ -2,7 +2,7 @@
 
 use num_bigint::BigInt;
 use serde_json::Value;
-use spmesh_audit::{Census, Faults, Figures, Standard};
+use spmesh_audit::{Census, Counts, Faults, Standard};
 use spmesh_stream::StreamReader;
 
 use super::reference::Random;
@@ -13,34 +13,34 @@ use spmesh_reference::tetrahedra::exact_points;
 
 const SEED: u64 = 31;
 
-fn census(mesh: &Solid) -> Figures {
+fn census(mesh: &Solid) -> Counts {
     let stream = mesh.stream();
     let mut reader = StreamReader::new(&stream[..], "test").unwrap();
     let mut census = Census::new();
     while let Some(event) = reader.next_event().unwrap() {
         census.event(&event).unwrap();
     }
-    *census.figures()
+    *census.counts()
 }
 
-/// Whether the figures say that the mesh is right, Euler's relation aside, which follows from the others.
-fn is_clean_but_for_euler(figures: &Figures) -> bool {
-    Figures { euler: 1, ..*figures }.is_clean(Standard::Canonical)
+/// Whether the counts say that the mesh is right, Euler's relation aside, which follows from the others.
+fn is_clean_but_for_euler(counts: &Counts) -> bool {
+    Counts { euler: 1, ..*counts }.is_clean(Standard::Canonical)
 }
 
 #[test]
 fn correct_meshes_are_clean() {
     for side in [2, 3] {
         let mesh = Solid::canonical(&cubic(side));
-        let figures = census(&mesh);
-        assert!(figures.is_clean(Standard::Canonical));
-        assert_eq!(figures.vertices, (side * side * side) as u64);
-        assert_eq!(figures.tetrahedra, mesh.tetrahedra.len() as u64);
-        assert_eq!(figures.boundary_facets, 12 * ((side - 1) * (side - 1)) as u64);
-        assert_eq!(2 * figures.interior_facets + figures.boundary_facets, 4 * figures.tetrahedra);
-        assert_eq!((figures.euler, figures.exact), (1, figures.float));
-        let on = figures.tetrahedra;
-        assert_eq!(figures.exact, Faults { on, ..Faults::default() }, "all of it is ties");
+        let counts = census(&mesh);
+        assert!(counts.is_clean(Standard::Canonical));
+        assert_eq!(counts.vertices, (side * side * side) as u64);
+        assert_eq!(counts.tetrahedra, mesh.tetrahedra.len() as u64);
+        assert_eq!(counts.boundary_facets, 12 * ((side - 1) * (side - 1)) as u64);
+        assert_eq!(2 * counts.interior_facets + counts.boundary_facets, 4 * counts.tetrahedra);
+        assert_eq!((counts.euler, counts.exact), (1, counts.float));
+        let on = counts.tetrahedra;
+        assert_eq!(counts.exact, Faults { on, ..Faults::default() }, "all of it is ties");
     }
     assert!(census(&Solid::new(&[], &[])).is_clean(Standard::Canonical));
     assert!(census(&Solid::new(&[[0; 3], [1; 3], [5; 3], [0, 1, 7]], &[])).is_clean(Standard::Canonical));
@@ -50,17 +50,17 @@ fn correct_meshes_are_clean() {
 #[test]
 fn each_fault_is_counted() {
     let tent = [[0, 0, 0], [9, 0, 0], [0, 9, 0], [0, 0, 9], [5, 5, 5], [4, 4, 0]];
-    let figures = |tetrahedra: &[[usize; 4]]| census(&Solid::new(&tent, tetrahedra));
-    let inverted = figures(&[[0, 1, 3, 2]]);
+    let counts = |tetrahedra: &[[usize; 4]]| census(&Solid::new(&tent, tetrahedra));
+    let inverted = counts(&[[0, 1, 3, 2]]);
     assert_eq!((inverted.exact.inverted, inverted.exact.flat, inverted.unused), (1, 0, 2));
     assert_eq!(inverted.exact.concave, 6);
-    let flat = figures(&[[0, 1, 2, 5]]);
+    let flat = counts(&[[0, 1, 2, 5]]);
     assert_eq!((flat.exact.inverted, flat.exact.flat, flat.exact.inside), (0, 1, 0));
     assert!(!flat.is_hull_proved);
     // The facet 1, 2, 3 is used by a second tetrahedron on its right side, then by a third, then by a fourth.
-    let crowded = figures(&[[0, 1, 2, 3], [1, 2, 3, 4], [0, 1, 2, 3], [5, 1, 2, 3]]);
+    let crowded = counts(&[[0, 1, 2, 3], [1, 2, 3, 4], [0, 1, 2, 3], [5, 1, 2, 3]]);
     assert_eq!(crowded.crowded_facets, 3 + 1 + 1);
-    let torn = figures(&[[0, 1, 2, 3], [0, 1, 5, 3]]);
+    let torn = counts(&[[0, 1, 2, 3], [0, 1, 5, 3]]);
     assert_eq!((torn.crowded_facets, torn.torn_edges), (1, 3), "both are on one side of the facet 0, 1, 3");
     assert!(!torn.is_clean(Standard::Delaunay));
 }
@@ -72,9 +72,9 @@ fn wrong_ties_are_a_matter_of_the_standard() {
         .iter()
         .map(|&[a, b, c, d]| [a ^ 1, c ^ 1, b ^ 1, d ^ 1])
         .collect();
-    let figures = census(&Solid::new(&cubic(2), &mirrored));
-    assert!(figures.not_canonical > 0);
-    assert!(figures.is_clean(Standard::Delaunay) && !figures.is_clean(Standard::Canonical));
+    let counts = census(&Solid::new(&cubic(2), &mirrored));
+    assert!(counts.not_canonical > 0);
+    assert!(counts.is_clean(Standard::Delaunay) && !counts.is_clean(Standard::Canonical));
 }
 
 /// Whatever the mesh: nothing panics, the counts are those of trying all pairs of tetrahedra, and a mesh is
@@ -96,19 +96,19 @@ fn counts_agree_with_all_pairs_and_with_the_audit() {
             if has_repeated_vertex(&mesh) {
                 continue;
             }
-            let figures = census(&mesh);
+            let counts = census(&mesh);
             let passes = mesh.audit(Standard::Canonical).is_ok();
-            assert_eq!(is_clean_but_for_euler(&figures), passes, "seed {SEED}, round {round}: {mesh:?}");
-            assert_eq!(figures.is_clean(Standard::Canonical), passes);
-            if figures.crowded_facets == 0 {
+            assert_eq!(is_clean_but_for_euler(&counts), passes, "seed {SEED}, round {round}: {mesh:?}");
+            assert_eq!(counts.is_clean(Standard::Canonical), passes);
+            if counts.crowded_facets == 0 {
                 let expected = faults_of(&mesh);
-                let concave = figures.exact.concave;
+                let concave = counts.exact.concave;
                 assert_eq!(
-                    figures.exact,
+                    counts.exact,
                     Faults { concave, ..expected },
                     "seed {SEED}, round {round}: {mesh:?}"
                 );
-                assert_eq!(figures.float, figures.exact, "small integers are not rounded");
+                assert_eq!(counts.float, counts.exact, "small integers are not rounded");
             }
             *(if passes { &mut clean } else { &mut wrong }) += 1;
         }
@@ -127,9 +127,9 @@ fn one_of_all_sets_of_tetrahedra_is_clean() {
         for set in 0..1u32 << positive.len() {
             let subset = positive.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1);
             let mesh = Solid::new(&points, &subset.map(|(_, t)| *t).collect::<Vec<_>>());
-            let figures = census(&mesh);
+            let counts = census(&mesh);
             let passes = mesh.audit(Standard::Canonical).is_ok();
-            assert_eq!(is_clean_but_for_euler(&figures), passes, "seed {SEED}, round {round}: {mesh:?}");
+            assert_eq!(is_clean_but_for_euler(&counts), passes, "seed {SEED}, round {round}: {mesh:?}");
         }
     }
 }
@@ -188,10 +188,10 @@ fn plain_arithmetic_errs() {
     assert!(exact[7].iter().all(|c| *c == BigInt::from(1) || *c == BigInt::from(side)));
     for nudge in [0, 1, -1] {
         mesh.points[7][2] = side + nudge;
-        let figures = census(&mesh);
-        assert_eq!((figures.exact.inverted, figures.exact.flat), (0, 0));
-        assert_eq!(figures.exact.inside > 0, nudge < 0, "{figures:?}");
-        assert_eq!(figures.exact.on == 6, nudge == 0, "{figures:?}");
+        let counts = census(&mesh);
+        assert_eq!((counts.exact.inverted, counts.exact.flat), (0, 0));
+        assert_eq!(counts.exact.inside > 0, nudge < 0, "{counts:?}");
+        assert_eq!(counts.exact.on == 6, nudge == 0, "{counts:?}");
     }
 }
 

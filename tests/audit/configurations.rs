@@ -1,7 +1,7 @@
 //! The audit of streams of configurations.
 
 use serde_json::{Value, json};
-use spmesh_audit::config::{ConfigurationSet, Proof, Violation, check};
+use spmesh_audit::configurations::{ConfigurationSet, Proof, Violation, check};
 use spmesh_geometry::configurations::{self, Claim, Configurations, Knots, Rule};
 use spmesh_stream::write_configurations;
 
@@ -70,7 +70,7 @@ fn what_rules_make_passes() {
             verdict(&knots, &degrees).unwrap_or_else(|violation| panic!("round {round}: {violation:?}"));
         assert_eq!(proof.degrees.len(), degrees.len());
         let is_delaunay = flips == 0;
-        let complete = |degree: &spmesh_audit::config::DegreeProof| {
+        let complete = |degree: &spmesh_audit::configurations::DegreeProof| {
             degree.facets.is_some() && degree.is_counted && degree.has_circles == is_delaunay
         };
         assert!(proof.degrees.iter().all(complete), "round {round}: {proof:?}");

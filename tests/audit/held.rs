@@ -1,6 +1,6 @@
 //! Configurations of the library, as the audit holds them.
 
-use spmesh_audit::config as audit;
+use spmesh_audit::configurations as audit;
 use spmesh_geometry::configurations::{Configurations, Knots};
 
 /// The same knots; the audit counts ranks itself.

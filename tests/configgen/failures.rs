@@ -26,7 +26,7 @@ fn each_failure_has_its_exit_code() {
         (&["--pull-apart", "1,4"], SQUARE, 2, "unknown knot 4: there are 4"),
         (&["--rule", "aligned:x"], SQUARE, 2, "no angle"),
         (&["--rule", "convex"], SQUARE, 2, "expected delaunay, "),
-        (&["--flip", "random:x"], SQUARE, 2, "no whole number"),
+        (&["--flip", "random:x"], SQUARE, 2, "not an integer"),
         (&["--rule", "data"], SQUARE, 2, "--values FILE"),
         (&["--rule", "data", "--values", "-"], SQUARE, 2, "both come from stdin"),
         (&["--values", "values.txt"], SQUARE, 2, "--values is for the rules"),

@@ -37,7 +37,7 @@ fn plane(stream: &[u8]) -> Vec<Vec<Vec<f64>>> {
     all
 }
 
-/// The same, times the order, in whole numbers.
+/// The same, times the order, in integers.
 fn sums(stream: &[u8], order: usize) -> Vec<Vec<Vec<f64>>> {
     let mut all = plane(stream);
     for x in all.iter_mut().flatten().flatten() {

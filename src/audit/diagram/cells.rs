@@ -1,5 +1,5 @@
-//! One finite cell of a diagram after the other: its sphere, its facets, how they close up, and the boundary
-//! there.
+//! Checks each finite cell of a diagram: its sphere, its facets, that they close up, and its part of the
+//! boundary.
 
 use std::cmp::Ordering;
 
@@ -189,7 +189,7 @@ impl<'a> CellsAudit<'a> {
         Ok(())
     }
 
-    /// The neighbours of an infinite cell, beyond this facet of the cell at hand, are across its ridges.
+    /// The neighbours of the infinite cell at this facet of the current cell are those across its ridges.
     fn check_boundary(&self, facet: usize, beyond: usize) -> Result<(), Violation> {
         let cell = self.cells.get(beyond);
         let (finite, around) = (self.cells.get(cell.neighbours[0] as usize), &cell.neighbours[1..]);
@@ -223,7 +223,7 @@ impl<'a> CellsAudit<'a> {
     }
 }
 
-/// Where the vertices of a list are that are in another.
+/// Places in a list of the vertices that are in another list too.
 fn places<'a>(list: &'a [u32], other: &'a [u32]) -> impl Iterator<Item = u32> + 'a {
     let mut rest = other;
     (0..).zip(list).filter_map(move |(place, vertex)| {

@@ -3,30 +3,30 @@
 use super::Proof;
 use super::violation::{Claim, Violation};
 
-/// Different keys among many, with room for twice as many as there are.
+/// Counts distinct keys, in a buffer of twice as many.
 ///
-/// Cost: a sort whenever the room is used up, so that a key is sorted a few times.
+/// Cost: a sort whenever the buffer is full, so that a key is sorted a few times.
 ///
-/// Memory: 8 N bytes per different key.
+/// Memory: 8 N bytes per distinct key.
 #[derive(Debug, Default)]
 pub(super) struct Distinct<const N: usize> {
     keys: Vec<[u32; N]>,
     limit: usize,
 }
 
-/// Keys that are always put up with.
-const ROOM: usize = 1 << 12;
+/// Least capacity of the buffer, in keys.
+const BUFFER_MIN: usize = 1 << 12;
 
 impl<const N: usize> Distinct<N> {
     pub(super) fn add(&mut self, key: [u32; N]) {
-        if self.keys.len() >= self.limit.max(ROOM) {
+        if self.keys.len() >= self.limit.max(BUFFER_MIN) {
             let distinct = self.count();
             self.limit = 2 * distinct;
         }
         self.keys.push(key);
     }
 
-    /// Number of different keys so far.
+    /// Number of distinct keys so far.
     pub(super) fn count(&mut self) -> usize {
         self.keys.sort_unstable();
         self.keys.dedup();
@@ -53,7 +53,7 @@ mod tests {
     #[test]
     fn keys_count_once_across_sorts() {
         let mut distinct = Distinct::default();
-        (0..3 * ROOM as u32).for_each(|i| distinct.add([i % 5_000, i % 2]));
+        (0..3 * BUFFER_MIN as u32).for_each(|i| distinct.add([i % 5_000, i % 2]));
         assert_eq!(distinct.count(), 5_000);
         (0..40_000).for_each(|i| distinct.add([i % 20_000, i % 2]));
         assert_eq!(distinct.count(), 20_000);

@@ -1,4 +1,4 @@
-//! A point near which every cell but one is left aside: the cells cover their hull once.
+//! Proves that the cells cover their hull once: exactly one cell contains a test point.
 
 use super::sites::Sites;
 use super::space::Independent;
@@ -49,7 +49,7 @@ impl Covering {
         self.five
     }
 
-    /// Takes note of the side of `o` of a facet between two cells. No facet of the boundary may have it
+    /// Records the side of `o` at a facet between two cells. No facet of the boundary may have it
     /// beyond.
     pub(super) fn pass(
         &mut self,

@@ -56,12 +56,12 @@ pub(super) fn without<'a>(one: &'a [u32], other: &'a [u32]) -> impl Iterator<Ite
     })
 }
 
-/// Pairs of sets with enough numbers in common, and what that is.
+/// Pairs of sets with enough numbers in common, with these numbers.
 #[derive(Debug, Default)]
 struct Meetings {
     /// The sets that each number is in.
     sets_of: Vec<Vec<u32>>,
-    /// How much the set at hand shares with each.
+    /// How many numbers the current set shares with each.
     shared: Vec<u32>,
     met: Vec<u32>,
     pairs: Vec<[u32; 2]>,
@@ -69,7 +69,7 @@ struct Meetings {
 }
 
 impl Meetings {
-    /// Finds the pairs that share `least` numbers or more. All numbers are below `end`.
+    /// Finds the pairs that share at least `least` numbers. All numbers are below `end`.
     ///
     /// Cost: per number in a set, the sets that it is in.
     fn find(&mut self, sets: &Lists, end: usize, least: u32) {
@@ -99,8 +99,8 @@ impl Meetings {
     }
 }
 
-/// The faces of the cell at hand. Vertices go by their place in the cell, facets by the place of the
-/// neighbour beyond.
+/// The faces of the current cell. Vertices are numbered by their place in the cell, facets by the place of
+/// the neighbour across.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
     pub(super) facets: Lists,
@@ -108,14 +108,14 @@ pub(super) struct Faces {
     edges: Meetings,
     /// Numbers of the ridges of each facet.
     around: Vec<Vec<u32>>,
-    /// Vertices of the ridges of the facet at hand.
+    /// Vertices of the ridges of the current facet.
     polygons: Lists,
-    /// Edges that were found of each of them.
+    /// Number of edges found of each ridge.
     found: Vec<usize>,
 }
 
 impl Faces {
-    /// Proves that the facets are all that the cell has, if they are true facets.
+    /// Proves that the facets are all facets of the cell, provided that each is a facet.
     ///
     /// A ridge is what two facets share, unless that is less than three vertices. It is a polygon, and has as
     /// many edges as vertices. If each of them is shared with another ridge of the facet, then the ridges of

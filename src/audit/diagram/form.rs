@@ -1,4 +1,4 @@
-//! What needs no geometry: the order of points and cells, ranges of numbers, mutual neighbours.
+//! Checks without geometry: the order of points and cells, ranges of numbers, mutual neighbours.
 
 use super::violation::{Claim, Violation};
 use spmesh_model::cells4::{Cell4, Cells4, Point4};

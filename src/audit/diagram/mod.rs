@@ -15,12 +15,12 @@
 //! *The cells cover a star.* Every facet belongs to two cells on opposite sides of it that name each other,
 //! or to one cell and an infinite one, and then it is on the *boundary*. Let `o` be a point in no hyperplane
 //! of a facet, strictly inside of the hyperplane of every facet of the boundary, and inside of one cell only.
-//! Along a ray from `o` that meets no ridge, as almost all do, the number of cells around is 1 in the
-//! beginning and 0 far away, does not change at facets between two cells, and becomes less by one at facets
-//! of the boundary, which it crosses outwards only. So it crosses one of them, and the number is 1 before and
-//! 0 after: no two cells overlap, and the cells cover a solid that is a star around `o`. In particular no
-//! facet belongs to a third cell, and near a point inside of a ridge of the boundary are exactly two facets
-//! of the boundary, because these cover the directions from `o` once.
+//! Along a ray from `o` that meets no ridge, as almost all do, the number of cells around is 1 at first and 0
+//! far away. It does not change at facets between two cells, and decreases by one at facets of the boundary,
+//! which it crosses outwards only. So it crosses one of them, and the number is 1 before and 0 after: no two
+//! cells overlap, and the cells cover a solid that is a star around `o`. In particular no facet belongs to a
+//! third cell, and near a point inside of a ridge of the boundary are exactly two facets of the boundary,
+//! because these cover the directions from `o` once.
 //!
 //! *The star is convex.* An infinite cell has one neighbour for each ridge of its facet, with which it shares
 //! exactly that: these are the two. No vertex of a neighbour lies beyond the hyperplane of the facet. If the
@@ -66,7 +66,7 @@ pub use violation::{Claim, Violation};
 use cells::CellsAudit;
 use spmesh_model::cells4::{Cells4, Point4};
 
-/// What was proved, in figures.
+/// Counts of what was proved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Proof {
     /// Points, which are all vertices.
@@ -85,10 +85,9 @@ pub struct Proof {
     pub simplices: usize,
     /// Most vertices of a finite cell.
     pub largest: usize,
-    /// Questions of geometry that were asked: one per cell and per facet, each with all vertices that matter
-    /// there.
+    /// Geometric tests: one per cell and per facet, each for all vertices concerned.
     pub questions: u64,
-    /// Questions that were left to integers without limit.
+    /// Geometric tests that needed big integers.
     pub exactly: u64,
 }
 
@@ -98,8 +97,8 @@ pub struct Proof {
 /// Domain: any points and cells, however wrong. If all points lie in a hyperplane the diagram has no cells.
 ///
 /// Cost: per cell, the number of incidences of its vertices with its facets times the facets at a vertex;
-/// 128-bit arithmetic where coordinates have up to 20 bits relative to each other, a filter and integers
-/// without limit elsewhere.
+/// 128-bit arithmetic where coordinates have up to 20 bits relative to each other, a filter and big integers
+/// elsewhere.
 ///
 /// Memory: 32 bytes per point; 16 bytes per edge and 24 per polygon of the diagram, at most twice as many.
 ///

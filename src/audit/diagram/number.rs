@@ -1,20 +1,19 @@
-//! The three arithmetics that every question is asked in: numbers with their error, of 128 bits, and without
-//! limit.
+//! The three arithmetics of every test: f64 with error bounds, 128-bit integers, and big integers.
 
 use std::cmp::Ordering;
 
 use num_bigint::BigInt;
 
-/// What determinants are made of.
+/// Numbers for determinants.
 pub(super) trait Number: Clone {
     fn plus(&self, other: &Self) -> Self;
     fn minus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
-    /// The order to zero, if this arithmetic can tell.
+    /// The sign as an ordering to zero, if this arithmetic can tell.
     fn sign(&self) -> Option<Ordering>;
 }
 
-/// Integers say the order to zero of everything.
+/// Integers whose sign is always known.
 macro_rules! exact {
     ($type:ty, $zero:expr) => {
         impl Number for $type {
@@ -37,16 +36,16 @@ macro_rules! exact {
     };
 }
 
-// As long as nothing overflows, which is for the question to know.
+// Valid without overflow, which each test must guarantee.
 exact!(i128, 0);
 exact!(BigInt, BigInt::ZERO);
 
-/// A number that is known but for an error: the true value differs from `value` by at most `error`.
+/// A number with an error bound: the true value differs from `value` by at most `error`.
 ///
 /// One rounding errs by at most 2^-53 times the rounded result, and a product that underflows by at most
 /// 2^-1075 on top. The bounds are rounded themselves, in at most six operations: [`GROWTH`] makes up for
-/// that, and [`TINY`], which is part of every error, for all underflow. What overflows has an infinite error,
-/// or none that is a number, and decides nothing.
+/// that, and [`TINY`], which is part of every error, for all underflow. After an overflow, the error is
+/// infinite or NaN, and the sign is unknown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ball {
     value: f64,

@@ -1,4 +1,4 @@
-//! The points as the arithmetics take them, and questions asked in the cheapest that can answer.
+//! The points in each arithmetic; tests run in the cheapest one that can decide them.
 
 use num_bigint::BigInt;
 
@@ -6,28 +6,28 @@ use super::number::{Ball, Number};
 use crate::exact::dyadic::Dyadic;
 use spmesh_model::cells4::Point4;
 
-/// A question about points relative to one of them.
+/// A geometric test of points relative to one of them.
 pub(super) trait Question {
     type Answer;
 
     /// Whether no number in the answer has more than 127 bits.
     fn fits(&self, extent: Extent) -> bool;
 
-    /// How many vectors [`Extent::first`] is about.
+    /// Number of vectors that [`Extent::first`] covers.
     fn first(&self) -> usize;
 
-    /// The answer, if the arithmetic can tell.
+    /// The result, if the arithmetic can decide it.
     fn answer<T: Number>(&self, vectors: &[[T; 4]]) -> Option<Self::Answer>;
 }
 
-/// The largest coordinates of the first vectors of a question and of the others.
+/// The largest coordinates of the first vectors of a test and of the others.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     pub(super) first: u64,
     pub(super) rest: u64,
 }
 
-/// The points, and how many questions about them were answered.
+/// The points, and the number of tests of them.
 ///
 /// Memory: 32 bytes per point.
 pub(super) struct Sites<'a> {
@@ -36,9 +36,9 @@ pub(super) struct Sites<'a> {
     integers: Option<Vec<[i64; 4]>>,
     /// The power of two that divides all coordinates.
     unit: i32,
-    /// Questions asked.
+    /// Number of tests.
     pub(super) asked: u64,
-    /// Questions that were left to integers without limit.
+    /// Tests that needed big integers.
     pub(super) exactly: u64,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Sites<'a> {
         self.points[number as usize]
     }
 
-    /// Asks about points relative to the first of them.
+    /// Runs a test of points relative to the first of them.
     pub(super) fn ask<Q: Question>(&mut self, numbers: &[u32], question: &Q) -> Q::Answer {
         self.asked += 1;
         let Some((&origin, numbers)) = numbers.split_first() else {
@@ -89,7 +89,7 @@ impl<'a> Sites<'a> {
         question.answer(&vectors).expect("integers tell")
     }
 
-    /// The answer in integers of 128 bits, if they are enough.
+    /// The result in 128-bit integers, if they suffice.
     fn ask_small<Q: Question>(&self, origin: u32, numbers: &[u32], question: &Q) -> Option<Q::Answer> {
         let integers = self.integers.as_ref()?;
         let from = integers[origin as usize];

@@ -1,4 +1,4 @@
-//! What is asked of points of four dimensions: whether a cell has a sphere, and what a facet separates.
+//! Tests of points in four dimensions: whether a cell has a sphere, and what a facet separates.
 
 use std::cmp::Ordering;
 
@@ -11,11 +11,11 @@ type Vector<T> = [T; 4];
 /// Whether vertices of a cell lie on one sphere, with a volume, and others outside of it. All are given
 /// relative to the first vertex of the cell.
 pub(super) struct Sphere {
-    /// How many vectors are vertices of the cell; the others must be outside.
+    /// Number of vectors that are vertices of the cell; the others must be outside.
     pub(super) own: usize,
 }
 
-/// Answer to [`Sphere`].
+/// Result of [`Sphere`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Roundness {
     /// The cell lies in a hyperplane.
@@ -87,7 +87,7 @@ pub(super) struct Facet {
     pub(super) around: usize,
 }
 
-/// Answer to [`Facet`], with numbers of vectors.
+/// Result of [`Facet`], with numbers of vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Separation {
     /// The facet has no hyperplane.
@@ -100,8 +100,8 @@ pub(super) enum Separation {
     SameSide(usize),
     /// This vertex of a facet around is beyond.
     Concave(usize),
-    /// All is where it should be. Whether the point moved from the first of the five towards the others by
-    /// infinitesimals lies on the side of the cell.
+    /// All vectors are on their sides. Whether the point moved from the first of the five towards the others
+    /// by infinitesimals lies on the side of the cell.
     Good { is_near: bool },
 }
 

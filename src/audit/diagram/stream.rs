@@ -5,7 +5,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Diagram4Collector, Event, Kind};
 
-/// Audit of one stream of cells or simplices: give it every event, and ask for the proof.
+/// Audit of one stream of cells or simplices: pass it every event, then call [`StreamAudit::prove`].
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
 /// block.
@@ -23,7 +23,7 @@ impl StreamAudit {
     /// An audit of a stream of this kind.
     ///
     /// # Errors
-    /// Usage, if a stream of the kind claims nothing that takes a proof.
+    /// Usage, if streams of the kind make no claims to prove.
     pub fn new(kind: Kind) -> Result<Self> {
         if !matches!(kind, Kind::Cells4 | Kind::Simplices4) {
             let name = kind.name();
@@ -34,7 +34,7 @@ impl StreamAudit {
         Ok(StreamAudit { kind, diagram, simplices, proof: None })
     }
 
-    /// Takes what the next event holds.
+    /// Adds the next event.
     ///
     /// # Errors
     /// Usage, if cells have 2^32 words or more.
@@ -60,7 +60,7 @@ impl StreamAudit {
         proof
     }
 
-    /// What [`StreamAudit::prove`] said.
+    /// The result of [`StreamAudit::prove`].
     #[must_use]
     pub fn proof(&self) -> Option<&std::result::Result<Proof, Violation>> {
         self.proof.as_ref()

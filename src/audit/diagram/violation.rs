@@ -1,4 +1,4 @@
-//! What the audit of a diagram claims, and what it says when a claim does not hold.
+//! The claims that the audit of a diagram proves, and their violations.
 
 use std::fmt;
 
@@ -70,12 +70,12 @@ impl Claim {
     }
 }
 
-/// The first thing that is wrong with a diagram or complex.
+/// The first violation in a diagram or complex.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Violation {
     /// The claim that does not hold.
     pub claim: Claim,
-    /// What is wrong, with the numbers of the cells and points concerned.
+    /// Describes the violation, with the numbers of the cells and points concerned.
     pub message: String,
     /// The cells concerned.
     pub cells: Vec<u32>,

@@ -21,7 +21,7 @@ pub(super) fn small_differences<const N: usize, const D: usize>(
     Some(differences)
 }
 
-/// The points themselves, where all coordinates are whole numbers below 2^62.
+/// The points themselves, where all coordinates are integers below 2^62.
 fn whole<const N: usize, const D: usize>(points: &[[f64; D]; N]) -> Option<[[i128; D]; N]> {
     let is_whole = |value: f64| value.abs() < (1i64 << 62) as f64 && value as i64 as f64 == value;
     let all = points.as_flattened().iter().all(|&value| is_whole(value));

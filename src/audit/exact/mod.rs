@@ -4,7 +4,7 @@
 //! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Else the
 //! coordinates are multiplied by a common power of two that makes them integers, and where their differences
 //! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to
-//! integers without limit.
+//! big integers.
 
 pub(super) mod dyadic;
 pub(super) mod plane;

@@ -134,7 +134,7 @@ mod tests {
 
     const SQUARE: [Xy; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-    /// Every route of the arithmetic: 128 bits, 320 bits, and without limit.
+    /// Every route of the arithmetic: 128 bits, 320 bits, and big integers.
     #[test]
     fn cocircular_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e5 / 3.0, 1e9 / 7.0, 2f64.powi(40) + 1.0, 1e300, 5e-324, 1e-200] {

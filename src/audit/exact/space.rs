@@ -225,7 +225,7 @@ mod tests {
     /// A positive tetrahedron of corners of the unit cube, and another corner.
     const CUBE: [Xyz; 5] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 1.0, 1.0]];
 
-    /// Every route of the arithmetic: 128 bits, 320 bits, and without limit.
+    /// Every route of the arithmetic: 128 bits, 320 bits, and big integers.
     #[test]
     fn cospherical_points_are_found_at_every_size() {
         for scale in [1.0, 3.0, 1e7, 1e5 / 3.0, 1e9 / 7.0, 2f64.powi(40) + 1.0, 1e300, 5e-324, 1e-200] {

@@ -1,8 +1,7 @@
-//! The faults of a tetrahedral mesh, counted instead of named: exactly, and as plain floating-point
-//! arithmetic sees them.
+//! Counts the faults of a tetrahedral mesh, by exact and by plain floating-point arithmetic.
 //!
-//! For meshes that are known to be wrong, as rounded arithmetic makes them: how wrong are they, and would a
-//! check in rounded arithmetic have noticed?
+//! For meshes made in rounded arithmetic, which are known to have faults: how many, and would a check in
+//! rounded arithmetic have found them?
 
 use std::cmp::Ordering;
 
@@ -18,7 +17,7 @@ use crate::unused::Unused;
 use crate::vertices::Vertices;
 use spmesh_stream::{Event, Patch};
 
-/// Counts the faults of a tetrahedral mesh: give it every event, and ask for the figures.
+/// Counts the faults of a tetrahedral mesh: pass it every event, then call [`Census::counts`].
 ///
 /// Domain: the events of a stream of tetrahedra from a [`spmesh_stream::StreamReader`], however wrong the
 /// mesh is.
@@ -34,12 +33,12 @@ pub struct Census {
     hull: Hull,
     unused: Unused<3>,
     facets_seen: u64,
-    figures: Figures,
+    counts: Counts,
 }
 
-/// What a census found.
+/// The counts of a census.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Figures {
+pub struct Counts {
     /// Vertices.
     pub vertices: u64,
     /// Vertices without a tetrahedron, where there are tetrahedra.
@@ -63,7 +62,7 @@ pub struct Figures {
     pub is_hull_proved: bool,
     /// Faults by exact arithmetic.
     pub exact: Faults,
-    /// Faults by plain f64 arithmetic: the signs of the same determinants of differences, rounding as it may.
+    /// Faults by plain f64 arithmetic: signs of the same determinants of differences, rounded.
     pub float: Faults,
 }
 
@@ -82,8 +81,8 @@ pub struct Faults {
     pub concave: u64,
 }
 
-impl Figures {
-    /// Whether nothing is wrong by exact arithmetic. Ties are a matter of the standard.
+impl Counts {
+    /// Whether there are no faults by exact arithmetic. The standard decides whether ties are faults.
     #[must_use]
     pub fn is_clean(&self, standard: Standard) -> bool {
         let Faults { inverted, flat, inside, on: _, concave } = self.exact;
@@ -103,14 +102,14 @@ struct Use {
     open: u64,
 }
 
-/// What is known of the tetrahedron at an open facet.
+/// Data of the tetrahedron at an open facet.
 #[derive(Debug, Clone, Copy)]
 struct Beyond {
     apex: Corner,
     index: usize,
 }
 
-/// What arithmetic of one kind says of a tetrahedron.
+/// The faults of a tetrahedron by one kind of arithmetic.
 #[derive(Debug, Clone, Copy)]
 struct Judgement {
     orientation: Ordering,
@@ -141,7 +140,7 @@ impl Default for Census {
 }
 
 impl Census {
-    /// A census of nothing yet.
+    /// An empty census.
     #[must_use]
     pub fn new() -> Self {
         Census {
@@ -153,14 +152,14 @@ impl Census {
             hull: Hull::default(),
             unused: Unused::default(),
             facets_seen: 0,
-            figures: Figures::default(),
+            counts: Counts::default(),
         }
     }
 
-    /// Takes in the next event.
+    /// Adds the next event.
     ///
     /// # Errors
-    /// If a vertex is used after its finalization, so that nobody knows where it is.
+    /// If a vertex is used after its finalization, when its position is no longer known.
     pub fn event(&mut self, event: &Event) -> Result<(), Violation> {
         match event {
             Event::Patch(patch) => self.patch(patch),
@@ -172,10 +171,10 @@ impl Census {
         }
     }
 
-    /// What was counted; complete after the END block.
+    /// The counts; complete after the END block.
     #[must_use]
-    pub fn figures(&self) -> &Figures {
-        &self.figures
+    pub fn counts(&self) -> &Counts {
+        &self.counts
     }
 
     fn patch(&mut self, patch: &Patch) -> Result<(), Violation> {
@@ -221,16 +220,16 @@ impl Census {
             Meeting::Open => {
                 facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open += 1);
                 let is_crowded = self.closed.contains(increasing(ids).0);
-                self.figures.crowded_facets += u64::from(is_crowded);
+                self.counts.crowded_facets += u64::from(is_crowded);
                 self.facets_seen += u64::from(!is_crowded);
             }
             Meeting::Twin(beyond) => {
                 facet.iter().for_each(|&i| self.vertices.local[locals[i]].star.open -= 1);
                 self.closed.add(increasing(ids).0);
-                self.figures.interior_facets += 1;
+                self.counts.interior_facets += 1;
                 self.neighbours(corners, side, index, beyond);
             }
-            Meeting::Twice(_) => self.figures.crowded_facets += 1,
+            Meeting::Twice(_) => self.counts.crowded_facets += 1,
         }
     }
 
@@ -251,28 +250,28 @@ impl Census {
         self.tetrahedra[beyond.index][FLOAT].see(there);
         let is_tie = exact == Ordering::Equal && self.tetrahedra[index][EXACT].orientation.is_gt();
         let is_wrong = is_tie && in_raised_sphere(a, b, c, d, opposite).is_gt();
-        self.figures.not_canonical += u64::from(is_wrong);
+        self.counts.not_canonical += u64::from(is_wrong);
     }
 
     fn end(&mut self) {
         let open = || self.facets.iter().map(|(facet, beyond)| (facet, beyond.apex));
         let faults = self.hull.count(open());
-        let figures = &mut self.figures;
-        figures.vertices = self.vertices.seen();
-        figures.tetrahedra = self.tetrahedra.len() as u64;
-        figures.boundary_facets = self.facets.len() as u64;
-        figures.torn_edges = faults.torn;
-        figures.exact = Faults { concave: faults.concave, ..count(&self.tetrahedra, EXACT) };
-        figures.float = Faults { concave: faults.concave_in_float, ..count(&self.tetrahedra, FLOAT) };
+        let counts = &mut self.counts;
+        counts.vertices = self.vertices.seen();
+        counts.tetrahedra = self.tetrahedra.len() as u64;
+        counts.boundary_facets = self.facets.len() as u64;
+        counts.torn_edges = faults.torn;
+        counts.exact = Faults { concave: faults.concave, ..count(&self.tetrahedra, EXACT) };
+        counts.float = Faults { concave: faults.concave_in_float, ..count(&self.tetrahedra, FLOAT) };
         let [vertices, edges, facets, tetrahedra] =
-            [figures.vertices, self.edges.seen(), self.facets_seen, figures.tetrahedra]
+            [counts.vertices, self.edges.seen(), self.facets_seen, counts.tetrahedra]
                 .map(|count| count as i64);
-        figures.euler = vertices - edges + facets - tetrahedra;
+        counts.euler = vertices - edges + facets - tetrahedra;
         let ledger = &mut Ledger::default();
-        figures.is_hull_proved = if self.tetrahedra.is_empty() {
+        counts.is_hull_proved = if self.tetrahedra.is_empty() {
             self.unused.check_plane(ledger).is_ok()
         } else {
-            figures.unused = self.unused.len();
+            counts.unused = self.unused.len();
             self.hull.check(open(), ledger).is_ok()
         };
     }

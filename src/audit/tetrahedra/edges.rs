@@ -5,7 +5,8 @@ use std::collections::hash_map::Entry;
 
 use foldhash::fast::RandomState;
 
-/// Edges, each with the number of its open facets. One without is forgotten: tetrahedra go all around it.
+/// Edges, each with the number of its open facets. An edge without open facets is dropped: tetrahedra
+/// surround it.
 ///
 /// Memory: three edges for two open facets.
 #[derive(Debug, Default)]
@@ -15,7 +16,7 @@ pub(super) struct OpenEdges {
 }
 
 impl OpenEdges {
-    /// Takes note that a tetrahedron opened both of its facets at an edge; whether the edge is new.
+    /// Records that a tetrahedron opened both of its facets at an edge; returns whether the edge is new.
     pub(super) fn open_two(&mut self, edge: [u64; 2]) -> bool {
         debug_assert!(edge.is_sorted(), "increasing ids");
         match self.facets.entry(edge) {
@@ -31,7 +32,7 @@ impl OpenEdges {
         }
     }
 
-    /// Takes note that a tetrahedron closed both of its facets at an edge.
+    /// Records that a tetrahedron closed both of its facets at an edge.
     pub(super) fn close_two(&mut self, edge: [u64; 2]) {
         let Entry::Occupied(mut facets) = self.facets.entry(edge) else {
             debug_assert!(false, "an open facet has open edges");

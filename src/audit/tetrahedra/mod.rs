@@ -41,7 +41,7 @@
 //! in the hull at the end.
 //!
 //! *Facets and edges that are closed are forgotten.* One that comes again has tetrahedra where others are, so
-//! that something is covered twice, as above; nobody needs to remember it.
+//! that something is covered twice, as above; so the audit need not remember it.
 
 mod census;
 mod edges;
@@ -57,7 +57,7 @@ use super::extent::Extent;
 use super::totals::check_points;
 use super::unused::Unused;
 use super::vertices::Vertex;
-pub use census::{Census, Faults, Figures};
+pub use census::{Census, Counts, Faults};
 use hull::Hull;
 pub(super) use live::LiveTetrahedra;
 use live::Star;

@@ -1,4 +1,4 @@
-//! What a run says when it is done.
+//! Notices and statistics of a run.
 
 use std::time::Duration;
 
@@ -7,14 +7,14 @@ use crate::{StatsFormat, peak_memory, say};
 use spmesh_configgen::{DegreeCounts, Flips, FunctionCounts, Made, Options, Report, RuleName};
 use spmesh_core::error::Result;
 
-/// What the parts of a run took that are not in its report.
+/// Times of the parts of a run that are not in its report.
 pub(super) struct Times {
     pub(super) read: Duration,
     pub(super) write: Duration,
     pub(super) total: Duration,
 }
 
-/// What the user should know of the knots and the flips.
+/// Notices about knots and flips.
 pub(super) fn notices(report: &Report, options: &Options) -> Vec<String> {
     let mut notices = Vec::new();
     let Report { points, repeated, flips, .. } = report;
@@ -42,7 +42,7 @@ pub(super) fn print(
     output_bytes: u64,
 ) -> Result<()> {
     let Some(format) = format else { return Ok(()) };
-    // Before counting, which takes some itself.
+    // Measured before counting, which needs memory itself.
     let peak = peak_memory();
     let count = |configurations| DegreeCounts::of(&made.knots, configurations);
     let degrees = made.degrees.iter().map(count).collect::<Result<Vec<_>>>()?;

@@ -1,4 +1,4 @@
-//! Flags that say what is made of the diagram.
+//! Flags for the product of the diagram.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub const EXAMPLES: &str = "  Simplices, for programs that take nothing else:
     dd4 heart.txt --slice 3.5 -o half.vtu
     dd4 heart.txt --slice 3.5 --isosurface 0.4 -o half.ply";
 
-/// What is written: the cells of the diagram, unless something else is asked for.
+/// The output: the cells of the diagram by default.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Products")]
 pub struct ProductFlags {
@@ -46,7 +46,7 @@ pub struct ProductFlags {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = parse_finite)]
     slice: Option<f64>,
 
-    /// Write the surface of this value in the slice, facing where values are less: PLY, or by the name of the
+    /// Write the surface of this value in the slice, facing lower values: PLY, or by the name of the
     /// output OBJ, VTU or Medit (.obj, .vtu, .mesh)
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = parse_finite, requires = "slice")]
     isosurface: Option<f64>,
@@ -66,12 +66,11 @@ impl ProductFlags {
         self.at_file.as_ref().is_some_and(|path| path.as_os_str() == "-")
     }
 
-    /// What is asked for, to be written to a path. Reads the sites of `--at-file`, so that a mistake there is
-    /// found before the work.
+    /// The requested product, for an output path. Reads the sites of `--at-file`, so that a mistake there is
+    /// found before the computation.
     ///
     /// # Errors
-    /// If that file cannot be read; usage, if the path asks for a format that does not hold what is asked
-    /// for.
+    /// If that file cannot be read; usage, if the format of the path cannot hold the product.
     pub fn product(&self, output: &Path) -> Result<Product> {
         if !self.at.is_empty() || self.at_file.is_some() {
             let mut sites = self.at.clone();
@@ -107,7 +106,7 @@ impl fmt::Display for ProductFlags {
     }
 }
 
-/// Refuses names of formats that hold no cells of four dimensions, as if it were them that one would get.
+/// Refuses output names of formats that cannot hold cells of four dimensions.
 fn check_stream(path: &Path) -> Result<()> {
     match Format::from_path(path) {
         None | Some(Format::Spm) => Ok(()),
@@ -119,7 +118,7 @@ fn check_stream(path: &Path) -> Result<()> {
     }
 }
 
-/// The form of a mesh in space at a path: that of its name, or what is usual.
+/// The form of a mesh in space at a path: given by its name, or the default.
 ///
 /// # Errors
 /// Usage, if the name asks for one that does not hold such a mesh.

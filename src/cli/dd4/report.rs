@@ -1,4 +1,4 @@
-//! What a run says when it is done.
+//! Notices and statistics of a run.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::rows::{Row, entries, lines, seconds};
 use crate::{StatsFormat, peak_memory, say};
 use spmesh_dd4::Report;
 
-/// What the user should know of points that coincide.
+/// The notice about points that coincide.
 pub(super) fn merged(report: &Report) -> Option<String> {
     let Report { points, merged, .. } = report;
     let verb = if *merged == 1 { "coincides" } else { "coincide" };
@@ -36,37 +36,37 @@ fn times(report: &Report, read: Duration, elapsed: Duration) -> Vec<Row<f64>> {
     ])
 }
 
-/// With the times and the share of cells, the columns of thesis table 3.4, and what figure 3.9 shows.
+/// With the times and the share of cells: the columns of thesis table 3.4, and the sum in figure 3.9.
 fn counts(report: &Report) -> [Row<u64>; 16] {
-    let Report { points, merged, stats, figures, output_bytes, .. } = report;
+    let Report { points, merged, stats, counts, output_bytes, .. } = report;
     [
         ("points", "points", *points),
         ("vertices", "vertices", points - merged),
-        ("cells", "cells", figures.finite),
-        ("  not simplices", "cells_not_simplices", figures.not_simplices),
-        ("  most vertices", "cell_vertices_max", figures.vertices_max),
-        ("infinite cells", "infinite_cells", figures.infinite),
-        ("facets", "facets", figures.facets),
-        ("vertex references", "vertex_references", figures.vertex_references),
-        ("cells, facets, references", "elements", figures.elements()),
+        ("cells", "cells", counts.finite),
+        ("  not simplices", "cells_not_simplices", counts.not_simplices),
+        ("  most vertices", "cell_vertices_max", counts.vertices_max),
+        ("infinite cells", "infinite_cells", counts.infinite),
+        ("facets", "facets", counts.facets),
+        ("vertex references", "vertex_references", counts.vertex_references),
+        ("cells, facets, references", "elements", counts.elements()),
         ("simplices of the triangulation", "simplices", stats.simplices),
         ("simplices created", "simplices_created", stats.created),
         ("in-sphere tests", "in_sphere_tests", stats.in_sphere_tests),
         ("points merged", "merged", *merged),
-        ("cells in the output (bytes)", "cell_bytes", figures.cell_bytes()),
+        ("cells in the output (bytes)", "cell_bytes", counts.cell_bytes()),
         ("output (bytes)", "output_bytes", *output_bytes),
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
     ]
 }
 
 fn text(report: &Report, read: Duration, elapsed: Duration) -> String {
-    let share = report.figures.share_not_simplices();
+    let share = report.counts.share_not_simplices();
     lines(&times(report, read, elapsed), counts(report))
         + &format!("{:<30} {share:>15.3}\n", "share that are not simplices")
 }
 
 fn json(report: &Report, read: Duration, elapsed: Duration) -> String {
     let mut object = entries(&times(report, read, elapsed), counts(report));
-    object.insert("share_not_simplices".into(), report.figures.share_not_simplices().into());
+    object.insert("share_not_simplices".into(), report.counts.share_not_simplices().into());
     serde_json::Value::Object(object).to_string()
 }

@@ -1,4 +1,4 @@
-//! Flags that say where points come from, and which of them are wanted.
+//! Flags for the input and the selection of points.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ pub const EXAMPLES: &str =
   100,000 of those points; values without a header, 20 time steps of 64 x 64 x 64:
     dd4 heart.raw --raw 64x64x64x20:f32le --where 'value > 0.3' --count 100000 -o heart.spm";
 
-/// Where points come from, and which of them are wanted.
+/// The input and the selection of points.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Points")]
 pub struct SourceFlags {
@@ -75,10 +75,10 @@ enum SpacingFlag {
 }
 
 impl SourceFlags {
-    /// Reads the points that are asked for.
+    /// Reads the selected points.
     ///
     /// # Errors
-    /// As [`read_points4`]; usage, if nothing is asked for, or stdin is a terminal.
+    /// As [`read_points4`]; usage, if there is no input, or stdin is a terminal.
     pub fn read(&self) -> Result<Selected4> {
         read_points4(&self.request()?)
     }

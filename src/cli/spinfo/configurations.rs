@@ -2,17 +2,17 @@
 
 use serde_json::{Value, json};
 
-use spmesh_audit::DegreeSurvey;
-pub use spmesh_audit::config::{DegreeProof, Proof, Violation};
+use spmesh_audit::DegreeInventory;
+pub use spmesh_audit::configurations::{DegreeProof, Proof, Violation};
 use spmesh_core::error::Error;
 use spmesh_stream::claim_name;
 
 type Verdict = Result<Proof, Violation>;
 
 /// Name and value of a line per degree.
-pub(super) fn figures(degrees: &[DegreeSurvey]) -> impl Iterator<Item = (String, String)> + '_ {
+pub(super) fn counts(degrees: &[DegreeInventory]) -> impl Iterator<Item = (String, String)> + '_ {
     degrees.iter().map(|degree| {
-        let DegreeSurvey { finite, infinite, groups, .. } = degree;
+        let DegreeInventory { finite, infinite, groups, .. } = degree;
         let claim = claim_name(degree.claim);
         let value = format!("{finite} configurations ({claim}), {infinite} infinite, {groups} interior sets");
         (format!("degree {}", degree.degree), value)
@@ -20,7 +20,7 @@ pub(super) fn figures(degrees: &[DegreeSurvey]) -> impl Iterator<Item = (String,
 }
 
 /// An object per degree.
-pub(super) fn figures_json(degrees: &[DegreeSurvey]) -> Value {
+pub(super) fn counts_json(degrees: &[DegreeInventory]) -> Value {
     let degrees = degrees.iter().map(|degree| {
         json!({
             "degree": degree.degree,

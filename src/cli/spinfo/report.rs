@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::{census, configurations, diagram};
 use spmesh_audit::diagram::{Proof, Violation};
-use spmesh_audit::{Figures, Report, Survey, shortest};
+use spmesh_audit::{Counts, Inventory, Report, shortest};
 use spmesh_core::error::Error;
 use spmesh_io::source::crs_name;
 use spmesh_model::bounds::Point;
@@ -14,9 +14,9 @@ use spmesh_stream::{Coordinates, Crs, Header, Kind};
 pub(super) struct Summary<'a> {
     pub(super) name: &'a str,
     pub(super) header: &'a Header,
-    pub(super) survey: &'a Survey,
+    pub(super) inventory: &'a Inventory,
     pub(super) audit: Option<Report>,
-    pub(super) census: Option<&'a Figures>,
+    pub(super) census: Option<&'a Counts>,
     pub(super) diagram: Option<&'a Result<Proof, Violation>>,
     pub(super) configurations: Option<&'a Result<configurations::Proof, configurations::Violation>>,
     pub(super) failure: Option<&'a Error>,
@@ -50,7 +50,7 @@ impl Summary<'_> {
                 [region.min, region.max].map(|side| words(&side[..usize::from(self.header.dims)]));
             line("region", format!("from {min} to {max} (stored)"));
         }
-        self.figures(&mut line);
+        self.counts(&mut line);
         if let Some(report) = &self.audit {
             text += &self.audit_text(report);
         }
@@ -60,15 +60,15 @@ impl Summary<'_> {
         if let Some(verdict) = self.configurations {
             text += &configurations::text(verdict);
         }
-        if let Some(figures) = self.census {
-            text += &census::text(figures);
+        if let Some(counts) = self.census {
+            text += &census::text(counts);
         }
         text
     }
 
-    /// Counts of what was read; figures that the kind does not have are left out.
-    fn figures(&self, line: &mut impl FnMut(&str, String)) {
-        let totals = self.survey.totals();
+    /// Counts of what was read; counts that the kind does not have are left out.
+    fn counts(&self, line: &mut impl FnMut(&str, String)) {
+        let totals = self.inventory.totals();
         let [vertices, residual] = match self.header.kind.has_knots() {
             true => ["functions", "coefficients"],
             false => ["vertices", "residual"],
@@ -78,7 +78,7 @@ impl Summary<'_> {
             ("merged", totals.merged),
             (vertices, totals.vertices),
             (self.simplices(), totals.simplices),
-            ("labels", self.survey.labels()),
+            ("labels", self.inventory.labels()),
             ("cells", totals.cells),
             (residual, totals.residual_points),
             ("walls", totals.walls),
@@ -89,13 +89,13 @@ impl Summary<'_> {
             }
         }
         if self.header.kind.vertices_per_simplex() > 0 {
-            let largest = self.survey.largest_patch();
-            line("width", format!("{} live vertices", self.survey.width()));
+            let largest = self.inventory.largest_patch();
+            line("width", format!("{} live vertices", self.inventory.width()));
             line(
                 "patches",
                 format!(
                     "{}, largest: {} {}, {} new and {} imported vertices",
-                    self.survey.patches(),
+                    self.inventory.patches(),
                     largest.simplices,
                     self.simplices(),
                     largest.new,
@@ -103,12 +103,12 @@ impl Summary<'_> {
                 ),
             );
         } else if self.header.kind.is_4d() {
-            self.figures4(line);
+            self.counts4(line);
         } else if self.header.kind.has_knots() {
-            let degrees = self.survey.configurations().degrees();
-            configurations::figures(degrees).for_each(|(name, value)| line(&name, value));
+            let degrees = self.inventory.configurations().degrees();
+            configurations::counts(degrees).for_each(|(name, value)| line(&name, value));
         } else {
-            let cells = self.survey.cell_points();
+            let cells = self.inventory.cell_points();
             line("chunked", if self.header.chunked { "yes" } else { "no" }.into());
             if let Some(mean) = mean(cells.points, cells.runs) {
                 line("points/tag", format!("mean {mean:.1}, max {} before {} tags", cells.max, cells.runs));
@@ -117,9 +117,9 @@ impl Summary<'_> {
         line("bytes", self.bytes.to_string());
     }
 
-    /// Figures of what is of four dimensions.
-    fn figures4(&self, line: &mut impl FnMut(&str, String)) {
-        let four = self.survey.four();
+    /// Counts of what is of four dimensions.
+    fn counts4(&self, line: &mut impl FnMut(&str, String)) {
+        let four = self.inventory.four();
         if self.header.has_elevation {
             line("values", format!("{} known", four.values_known));
         }
@@ -133,9 +133,9 @@ impl Summary<'_> {
         }
     }
 
-    /// The figures of `figures4`; null for other kinds.
+    /// The counts of `counts4`; null for other kinds.
     fn json4(&self) -> Value {
-        let four = self.survey.four();
+        let four = self.inventory.four();
         if !self.header.kind.is_4d() {
             return Value::Null;
         }
@@ -149,10 +149,12 @@ impl Summary<'_> {
         })
     }
 
-    /// The figures of each degree; null for other kinds.
+    /// The counts of each degree; null for other kinds.
     fn configurations_json(&self) -> Value {
         match self.header.kind {
-            kind if kind.has_knots() => configurations::figures_json(self.survey.configurations().degrees()),
+            kind if kind.has_knots() => {
+                configurations::counts_json(self.inventory.configurations().degrees())
+            }
             _ => Value::Null,
         }
     }
@@ -161,7 +163,7 @@ impl Summary<'_> {
     pub(super) fn json(&self) -> String {
         let header = self.header;
         let (totals, largest, cells) =
-            (self.survey.totals(), self.survey.largest_patch(), self.survey.cell_points());
+            (self.inventory.totals(), self.inventory.largest_patch(), self.inventory.cell_points());
         let dims = usize::from(header.dims);
         let [vertices, residual] = match header.kind.has_knots() {
             true => ["functions", "coefficients"],
@@ -190,14 +192,14 @@ impl Summary<'_> {
                 "points": totals.points,
                 vertices: totals.vertices,
                 self.simplices(): totals.simplices,
-                "labels": self.survey.labels(),
+                "labels": self.inventory.labels(),
                 "cells": totals.cells,
                 "merged": totals.merged,
                 residual: totals.residual_points,
                 "walls": totals.walls,
             },
-            "width": self.survey.width(),
-            "patches": self.survey.patches(),
+            "width": self.inventory.width(),
+            "patches": self.inventory.patches(),
             "largest_patch": {
                 self.simplices(): largest.simplices, "new": largest.new, "imported": largest.imported,
             },
@@ -271,10 +273,10 @@ impl Summary<'_> {
 
     /// Box of the header, or of what was read where the header states none: min and max.
     fn world_bounds(&self) -> Option<[Vec<f64>; 2]> {
-        if let Some([min, max]) = self.survey.four().found_bounds {
+        if let Some([min, max]) = self.inventory.four().found_bounds {
             return Some([min.to_vec(), max.to_vec()]);
         }
-        let bounds = self.header.bounds.or(self.survey.found_bounds())?;
+        let bounds = self.header.bounds.or(self.inventory.found_bounds())?;
         Some([self.world(bounds.min), self.world(bounds.max)])
     }
 

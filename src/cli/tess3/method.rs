@@ -15,7 +15,7 @@ const HAS_EXPERIMENTS: bool = cfg!(feature = "experiments");
 /// Seed unless another is given.
 const SEED: u64 = 1;
 
-/// How the kernel works. With exact arithmetic none of these changes the triangulation.
+/// How the kernel works. With exact arithmetic, the triangulation is always the same.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub(super) struct MethodFlags {
@@ -46,7 +46,7 @@ pub(super) struct MethodFlags {
     #[arg(long, hide = !HAS_EXPERIMENTS)]
     check_signs: bool,
 
-    /// For --stats, measure the time for point location, predicates and update; it takes some itself
+    /// For --stats, measure the time for point location, predicates and update, which slows the run
     #[arg(long, hide = !HAS_EXPERIMENTS)]
     timed: bool,
 }
@@ -119,7 +119,7 @@ impl MethodFlags {
     }
 }
 
-/// What of it decides on the content of the outputs.
+/// The options that affect the content of the outputs.
 impl fmt::Display for MethodFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Ok(Method { arithmetic: Arithmetic::Float { .. }, curve, sequence, by_bit_levels, seed, .. }) =

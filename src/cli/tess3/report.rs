@@ -1,4 +1,4 @@
-//! What a run says when it is done.
+//! Notices and statistics of a run.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::rows::{Row, entries, lines, seconds};
 use crate::{StatsFormat, peak_memory, say};
 use spmesh_tess3::{Arithmetic, Method, Report, Stats};
 
-/// What the user should know of a model: nothing, mostly.
+/// Notices about a model, usually none.
 pub(super) fn degeneracy(report: &Report, models: usize) -> Vec<String> {
     let which = if models > 1 { format!("model {}: ", report.model) } else { String::new() };
     let mut texts = Vec::new();
@@ -95,7 +95,7 @@ fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
     rows
 }
 
-/// Bytes that the kernel held per point, of the model that took most.
+/// Peak bytes of the kernel per point, for the model with the highest peak.
 fn bytes_per_point(stats: &Stats) -> f64 {
     stats.sums.kernel_bytes as f64 / stats.atoms_max.max(1) as f64
 }

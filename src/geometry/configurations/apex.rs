@@ -1,5 +1,5 @@
-//! The rules at work: each picks the apex of a triangle on an edge, which leaves a polygon on either side of
-//! it.
+//! Implements the rules: each picks the apex of the triangle on an edge, which leaves a polygon on either
+//! side.
 
 use super::insertion::LARGE;
 use super::polygon::Triangulator;
@@ -31,7 +31,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
         }
     }
 
-    /// Splits the polygon along the sides of triangles, of which `apex` gives the third corner.
+    /// Splits the polygon recursively: `apex` gives the third corner of the triangle on an edge.
     pub(super) fn split(
         &mut self,
         mut apex: impl FnMut(&mut Self, usize, usize) -> Option<usize>,
@@ -101,7 +101,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
     }
 
     /// For each pair of places the apex of the triangulation of least weight between them (Klincsek, 1980).
-    /// Of equal ones, the first.
+    /// Of equal weights, the first.
     fn least_weight(&mut self) -> Vec<Option<usize>> {
         let count = self.polygon.len();
         let mut apexes = vec![None; count * count];
@@ -126,8 +126,8 @@ impl<P: Predicates2> Triangulator<'_, P> {
         apexes
     }
 
-    /// Diagonals from the least knot to all that it sees; what is left goes on without it, from its least
-    /// knot.
+    /// Draws diagonals from the least knot to all vertices that it sees, and repeats in the remaining
+    /// polygons.
     fn split_fan(&mut self) -> Result<()> {
         let mut pieces: Vec<Vec<usize>> = vec![(0..self.polygon.len()).collect()];
         while let Some(mut piece) = pieces.pop() {

@@ -1,11 +1,12 @@
-//! Borders of finite sets of knots, and sharp places: knots that are repeated (thesis 8.3).
+//! Repeats knots on the border and at sharp places (thesis 8.3).
 //!
 //! Splines of the configurations of degree k sum to one where every closed half-plane through a point has at
-//! least k + 1 knots. So knots are repeated on the border: as often as that takes at its corners
-//! ([`Knots::clamped`]), or once everywhere ([`Knots::pulled_apart`]), which is right for degree 1, and so
-//! for the quadratic splines of its links: they sum to one on the whole hull, and interpolate at its knots.
-//! Copies come after all knots, which keep their ids, and are at the same places: the symbolic perturbation
-//! of `knots` tells them apart as far as combinatorics go, and nothing has to be snapped back.
+//! least k + 1 knots. So knots on the border are repeated: corners as often as the degree needs
+//! ([`Knots::clamped`]), or all border knots once ([`Knots::pulled_apart`]). The latter suits degree 1, and
+//! so the quadratic splines of its links: they sum to one on the whole hull, and interpolate at its knots.
+//! Copies are numbered after all given knots, which keep their ids, and have the same coordinates: the
+//! symbolic perturbation of `knots` tells them apart combinatorially, so no coordinates have to be moved and
+//! restored.
 
 use super::knots::Knots;
 use super::surface;
@@ -16,8 +17,8 @@ use spmesh_core::error::{Error, Result};
 impl Knots {
     /// The corners of the convex hull with multiplicity `degree` + 1; knots along its edges stay as they are.
     ///
-    /// Splines of the degree then sum to one on the whole hull. Corners that are repeated already get what is
-    /// missing.
+    /// Splines of the degree then sum to one on the whole hull. Corners that are already repeated get the
+    /// missing copies only.
     ///
     /// # Errors
     /// Knots on one line; more knots than can be handled.
@@ -36,9 +37,9 @@ impl Knots {
     }
 
     /// The listed knots pulled apart (thesis 8.3, figure 8.7): each place has two knots. The links of either
-    /// are then triangulated from the other, whatever the rule is; Delaunay configurations do so by
-    /// themselves, unless knots of the link are on one circle with the place: [`super::Start::generalised`]
-    /// makes it sure.
+    /// are then triangulated from the other, whatever the rule is; Delaunay configurations do so anyway,
+    /// unless knots of the link are on one circle with the place; [`super::Start::generalised`] guarantees
+    /// it.
     ///
     /// # Errors
     /// An unknown knot; more knots than can be handled.
@@ -46,7 +47,9 @@ impl Knots {
         self.with_multiplicity(knots, 2)
     }
 
-    /// Ids of all knots at the place of knot `id`, in order. Cost: O(n) if there are copies at all.
+    /// Ids of all knots at the place of knot `id`, in order.
+    ///
+    /// Cost: O(n) if there are copies at all.
     #[must_use]
     pub fn copies_of(&self, id: u32) -> Vec<u32> {
         if !self.has_copies() {
@@ -55,7 +58,7 @@ impl Knots {
         (0..self.len() as u32).filter(|&other| self.at(other) == self.at(id)).collect()
     }
 
-    /// The listed knots with copies, until there are `count` at each place.
+    /// Adds copies of the listed knots, until there are `count` at each place.
     fn with_multiplicity(&self, ids: &[u32], count: usize) -> Result<Knots> {
         if let Some(unknown) = ids.iter().find(|&&id| id as usize >= self.len()) {
             return Err(Error::usage(format!("unknown knot {unknown}: there are {}", self.len())));

@@ -15,9 +15,9 @@ pub struct CentroidMesh {
     pub(super) sets: Vec<u32>,
     /// Centroids of the k-sets, in lexicographic order of the sets. Coordinates are rounded.
     pub vertices: Vec<Point2>,
-    /// Counterclockwise; those from the higher degree (one knot of the boundary and all of the interior make
-    /// a vertex), then those from the lower degree (two of the boundary). Triangles of copies of a knot may
-    /// be flat.
+    /// Counterclockwise. First those from the higher degree (a vertex is one knot of the boundary with the
+    /// interior), then those from the lower degree (two knots of the boundary). Triangles of copies of a knot
+    /// may be flat.
     pub triangles: Vec<[u32; 3]>,
     /// Number of triangles from the higher degree.
     pub from_upper: usize,
@@ -35,7 +35,7 @@ impl CentroidMesh {
     /// for a time.
     ///
     /// # Errors
-    /// Degrees that do not follow each other; too many triangles.
+    /// Degrees that are not consecutive; too many triangles.
     pub fn of(knots: &Knots, lower: Option<&Configurations>, upper: &Configurations) -> Result<CentroidMesh> {
         let expected = upper.degree().checked_sub(1);
         if lower.map(Configurations::degree) != expected {
@@ -57,8 +57,8 @@ impl CentroidMesh {
             [[a], [b], [c]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         for ([a, b, c], interior) in lower.into_iter().flat_map(Configurations::iter) {
-            // Opposite to the order of a, b, c: the centroids lie point-symmetrically to the corners that
-            // they lack.
+            // In reverse order of a, b, c: each centroid lies point-symmetrically to the corner that it
+            // lacks.
             [[b, c], [c, a], [a, b]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         let mut mesh = CentroidMesh { order, from_upper: upper.len(), ..CentroidMesh::default() };
@@ -79,8 +79,8 @@ impl CentroidMesh {
         &self.sets[vertex as usize * self.order..][..self.order]
     }
 
-    /// Numbers the different sets among the corners of triangles, of knots below `knots`: a counting sort by
-    /// least knots, and what has the same least knot is little.
+    /// Numbers the distinct sets among the corners of triangles. All knots are below `knots`. A counting sort
+    /// by least knot leaves small buckets, which are sorted.
     fn join(&mut self, corners: &[u32], knots: usize) {
         let set = |at: u32| &corners[at as usize * self.order..][..self.order];
         let mut order = by_least(corners, self.order, knots);

@@ -1,5 +1,5 @@
-//! Copies of knots, inserted one by one into the triangulation of the first knots of all places (Bowyer,
-//! 1981; Watson, 1981).
+//! Inserts copies of knots one by one into the triangulation of the first knots of all places (Bowyer, 1981;
+//! Watson, 1981).
 
 use super::knots::Knots;
 use super::plane::Plane;
@@ -9,16 +9,16 @@ use foldhash::{HashMap, HashMapExt};
 use spmesh_core::random::Random;
 use std::collections::BTreeMap;
 
-/// Knots at one place that are in the triangulation, by rank.
+/// Knots at one place that are already in the triangulation, by rank.
 type Present = BTreeMap<u32, u32>;
 
 impl Start {
     /// Inserts all knots of a rank above 0.
     ///
     /// The edge to the nearest knot of P(e) will be there, so a triangle around that one is in conflict.
-    /// Copies come in random order: then stars are small on average, those of nearest knots as well, as a
-    /// knot is nearest to five others at most. In the order of ranks, each copy would take over a large part
-    /// of the star of the one before.
+    /// Copies are inserted in random order. Then stars are small on average, those of nearest knots too,
+    /// because a knot is nearest to at most five others. In the order of ranks, each copy would take over a
+    /// large part of the star of the one before.
     ///
     /// Cost: O(n log n) expected for n knots, whatever the number of places.
     pub(super) fn insert_copies(&mut self, knots: &Knots) {
@@ -70,10 +70,10 @@ impl Start {
         std::iter::from_fn(move || {
             let corner = next?;
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            // The edge opposite to the following vertex ends at this one; beyond it, this is the vertex
-            // after.
-            let beyond = self.across[t][(i + 1) % 3];
-            let after = beyond - beyond % 3 + (beyond % 3 + 1) % 3;
+            // The edge opposite to the next vertex ends at this vertex; in the triangle across it, this
+            // vertex comes next.
+            let neighbour = self.neighbours[t][(i + 1) % 3];
+            let after = neighbour - neighbour % 3 + (neighbour % 3 + 1) % 3;
             next = (after != first).then_some(after);
             Some(corner)
         })
@@ -81,8 +81,8 @@ impl Start {
 
     /// Replaces the triangles in conflict with a knot by a star around it.
     ///
-    /// All knots stay vertices, so that the cavity has none inside, and its triangles are a tree: none is met
-    /// twice.
+    /// All knots stay vertices, so the cavity has no vertex inside. Its triangles form a tree, and none is
+    /// met twice.
     fn insert(
         &mut self,
         plane: &mut Plane<FiniteFloatPredicates>,
@@ -91,43 +91,43 @@ impl Start {
         corner_at: &mut [Corner],
     ) {
         let [a, b, c] = self.triangles[first as usize];
-        let [across_a, across_b, across_c] = self.across[first as usize];
-        // Edges to look across, the cavity to the left of them; the last comes first.
-        let mut waiting = vec![(c, a, across_b), (b, c, across_a), (a, b, across_c)];
+        let [neighbour_a, neighbour_b, neighbour_c] = self.neighbours[first as usize];
+        // A stack of edges to look across, with the cavity to the left.
+        let mut waiting = vec![(c, a, neighbour_b), (b, c, neighbour_a), (a, b, neighbour_c)];
         let mut free = vec![first];
         let mut ring: Option<[u32; 2]> = None;
-        while let Some((from, to, beyond)) = waiting.pop() {
-            let (t, i) = (beyond as usize / 3, beyond as usize % 3);
+        while let Some((from, to, neighbour)) = waiting.pop() {
+            let (t, i) = (neighbour as usize / 3, neighbour as usize % 3);
             if plane.is_in_conflict(self.triangles[t], id) {
                 let tip = self.triangles[t][i];
-                waiting.push((tip, to, self.across[t][(i + 2) % 3]));
-                waiting.push((from, tip, self.across[t][(i + 1) % 3]));
+                waiting.push((tip, to, self.neighbours[t][(i + 2) % 3]));
+                waiting.push((from, tip, self.neighbours[t][(i + 1) % 3]));
                 free.push(t as u32);
                 continue;
             }
             let fresh = free.pop().unwrap_or_else(|| self.push());
             self.triangles[fresh as usize] = [id, from, to];
-            self.set_across(3 * fresh, beyond);
+            self.set_neighbour(3 * fresh, neighbour);
             for (i, v) in [(0, id), (1, from), (2, to)] {
                 if let Some(corner) = corner_at.get_mut(v as usize) {
                     *corner = 3 * fresh + i;
                 }
             }
             if let Some([_, last]) = ring {
-                self.set_across(3 * last + 1, 3 * fresh + 2);
+                self.set_neighbour(3 * last + 1, 3 * fresh + 2);
             }
             ring = Some([ring.map_or(fresh, |[start, _]| start), fresh]);
         }
         debug_assert!(free.is_empty(), "a vertex brings two triangles");
         if let Some([start, last]) = ring {
-            self.set_across(3 * last + 1, 3 * start + 2);
+            self.set_neighbour(3 * last + 1, 3 * start + 2);
         }
     }
 
     /// The number of a new triangle.
     fn push(&mut self) -> u32 {
         self.triangles.push([0; 3]);
-        self.across.push([0; 3]);
+        self.neighbours.push([0; 3]);
         self.triangles.len() as u32 - 1
     }
 }

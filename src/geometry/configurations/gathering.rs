@@ -1,16 +1,15 @@
-//! From configurations to the links of the next size: edges opposite to corners, gathered by set (thesis
-//! 7.4).
+//! Computes links from configurations: gathers the edges opposite to corners by set (thesis 7.4).
 //!
-//! The link of J has the edge (a, b) for each configuration (vab, I) with I and v together J. Edges are put
-//! in order by the least knot of J, with a counting sort; what has the same least knot is little, and is
-//! sorted by the rest of J.
+//! The link of J has the edge (a, b) for each configuration (vab, I) with I and v together J. A counting sort
+//! puts edges in order by the least knot of J; the few edges with the same least knot are sorted by the rest
+//! of J.
 
 use super::knots::Knots;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::FARAWAY;
 use spmesh_model::configurations::{Configurations, Links};
 
-/// A directed edge as one number, the start above the end: that is compared faster than two.
+/// A directed edge packed into one integer, the start in the upper half: faster to compare than two.
 type Edge = u64;
 
 fn edge(from: u32, to: u32) -> Edge {
@@ -33,8 +32,9 @@ struct Bucket {
     polygon: Vec<u32>,
 }
 
-/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets by
-/// their least knots, which come as `order` has them, and then in lexicographic order. `order` has all knots.
+/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets are
+/// sorted by least knot, in the sequence of `order`, and then lexicographically. `order` is a permutation of
+/// all knots.
 ///
 /// Cost: O(c k log c) for c configurations; 16 bytes per configuration.
 ///
@@ -71,8 +71,8 @@ pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     Ok(links)
 }
 
-/// Corners of configurations by the least knot of their set, or rather the place of that in the order of
-/// visits: then they are read one after the other.
+/// Corners of configurations, sorted by the place of the least knot of their set in the order of visits, so
+/// that they are read sequentially.
 struct Corners {
     /// Thrice the number of the configuration, and the place of the corner.
     records: Vec<u32>,
@@ -226,7 +226,7 @@ fn not_closed(set: &[u32], edges: &[Edge]) -> Error {
         .at(position(set))
 }
 
-/// Where in the input a link is: for error messages.
+/// Names a link in error messages.
 pub(super) fn position(set: &[u32]) -> String {
     let knots: Vec<String> = set.iter().map(u32::to_string).collect();
     format!("link of knots {}", knots.join(", "))

@@ -5,16 +5,16 @@
 //! Planes that have the lifted knots of J below them or on them, and the lifted vertices of the link of J
 //! above or on them, are a convex cell of the dual space. Its corners at three facets of vertices are the
 //! triangles of the link, and the facet of each vertex borders on those of J in one stretch: they are its
-//! sides that are seen from the plane which touches the lift at the vertex. Nothing of this needs all
-//! vertices. So those of any part are a polygon in the same cyclic order, and the facet of one vertex more
-//! cuts off a tree of triangles that starts at the edge between its neighbours, which are known: vertices are
-//! taken out of the polygon in random order, and come back the other way around.
+//! sides that are seen from the plane which touches the lift at the vertex. The same holds for any subset of
+//! the vertices. So those of a subset are a polygon in the same cyclic order, and the facet of one vertex
+//! more cuts off a tree of triangles that starts at the edge between its neighbours, which are known:
+//! vertices are taken out of the polygon in random order, and come back the other way around.
 //!
 //! Triangles of a part of the vertices may be clockwise, or flat: J is not within the vertices then, and
 //! their planes stand for the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes
-//! them as they are. No lift decides whether a vertex is in conflict with three others on its line. It is
-//! taken not to be, as if it was moved by less than all vertices before, and such triangles are gone in the
-//! end.
+//! them as they are. No lift decides whether a vertex is in conflict with three others on its line. It counts
+//! as not in conflict, as if it was moved by less than all vertices before; the final triangulation has no
+//! such triangles.
 
 use super::polygon::Triangulator;
 use super::surface::Corner;
@@ -22,22 +22,22 @@ use crate::predicates::Predicates2;
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
 
-/// Links of at least that many vertices are triangulated so; less are faster without.
+/// Links of at least this many vertices are triangulated by insertion; for smaller ones a search is faster.
 pub(super) const LARGE: usize = 24;
 
-/// No triangle is there.
+/// No triangle: the border of the polygon.
 const OUTSIDE: Corner = Corner::MAX;
 
-/// The triangulation of a polygon whose vertices come one by one; they are places in the whole polygon.
+/// The triangulation of a polygon into which vertices are inserted; vertices are places in the whole polygon.
 struct Ears {
     triangles: Vec<[u32; 3]>,
-    /// The half-edge on the other side of each, or [`OUTSIDE`].
-    across: Vec<[Corner; 3]>,
+    /// The half-edge on the other side of each half-edge, or [`OUTSIDE`].
+    neighbours: Vec<[Corner; 3]>,
     /// The half-edge from each vertex to the next of the polygon.
     edge_after: Vec<Corner>,
-    /// Edges to look across, the cavity to the left of them; the last comes first.
+    /// A stack of edges to look across, with the cavity to the left.
     waiting: Vec<(u32, u32, Corner)>,
-    /// Triangles that are no more.
+    /// Numbers of free triangles.
     free: Vec<u32>,
 }
 
@@ -80,18 +80,18 @@ fn neighbours(order: &[u32]) -> Vec<[u32; 2]> {
 }
 
 impl Ears {
-    /// Room for `count` vertices, of which three are there.
+    /// The first triangle, with space for `count` vertices.
     fn of_triangle(triangle: [u32; 3], count: usize) -> Ears {
         let mut edge_after = vec![OUTSIDE; count];
         for (i, place) in (0..3).zip(triangle) {
             edge_after[place as usize] = (i + 2) % 3;
         }
-        let (triangles, across) = (vec![triangle], vec![[OUTSIDE; 3]]);
-        Ears { triangles, across, edge_after, waiting: Vec::new(), free: Vec::new() }
+        let (triangles, neighbours) = (vec![triangle], vec![[OUTSIDE; 3]]);
+        Ears { triangles, neighbours, edge_after, waiting: Vec::new(), free: Vec::new() }
     }
 
-    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict, none of
-    /// which is met twice, as all triangles are a tree.
+    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict. The
+    /// triangles form a tree, so none is met twice.
     fn insert(
         &mut self,
         place: u32,
@@ -100,17 +100,17 @@ impl Ears {
     ) {
         self.waiting.push((after, before, self.edge_after[before as usize]));
         let mut last = OUTSIDE;
-        while let Some((from, to, beyond)) = self.waiting.pop() {
-            let (t, i) = (beyond as usize / 3, beyond as usize % 3);
-            if beyond != OUTSIDE && is_in_conflict(self.triangles[t], place) {
+        while let Some((from, to, neighbour)) = self.waiting.pop() {
+            let (t, i) = (neighbour as usize / 3, neighbour as usize % 3);
+            if neighbour != OUTSIDE && is_in_conflict(self.triangles[t], place) {
                 let tip = self.triangles[t][i];
-                self.waiting.push((tip, to, self.across[t][(i + 2) % 3]));
-                self.waiting.push((from, tip, self.across[t][(i + 1) % 3]));
+                self.waiting.push((tip, to, self.neighbours[t][(i + 2) % 3]));
+                self.waiting.push((from, tip, self.neighbours[t][(i + 1) % 3]));
                 self.free.push(t as u32);
                 continue;
             }
             let fresh = self.put([place, from, to]);
-            self.join(3 * fresh, beyond, from);
+            self.join(3 * fresh, neighbour, from);
             self.join(3 * fresh + 2, last, place);
             last = 3 * fresh + 1;
         }
@@ -121,11 +121,11 @@ impl Ears {
     fn put(&mut self, triangle: [u32; 3]) -> u32 {
         if let Some(free) = self.free.pop() {
             self.triangles[free as usize] = triangle;
-            self.across[free as usize] = [OUTSIDE; 3];
+            self.neighbours[free as usize] = [OUTSIDE; 3];
             return free;
         }
         self.triangles.push(triangle);
-        self.across.push([OUTSIDE; 3]);
+        self.neighbours.push([OUTSIDE; 3]);
         self.triangles.len() as u32 - 1
     }
 
@@ -135,18 +135,18 @@ impl Ears {
             self.edge_after[from as usize] = here;
             return;
         }
-        self.across[here as usize / 3][here as usize % 3] = there;
-        self.across[there as usize / 3][there as usize % 3] = here;
+        self.neighbours[here as usize / 3][here as usize % 3] = there;
+        self.neighbours[there as usize / 3][there as usize % 3] = here;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::configurations::diagonals::Diagonals;
     use crate::configurations::gathering::for_each_link;
     use crate::configurations::knots::Knots;
     use crate::configurations::rule::Rule;
-    use crate::configurations::special::Diagonals;
     use crate::configurations::{Lift, Start, generate};
     use crate::predicates::FiniteFloatPredicates;
     use spmesh_model::configurations::FARAWAY;

@@ -1,15 +1,14 @@
-//! Knots: points with ids, of which several may be at one place.
+//! Knots: points with ids, several of which may coincide.
 //!
 //! # Repeated knots
-//! Configurations are combinatorial: a knot that is there twice is two knots. To tell copies apart, the set
-//! is taken as the limit of P(e) for e > 0 that goes to 0, where the knot of *rank* j is at `p + e (j,
-//! j * j)`; the rank is the number of knots at the same place with lesser ids. For e small enough the knots
-//! of P(e) are distinct, and every sign is that of the first coefficient of a polynomial in e that is not
-//! zero (`symbolic`). What is left undecided are knots of P(e) on one circle or line, as in any set of
-//! distinct points, and the canonical perturbation of lifts decides it, by the lexicographic order of P(e).
-//! So the result is what is right for an ordinary set of points, which then moves together: nothing of the
-//! theory has to be redone. Triangles of two copies and another knot are counterclockwise in P(e) and have no
-//! area at e = 0.
+//! Configurations are combinatorial: a repeated knot is two knots. To tell copies apart, the set is the limit
+//! of P(e) for e > 0 tending to 0, where the knot of *rank* j is at `p + e (j, j * j)`; the rank is the
+//! number of knots at the same place with lesser ids. For e small enough the knots of P(e) are distinct, and
+//! every sign is that of the first coefficient of a polynomial in e that is not zero (`symbolic`). Knots of
+//! P(e) on one circle or line remain undecided, as in any set of distinct points; the canonical perturbation
+//! of lifts decides these, by the lexicographic order of P(e). So the result is that of an ordinary set of
+//! distinct points that then move together, and the theory applies unchanged. Triangles of two copies and
+//! another knot are counterclockwise in P(e) and have no area at e = 0.
 //!
 //! Copies lie on a parabola, no three on a line; and no four on a circle, which would need abscissae with the
 //! sum zero.

@@ -5,7 +5,7 @@ use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 
-/// What takes the place of x² + y² in the in-circle determinant.
+/// Replaces x² + y² in the in-circle determinant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lift {
     /// Values of a strictly convex function at the knots.
@@ -16,7 +16,7 @@ pub enum Lift {
 
 /// More than enough for twelve roundings of each term.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// Sums of magnitudes in this range come from terms that neither over- nor underflow where it matters.
+/// For sums of magnitudes in this range, no term overflows, and underflow does not matter.
 const TRUSTED: std::ops::Range<f64> = 1e-150..1e250;
 
 impl Lift {
@@ -26,8 +26,8 @@ impl Lift {
         }
     }
 
-    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies under
-    /// a function of which only values are known is not defined.
+    /// Checks that there is one finite value per knot, and that knots are distinct: copies have no defined
+    /// limit under a function of which only values are known.
     pub(super) fn check(&self, knots: &Knots) -> Result<()> {
         let (found, expected) = (self.values().len(), knots.len());
         if found != expected {
@@ -73,7 +73,7 @@ impl Lift {
         self.exact_sign(ids.map(|id| knots.at(id)), ids.map(value))
     }
 
-    /// The same in integers of any size.
+    /// The same in big integers.
     #[cold]
     fn exact_sign(&self, points: [[f64; 2]; 4], values: [f64; 4]) -> Sign {
         let mut numbers: Vec<[f64; 3]> = (0..4).map(|i| [points[i][0], points[i][1], values[i]]).collect();

@@ -1,4 +1,5 @@
-//! Centroid triangulations where knots are repeated: as meshes that every program takes.
+//! Turns centroid triangulations of repeated knots into meshes without degenerate triangles, which every
+//! program accepts.
 
 use super::centroids::{CentroidMesh, centroid};
 use super::knots::Knots;
@@ -10,8 +11,8 @@ impl CentroidMesh {
     /// The same with one vertex for sets that have the same places, and without flat triangles.
     ///
     /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side.
-    /// What else is flat, knots on a line of which some are moved symbolically, is on the border: inside of
-    /// it, other triangles would end amid an edge.
+    /// Other flat triangles have knots on a line, some of them moved symbolically. They lie on the border:
+    /// inside it, other triangles would end amid an edge.
     #[must_use]
     pub fn without_flat(&self, knots: &Knots) -> CentroidMesh {
         let mut predicates = FiniteFloatPredicates::default();

@@ -1,26 +1,27 @@
-//! Delaunay configurations of any degree, and what generalises them (thesis 6.2.2 and chapter 7).
+//! Delaunay configurations of any degree, and their generalisations (thesis 6.2.2 and chapter 7).
 //!
-//! A configuration of degree k is a pair (B, I): three knots B, and the k knots I that their circle has
-//! inside. [`delaunay`] and [`Start`] give those of degree 0, the triangles of a triangulation;
-//! [`link_triangulate`] goes from each degree to the next: the triangles with interior set J triangulate the
-//! polygon that those of the degree before leave around J, its link. Any rule for polygons will do (proved by
-//! Schmitt, "Bivariate B-splines from convex configurations", J. Comput. System Sci. 120, 2021);
-//! [`Rule::Delaunay`] gives the Delaunay configurations. What theory promises of links is asserted in every
-//! step.
+//! A configuration of degree k is a pair (B, I): three knots B, and the k knots I inside their circle.
+//! [`delaunay`] and [`Start`] give those of degree 0, the triangles of a triangulation; [`link_triangulate`]
+//! goes from each degree to the next: the triangles with interior set J triangulate the polygon that those of
+//! the degree before leave around J, its link. Any rule for triangulating polygons works (proved by Schmitt,
+//! "Bivariate B-splines from convex configurations", J. Comput. System Sci. 120, 2021); [`Rule::Delaunay`]
+//! gives the Delaunay configurations. Every step asserts what the theory states about links.
 //!
 //! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the
-//! arrays, `gathering` the way from configurations to links, `polygon`, `rule`, `apex` and `insertion` that
-//! from links to configurations. [`special`] sets up starts and links for splines of a purpose.
+//! arrays, `gathering` computes links from configurations; `polygon`, `rule`, `apex`, `pieces` and
+//! `insertion` triangulate links to configurations. [`special`] sets up starts and links for special splines.
 
 mod apex;
 mod border;
 mod centroids;
 mod copies;
+mod diagonals;
 mod gathering;
 mod insertion;
 mod knots;
 mod lift;
 mod merged;
+mod pieces;
 mod plane;
 mod polygon;
 mod rule;
@@ -42,6 +43,7 @@ pub use union_map::{UnionSource, inverse_union_map, union_map};
 
 use crate::order::{Curve, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, WithPredicates2};
+use diagonals::Diagonals;
 use polygon::Triangulator;
 use spmesh_core::error::{Error, Result};
 
@@ -56,7 +58,7 @@ use spmesh_core::error::{Error, Result};
 /// links have about 6 vertices.
 ///
 /// # Errors
-/// Parameters of the rule that do not fit; a link that is neither a simple polygon nor null (kind
+/// Parameters of the rule that do not fit the knots; a link that is neither a simple polygon nor null (kind
 /// [`spmesh_core::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from
 /// elsewhere); a link with more vertices than the rule takes.
 pub fn link_triangulate(
@@ -64,7 +66,7 @@ pub fn link_triangulate(
     configurations: &Configurations,
     rule: &Rule,
 ) -> Result<Configurations> {
-    step(knots, configurations, rule, &special::Diagonals::default())
+    step(knots, configurations, rule, &Diagonals::default())
 }
 
 /// [`link_triangulate`] with diagonals that links must have.
@@ -72,7 +74,7 @@ fn step(
     knots: &Knots,
     configurations: &Configurations,
     rule: &Rule,
-    diagonals: &special::Diagonals,
+    diagonals: &Diagonals,
 ) -> Result<Configurations> {
     rule.check(knots)?;
     let step = Step { knots, configurations, rule, diagonals };
@@ -100,7 +102,7 @@ pub fn generate(
 /// Whether there are enough knots for configurations of a degree: three more.
 ///
 /// # Errors
-/// Too few.
+/// Usage, if there are too few.
 pub fn check_degree(knots: &Knots, degree: usize) -> Result<()> {
     if knots.len() < degree.saturating_add(3) {
         let (found, needed) = (knots.len(), degree.saturating_add(3));
@@ -111,12 +113,12 @@ pub fn check_degree(knots: &Knots, degree: usize) -> Result<()> {
     Ok(())
 }
 
-/// One degree more, in some arithmetic.
+/// One step to the next degree, in any arithmetic.
 struct Step<'a> {
     knots: &'a Knots,
     configurations: &'a Configurations,
     rule: &'a Rule,
-    diagonals: &'a special::Diagonals,
+    diagonals: &'a Diagonals,
 }
 
 impl WithPredicates2 for Step<'_> {
@@ -132,7 +134,7 @@ impl WithPredicates2 for Step<'_> {
         };
         let mut next = Configurations::new(configurations.degree() + 1, claim);
         let mut triangulator = Triangulator::new(knots, (rule, diagonals), claim, predicates);
-        // Along a curve, so that what is near in the plane is near in time: ids may be in any order.
+        // Visits knots along a curve, so that memory accesses are local whatever the order of ids.
         let mut curve = SpatialOrder::default();
         let order: Vec<u32> =
             curve.sort(knots.points(), &Extent::of(knots.points()), Curve::Hilbert).collect();

@@ -59,7 +59,7 @@ impl<'a, P: Predicates2> Plane<'a, P> {
 
     /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others
     /// on which it is below if abc is counterclockwise. If they are clockwise, this is above; and one side of
-    /// a vertical plane if they lie on a line. False for four on a line.
+    /// a vertical plane if they lie on a line. False for four knots on a line.
     pub(super) fn is_beyond(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
         let ids = [a, b, c, d];
         let sign = match self.lift {
@@ -78,7 +78,8 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         }
     }
 
-    /// The derivative of the determinant in the lift of the knot of largest order that has any influence.
+    /// The sign of the derivative of the determinant with respect to the lift of the largest knot for which
+    /// it is not zero.
     fn tie(&mut self, [a, b, c, d]: [u32; 4]) -> Sign {
         let mut ranked = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
         ranked.sort_unstable_by(|p, q| self.knots.order(q.0, p.0));

@@ -1,24 +1,24 @@
-//! Triangulation of one link: infinite triangles first, then each bounded pocket by the rule.
+//! Triangulates one link: infinite triangles first, then each bounded pocket by the rule.
 
+use super::diagonals::Diagonals;
 use super::gathering::position;
 use super::knots::Knots;
 use super::plane::Plane;
 use super::rule::Rule;
 use super::simple;
-use super::special::Diagonals;
 use crate::predicates::{Predicates2, Sign};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::LINK_VERTICES_MAX;
 use spmesh_model::configurations::Claim;
 use spmesh_model::configurations::FARAWAY;
 
-/// Triangulates links, with buffers to be used again.
+/// Triangulates links; its buffers are reused.
 pub(super) struct Triangulator<'a, P> {
     pub(super) plane: Plane<'a, P>,
     pub(super) rule: &'a Rule,
-    /// What links must have, whatever the rule is.
+    /// Diagonals that links must have, whatever the rule.
     diagonals: &'a Diagonals,
-    /// What is triangulated by the lift that all before was triangulated by: no diagonal can be in the way.
+    /// Whether all degrees were triangulated by the same lift: then no diagonal can be in the way.
     pub(super) is_regular: bool,
     /// The set whose link it is.
     pub(super) set: Vec<u32>,
@@ -80,11 +80,11 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Ok(())
     }
 
-    /// A link through the faraway point: `chain` is what is left of it.
+    /// Triangulates a link through the faraway point; `chain` is the link without it.
     ///
     /// The hull of the other knots has a border path from the start to the end of the chain, with the set to
-    /// the left. Its edges make the infinite triangles, whatever the rule is: these are half-planes, which no
-    /// lift is needed for. Between the path and the chain are pockets.
+    /// the left. Its edges make the infinite triangles, whatever the rule: these are half-planes, which need
+    /// no lift. Pockets lie between the path and the chain.
     fn unbounded(&mut self, chain: &[u32]) -> Result<()> {
         self.polygon.clear();
         self.polygon.extend_from_slice(chain);
@@ -143,7 +143,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Err(self.failure("it does not end on the border of the knots around it"))
     }
 
-    /// The polygon, by the rule.
+    /// Triangulates the polygon, by the rule.
     fn bounded(&mut self) -> Result<()> {
         let diagonals: Vec<[u32; 2]> = self.diagonals.of(&self.set).collect();
         if !diagonals.is_empty() {
@@ -181,8 +181,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     }
 
     /// Triangulates the link of one of two knots at one place with diagonals from the other (thesis, figure
-    /// 8.7), whatever the rule is; whether that could be done. Delaunay configurations are such by
-    /// themselves, but for ties.
+    /// 8.7), whatever the rule. Returns whether that was possible. Delaunay configurations have these
+    /// diagonals anyway, except for ties.
     fn fan_from_copy(&mut self) -> bool {
         let &[v] = &self.set[..] else { return false };
         if self.is_regular || !self.plane.knots.has_copies() {

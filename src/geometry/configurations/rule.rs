@@ -1,13 +1,13 @@
-//! Polygon rules: which of the triangulations of a link is taken.
+//! Polygon rules: they select one of the triangulations of a link.
 
 use super::knots::Knots;
 use super::lift::Lift;
 use spmesh_core::error::{Error, Result};
 
-/// What coordinates and values are multiplied by, so that sums of differences of the greatest are finite;
-/// exact but for numbers next to zero.
+/// Scale of coordinates and values, so that sums of differences of the largest f64 are finite. Exact except
+/// for numbers near zero.
 const SCALE: f64 = 1.0 / (1u64 << 40) as f64;
-/// More than any difference of scaled numbers, and little enough for long sums.
+/// More than any difference of scaled numbers, and small enough for long sums.
 const WEIGHT_MAX: f64 = f64::MAX * SCALE;
 
 /// How links are triangulated.
@@ -24,7 +24,7 @@ pub enum Rule {
     Ear,
     /// As many diagonals as possible from the least knot.
     Fan,
-    /// At random: from a seed and the set, so that the order of links does not matter.
+    /// At random, from a seed and the set, so that the order of links does not matter.
     Random(u64),
     /// The least extent of edges across a direction, in degrees counterclockwise from the x axis.
     Aligned(f64),
@@ -52,8 +52,8 @@ impl Rule {
         }
     }
 
-    /// What a diagonal costs, for rules that minimise a sum: finite, and so are sums, whatever coordinates
-    /// and values are.
+    /// The weight of a diagonal, for rules that minimise a sum. Weights and their sums are finite for all
+    /// coordinates and values.
     pub(super) fn weight(&self, knots: &Knots, a: u32, b: u32) -> f64 {
         let (p, q) = (knots.at(a), knots.at(b));
         let less = |from: f64, to: f64| SCALE * to - SCALE * from;
@@ -70,7 +70,7 @@ impl Rule {
             }
             _ => x.hypot(y),
         };
-        // Of great gradients and coordinates the product may be no number, and is not less than any.
+        // The product of large gradients and coordinates may be infinite or NaN, which compares false.
         if weight < WEIGHT_MAX { weight } else { WEIGHT_MAX }
     }
 }

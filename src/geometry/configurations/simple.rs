@@ -3,9 +3,11 @@
 use super::plane::Plane;
 use crate::predicates::Predicates2;
 
-/// Two edges of a polygon, or of an open chain, that have a point in common beyond a common vertex.
+/// Two edges of a polygon, or of an open chain, that have a point in common other than a common vertex.
 ///
-/// Domain: distinct vertices. Cost: O(n log n) and a test for each pair of edges that overlap in x and y.
+/// Domain: distinct vertices.
+///
+/// Cost: O(n log n) and a test for each pair of edges that overlap in x and y.
 pub(super) fn crossing<P: Predicates2>(
     plane: &mut Plane<P>,
     polygon: &[u32],

@@ -1,8 +1,8 @@
 //! Whether triangles are a triangulation of the convex hull of all knots.
 //!
-//! They are counterclockwise, every directed edge has its opposite but for one cycle, which is convex and
-//! goes around once: then the triangles cover what is inside the cycle once (winding numbers), and edges meet
-//! at knots only.
+//! They must be counterclockwise, and every directed edge must have its opposite, except for one cycle that
+//! is convex and goes around once. Then the triangles cover the inside of the cycle once (winding numbers),
+//! and edges meet at knots only.
 
 use super::knots::Knots;
 use super::plane::Plane;
@@ -11,7 +11,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::configurations::FARAWAY;
 use std::cmp::Ordering;
 
-/// Checks triangles that come from elsewhere.
+/// Checks triangles from an input.
 pub(super) fn check(knots: &Knots, triangles: &[[u32; 3]]) -> Result<()> {
     let mut predicates = FiniteFloatPredicates::default();
     let mut plane = Plane::new(knots, None, &mut predicates);

@@ -16,12 +16,12 @@ use spmesh_model::configurations::{Claim, Configurations};
 /// place.
 pub(super) type Corner = u32;
 
-/// A triangulation of the convex hull of all knots, that every knot is a vertex of.
+/// A triangulation of the convex hull of all knots; every knot is a vertex.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The half-edge on the other side of each.
-    pub(super) across: Vec<[Corner; 3]>,
+    /// The half-edge on the other side of each half-edge.
+    pub(super) neighbours: Vec<[Corner; 3]>,
     pub(super) claim: Claim,
 }
 
@@ -41,25 +41,27 @@ fn triangles_of(mesh: &Triangles) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// For each half-edge of [`triangles_of`] that on the other side.
-fn across_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
+/// For each half-edge of [`triangles_of`], the one on the other side.
+fn neighbours_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
     let (finite, infinite) = (mesh.triangles().len() as u32, mesh.hull.len() as u32);
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
-    let mut across = Vec::with_capacity((finite + infinite) as usize);
-    across.extend(mesh.triangles().iter().map(|triangle| {
+    let mut neighbours = Vec::with_capacity((finite + infinite) as usize);
+    neighbours.extend(mesh.triangles().iter().map(|triangle| {
         [0, 1, 2].map(|i| match triangle.neighbour(i) {
-            Some(beyond) => 3 * beyond.triangle + beyond.corner,
+            Some(neighbour) => 3 * neighbour.triangle + neighbour.corner,
             None => 3 * outside[&triangle.vertices[(i + 1) % 3]] + 2,
         })
     }));
     let around = |place: u32| 3 * (finite + place % infinite);
-    across.extend((0..infinite).map(|place| [around(place + infinite - 1) + 1, around(place + 1), 0]));
+    neighbours.extend((0..infinite).map(|place| [around(place + infinite - 1) + 1, around(place + 1), 0]));
     for t in 0..finite {
-        for (i, beyond) in (0..).zip(across[t as usize]).filter(|&(_, beyond)| beyond / 3 >= finite) {
-            across[beyond as usize / 3][2] = 3 * t + i;
+        for (i, neighbour) in
+            (0..).zip(neighbours[t as usize]).filter(|&(_, neighbour)| neighbour / 3 >= finite)
+        {
+            neighbours[neighbour as usize / 3][2] = 3 * t + i;
         }
     }
-    across
+    neighbours
 }
 
 /// The border of the convex hull, counterclockwise, with all knots on it; of those at one place the first.
@@ -67,8 +69,8 @@ pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
     Ok(kernel_mesh(knots)?.hull)
 }
 
-/// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if
-/// no knots are at one place.
+/// The Delaunay triangulation of `knots` as configurations of degree 0, computed without a [`Start`] if no
+/// two knots coincide.
 ///
 /// Cost: little more than the kernel's.
 ///
@@ -88,9 +90,9 @@ impl Start {
     /// Knots on one line.
     pub fn delaunay(knots: &Knots) -> Result<Start> {
         let mesh = kernel_mesh(knots)?;
-        let (triangles, across) = (triangles_of(&mesh), across_of(&mesh));
+        let (triangles, neighbours) = (triangles_of(&mesh), neighbours_of(&mesh));
         drop(mesh);
-        let mut start = Start { triangles, across, claim: Claim::Delaunay };
+        let mut start = Start { triangles, neighbours, claim: Claim::Delaunay };
         if knots.has_copies() {
             start.insert_copies(knots);
         }
@@ -121,7 +123,7 @@ impl Start {
                 return Err(Error::usage(message).at(format!("knot {hidden}")));
             }
             start.flip(corner);
-            let (t, u) = (corner / 3, start.across[corner as usize / 3].map(|c| c / 3));
+            let (t, u) = (corner / 3, start.neighbours[corner as usize / 3].map(|c| c / 3));
             waiting.extend([3 * t, 3 * t + 1, 3 * t + 2]);
             waiting.extend(u.into_iter().flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
         }
@@ -140,11 +142,11 @@ impl Start {
         let mut all = Vec::with_capacity(triangles.len() + border.len());
         all.extend_from_slice(triangles);
         all.extend(border.iter().map(|&[a, b]| [b, a, FARAWAY]));
-        Ok(Start { across: join(&all)?, triangles: all, claim: Claim::Any })
+        Ok(Start { neighbours: join(&all)?, triangles: all, claim: Claim::Any })
     }
 
-    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for
-    /// constrained Delaunay triangulations of links, and links of knots that are pulled apart are
+    /// The same triangulation, without the claim to be Delaunay or lifted: [`super::Rule::Delaunay`] then
+    /// looks for constrained Delaunay triangulations of links, and links of knots that are pulled apart are
     /// triangulated as in figure 8.7 of the thesis.
     #[must_use]
     pub fn generalised(mut self) -> Start {
@@ -185,16 +187,17 @@ impl Start {
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut flips = 0;
         let mut waiting: Vec<Corner> = (0..3 * self.triangles.len() as u32).rev().collect();
-        // The edges deviate less and less, so this ends.
+        // Each flip reduces the deviation of an edge, so this ends.
         while let Some(corner) = waiting.pop() {
             let Some([v, a, w, b]) = self.quadrilateral(corner) else { continue };
             let [now, then] = [[a, b], [v, w]].map(|edge| deviation(knots, edge, degrees));
             let is_better = then < now && self.can_flip(&mut plane, corner);
             if is_better && self.keeps_places(&mut plane, corner) {
-                let beyond = self.across[corner as usize / 3][corner as usize % 3] / 3;
+                let neighbour = self.neighbours[corner as usize / 3][corner as usize % 3] / 3;
                 self.flip(corner);
                 flips += 1;
-                waiting.extend([corner / 3, beyond].into_iter().flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
+                waiting
+                    .extend([corner / 3, neighbour].into_iter().flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]));
             }
         }
         flips
@@ -209,17 +212,16 @@ impl Start {
 
     /// The two triangles at the edge opposite to a corner, with what is around them.
     pub(super) fn around(&self, corner: Corner) -> Around {
-        let beyond = self.across[corner as usize / 3][corner as usize % 3];
-        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the
-        // second and third.
+        let neighbour = self.neighbours[corner as usize / 3][corner as usize % 3];
+        // For a triangle as seen from a corner: its vertices, and its neighbours.
         let seen = |from: Corner| {
             let (triangle, place) = (from as usize / 3, from as usize % 3);
             let places = [place, (place + 1) % 3, (place + 2) % 3];
-            (places.map(|i| self.triangles[triangle][i]), places.map(|i| self.across[triangle][i]))
+            (places.map(|i| self.triangles[triangle][i]), places.map(|i| self.neighbours[triangle][i]))
         };
         let ([v, a, b], [_, bv, va]) = seen(corner);
-        let ([w, ..], [_, aw, wb]) = seen(beyond);
-        Around { triangles: [corner / 3, beyond / 3], corners: [v, a, w, b], across: [va, aw, wb, bv] }
+        let ([w, ..], [_, aw, wb]) = seen(neighbour);
+        Around { triangles: [corner / 3, neighbour / 3], corners: [v, a, w, b], neighbours: [va, aw, wb, bv] }
     }
 
     /// Whether the edge opposite to a corner can be flipped.
@@ -244,21 +246,21 @@ impl Start {
 
     /// Replaces the edge opposite to a corner by the other diagonal.
     pub(super) fn flip(&mut self, corner: Corner) {
-        let Around { triangles: [t, u], corners: [v, a, w, b], across: [va, aw, wb, bv] } =
+        let Around { triangles: [t, u], corners: [v, a, w, b], neighbours: [va, aw, wb, bv] } =
             self.around(corner);
         self.triangles[t as usize] = [v, a, w];
         self.triangles[u as usize] = [w, b, v];
         for (here, there) in
             [(3 * t, aw), (3 * t + 1, 3 * u + 1), (3 * t + 2, va), (3 * u, bv), (3 * u + 2, wb)]
         {
-            self.set_across(here, there);
+            self.set_neighbour(here, there);
         }
         self.claim = Claim::Any;
     }
 
-    pub(super) fn set_across(&mut self, here: Corner, there: Corner) {
-        self.across[here as usize / 3][here as usize % 3] = there;
-        self.across[there as usize / 3][there as usize % 3] = here;
+    pub(super) fn set_neighbour(&mut self, here: Corner, there: Corner) {
+        self.neighbours[here as usize / 3][here as usize % 3] = there;
+        self.neighbours[there as usize / 3][there as usize % 3] = here;
     }
 }
 
@@ -267,8 +269,8 @@ pub(super) struct Around {
     pub(super) triangles: [u32; 2],
     /// Counterclockwise from a corner that is not on the edge.
     pub(super) corners: [u32; 4],
-    /// What is across the sides of the quadrilateral, from that corner on.
-    pub(super) across: [Corner; 4],
+    /// Half-edges across the sides of the quadrilateral, from that corner on.
+    pub(super) neighbours: [Corner; 4],
 }
 
 /// How far an edge is from a direction: the sine of the angle. An edge without length is not far from any.
@@ -280,7 +282,7 @@ pub(super) fn deviation(knots: &Knots, [a, b]: [u32; 2], degrees: f64) -> f64 {
     if length > 0.0 { ((x * sin - y * cos) / length).abs() } else { 0.0 }
 }
 
-/// For each half-edge that on the other side.
+/// For each half-edge, the one on the other side.
 fn join(triangles: &[[u32; 3]]) -> Result<Vec<[Corner; 3]>> {
     let mut edges: Vec<(u32, u32, Corner)> = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in (0..).zip(triangles) {
@@ -290,16 +292,16 @@ fn join(triangles: &[[u32; 3]]) -> Result<Vec<[Corner; 3]>> {
         }
     }
     edges.sort_unstable();
-    let mut across = vec![[0; 3]; triangles.len()];
+    let mut neighbours = vec![[0; 3]; triangles.len()];
     for pair in edges.chunks(2) {
         let &[(a, b, here), (c, d, there)] = pair else { return Err(unmatched(pair[0])) };
         if (a, b) != (c, d) {
             return Err(unmatched(pair[0]));
         }
-        across[here as usize / 3][here as usize % 3] = there;
-        across[there as usize / 3][there as usize % 3] = here;
+        neighbours[here as usize / 3][here as usize % 3] = there;
+        neighbours[there as usize / 3][there as usize % 3] = here;
     }
-    Ok(across)
+    Ok(neighbours)
 }
 
 fn unmatched((a, b, _): (u32, u32, Corner)) -> Error {

@@ -1,5 +1,5 @@
-//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in
-//! integers of any size.
+//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in big
+//! integers.
 
 use super::knots::Knots;
 use crate::predicates::{Sign, exact_integers};
@@ -8,7 +8,9 @@ use num_bigint::BigInt;
 /// A polynomial in e: the coefficients, the constant one first.
 type Polynomial = Vec<BigInt>;
 
-/// Orientation of three knots of P(e); zero if they are collinear for all e. Cost: microseconds.
+/// Orientation of three knots of P(e); zero if they are collinear for all e.
+///
+/// Cost: microseconds.
 pub(super) fn orient(knots: &Knots, ids: [u32; 3]) -> Sign {
     let [a, b, c] = moved(knots, ids);
     first_sign(&cross(&minus_each(&a, &c), &minus_each(&b, &c)))
@@ -24,7 +26,7 @@ pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
     first_sign(&sum.into_iter().reduce(|sum, term| plus(&sum, &term)).unwrap_or_default())
 }
 
-/// Positions as linear polynomials. The unit of e does not matter, so that it may differ from call to call.
+/// Positions as linear polynomials. The unit of e may differ from call to call.
 fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[Polynomial; 2]; N] {
     let points = exact_integers::integers(ids.map(|id| knots.at(id)));
     std::array::from_fn(|i| {

@@ -40,7 +40,7 @@ pub struct UnionSource {
     pub count: usize,
 }
 
-/// What the union map made `sets` of; `None` if it does not make them of anything.
+/// The preimage of `sets` under the union map; `None` if there is none.
 ///
 /// B is the union of the sets without their intersection, which is I.
 #[must_use]
@@ -56,8 +56,7 @@ pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let mut given: Vec<Vec<u32>> = sets.to_vec();
     given.iter_mut().for_each(|set| set.sort_unstable());
     given.sort_unstable();
-    // More sets than were given would be made only if they are not an image; there is no need to make them
-    // all.
+    // If the number of unions differs, the sets are no image; compare counts before computing all unions.
     let expected = binomial(source.boundary.len(), source.count)?;
     let is_image =
         expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;

@@ -1,13 +1,13 @@
-//! The order of cells that depends on the diagram only.
+//! Puts cells in an order that depends on the diagram only.
 
 use spmesh_model::cells4::{Cell4, Cells4};
 
-/// How far ahead memory is fetched.
+/// Cells to prefetch ahead.
 const AHEAD: usize = 8;
 
-/// Finite cells first, both kinds by their vertices; neighbours renumbered.
+/// Sorts cells, finite ones first, each kind by vertices, and renumbers neighbours.
 ///
-/// Domain: vertices in increasing order, neighbours in any.
+/// Domain: vertices in increasing order, neighbours in any order.
 pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     let order = order(unordered);
     let mut places = vec![0; order.len()];
@@ -29,11 +29,11 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     cells
 }
 
-/// The numbers of the cells in order.
+/// The numbers of the cells in canonical order.
 fn order(cells: &Cells4) -> Vec<u32> {
-    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices
-    // have room if they have 21 bits, otherwise two of 31, and what the last bit would tell is left to the
-    // cell.
+    // Keys hold the kind and the first vertices, which decide most comparisons without access to the cells:
+    // three vertices if 21 bits suffice, otherwise two of 31 bits. The comparison of whole cells makes up for
+    // the dropped last bit.
     let greatest = cells.iter().filter_map(|cell| cell.vertices.last().copied()).max().unwrap_or_default();
     let is_narrow = greatest < 1 << 21;
     let key = |number: u32| {

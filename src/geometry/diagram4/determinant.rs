@@ -1,8 +1,8 @@
-//! Spheres and hyperplanes through points, in any arithmetic.
+//! Spheres and hyperplanes through points, generic in the arithmetic.
 
 use std::ops::{Add, Mul, Sub};
 
-/// Numbers of a ring: `f64`, wrapping integers, integers of any size.
+/// Numbers of a ring: `f64`, wrapping integers, big integers.
 pub(super) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
@@ -39,7 +39,7 @@ fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
 /// The sphere through the origin and four vectors: (n, m) such that n . x + m |x|^2 is zero on it.
 ///
 /// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a
-/// point is the in-sphere determinant but for its sign: a polynomial of degree 6 in the coordinates (thesis
+/// point is the in-sphere determinant up to its sign: a polynomial of degree 6 in the coordinates (thesis
 /// 3.6.2).
 #[inline(always)]
 pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
@@ -47,7 +47,7 @@ pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
     let (a, b, c, d) = (lifted(a), lifted(b), lifted(c), lifted(d));
     let (p, q) = (pairs(&a, &b), pairs(&c, &d));
     let m = expansion(&p, &q, [0, 1, 2, 4, 5, 7]);
-    // The lift takes the place of a coordinate; moved to the end, it changes the sign for y and t.
+    // The lift replaces a coordinate; moving it to the end changes the sign for y and t.
     let x = expansion(&p, &q, [4, 5, 6, 7, 8, 9]); // y z t l
     let y = expansion(&q, &p, [1, 2, 3, 7, 8, 9]); // x z t l
     let z = expansion(&p, &q, [0, 2, 3, 5, 6, 9]); // x y t l
@@ -81,7 +81,7 @@ fn pairs<T: Number>(p: &[T; 5], q: &[T; 5]) -> [T; 10] {
 }
 
 /// Laplace's expansion of a determinant of four rows along two of them, for columns i, j, k, l, whose pairs
-/// have the numbers ij, ik, il, jk, jl, kl. Exchanging the pairs of rows does not change it.
+/// have the numbers ij, ik, il, jk, jl, kl. It is symmetric in the two pairs of rows.
 #[inline(always)]
 fn expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usize; 6]) -> T {
     (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij])) - (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))

@@ -1,4 +1,4 @@
-//! From simplices to cells: cospherical neighbours are one.
+//! Joins cospherical neighbouring simplices to cells.
 
 use super::Stats;
 use super::canonical::canonical;
@@ -8,11 +8,11 @@ use spmesh_model::cells4::{Cell4, Cells4};
 use std::cmp::Ordering;
 use std::ops::Range;
 
-/// How far ahead memory is fetched.
+/// Simplices to prefetch ahead.
 const AHEAD: usize = 8;
 
-/// The class of simplices that have none yet.
-const NONE: u32 = u32::MAX;
+/// The class of a simplex that has none yet.
+const NO_CLASS: u32 = u32::MAX;
 
 /// The cells of the diagram, in canonical order.
 ///
@@ -25,7 +25,7 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> C
     let members = |classes: &[u32]| (classes[classes.len() - 1] - classes[0]).into();
     stats.simplices = members(&classes.starts[..=classes.finite]);
     stats.infinite_simplices = members(&classes.starts[classes.finite..]);
-    // The spheres, a third of the memory or more, are not needed any more.
+    // Free the spheres, a third of the memory or more.
     let Complex { simplices, order, spheres, .. } = complex;
     drop(spheres);
     let cells = gathered(&simplices, &order, &classes);
@@ -33,33 +33,34 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> C
     canonical(&cells)
 }
 
-/// Which simplices make which cell.
+/// The simplices of each cell.
 struct Classes {
     /// The class of each simplex.
     of: Vec<u32>,
-    /// The simplices of each class, one class after the other, finite ones first: each as the facet that it
-    /// was met at, whose opposite vertex may be new to the class; the first as the facet opposite to a vertex
-    /// that is finite.
+    /// The simplices of each class, one class after the other, finite classes first. Each simplex is given by
+    /// the facet through which the search reached it; the vertex opposite to that facet may be new to the
+    /// class. The first one is given by a facet opposite to a finite vertex.
     members: Vec<Facet>,
-    /// Where each class begins among the members, and where the last ends.
+    /// Start of each class among the members, and the end of the last.
     starts: Vec<u32>,
     /// Number of classes of finite simplices.
     finite: usize,
 }
 
 fn classes<C: Coefficient>(complex: &Complex<C>) -> Classes {
-    let (of, members) = (vec![NONE; complex.simplices.len()], Vec::with_capacity(complex.simplices.len()));
+    let (of, members) =
+        (vec![NO_CLASS; complex.simplices.len()], Vec::with_capacity(complex.simplices.len()));
     let mut classes = Classes { of, members, starts: vec![0], finite: 0 };
     let all = 0..complex.simplices.len();
     for seed in all.clone().filter(|&seed| complex.is_finite(seed)) {
         classes.fetch_around(complex, seed + AHEAD);
-        if classes.of[seed] == NONE {
+        if classes.of[seed] == NO_CLASS {
             classes.flood(complex, seed, |_, _| true);
         }
     }
     classes.finite = classes.len();
     for seed in all.filter(|&seed| complex.is_infinite(seed)) {
-        if classes.of[seed] == NONE {
+        if classes.of[seed] == NO_CLASS {
             let inside = |of: &[u32], simplex| complex.neighbour_inside(simplex).map(|finite| of[finite]);
             classes.flood(complex, seed, |of, other| inside(of, seed) == inside(of, other));
         }
@@ -90,16 +91,16 @@ impl Classes {
             let simplex = complex.simplices[simplex_of(self.members[next])];
             next += 1;
             for side in 0..FACETS {
-                let beyond = simplex.beyond[side];
-                let other = simplex_of(beyond);
-                if self.of[other] != NONE {
+                let neighbour = simplex.neighbours[side];
+                let other = simplex_of(neighbour);
+                if self.of[other] != NO_CLASS {
                     continue;
                 }
-                let apex = complex.simplices[other].vertices[facet_of(beyond)];
+                let apex = complex.simplices[other].vertices[facet_of(neighbour)];
                 // Across the hull, one is finite and the other is not.
                 let is_across = apex == INFINITE || simplex.vertices[side] == INFINITE;
                 if !is_across && complex.sign(seed, apex) == Ordering::Equal && allowed(&self.of, other) {
-                    self.join(complex, beyond, class);
+                    self.join(complex, neighbour, class);
                 }
             }
         }
@@ -110,9 +111,9 @@ impl Classes {
     #[inline(always)]
     fn fetch_around<C: Coefficient>(&self, complex: &Complex<C>, simplex: usize) {
         let Some(simplex) = complex.simplices.get(simplex) else { return };
-        for beyond in simplex.beyond {
-            prefetch(&complex.simplices, simplex_of(beyond));
-            prefetch(&self.of, simplex_of(beyond));
+        for neighbour in simplex.neighbours {
+            prefetch(&complex.simplices, simplex_of(neighbour));
+            prefetch(&self.of, simplex_of(neighbour));
         }
     }
 
@@ -155,7 +156,7 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
             if listed.mark(opposite) {
                 vertices.push(opposite);
             }
-            let around = simplex.beyond.into_iter().map(|beyond| classes.of[simplex_of(beyond)]);
+            let around = simplex.neighbours.into_iter().map(|neighbour| classes.of[simplex_of(neighbour)]);
             if is_simplex {
                 // Two convex cells have one facet in common, if any: none of these is met twice.
                 neighbours.extend(around);
@@ -171,7 +172,7 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
     cells
 }
 
-/// Marks of numbers that are all taken away at once.
+/// A set of numbers that is cleared in constant time.
 struct Marks {
     round: u32,
     rounds: Vec<u32>,

@@ -1,12 +1,13 @@
 //! Exact Delaunay diagrams in four dimensions (thesis 3.6 and 4).
 //!
 //! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of
-//! all points on it. Where many points are cospherical, as those of a grid, it is small and unique, where a
-//! triangulation is large and arbitrary. Cells beyond the hull have the faraway point as a vertex, and
-//! correspond to the facets of cells on the hull.
+//! all points on the sphere. Where many points are cospherical, as in a grid, the diagram is small and
+//! unique, but a triangulation is large and arbitrary. Infinite cells have the faraway point as a vertex;
+//! each corresponds to a facet of a finite cell on the hull.
 //!
-//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates,
-//! `merge` makes cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
+//! `sites` sorts and scales the points. `determinant`, `exact` and `side` compute signs. `simplices`
+//! triangulates, and `merge` joins cospherical simplices to cells. `direct`, an experiment, does both at once
+//! as the thesis does.
 
 mod canonical;
 mod determinant;
@@ -27,55 +28,56 @@ use spmesh_model::cells4::{Cells4, Point4};
 use spmesh_model::diagram4::Diagram4;
 use std::time::{Duration, Instant};
 
-/// What a run did.
+/// Times and counts of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Stats {
-    /// Putting points in order.
+    /// Time to sort the points.
     pub order: Duration,
-    /// Inserting them.
+    /// Time to insert them.
     pub insertion: Duration,
-    /// Making cells of simplices.
+    /// Time to join simplices to cells.
     pub merge: Duration,
     /// Simplices created, infinite ones included.
     pub created: u64,
     /// In-sphere tests in the search of cavities.
     pub in_sphere_tests: u64,
-    /// Finite simplices of the triangulation that cells were made of.
+    /// Finite simplices of the triangulation that was joined to cells.
     pub simplices: u64,
-    /// Infinite ones.
+    /// Infinite simplices of it.
     pub infinite_simplices: u64,
 }
 
-/// How cells are found. The result is the same.
+/// How cells are found. Every route gives the same result.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Route {
-    /// Simplices in flat arrays, made into cells at the end.
+    /// Triangulates in flat arrays, then joins simplices to cells.
     #[default]
     Simplices,
-    /// Cells as points come, in integers (thesis 3.6.4): slower, for comparison.
+    /// Updates the cells with each point, in integers (thesis 3.6.4). Slower; for comparison.
     #[cfg(feature = "experiments")]
     Direct,
 }
 
-/// The Delaunay diagram of points in any order, which depends on the set of points only.
+/// Computes the Delaunay diagram of points in any order. The result depends on the set of points only.
 ///
-/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs
-/// are exact for all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any
-/// size where rounded values do not tell.
+/// Domain: finite coordinates. Equal points become one vertex, with the value of the first of them. Signs are
+/// exact for all f64: integers that differ by at most 1,180,000 are computed in 128 bits; other coordinates
+/// in big integers where the rounded value is inconclusive.
 ///
-/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if
+/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes per simplex if
 /// coordinates are integers that differ by at most 26, otherwise 88.
 ///
 /// # Errors
-/// A coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
+/// Malformed, if a coordinate is not finite. Usage, if there are too many points, or all lie in a hyperplane;
+/// the message gives their dimension.
 pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     diagram_by(Route::default(), points, values)
 }
 
-/// [`diagram`] by a route of choice.
+/// As [`diagram`], by a given route.
 ///
 /// # Errors
-/// As `diagram`.
+/// As [`diagram`].
 pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();

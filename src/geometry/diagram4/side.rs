@@ -6,7 +6,7 @@ use crate::predicates::Sign;
 use spmesh_model::cells4::Point4;
 use std::ops::{Add, Mul, Sub};
 
-/// A bound of the magnitude of a value: what is subtracted is added.
+/// A bound on the magnitude of a value: subtraction adds.
 #[derive(Clone, Copy)]
 struct Magnitude(f64);
 
@@ -36,7 +36,7 @@ impl Mul for Magnitude {
     }
 }
 
-/// A product of four differences goes through at most 14 roundings, and its magnitude is part of the bound.
+/// A product of four differences is rounded at most 14 times; its magnitude is part of the bound.
 const ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// Differences below this have products of four, and rounding errors of subnormal products, in range.
@@ -48,8 +48,8 @@ const INTEGER_MAX: f64 = 67_108_864.0;
 
 /// The sign of det(b - a, c - a, d - a, e - a), exact for all finite coordinates.
 ///
-/// Cost: some ten nanoseconds where rounded values tell; a few times that for integers below 2^26; else
-/// microseconds.
+/// Cost: about ten nanoseconds where the rounded value is conclusive; a few times that for integers below
+/// 2^26; otherwise microseconds.
 #[must_use]
 pub fn orient4d([a, b, c, d, e]: [Point4; 5]) -> Sign {
     let from = |p: Point4| -> Point4 { std::array::from_fn(|axis| p[axis] - a[axis]) };

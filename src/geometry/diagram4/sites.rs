@@ -1,22 +1,18 @@
-//! Points made ready: distinct, in order, and small numbers about the centre of their box.
+//! Prepares points: makes them distinct, sorts them, and scales them about the centre of their box.
 
 use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX, SMALL_MAX};
-use crate::predicates::exact_integers::integers_of;
 use crate::predicates::{Extent, lexicographic};
-use num_bigint::BigInt;
 use spmesh_model::cells4::Point4;
 
-/// Distinct points.
+/// Distinct points, sorted and scaled.
 #[derive(Debug)]
 pub(super) struct Sites {
     /// In lexicographic order.
     pub(super) points: Vec<Point4>,
     pub(super) exactness: Exactness,
-    /// Greatest difference of coordinates.
-    pub(super) greatest: f64,
-    /// What coordinates are multiplied by, a power of two, and from where they are measured then.
-    unit: f64,
-    centre: Point4,
+    /// Coordinates are multiplied by `unit`, a power of two, and then measured from `centre`.
+    pub(super) unit: f64,
+    pub(super) centre: Point4,
 }
 
 impl Sites {
@@ -39,19 +35,7 @@ impl Sites {
         let unit = if is_double { 1.0 } else { unit_for(&extent) };
         let middle = |axis: usize| extent.lower[axis] * unit * 0.5 + extent.upper[axis] * unit * 0.5;
         let centre = std::array::from_fn(|axis| if is_double { middle(axis).floor() } else { middle(axis) });
-        Sites { points, exactness, greatest, unit, centre }
-    }
-
-    /// The points as integers about the centre of their box; they are integers of that width.
-    pub(super) fn integers(&self) -> Vec<[i128; 4]> {
-        let centre = self.centre.map(|x| (x / self.unit) as i128);
-        let from = |point: &Point4| std::array::from_fn(|axis| point[axis] as i128 - centre[axis]);
-        self.points.iter().map(from).collect()
-    }
-
-    /// The points as integers of one unit.
-    pub(super) fn big_integers(&self) -> Vec<[BigInt; 4]> {
-        integers_of(&self.points)
+        Sites { points, exactness, unit, centre }
     }
 
     /// A point near the origin: exact small integers, or rounded numbers between -1 and 1 that differ by at
@@ -64,24 +48,23 @@ impl Sites {
 
 /// The power of two that makes the greatest difference a number from 1/2 to 1.
 fn unit_for(extent: &Extent<4>) -> f64 {
-    // The halves of the box do not overflow; a box of subnormal size is enlarged as much as a power of two
-    // can.
+    // Halves do not overflow. A box of subnormal size is scaled by the largest power of two.
     let half = (0..4).map(|axis| extent.upper[axis] * 0.5 - extent.lower[axis] * 0.5).fold(0.0, f64::max);
     let exponent = (half.to_bits() >> 52) as i32 - 1023;
     match (-exponent - 2).min(1023) {
         normal @ -1022.. => 2f64.powi(normal),
-        // Of an extent near the greatest numbers: a subnormal number.
+        // For extents near the largest f64, the unit is subnormal.
         subnormal => f64::from_bits(1 << (subnormal + 1074)),
     }
 }
 
-/// Sorts points lexicographically and takes out those that are equal to another; says how many these are. The
-/// values of the points, if there are any, go along: of equal points that of the first counts.
+/// Sorts points lexicographically, removes duplicates, and returns their number as well. Values are permuted
+/// alike; of equal points, the value of the first is kept.
 pub(super) fn distinct(
     points: Vec<Point4>,
     values: Option<Vec<f64>>,
 ) -> (Vec<Point4>, Option<Vec<f64>>, u64) {
-    // -0 is 0: the result must not depend on which of them is met first.
+    // Turn -0 into 0, so that the result does not depend on which comes first.
     let points: Vec<Point4> = points.into_iter().map(|point| point.map(|x| x + 0.0)).collect();
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
     let at = |number: &u32| points[*number as usize];

@@ -3,6 +3,7 @@
 use super::counting::sizes_to_starts;
 use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
 use super::rounds::Rounds;
+use spmesh_core::random::Random;
 use std::ops::Range;
 
 /// The sequence in which points are inserted that are stored along a curve.
@@ -92,19 +93,9 @@ impl Iterator for Insertions {
 
 impl ExactSizeIterator for Insertions {}
 
-/// The numbers from 0 to `count - 1` shuffled (Fisher and Yates; numbers by SplitMix64 of Steele, Lea and Flood, 2014).
-///
-/// Each choice scales 64 random bits to the numbers that are left, whose probabilities differ by less than 2^-32 of
-/// themselves.
+/// The numbers from 0 to `count - 1` in random order.
 fn shuffled(count: usize, seed: u64) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..count as u64).map(|number| number as u32).collect();
-    let mut state = seed;
-    for last in (1..count).rev() {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut bits = (state ^ state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        bits ^= bits >> 31;
-        numbers.swap(last, ((u128::from(bits) * (last as u128 + 1)) >> 64) as usize);
-    }
+    Random::new(seed).shuffle(&mut numbers);
     numbers
 }

@@ -9,7 +9,7 @@ pub struct Faces {
     pub dimension: usize,
     /// Its vertices.
     pub vertices: Vec<u32>,
-    /// Vertices of each face of one dimension less. Of a simplex they may be left out.
+    /// Vertices of each face of one dimension less. May be empty for a simplex.
     pub lower: Vec<Vec<u32>>,
 }
 
@@ -21,8 +21,8 @@ impl Faces {
     pub fn of_cell(cells: &Cells4, number: usize) -> Faces {
         let cell = cells.get(number);
         let facet = |&beyond: &u32| {
-            // An infinite cell has just the facet; vertices of other cells beyond count if they are in this
-            // one.
+            // An infinite neighbour has just the vertices of the facet; a finite one shares them with this
+            // cell.
             let other = cells.get(beyond as usize);
             if other.is_infinite { other.vertices.to_vec() } else { common(cell.vertices, other.vertices) }
         };
@@ -39,11 +39,10 @@ impl Faces {
         self.vertices.len() == self.dimension + 1
     }
 
-    /// A face of one dimension less with its own faces, which are those that it shares with its siblings.
+    /// A face of one dimension less with its own faces, which it shares with its siblings.
     ///
-    /// What two faces of dimension d share is a face of both, of dimension d - 1 or less. All vertices are on
-    /// a sphere, so that no three are on a line (thesis, lemma 3.6.2): three span two dimensions, and d are
-    /// enough to tell that the dimension is d - 1, for d up to 3.
+    /// Two faces of dimension d share a face of dimension d - 1 or less. All vertices are on a sphere, so no
+    /// three are on a line (thesis, lemma 3.6.2). So d shared vertices imply dimension d - 1, for d up to 3.
     #[must_use]
     pub fn face(&self, number: usize) -> Faces {
         let (dimension, vertices) = (self.dimension - 1, self.lower[number].clone());
@@ -71,7 +70,7 @@ impl Faces {
     }
 }
 
-/// What two increasing lists share.
+/// The common numbers of two increasing lists.
 fn common(one: &[u32], other: &[u32]) -> Vec<u32> {
     let mut rest = other;
     let is_shared = |vertex: &&u32| {

@@ -1,4 +1,4 @@
-//! Values between points: linear on the simplices of the barycentric subdivision, continuous everywhere.
+//! Interpolates values: linear on the simplices of the barycentric subdivision, continuous everywhere.
 
 use super::NO_VALUES;
 use super::locate::Locator;
@@ -10,8 +10,8 @@ use spmesh_model::diagram4::Diagram4;
 /// Interpolates the values of a diagram.
 ///
 /// The function is linear on simplices that are cells, and on those of [`super::Rule::Barycentric`] in
-/// others. So it is continuous, has the values of the points exactly, and is what the values come from if
-/// that is linear, but for rounding.
+/// others. So it is continuous and takes the values of the points exactly. It reproduces linear functions up
+/// to rounding.
 #[derive(Debug)]
 pub struct Interpolator<'a> {
     diagram: &'a Diagram4,
@@ -33,13 +33,13 @@ impl<'a> Interpolator<'a> {
         Ok(Interpolator { diagram, values, locator: Locator::new(diagram), last: None })
     }
 
-    /// The value at a site: `None` outside of the convex hull of the points, NaN where it depends on a value
-    /// that is not known.
+    /// The value at a site: `None` outside the convex hull of the points, NaN where it depends on an unknown
+    /// value.
     ///
     /// Domain: finite coordinates.
     ///
-    /// Cost: the walk from the last site, and some 30 nanoseconds per simplex of the cell; sites that are
-    /// near each other should come together.
+    /// Cost: the walk from the last site, and about 30 nanoseconds per simplex of the cell. Fastest for sites
+    /// in spatial order.
     ///
     /// # Errors
     /// Usage, if a cell has too many vertices.
@@ -60,7 +60,8 @@ impl<'a> Interpolator<'a> {
     }
 }
 
-/// The value in the simplex that the site is deepest in: the one it is in, or misses by rounding.
+/// The value in the simplex whose least barycentric coordinate of the site is greatest: the one that contains
+/// the site up to rounding.
 fn value_in(pieces: &Subdivision, site: Point4) -> f64 {
     let mut best = (f64::NEG_INFINITY, [0; 5], [0.0; 5]);
     for &simplex in &pieces.simplices {
@@ -73,8 +74,7 @@ fn value_in(pieces: &Subdivision, site: Point4) -> f64 {
     let (_, simplex, weights) = best;
     let value = |corner: usize| pieces.values.as_ref().map_or(f64::NAN, |v| v[simplex[corner] as usize]);
     let heaviest = (0..5).max_by(|&i, &j| weights[i].total_cmp(&weights[j])).unwrap_or(0);
-    // Differences, so that a constant is reproduced; and no value counts that has no weight, as it may be
-    // unknown.
+    // Differences reproduce constants. Values of weight zero are skipped, as they may be NaN.
     let others = (0..5).filter(|&corner| corner != heaviest && weights[corner] != 0.0);
     let base = value(heaviest);
     base + others.map(|corner| weights[corner] * (value(corner) - base)).sum::<f64>()

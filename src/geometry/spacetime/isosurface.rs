@@ -6,27 +6,27 @@ use super::slice::Slice;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
-/// How near to its ends an edge is cut at most, as a part of its length. A vertex exactly at the level counts
-/// as above it; without a distance, triangles around it would collapse, and parts of the surface would touch
-/// there.
+/// Least distance of a cut from the ends of its edge, relative to the length. A vertex exactly at the level
+/// counts as above it. Without this distance, triangles around the vertex would collapse, and parts of the
+/// surface would touch.
 const DISTANCE_MIN: f64 = 1.0 / 1_048_576.0;
 
 /// A surface of equal value.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Surface {
-    /// Where edges of the slice pass the level.
+    /// Points where edges of the slice cross the level.
     pub points: Vec<Point>,
-    /// Numbers of points, counterclockwise seen from where values are less.
+    /// Numbers of points, counterclockwise as seen from the side of lesser values.
     pub triangles: Vec<[u32; 3]>,
 }
 
 /// The surface where the values of a slice are `level`.
 ///
-/// Each edge belongs to two triangles, which pass it in opposite directions, or to one, on the border of the
-/// slice or of tetrahedra with values that are not known. Points keep a distance of a millionth of the edge
-/// from its ends.
+/// Each edge belongs to two triangles, which traverse it in opposite directions; or to one, on the border of
+/// the slice or of tetrahedra with unknown values. Points keep a distance of a millionth of the edge from its
+/// ends.
 ///
-/// Cost: some 50 nanoseconds per tetrahedron.
+/// Cost: about 50 nanoseconds per tetrahedron.
 ///
 /// # Errors
 /// Usage, if the slice has no values, or the level is not finite.
@@ -53,8 +53,8 @@ struct Marcher<'a> {
 }
 
 impl Marcher<'_> {
-    /// Adds the triangles in a positive tetrahedron. Its vertices are put in order, those above first, by an
-    /// even permutation: then the edges of the surface are known, with its orientation.
+    /// Adds the triangles in a positive tetrahedron. An even permutation puts the vertices above the level
+    /// first, which fixes the edges of the surface and its orientation.
     fn tetrahedron(&mut self, [a, b, c, d]: [u32; 4]) -> Result<()> {
         let is_above = |vertex: u32| self.values[vertex as usize] >= self.level;
         match [a, b, c, d].map(is_above) {

@@ -1,4 +1,4 @@
-//! The cell that a site is in.
+//! Finds the cell of a site.
 
 use super::faces::Faces;
 use crate::diagram4::orient4d;
@@ -22,15 +22,14 @@ impl<'a> Locator<'a> {
         Locator { points: &diagram.points, cells: &diagram.cells, current: 0, visited: 0 }
     }
 
-    /// The number of a finite cell that has the site in it or on its border; `None` outside of the convex
+    /// The number of a finite cell that contains the site, inside or on its border; `None` outside the convex
     /// hull.
     ///
-    /// Domain: finite coordinates. The signs are exact, so the walk is sure to end: beyond a facet the site
-    /// has less power with respect to the sphere of the next cell, as the points where the powers are equal
-    /// are the hyperplane of the facet. So no cell is visited twice, and sites on the border of the hull are
-    /// inside.
+    /// Domain: finite coordinates. The signs are exact, so the walk ends: across a facet, the site has less
+    /// power with respect to the sphere of the next cell, because the points of equal power are the
+    /// hyperplane of the facet. So no cell is visited twice. Sites on the border of the hull are inside.
     ///
-    /// Cost: some microseconds per cell on the way.
+    /// Cost: a few microseconds per visited cell.
     pub fn locate(&mut self, site: Point4) -> Option<usize> {
         if self.cells.is_empty() || self.cells.get(0).is_infinite {
             return None;

@@ -1,10 +1,10 @@
-//! What a Delaunay diagram of space and time is for: simplices, values between the points, and what there is
-//! at a time.
+//! Uses of a Delaunay diagram of space and time: simplices, interpolated values, slices at a time,
+//! isosurfaces.
 //!
-//! Everything rests on one subdivision of cells into simplices that is the same from both sides of a face,
-//! because it depends on the vertices of the face only (`subdivide`). A function that is linear on the
-//! simplices is then continuous (`interpolate`), and what a hyperplane of constant time cuts from them fits
-//! together (`slice`, `isosurface`).
+//! `subdivide` splits cells into simplices. How it splits a face depends on the vertices of the face only, so
+//! that the cells on both sides agree. So a function that is linear on the simplices is continuous
+//! (`interpolate`), and the pieces that a hyperplane of constant time cuts from them fit together (`slice`,
+//! `isosurface`).
 
 mod faces;
 mod interpolate;
@@ -22,5 +22,5 @@ pub use slice::first_time;
 pub use slice::{Slice, slice};
 pub use subdivide::{Rule, Subdivision, subdivide};
 
-/// What is said where values are needed and the points have none.
+/// The error message for points without values where values are needed.
 pub const NO_VALUES: &str = "the points have no values to interpolate: give x y z t value";

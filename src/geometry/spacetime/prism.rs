@@ -1,10 +1,10 @@
-//! Where a level cuts the edges of simplices, and the products of simplices that it cuts out of them.
+//! Points where a level cuts the edges of simplices, and the products of simplices that result.
 
 use foldhash::{HashMap, HashMapExt};
 
 use spmesh_core::error::{Error, Result};
 
-/// Numbers of the points where edges are cut, each made once.
+/// Numbers the points where edges are cut; each edge gets one point.
 #[derive(Debug, Default)]
 pub(super) struct Cuts(HashMap<(u32, u32), u32>);
 
@@ -13,7 +13,7 @@ impl Cuts {
         Cuts(HashMap::new())
     }
 
-    /// The number of the point on an edge; `make` is called for a new one, and adds it.
+    /// The number of the point on an edge; `make` is called to add a new one.
     pub(super) fn number(&mut self, edge: (u32, u32), make: impl FnOnce()) -> Result<u32> {
         if let Some(&number) = self.0.get(&edge) {
             return Ok(number);
@@ -26,9 +26,9 @@ impl Cuts {
     }
 }
 
-/// Simplices of the product of two simplices, whose vertices are pairs of theirs: one for each way to go from
-/// the first pair to the last, a step in one of the lists at a time. With lists in increasing order, both
-/// sides of a face that is a product of parts of the lists have the same simplices there.
+/// Simplices of the product of two simplices, whose vertices are pairs of theirs: one for each path from the
+/// first pair to the last that advances in one list at a time (a staircase). With lists in increasing order,
+/// both sides of a face that is a product of parts of the lists have the same simplices there.
 pub(super) fn staircases(
     below: &[u32],
     above: &[u32],
@@ -57,7 +57,7 @@ pub(super) fn staircases(
     steps(&mut Vec::with_capacity(below.len() + above.len()), below, above, visit)
 }
 
-/// A number between two, so much of the way from the first; equal ones are kept.
+/// Interpolates linearly between two numbers; exact if they are equal.
 pub(super) fn between(from: f64, to: f64, share: f64) -> f64 {
     if from == to { from } else { from * (1.0 - share) + to * share }
 }

@@ -13,7 +13,7 @@ use spmesh_model::diagram4::Diagram4;
 pub struct Slice {
     /// The time.
     pub time: f64,
-    /// Where edges pass the time, and vertices at that time.
+    /// Points where edges cross the time, and vertices at that time.
     pub points: Vec<Point>,
     /// Interpolated values there, if the points of the diagram have values.
     pub values: Option<Vec<f64>>,
@@ -25,15 +25,15 @@ pub struct Slice {
 
 /// Cuts a diagram at a time.
 ///
-/// Cells that are no simplices are subdivided around barycentres, as for values between points. A vertex
-/// exactly at the time counts as later, that is, the slice is the limit of those before; at the first time of
-/// all points it is that of those after. What collapses in the limit is left out, and the pieces that remain
-/// fit together. The result has no tetrahedra where the points span no volume at that time.
+/// Cells that are no simplices are subdivided around barycentres, as for interpolation. A vertex exactly at
+/// the time counts as later: the slice is the limit of the slices before it. At the first time of all points
+/// it is the limit of the slices after it. Tetrahedra that collapse in the limit are left out; the others fit
+/// together. The result has no tetrahedra where the points span no volume at that time.
 ///
-/// Cost: as [`subdivide`] for the cells that the time passes, and half a microsecond per tetrahedron.
+/// Cost: as [`subdivide`] for the cells that span the time, and half a microsecond per tetrahedron.
 ///
 /// # Errors
-/// Usage, if the time is not that of any point or between two.
+/// Usage, if the time is before or after all points.
 pub fn slice(diagram: &Diagram4, time: f64) -> Result<Slice> {
     let first = first_time(&diagram.points, time)?;
     let is_above = |point: &Point4| if time == first { point[3] > time } else { point[3] >= time };
@@ -57,10 +57,10 @@ pub fn slice(diagram: &Diagram4, time: f64) -> Result<Slice> {
     Ok(cutter.slice)
 }
 
-/// The first time of points that `time` is not before, nor after the last.
+/// Checks that a time is within those of the points, and returns the first of these.
 ///
 /// # Errors
-/// Usage, if it is.
+/// Usage, if it is not.
 pub fn first_time(points: &[Point4], time: f64) -> Result<f64> {
     let times = points.iter().map(|point| point[3]);
     let (first, last) = times.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)));
@@ -96,11 +96,11 @@ impl Cutter<'_> {
         Ok(())
     }
 
-    /// The point where an edge, from below to above, passes the time.
+    /// The point where an edge, from below to above, crosses the time.
     fn cut(&mut self, (below, above): (u32, u32)) -> Result<u32> {
         let Cutter { parts, cuts, slice, .. } = self;
         let [p, q] = [below, above].map(|vertex| parts.points[vertex as usize]);
-        // All edges that end in a vertex at the time pass it there.
+        // All edges that end in a vertex at the time cross the time there.
         let (edge, share) = if q[3] == slice.time {
             ((above, above), 1.0)
         } else if p[3] == slice.time {

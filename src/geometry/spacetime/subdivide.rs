@@ -1,4 +1,4 @@
-//! Cells as simplices, the same on both sides of every face.
+//! Subdivides cells into simplices that agree on both sides of every face.
 
 use foldhash::{HashMap, HashMapExt};
 
@@ -8,7 +8,7 @@ use crate::predicates::Sign;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::{Cells4, Point4};
 
-/// How what is no simplex becomes simplices. Both depend on the vertices of a face only.
+/// How a face that is no simplex is subdivided. Both rules depend on the vertices of the face only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
     /// Each face is the cone from its lexicographically greatest vertex to those of its faces that do not
@@ -16,13 +16,13 @@ pub enum Rule {
     Pulled,
     /// Each face that is no simplex is the cone from its barycentre, the mean of its vertices, to all of its
     /// faces. The value there is the mean of the values. Unlike the barycentric subdivision proper this
-    /// leaves simplices as they are, so that it has fewer of them (192 instead of 384 for a cube of four
-    /// dimensions); a simplex has no face that is none, so both sides of a face agree. It favours no
-    /// direction, as pulling does.
+    /// leaves simplices whole, which makes fewer of them (192 instead of 384 for a cube of four dimensions).
+    /// All faces of a simplex are simplices, so both sides of a face agree. Unlike pulling, it favours no
+    /// direction.
     Barycentric,
 }
 
-/// Simplices that cells are made of.
+/// The simplices of subdivided cells.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Subdivision {
     /// The points of the diagram, then the barycentres of faces.
@@ -31,18 +31,18 @@ pub struct Subdivision {
     pub values: Option<Vec<f64>>,
     /// Numbers of points (a, b, c, d, e) with det(b - a, c - a, d - a, e - a) > 0.
     pub simplices: Vec<[u32; 5]>,
-    /// Simplices that were left out because they are flat, by rounding of barycentres. Without rounding there
-    /// are none: means of 2, 4, 8 and 16 integers of moderate size are exact.
+    /// Simplices left out because rounded barycentres make them flat. Means of 2, 4, 8 and 16 integers of
+    /// moderate size are exact, so that there are none.
     pub flat: u64,
 }
 
 /// Subdivides the finite cells that `is_wanted` picks by their vertices.
 ///
-/// Domain: the cells of a Delaunay diagram of the points. Coordinates of barycentres are rounded; where that
-/// turns a very thin simplex over, it is written positive all the same, and overlaps its neighbours by the
-/// rounding.
+/// Domain: the cells of a Delaunay diagram of the points. Coordinates of barycentres are rounded. If that
+/// inverts a very thin simplex, it is written with positive orientation anyway, and overlaps its neighbours
+/// by the rounding error.
 ///
-/// Cost: some microseconds for a cell of 16 vertices, a quarter of a microsecond per simplex.
+/// Cost: a few microseconds for a cell of 16 vertices, a quarter of a microsecond per simplex.
 ///
 /// # Errors
 /// Usage, if there are too many points or simplices to number them in 32 bits.
@@ -84,7 +84,7 @@ pub(super) fn subdivide_one(
 struct Work {
     rule: Rule,
     done: Subdivision,
-    /// Apexes of the cones that the current face is the base of.
+    /// Apexes of the cones over the current face.
     apexes: Vec<u32>,
     /// Barycentres by the vertices of the face.
     barycentres: HashMap<Vec<u32>, u32>,
@@ -107,7 +107,7 @@ impl Work {
         };
         self.apexes.push(apex);
         for number in 0..face.lower.len() {
-            // A vertex that is pulled is the greatest: of the vertices of a face it is the last one, or none.
+            // The pulled vertex is the greatest, so a face that has it has it last.
             if face.lower[number].last() != Some(&apex) {
                 self.face(&face.face(number))?;
             }
@@ -155,7 +155,7 @@ impl Work {
 /// equal.
 fn mean(vertices: &[u32], number: impl Fn(u32) -> f64) -> f64 {
     let first = number(vertices[0]);
-    // Halves, so that no difference of finite numbers overflows.
+    // Halves, so that differences of finite numbers do not overflow.
     let sum: f64 = vertices.iter().map(|&vertex| number(vertex) * 0.5 - first * 0.5).sum();
     first + sum / (vertices.len() as f64 * 0.5)
 }

@@ -1,4 +1,4 @@
-//! How many configurations and links there are, by kind.
+//! Counts configurations, links and functions by kind.
 
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Configurations, Knots};
@@ -12,14 +12,13 @@ pub struct DegreeCounts {
     pub degree: u64,
     /// Configurations, without infinite ones.
     pub configurations: u64,
-    /// Those of them whose boundary triangle has no area: they have copies of knots in it.
+    /// Configurations among them whose boundary triangle has no area, because of copies of knots.
     pub flat: u64,
     /// Infinite configurations: lines with as many knots to the left as the degree.
     pub infinite: u64,
     /// Interior sets.
     pub interiors: u64,
-    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come
-    /// from.
+    /// Links, of sets of one more knot, that are bounded polygons: they define B-splines of the next degree.
     pub links: u64,
     /// Links that are null.
     pub null_links: u64,
@@ -63,14 +62,14 @@ impl DegreeCounts {
     }
 }
 
-/// Counts of the functions that quadratic splines for a purpose are made of, by [`FunctionKind`].
+/// Counts of the functions of quadratic splines, by [`FunctionKind`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FunctionCounts {
     /// B-splines of edges.
     pub edges: u64,
     /// Tents of knots.
     pub vertices: u64,
-    /// Tents of edges, and what is between a knot that is pulled apart and others.
+    /// Tents of edges between a knot that is pulled apart and others.
     pub tents: u64,
     /// Those of creases with smooth ends.
     pub creases: u64,

@@ -1,57 +1,57 @@
-//! `configgen`: knots in, configurations of all degrees up to one out.
+//! `configgen`: computes configurations of knots, of all degrees up to a given one.
 //!
-//! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of
-//! them, `start` makes of both what [`spmesh_geometry::configurations`] needs, `purpose` that what special
-//! configurations need; `parts` reads these from text, and `mesh` writes centroid triangulations.
+//! `sites` reads knots and the triangulation over them, if there is one. `options` holds the options of a
+//! run. `start` turns both into the input of [`spmesh_geometry::configurations`]. `special` sets up special
+//! configurations, which `parts` reads from text. `mesh` writes centroid triangulations.
 
 mod counts;
 mod mesh;
 mod options;
 mod parts;
-mod purpose;
 mod sites;
+mod special;
 mod start;
 
 pub use counts::{DegreeCounts, FunctionCounts};
 pub use mesh::write_centroids;
 pub use options::{Border, Flips, Options, Places, RuleName};
 pub use parts::{read_features, read_patches};
-pub use purpose::{BoxName, Purpose};
 pub use sites::{Frame, Sites, read_sites};
+pub use special::{BoxName, SpecialKind};
 
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use self::start::{Beginning, Setup};
+use self::start::{Origin, Setup};
 use spmesh_core::error::Result;
-use spmesh_geometry::configurations::special::{self, Function};
+use spmesh_geometry::configurations::special::{Function, functions};
 use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, Knots};
 use spmesh_stream::Header;
 use spmesh_stream::{Content, configurations_header, write_content};
 
-/// What a run made.
+/// The result of a run.
 #[derive(Debug)]
 pub struct Made {
-    /// All knots: those of the input, and after them the copies that borders and pulling apart add.
+    /// All knots: those of the input, then the copies that borders and pulling apart add.
     pub knots: Knots,
     /// Coordinates and elevations of the knots.
     pub frame: Frame,
     /// Configurations of the degrees from 0 on.
     pub degrees: Vec<Configurations>,
-    /// The functions that quadratic splines are made of, as sums of B-splines; none if all B-splines of links
-    /// are: without a purpose and without copies that were added, and without degree 1, whose links they come
-    /// from.
+    /// The functions that quadratic splines are made of, as sums of B-splines. Empty if every B-spline of a
+    /// link is a function of its own (no special configurations, no added copies), and without degree 1,
+    /// whose links they come from.
     pub functions: Vec<Function>,
-    /// What was done on the way.
+    /// Counts and times.
     pub report: Report,
 }
 
-/// What a run did.
+/// Counts and times of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
     /// Points, or vertices, of the input.
     pub points: u64,
-    /// Those of them at the place of an earlier one.
+    /// Points that coincide with an earlier one.
     pub repeated: u64,
     /// Knots, with the copies that were added.
     pub knots: u64,
@@ -59,13 +59,13 @@ pub struct Report {
     pub own_start: bool,
     /// Flips of the start triangulation.
     pub flips: u64,
-    /// Finding the start triangulation.
+    /// Time to compute the start triangulation.
     pub start_time: Duration,
-    /// Going from degree to degree.
+    /// Time to compute all degrees.
     pub degrees_time: Duration,
 }
 
-/// Makes the configurations of knots, up to the degree that is wanted.
+/// Computes the configurations of knots up to the degree of the options.
 ///
 /// # Errors
 /// Usage, if there are too few knots for the degree, all on one line, or options do not fit them or each
@@ -76,24 +76,22 @@ pub fn make(sites: Sites, options: &Options) -> Result<Made> {
 }
 
 fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
-    let began = Instant::now();
+    let started = Instant::now();
     let setup = start::set_up(sites, options)?;
-    let start_time = began.elapsed();
-    let began = Instant::now();
-    let Setup { knots, frame, beginning, rule, report } = setup;
-    let (degrees, special) = match beginning {
-        Beginning::Start(start) => (configurations::generate(&knots, start, &rule, options.degree)?, None),
-        Beginning::Special(special) => (special.generate(&rule, options.degree)?, Some(special)),
+    let start_time = started.elapsed();
+    let started = Instant::now();
+    let Setup { knots, frame, origin, rule, report } = setup;
+    let (degrees, special) = match origin {
+        Origin::Start(start) => (configurations::generate(&knots, start, &rule, options.degree)?, None),
+        Origin::Special(special) => (special.generate(&rule, options.degree)?, Some(special)),
     };
     let has_copies = knots.len() as u64 > report.points;
     let functions = match (special, degrees.get(1)) {
         (Some(special), Some(first)) => special.functions(&configurations::links(&knots, first)?)?,
-        (None, Some(first)) if has_copies => {
-            special::functions(&knots, &configurations::links(&knots, first)?)?
-        }
+        (None, Some(first)) if has_copies => functions(&knots, &configurations::links(&knots, first)?)?,
         _ => Vec::new(),
     };
-    let report = Report { start_time, degrees_time: began.elapsed(), ..report };
+    let report = Report { start_time, degrees_time: started.elapsed(), ..report };
     Ok(Made { knots, frame, degrees, functions, report })
 }
 

@@ -10,8 +10,8 @@ use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 /// Writes a centroid triangulation, with the mean of elevations where knots have some.
 ///
-/// Knots on an integer grid have centroids on a grid that is finer by the order, so these are exact, unless
-/// they do not fit 32 bits; otherwise centroids are rounded.
+/// Knots on an integer grid have centroids on a grid that is finer by the order, so they are stored exactly
+/// if they fit 32 bits; otherwise they are rounded.
 ///
 /// # Errors
 /// If writing fails.
@@ -26,7 +26,7 @@ pub fn write_centroids(knots: &Knots, frame: &Frame, mesh: &CentroidMesh, output
 /// How centroids are stored.
 struct Placement {
     header: Header,
-    /// On a grid, what is the new origin of stored knots.
+    /// On a grid: the new origin of stored knots.
     origin: Option<Point>,
 }
 
@@ -72,7 +72,7 @@ fn stored(knots: &Knots, frame: &Frame, id: u32) -> Point {
     [x, y, frame.elevations.as_ref().map_or(0.0, |elevations| elevations[id as usize])]
 }
 
-/// Where sums of as many knots as `order` are counted from, so that they fit 32 bits: the origin of the
+/// The origin of sums of `order` knots, chosen so that they fit 32 bits: the origin of the
 /// knots, or else their least coordinates.
 fn origin(knots: &Knots, frame: &Frame, order: usize) -> Option<Point> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -1,11 +1,12 @@
-//! What is made of knots, and how that is written.
+//! The options of a run, and how they are written in words.
 
 use std::str::FromStr;
 
-use super::purpose::Purpose;
+use super::special::SpecialKind;
+use spmesh_core::error::Error;
 use spmesh_io::source::Values;
 
-/// What is made of knots.
+/// The options of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Options {
     /// The highest degree.
@@ -16,17 +17,48 @@ pub struct Options {
     pub seed: u64,
     /// Flips of the start triangulation.
     pub flips: Option<Flips>,
-    /// What becomes of knots on the border.
+    /// Treatment of knots on the border.
     pub border: Border,
-    /// Knots that become two at one place each.
+    /// Knots to double at their place.
     pub pull_apart: Option<Places>,
-    /// What special configurations are for.
-    pub purpose: Option<Purpose>,
+    /// Special configurations to make, if any.
+    pub special: Option<SpecialKind>,
     /// Values of the knots for rules that need some; elevations if there are none.
     pub values: Option<Values>,
 }
 
-/// A rule for links, with its values still in the input.
+impl Options {
+    /// Checks that the other options go with the special configurations.
+    ///
+    /// # Errors
+    /// Usage, if they do not.
+    pub(super) fn check_special(&self) -> spmesh_core::error::Result<()> {
+        let Some(special) = &self.special else { return Ok(()) };
+        if matches!(self.rule, RuleName::Heights | RuleName::Weights) {
+            let what = "the rules lifted:... come with a triangulation of their own: leave out --box, --patches or \
+                        --features, or take another rule";
+            return Err(Error::usage(what));
+        }
+        if self.flips.is_some() {
+            let what = "--flip would undo what --box, --patches and --features make: leave out one of them";
+            return Err(Error::usage(what));
+        }
+        if !matches!(special, SpecialKind::Patches(..)) {
+            return Ok(());
+        }
+        if self.border != Border::Free || self.pull_apart.is_some() {
+            let what = "knots of --patches are no knots of the input: leave out --boundary and --pull-apart, or give \
+                        all as points with --box";
+            return Err(Error::usage(what));
+        }
+        if self.rule.needs_values() {
+            return Err(Error::usage("knots of --patches have no values: take another rule"));
+        }
+        Ok(())
+    }
+}
+
+/// A rule for links, before its values are read.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum RuleName {
     /// Circles.
@@ -86,7 +118,7 @@ impl FromStr for RuleName {
 /// Flips of the start triangulation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Flips {
-    /// So many edges chosen at random; from a seed, if it has one of its own.
+    /// A number of edges chosen at random, with a seed of its own if there is one.
     Random(u32, Option<u64>),
     /// Edges whose other diagonal is nearer to a direction, in degrees.
     Aligned(f64),
@@ -106,10 +138,10 @@ impl FromStr for Flips {
     }
 }
 
-/// What becomes of knots on the border of the convex hull.
+/// Treatment of knots on the border of the convex hull.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Border {
-    /// Nothing.
+    /// Left as they are.
     #[default]
     Free,
     /// Corners are repeated, so that there are degree + 1 at each.
@@ -151,7 +183,7 @@ fn parse_angle(text: &str) -> Result<f64, String> {
 }
 
 fn parse_whole<T: FromStr>(text: &str) -> Result<T, String> {
-    text.trim().parse().map_err(|_| format!("{text:?} is no whole number, or too large"))
+    text.trim().parse().map_err(|_| format!("{text:?} is not an integer, or too large"))
 }
 
 #[cfg(test)]

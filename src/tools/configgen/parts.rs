@@ -1,4 +1,4 @@
-//! Set-ups of special configurations, a line for each part.
+//! Reads special configurations from text, one part per line.
 
 use std::io::Read;
 
@@ -8,11 +8,11 @@ use spmesh_io::source::{finite, for_each_line, quote};
 
 /// Reads features: lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and ids of knots.
 ///
-/// A line of corners has any number of them, every other line is a polyline. Blank lines and comments do not
-/// count.
+/// A line of corners has any number of them, every other line is a polyline. Blank lines and comments are
+/// ignored.
 ///
 /// # Errors
-/// If reading fails, a line has another word first or something else than ids behind it, or there is no line.
+/// If reading fails, a line is malformed, or there is no line.
 pub fn read_features(input: impl Read) -> Result<Features> {
     let mut features = Features::default();
     let count = for_each_line(input, |words| {
@@ -36,10 +36,10 @@ pub fn read_features(input: impl Read) -> Result<Features> {
 }
 
 /// Reads grids: lines of eight numbers, x and y of the first knot, the step along rows, the step along
-/// columns, and how many cells a row and a column have. Blank lines and comments do not count.
+/// columns, and how many cells a row and a column have. Blank lines and comments are ignored.
 ///
 /// # Errors
-/// If reading fails, a line has something else, or there is no line.
+/// If reading fails, a line is malformed, or there is no line.
 pub fn read_patches(input: impl Read) -> Result<Vec<Patch>> {
     let mut patches = Vec::new();
     for_each_line(input, |words| {
@@ -60,7 +60,7 @@ fn id(word: &[u8]) -> Result<u32> {
 }
 
 fn whole(word: &[u8]) -> Result<u32> {
-    parsed(word, "a whole number")
+    parsed(word, "an integer")
 }
 
 fn parsed(word: &[u8], what: &str) -> Result<u32> {

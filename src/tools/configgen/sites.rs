@@ -1,4 +1,4 @@
-//! Knots from files: points of any source, or the vertices of a triangle mesh with its triangles.
+//! Reads knots from files: points of any source, or the vertices of a triangle mesh with its triangles.
 
 use std::path::PathBuf;
 
@@ -10,7 +10,7 @@ use spmesh_io::source::{EventSource, Input, Opened, SourceOptions, name_of, open
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs, Event, LiveVertices};
 
-/// What stored knots mean.
+/// The encoding of stored knots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// How they are stored.
@@ -21,22 +21,22 @@ pub struct Frame {
     pub elevations: Option<Vec<f64>>,
 }
 
-/// What was read.
+/// The content of an input.
 #[derive(Debug, Clone)]
 pub struct Sites {
-    /// What messages call the input.
+    /// The name of the input in messages.
     pub name: String,
     /// Knots in stored coordinates, with their numbers in the input as ids.
     pub points: Vec<Point2>,
     /// Triangles over the knots, if the input is a mesh.
     pub triangles: Option<Vec<[u32; 3]>>,
-    /// What the coordinates mean.
+    /// The encoding of the coordinates.
     pub frame: Frame,
-    /// What the user should know.
+    /// Notices for the user.
     pub notices: Vec<String>,
 }
 
-/// Reads points of all `paths`, or one triangle mesh; `done` is told how many points there are so far.
+/// Reads points of all `paths`, or one triangle mesh; `done` is called with the number of points so far.
 ///
 /// # Errors
 /// As [`open_planar`]; input that cannot be read or is malformed; more knots than can be handled.
@@ -93,7 +93,7 @@ fn frame(coordinates: Coordinates, crs: Crs, has_elevation: bool) -> Frame {
 }
 
 impl Sites {
-    /// No knots, where others than those of an input are used; messages call it `name`.
+    /// Sites without knots, for runs whose knots come from elsewhere; `name` appears in messages.
     #[must_use]
     pub fn none(name: String) -> Sites {
         let frame = frame(Coordinates::F64, Crs::default(), false);

@@ -1,9 +1,9 @@
-//! From what was read to what configurations are made of: knots, a triangulation to start from, a rule.
+//! Sets up the computation: knots, a start triangulation, and a rule.
 
 use super::Report;
 use super::options::{Border, Flips, Options, Places, RuleName};
-use super::purpose::Purpose;
 use super::sites::{Frame, Sites};
+use super::special::SpecialKind;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::special::Special;
 use spmesh_geometry::configurations::{self, Configurations, Knots, Lift, Rule, Start};
@@ -11,39 +11,38 @@ use spmesh_geometry::delaunay2::distinct;
 use spmesh_io::source::Values;
 use spmesh_stream::Coordinates;
 
-/// All that configurations are made from.
+/// The input of the computation of configurations.
 pub(super) struct Setup {
     pub(super) knots: Knots,
     pub(super) frame: Frame,
-    pub(super) beginning: Beginning,
+    pub(super) origin: Origin,
     pub(super) rule: Rule,
-    /// Without the time.
+    /// Without times.
     pub(super) report: Report,
 }
 
-/// What comes before the rule.
-pub(super) enum Beginning {
+/// The configurations that the rule starts from.
+pub(super) enum Origin {
     /// Configurations of degree 0.
     Start(Configurations),
-    /// Links of single knots have something, too.
+    /// Special configurations, which also determine diagonals of links.
     Special(Special),
 }
 
-/// Makes the setup.
+/// Sets up the computation.
 ///
-/// A mesh that is the Delaunay triangulation of its vertices stands for these; any other is the start itself.
+/// A mesh that is the Delaunay triangulation of its vertices counts as points; any other mesh is the start
+/// triangulation.
 pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
-    let purpose = options.purpose.as_ref();
-    let sites = match purpose {
-        Some(purpose) => {
-            purpose.check(options)?;
-            purpose.place(sites)
-        }
+    options.check_special()?;
+    let kind = options.special.as_ref();
+    let sites = match kind {
+        Some(kind) => kind.place(sites),
         None => sites,
     };
     let Sites { points, triangles, mut frame, .. } = sites;
     let given = Knots::new(points)?;
-    if !purpose.is_some_and(Purpose::has_knots) {
+    if !kind.is_some_and(SpecialKind::has_knots) {
         configurations::check_degree(
             &given,
             if options.border == Border::Clamped { 0 } else { options.degree },
@@ -54,7 +53,7 @@ pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
         _ => None,
     };
     let mut knots = with_copies(&given, options)?;
-    let special = purpose.map(|purpose| purpose.set_up(&knots)).transpose()?;
+    let special = kind.map(|kind| kind.set_up(&knots)).transpose()?;
     if let Some(special) = &special {
         knots = special.knots.clone();
     }
@@ -77,15 +76,14 @@ pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
     if let Some(elevations) = &mut frame.elevations {
         extend(elevations, &added, f64::midpoint);
     }
-    let beginning = match special {
-        Some(special) => Beginning::Special(special),
-        None => Beginning::Start(start(&knots, own, &rule, options, &mut report.flips)?),
+    let origin = match special {
+        Some(special) => Origin::Special(special),
+        None => Origin::Start(start(&knots, own, &rule, options, &mut report.flips)?),
     };
-    Ok(Setup { knots, frame, beginning, rule, report })
+    Ok(Setup { knots, frame, origin, rule, report })
 }
 
-/// For each knot that was added the two that it is between: twice the first one at its place, if it is a
-/// copy.
+/// For each added knot, the two knots that it lies between; for a copy, twice the first knot at its place.
 fn added(knots: &Knots, given: usize, special: Option<&Special>) -> Vec<[u32; 2]> {
     if knots.len() == given {
         return Vec::new();
@@ -147,7 +145,7 @@ fn start(
     let mut start = match (own, rule) {
         (Some(triangles), _) => Start::of_triangles(knots, &triangles)?,
         (None, Rule::Lifted(lift)) => Start::lifted(knots, lift)?,
-        // The short way.
+        // The fast path.
         (None, _) if options.flips.is_none() && !is_pulled_apart => return configurations::delaunay(knots),
         (None, _) => Start::delaunay(knots)?,
     };
@@ -164,7 +162,7 @@ fn start(
     Ok(start.configurations())
 }
 
-/// What rules are made of.
+/// The data for making a rule.
 struct Rules<'a> {
     options: &'a Options,
     frame: &'a Frame,
@@ -194,7 +192,7 @@ impl Rules<'_> {
         })
     }
 
-    /// Values of all knots: what was given, or else elevations, whose unit does not matter.
+    /// Values of all knots: the given ones, or else elevations, whose unit does not matter.
     fn numbers(&self) -> Result<Vec<f64>> {
         match (&self.options.values, &self.frame.elevations) {
             (Some(Values::Numbers(numbers)), _) => self.for_all(numbers, f64::midpoint),
@@ -208,8 +206,8 @@ impl Rules<'_> {
         }
     }
 
-    /// Weights in squares of stored units. What all have in common does not matter, so elevations stay
-    /// without offset.
+    /// Weights in squares of stored units. A common constant does not matter, so elevations are used without
+    /// offset.
     fn weights(&self) -> Result<Vec<f64>> {
         let mut weights = self.numbers()?;
         if let Coordinates::I32 { scale, .. } = self.frame.coordinates {
@@ -219,7 +217,7 @@ impl Rules<'_> {
         Ok(weights)
     }
 
-    /// With a value for each knot that was added.
+    /// The values of the input knots, extended to the added ones.
     fn for_all<T: Copy>(&self, values: &[T], mean: impl Fn(T, T) -> T) -> Result<Vec<T>> {
         if values.len() != self.given {
             let (found, needed) = (values.len(), self.given);
@@ -233,7 +231,7 @@ impl Rules<'_> {
     }
 }
 
-/// Gives knots that were added the mean of the values of those that they are between.
+/// Gives each added knot the mean of the values of the two that it lies between.
 fn extend<T: Copy>(values: &mut Vec<T>, added: &[[u32; 2]], mean: impl Fn(T, T) -> T) {
     for ends in added {
         let [a, b] = ends.map(|end| values[end as usize]);

@@ -1,4 +1,4 @@
-//! Products that are no streams.
+//! Writes products that are not streams.
 
 use std::io::Write;
 
@@ -11,7 +11,7 @@ use spmesh_model::bounds::Point;
 use spmesh_model::cells4::Point4;
 use spmesh_stream::{Coordinates, Event, Header, Kind, Patch, Totals};
 
-/// The form of meshes in space that are no streams.
+/// File formats of meshes in space, other than streams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// VTK's XML: volumes with values, surfaces.
@@ -25,7 +25,7 @@ pub enum Form {
 }
 
 /// Writes sites with their values as lines of x, y, z, t and value, separated by tabs, below a line of names.
-/// What is outside of the hull or not known is `nan`.
+/// Values outside the hull and unknown values are `nan`.
 ///
 /// # Errors
 /// If writing fails.
@@ -44,8 +44,7 @@ pub fn write_values(sites: &[Point4], values: &[Option<f64>], output: &mut impl 
     write().map_err(|e| Error::io("writing", e))
 }
 
-/// Writes a slice as VTU, with its values, or as Medit's text without them. Returns what the user should
-/// know.
+/// Writes a slice as VTU, with its values, or as Medit's text without them. Returns notices for the user.
 ///
 /// # Errors
 /// Usage, if the format is another one; I/O.
@@ -85,7 +84,7 @@ pub fn write_surface(surface: &Surface, form: Form, output: &mut impl Write) -> 
     }
 }
 
-/// Hands a mesh to a sink as one patch.
+/// Passes a mesh to a sink as one patch.
 fn feed(mut sink: impl EventSink, points: &[Point], corners: &[u32], count: usize) -> Result<()> {
     let patch = Patch { new: points.to_vec(), simplices: corners.to_vec(), ..Patch::default() };
     sink.event(&Event::Patch(patch))?;

@@ -1,12 +1,12 @@
-//! `dd4`: points of four dimensions in, their Delaunay diagram out.
+//! `dd4`: computes the Delaunay diagram of points in four dimensions.
 
-mod figures;
+mod counts;
 mod files;
 mod product;
 mod quantum;
 mod write;
 
-pub use figures::Figures;
+pub use counts::Counts;
 pub use files::{Form, write_slice, write_surface, write_values};
 pub use product::Product;
 pub use quantum::Quantum;
@@ -19,35 +19,35 @@ use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
 use spmesh_io::source::points4::Selected4;
 use spmesh_model::diagram4::Diagram4;
 
-/// What is made of points.
+/// Options of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Options {
-    /// What coordinates are multiples of, if they are to be made whole numbers.
+    /// The quantum of the coordinates, if they are to be replaced by integers.
     pub quantum: Option<Quantum>,
     /// How the diagram is found.
     pub route: Route,
 }
 
-/// What a run did.
+/// Counts and times of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Report {
-    /// Points that were wanted.
+    /// Selected points.
     pub points: u64,
-    /// Those that are equal to an earlier one.
+    /// Points that are equal to an earlier one.
     pub merged: u64,
-    /// What the engine did.
+    /// Times and counts of the engine.
     pub stats: Stats,
-    /// The size of the diagram.
-    pub figures: Figures,
-    /// Making the diagram.
+    /// Counts of the elements of the diagram.
+    pub counts: Counts,
+    /// Time to compute the diagram.
     pub diagram_time: Duration,
-    /// Writing.
+    /// Time to write.
     pub write_time: Duration,
     /// Bytes written.
     pub output_bytes: u64,
 }
 
-/// Makes the diagram of points, of which a product is wanted.
+/// Computes the diagram of points for a product.
 ///
 /// # Errors
 /// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed,
@@ -60,20 +60,20 @@ pub fn make(points: Selected4, product: &Product, options: &Options) -> Result<(
     report.diagram_time = started.elapsed();
     report.merged = diagram.merged;
     report.stats = stats;
-    report.figures = Figures::of(&diagram.cells);
+    report.counts = Counts::of(&diagram.cells);
     Ok((diagram, report))
 }
 
 fn diagram_of(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Stats)> {
     let Selected4 { mut points, values, .. } = points;
-    // Known before the work, rather than when it is to be written.
+    // Fail before the computation, rather than when writing.
     let infinite = values.iter().flatten().position(|value| value.is_infinite());
     if let Some(number) = infinite {
         let message = "the value is infinite, which no stream holds: leave such points out with --where";
         return Err(Error::malformed(message).at(format!("point {:?}", points[number])));
     }
     if let Some(quantum) = options.quantum {
-        quantum.make_whole(&mut points)?;
+        quantum.divide(&mut points)?;
     }
     product.check(&points, values.is_some())?;
     diagram_by(options.route, points, values)

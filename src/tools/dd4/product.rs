@@ -1,4 +1,4 @@
-//! What can be made of a diagram.
+//! The products of a diagram.
 
 use std::io::Write;
 
@@ -10,10 +10,10 @@ use spmesh_geometry::spacetime::{
 use spmesh_model::cells4::Point4;
 use spmesh_model::diagram4::Diagram4;
 
-/// What is made of a diagram.
+/// The output made of a diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Product {
-    /// Its cells.
+    /// The cells.
     Cells,
     /// Simplices.
     Simplices(Rule),
@@ -38,7 +38,7 @@ pub enum Product {
 }
 
 impl Product {
-    /// Whether it can be made of these points: known before the work, rather than after it.
+    /// Checks that the product can be made of these points, before the computation.
     ///
     /// # Errors
     /// Usage, if values are needed and the points have none, or a slice is at a time before or after all
@@ -55,7 +55,7 @@ impl Product {
         }
     }
 
-    /// Whether what is written is binary.
+    /// Whether the output is binary.
     #[must_use]
     pub fn is_binary(&self) -> bool {
         match self {
@@ -67,11 +67,11 @@ impl Product {
         }
     }
 
-    /// Makes it of a diagram and writes it. Returns what the user should know.
+    /// Makes the product of a diagram and writes it. Returns notices for the user.
     ///
     /// # Errors
     /// Usage, if values are needed and the points have none, the slice is at a time before or after all
-    /// points, or the form does not hold it; I/O. What is written is then not whole.
+    /// points, or the format cannot hold it; I/O. The output is then incomplete.
     pub fn write(&self, diagram: &Diagram4, output: &mut impl Write) -> Result<Vec<String>> {
         match self {
             Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),

@@ -1,30 +1,30 @@
-//! Coordinates that are multiples of a number.
+//! Replaces coordinates that are multiples of a number by integers.
 
 use std::str::FromStr;
 
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Largest multiple: up to it, what f64 makes of a multiple differs from it by less than [`TOLERANCE`].
+/// Largest multiple. Up to it, the f64 nearest to a multiple differs from it by less than [`TOLERANCE`].
 const MULTIPLE_MAX: f64 = 2_147_483_648.0;
 
-/// By which part of the quantum a coordinate may differ from a multiple.
+/// Tolerance of a multiple, relative to the quantum.
 const TOLERANCE: f64 = 1e-6;
 
-/// What coordinates are multiples of: positive and finite.
+/// The quantum of coordinates: positive and finite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantum(f64);
 
 impl Quantum {
-    /// Puts in the place of each coordinate which multiple of the quantum it is.
+    /// Divides each coordinate by the quantum, and rounds it to the integer it must be.
     ///
     /// Multiples of a number like 0.1 are rounded in f64, so that points of a grid are not exactly
-    /// cospherical; whole numbers are.
+    /// cospherical; integers are exact.
     ///
     /// # Errors
-    /// Usage, at the first coordinate that is no multiple, but for a millionth of the quantum, or so large
-    /// that f64 does not tell.
-    pub fn make_whole(self, points: &mut [Point4]) -> Result<()> {
+    /// Usage, at the first coordinate that differs from a multiple by more than a millionth of the quantum,
+    /// or is too large to tell.
+    pub fn divide(self, points: &mut [Point4]) -> Result<()> {
         for point in points {
             *point = self.whole(*point).map_err(|error| error.at(format!("point {point:?}")))?;
         }
@@ -74,13 +74,13 @@ mod tests {
         let quantum: Quantum = "0.1".parse().unwrap();
         let mut points: Vec<Point4> =
             (-1000..1000).map(|i| [f64::from(i) * 0.1, f64::from(i) / 10.0, 0.3, -0.0]).collect();
-        quantum.make_whole(&mut points).unwrap();
+        quantum.divide(&mut points).unwrap();
         for (point, i) in points.iter().zip(-1000..) {
             assert_eq!(*point, [f64::from(i), f64::from(i), 3.0, 0.0]);
             assert!(point.iter().all(|x| *x != 0.0 || x.is_sign_positive()));
         }
         let mut far = vec![[2_147_483_648.0 * 0.1, -214_748_364.7, 0.0, 0.0]];
-        quantum.make_whole(&mut far).unwrap();
+        quantum.divide(&mut far).unwrap();
         assert_eq!(far, [[2_147_483_648.0, -2_147_483_647.0, 0.0, 0.0]]);
     }
 
@@ -93,7 +93,7 @@ mod tests {
             ([0.0, 0.0, 0.0, 1e10], "t = 10000000000 is more than 2^31"),
             ([f64::NAN, 0.0, 0.0, 0.0], "x = NaN"),
         ] {
-            let message = quantum.make_whole(&mut [[0.0; 4], point]).unwrap_err().to_string();
+            let message = quantum.divide(&mut [[0.0; 4], point]).unwrap_err().to_string();
             assert!(message.contains(part) && message.contains("point ["), "{message}");
         }
         for text in ["0", "-1", "inf", "nan", "1e-320", "one", ""] {

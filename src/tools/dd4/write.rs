@@ -1,4 +1,4 @@
-//! Diagrams to streams.
+//! Writes diagrams as streams.
 
 use std::io::Write;
 
@@ -34,7 +34,7 @@ pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> 
     writer.end(count, merged).map(drop)
 }
 
-/// The header of a stream that `dd4` makes of `count` points.
+/// The header of a stream made of `count` points.
 fn header(kind: Kind, has_values: bool, count: u64) -> Header {
     Header {
         points: Some(count),

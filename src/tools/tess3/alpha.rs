@@ -2,11 +2,12 @@
 //!
 //! A simplex of the triangulation belongs to the complex of radius R if a sphere of radius R or less passes
 //! through all its vertices and has no point inside. Let its least circumscribed sphere be the one with the
-//! centre in the flat that it spans. If no point lies inside of that one (a Gabriel simplex), it decides;
-//! otherwise the smallest of the others is that of a simplex with one vertex more, and the simplex belongs to
-//! the complex if one of those does. A tetrahedron has one sphere only. For a simplex of the triangulation
-//! the vertices next to it tell whether its least sphere is empty. Points on a sphere are not inside of it,
-//! and a radius of R itself is small enough; both are decided exactly, for R as it was written.
+//! centre in the flat that it spans. If no point lies inside that sphere (a Gabriel simplex), its radius
+//! decides. Otherwise the smallest empty sphere is that of a simplex with one more vertex, and the simplex
+//! belongs to the complex if one of those does. A tetrahedron has one sphere only. For a simplex of the
+//! triangulation, the adjacent vertices decide whether its least sphere is empty. Points on a sphere are not
+//! inside it, and a radius of exactly R is small enough; both are decided exactly, for R as written by the
+//! user.
 //!
 //! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994.
 
@@ -31,7 +32,7 @@ pub struct AlphaComplex<'m> {
 impl<'m> AlphaComplex<'m> {
     /// The complex of a radius in the unit of the mesh's coordinates.
     ///
-    /// Cost: a few sphere equations per tetrahedron; a bit of memory for each.
+    /// Cost: a few sphere equations and one bit of memory per tetrahedron.
     #[must_use]
     pub fn new(mesh: &'m Tetrahedralization, radius: Radius) -> Self {
         let fits =

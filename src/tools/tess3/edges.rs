@@ -12,7 +12,7 @@ const EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([2, 3], [0, 1]),
 ];
 
-/// What lies around an edge. Filled again for each edge.
+/// The surroundings of an edge; reused for each edge.
 #[derive(Debug, Default)]
 pub(super) struct Ring {
     /// The ends: vertices of the mesh.
@@ -25,9 +25,9 @@ pub(super) struct Ring {
 
 /// Calls `visit` for each edge of the mesh.
 ///
-/// An edge is found in each of its tetrahedra, and taken in the one of lowest number. The search for a lower
-/// one goes around in both directions in turn, so that all searches around one edge, of k tetrahedra, take
-/// O(k log k) steps together, however they are numbered.
+/// Each tetrahedron of an edge finds it; the one of lowest number reports it. The search for a lower one
+/// walks in both directions alternately, so that all searches around one edge of k tetrahedra take O(k log k)
+/// steps together, whatever the numbering.
 pub(super) fn for_each_edge<E>(
     mesh: &Tetrahedralization,
     mut visit: impl FnMut(&Ring) -> Result<(), E>,
@@ -44,8 +44,8 @@ pub(super) fn for_each_edge<E>(
 }
 
 impl Ring {
-    /// Walks around an edge of tetrahedron `start`; whether no tetrahedron around it has a lower number. If
-    /// there is one the ring is left incomplete.
+    /// Walks around an edge of tetrahedron `start`. Returns whether no tetrahedron around the edge has a
+    /// lower number; otherwise the ring is incomplete.
     fn fill(
         &mut self,
         tetrahedra: &[Tetrahedron],
@@ -69,7 +69,7 @@ impl Ring {
                     return false;
                 }
                 if walkers[turn].tetrahedron == walkers[1 - turn].tetrahedron {
-                    // Both walkers came to the last vertex.
+                    // Both walks met at the last vertex.
                     self.link.pop();
                     return true;
                 }

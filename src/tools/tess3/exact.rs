@@ -1,5 +1,5 @@
-//! Signs of polynomials in coordinates that are never wrong: a formula is written once, and evaluated in
-//! numbers that know how far off they may be; if that leaves the sign open, in integers of any length.
+//! Exact signs of polynomials in coordinates. A formula is written once and evaluated in f64 with an error
+//! bound; if that leaves the sign open, in big integers.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -9,13 +9,13 @@ use super::radius::Radius;
 use spmesh_geometry::predicates::exact_integers::integers_and_unit;
 use spmesh_geometry::predicates::{Point3, Sign};
 
-/// What a formula is evaluated in.
+/// The arithmetic of a formula.
 pub(super) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl Number for Approximate {}
 impl Number for BigInt {}
 
-/// A vector of any numbers.
+/// A vector in any arithmetic.
 pub(super) type Vector<T> = [T; 3];
 
 /// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of
@@ -35,7 +35,7 @@ pub(super) fn sign<P: Polynomial<N>, const N: usize>(points: [Point3; N], radius
     Sign::of(P::value(points, &radius.squares_in(unit)))
 }
 
-/// A rounded number, and a bound of its distance to the true one.
+/// A rounded number with a bound on its error.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Approximate {
     pub(super) value: f64,
@@ -46,7 +46,7 @@ pub(super) struct Approximate {
 const OF_BOUNDS: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 impl Approximate {
-    /// A number that is what it is meant to be.
+    /// A number without error.
     pub(super) fn exactly(value: f64) -> Self {
         Approximate { value, error: 0.0 }
     }

@@ -1,31 +1,33 @@
-//! Memory that each thread holds on the heap, counted.
+//! Counts the heap memory of each thread. `--stats` and the column `peak_memory_bytes` of a sweep's summary
+//! report it.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
 thread_local! {
-    /// Bytes that this thread has allocated more than it has freed.
+    /// Bytes that this thread has allocated, less those it has freed.
     static LIVE: Cell<isize> = const { Cell::new(0) };
-    /// Most that were live at a time.
+    /// Maximum of `LIVE`.
     static PEAK: Cell<isize> = const { Cell::new(0) };
 }
 
-/// The system's allocator, with counts per thread. A program that wants them has it as its global allocator.
+/// The system's allocator, with counts per thread. A program that reports these counts installs it as its
+/// global allocator.
 ///
-/// Among files that are worked on at the same time only the heap of each thread tells which one took how
-/// much: the system knows of the whole process.
+/// A sweep works on several files at a time, and the system knows the memory of the whole process only; the
+/// heap of each thread tells how much each file took.
 #[derive(Debug)]
 pub struct CountingHeap;
 
 fn count(bytes: isize) {
-    // A thread that is being torn down has no cells any more, and nothing to tell.
+    // Fails in a thread that is being torn down; its counts no longer matter.
     let _ = LIVE.try_with(|live| {
         live.set(live.get() + bytes);
         PEAK.try_with(|peak| peak.set(peak.get().max(live.get())))
     });
 }
 
-// SAFETY: every call goes to the system's allocator as it came; counting does not allocate.
+// SAFETY: every call is forwarded unchanged to the system's allocator; counting does not allocate.
 unsafe impl GlobalAlloc for CountingHeap {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as isize);
@@ -52,7 +54,7 @@ unsafe impl GlobalAlloc for CountingHeap {
     }
 }
 
-/// Does `work`, and says how many bytes more this thread held at a time than before; `None` without
+/// Runs `work`, and returns the peak of the bytes that this thread held above those before; `None` without
 /// [`CountingHeap`].
 pub fn peak_during<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
     let (before, outer) = (LIVE.get(), PEAK.get());

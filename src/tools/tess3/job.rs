@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::alpha::AlphaComplex;
 use super::mesh::write_mesh;
 use super::tables::{CONTACTS, Rows, TETRAHEDRA, write_error};
-use super::{Arithmetic, Options, Product, Report, choice};
+use super::{Arithmetic, Options, Product, Report, selection};
 use spmesh_core::error::Result;
 use spmesh_core::output::Output;
 use spmesh_geometry::delaunay3::Tetrahedralization;
@@ -71,16 +71,16 @@ impl Job<'_> {
     /// Triangulates what is selected of the selected model.
     fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
         let started = Instant::now();
-        let at = choice::model_index(structure, &self.options.selection)?;
+        let at = selection::model_index(structure, &self.options.selection)?;
         let name = ModelName { place, number: structure.models[at].number };
         // Points of which nothing else is known are handed over, so that the kernel needs no copy.
         let is_plain = self.options.product == Product::Mesh && structure.models[at].atoms.is_empty();
         if is_plain {
-            choice::select(structure, &self.options.selection)?;
+            selection::select(structure, &self.options.selection)?;
         }
         let plain = is_plain.then(|| std::mem::take(&mut structure.models[at].points));
         let selected =
-            plain.is_none().then(|| choice::select(structure, &self.options.selection)).transpose()?;
+            plain.is_none().then(|| selection::select(structure, &self.options.selection)).transpose()?;
         let selected = selected.as_ref();
         let points = match (plain, selected) {
             (Some(points), _) => Cow::Owned(points),

@@ -1,11 +1,9 @@
 //! `tess3`: the Delaunay tetrahedralization of the atoms of molecules and of other points in memory (thesis
-//! 3.4), as a mesh stream or as tables, of one file or of very many.
+//! 3.4), as a mesh stream or as tables, for one file or many.
 //!
-//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files, beside each
-//! other.
+//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files in parallel.
 
 mod alpha;
-mod choice;
 mod edges;
 mod exact;
 pub mod heap;
@@ -15,6 +13,7 @@ mod method;
 mod names;
 mod number;
 mod radius;
+mod selection;
 mod spheres;
 pub mod sweep;
 mod tables;
@@ -31,7 +30,7 @@ use std::time::Duration;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_io::source::structure::Selection;
 
-/// What is written of a triangulation.
+/// The output made of a triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Product {
     /// The stream of the tetrahedral mesh, one per model.
@@ -51,33 +50,32 @@ pub struct Options {
     pub product: Product,
     /// Write only simplices of the alpha complex with this radius, in world units.
     pub alpha: Option<Radius>,
-    /// How the kernel is to go about it.
+    /// How the kernel works.
     pub method: Method,
 }
 
-/// What was done with one model.
+/// Counts and times of one model.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Report {
     /// Number that the file gives the model.
     pub model: i64,
     /// Atoms that were selected.
     pub atoms: u64,
-    /// Different points among them: vertices of the mesh.
+    /// Distinct points among them: vertices of the mesh.
     pub vertices: u64,
     /// Tetrahedra of the triangulation, or with a radius of the alpha complex.
     pub tetrahedra: u64,
     /// Facets of the convex hull.
     pub hull_facets: u64,
-    /// Tetrahedra that the kernel made, infinite ones included; most of them did not last.
+    /// Tetrahedra that the kernel created, infinite ones included; most were replaced later.
     pub created: u64,
     /// In-sphere tests of the search for cavities.
     pub in_sphere_tests: u64,
-    /// Most bytes that the kernel and its result held at a time, the points of the input included; 0 if not
-    /// known.
+    /// Peak memory of the kernel and its result in bytes, the points of the input included; 0 if unknown.
     pub kernel_bytes: u64,
     /// Decisions of the predicates, if they are exact.
     pub predicates: PredicateCounts,
-    /// What went wrong, if they are not.
+    /// Rounding errors, if they are not exact.
     pub rounding: Rounding,
     /// Time.
     pub times: Times,
@@ -90,7 +88,7 @@ impl Report {
     }
 }
 
-/// What rounding did to a triangulation in floating-point arithmetic.
+/// Rounding errors in a triangulation in floating-point arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rounding {
     /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known
@@ -117,14 +115,14 @@ impl Rounding {
 /// Where the time went.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Times {
-    /// Reading the file and finding out what is in it; counted with the first model.
+    /// Reading and parsing the file; counted with the first model.
     pub read: Duration,
     /// Selecting atoms and triangulating.
     pub triangulate: Duration,
     /// Of that, ordering the points.
     pub order: Duration,
-    /// Of that, if it was to be measured, the walks to the points; the search of cavities, with the
-    /// predicates; and putting new tetrahedra in their place.
+    /// Of that, if measured: the walks to the points (`locate`), the search of cavities (`predicates`), and
+    /// the replacement of tetrahedra (`update`).
     pub locate: Duration,
     /// See `locate`.
     pub predicates: Duration,
@@ -153,12 +151,12 @@ impl Times {
     }
 }
 
-/// What was done with all models together.
+/// Counts and times of all models together.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Stats {
     /// Models.
     pub models: u64,
-    /// Sums of the models, and the greatest [`Report::kernel_bytes`]; the number of the model means nothing.
+    /// Sums over the models, and the maximum of [`Report::kernel_bytes`]; `model` is unused.
     pub sums: Report,
     /// Greatest number of atoms of a model.
     pub atoms_max: u64,

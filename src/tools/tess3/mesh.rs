@@ -13,7 +13,7 @@ const PATCH_TETRAHEDRA: usize = 8000;
 /// Vertices without tetrahedra per patch, by the same reckoning.
 const PATCH_VERTICES: usize = 32_000;
 
-/// Id of a vertex that no patch has so far.
+/// Id of a vertex that is in no patch so far.
 const NONE: u32 = u32::MAX;
 
 /// Marks what stands in place of the id of a vertex while it is imported into a patch: its number there. Ids
@@ -21,10 +21,10 @@ const NONE: u32 = u32::MAX;
 const IMPORTED: u32 = 1 << 31;
 
 /// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A
-/// vertex comes with its first patch, and is finalized by its last. `label` is told the index of a vertex
-/// among the points of the input.
+/// vertex is new in its first patch, and finalized in its last. `label` maps the index of a vertex among the
+/// points of the input to its label.
 ///
-/// Memory: 8 bytes per vertex, which are those that the mesh has to spare, and a patch.
+/// Memory: 8 bytes per vertex, in space that the mesh no longer needs, and one patch.
 ///
 /// # Errors
 /// If writing fails, or a coordinate does not fit the encoding of the stream.
@@ -63,7 +63,7 @@ pub fn write_mesh<W: Write>(
 struct PatchBuilder<'m, Label> {
     vertices: &'m [Vertex],
     label: Label,
-    /// Number of the last patch that uses a vertex; anything as long as there is none.
+    /// Number of the last patch that uses a vertex; undefined before the first.
     last_patches: &'m mut [u32],
     /// Number of the current patch.
     number: u32,
@@ -151,7 +151,7 @@ impl<'m, Label: Fn(u32) -> u64> PatchBuilder<'m, Label> {
         Ok(())
     }
 
-    /// Sorts the imported vertices, says which local index each of them has, and gives them their ids back.
+    /// Sorts the imported vertices, assigns local indices to them, and restores their ids.
     fn number_imported(&mut self) {
         self.imported.sort_unstable();
         self.locals.clear();

@@ -1,4 +1,4 @@
-//! How points are triangulated: by the exact kernel, or as the program of the thesis did.
+//! How points are triangulated: by the exact kernel, or in floating point as by the program of the thesis.
 
 use std::borrow::Cow;
 #[cfg(feature = "experiments")]
@@ -34,10 +34,10 @@ pub enum Arithmetic {
     },
 }
 
-/// How the kernel works, for experiments. With exact arithmetic nothing of it changes the result.
+/// How the kernel works, for experiments. With exact arithmetic, the result is always the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Method {
-    /// Which arithmetic decides.
+    /// The arithmetic of the predicates.
     pub arithmetic: Arithmetic,
     /// The curve along which points are stored and inserted.
     pub curve: Curve,
@@ -47,12 +47,12 @@ pub struct Method {
     pub by_bit_levels: bool,
     /// Seed of the walks in floating-point arithmetic.
     pub seed: u64,
-    /// Measure the parts of exact insertions, too, which takes some time itself.
+    /// Whether to time the parts of exact insertions too, which slows them down.
     pub is_timed: bool,
 }
 
 impl Method {
-    /// Triangulates, and says in `report` what that took.
+    /// Triangulates, and records counts and times in `report`.
     ///
     /// # Errors
     /// Those of the kernels; usage, if a build without experiments is asked for floating-point arithmetic.

@@ -10,7 +10,7 @@ use super::exact::Approximate;
 /// Largest exponent of ten: beyond it nothing fits the range of coordinates.
 const EXPONENT_MAX: i32 = 400;
 
-/// Longest number that is taken, in characters.
+/// Maximum length of the number, in characters.
 const LEN_MAX: usize = 400;
 
 /// A positive radius, exactly: the quotient of two integers.
@@ -18,7 +18,7 @@ const LEN_MAX: usize = 400;
 pub struct Radius {
     numerator: BigInt,
     denominator: BigInt,
-    /// The same, rounded a few times.
+    /// The radius as an f64, rounded a few times.
     approximate: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Circumscribed spheres of edges, triangles and tetrahedra: how large they are, and what lies in them.
+//! Circumscribed spheres of edges, triangles and tetrahedra: their sizes, and whether they are empty.
 //!
 //! In the formulas the first point is the origin. The centre of the sphere through 0, b, c, d is n / 2 D with
 //! n = b² (c × d) + c² (d × b) + d² (b × c) and D = det(b, c, d); that of the least sphere through 0, b, c is
@@ -147,7 +147,7 @@ fn power_of_two(exponent: i32) -> f64 {
     2f64.powi(half) * 2f64.powi(exponent - half)
 }
 
-/// What there is to measure of a tetrahedron.
+/// Measures of a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
     /// Radius of the circumscribed sphere.

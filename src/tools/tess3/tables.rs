@@ -22,17 +22,17 @@ pub(super) const TETRAHEDRA: &str = "model\tatom1\tatom2\tatom3\tatom4\tserial1\
 /// Columns of the table of contacts.
 pub(super) const CONTACTS: &str = "model\tatom1\tatom2\tserial1\tserial2\tdistance\ttetrahedra\n";
 
-/// Bytes of rows that are collected before they are written.
+/// Bytes of rows that are buffered before they are written.
 const ROWS_LEN: usize = 1 << 16;
 
-/// What the rows of one model are made of.
+/// The data of the rows of one model.
 pub(super) struct Rows<'s> {
     /// Number that the file gives it.
     pub(super) number: i64,
     /// Its atoms: what the mesh was made of.
     pub(super) selected: &'s Selected<'s>,
     pub(super) mesh: &'s Tetrahedralization,
-    /// What is to be printed of the mesh, if not all of it.
+    /// The part of the mesh to print, if not all of it.
     pub(super) alpha: Option<&'s AlphaComplex<'s>>,
     /// World units per stored unit.
     pub(super) scale: f64,
@@ -102,7 +102,7 @@ impl<'s> Rows<'s> {
     }
 }
 
-/// Rows on their way to the output.
+/// A buffer of rows.
 struct Table<'t, W> {
     output: &'t mut W,
     number: i64,
@@ -145,7 +145,7 @@ impl<'t, W: Write> Table<'t, W> {
         if self.text.len() >= ROWS_LEN { self.finish() } else { Ok(()) }
     }
 
-    /// Hands the rows so far to the output.
+    /// Writes the buffered rows to the output.
     fn finish(&mut self) -> Result<()> {
         self.output.write_all(&self.text).map_err(write_error)?;
         self.text.clear();

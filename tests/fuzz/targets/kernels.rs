@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use spmesh_audit::{Audit, Standard, config, diagram::check};
+use spmesh_audit::{Audit, Standard, configurations::StreamAudit, diagram::check};
 use spmesh_core::error::ErrorKind;
 use spmesh_geometry::configurations::{Knots, Rule, delaunay, generate};
 use spmesh_geometry::diagram4::{Route, diagram_by};
@@ -107,7 +107,7 @@ pub fn configurations(bytes: &[u8]) {
     let mut stream = Vec::new();
     write_configurations(knots.points(), &all, &mut stream).expect("memory takes it");
     let mut reader = StreamReader::new(&stream[..], "configurations").expect("a header");
-    let mut audit = config::StreamAudit::default();
+    let mut audit = StreamAudit::default();
     while let Some(event) = reader.next_event().expect("a stream that was just written") {
         audit.event(&event).expect("room for all configurations");
     }

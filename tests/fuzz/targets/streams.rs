@@ -1,6 +1,6 @@
 //! Streams and their text twins.
 
-use spmesh_audit::{Audit, Standard, Survey, config, diagram};
+use spmesh_audit::{Audit, Inventory, Standard, configurations, diagram};
 use spmesh_io::sink::{EventSink, TwinSink};
 use spmesh_io::source::{EventSource, TwinSource};
 use spmesh_model::bounds::Point;
@@ -68,8 +68,8 @@ fn end_of(events: &[Event]) -> Option<Totals> {
 
 /// Gives events to all that take them. A stream may well claim what is wrong, so that errors are fine.
 fn examine(header: &Header, events: &[Event]) {
-    let mut survey = Survey::new(header);
-    let _ = events.iter().try_for_each(|event| survey.event(event));
+    let mut inventory = Inventory::new(header);
+    let _ = events.iter().try_for_each(|event| inventory.event(event));
     let mut live = LiveVertices::<Point>::new();
     let mut cells = header.tree.map(FinalizedCells::new);
     let _ = events.iter().try_for_each(|event| match (event, &mut cells) {
@@ -86,7 +86,7 @@ fn examine(header: &Header, events: &[Event]) {
             }
         }
         Kind::Configurations => {
-            let mut audit = config::StreamAudit::default();
+            let mut audit = configurations::StreamAudit::default();
             if events.iter().try_for_each(|event| audit.event(event)).is_ok() {
                 let _ = audit.prove();
             }

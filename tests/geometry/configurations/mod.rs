@@ -12,7 +12,7 @@ mod special_boxes;
 mod special_features;
 mod spline;
 
-use spmesh_audit::config::{self as audit, FacetCounts};
+use spmesh_audit::configurations::{self as audit, FacetCounts};
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule};
 

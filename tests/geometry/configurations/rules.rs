@@ -1,7 +1,7 @@
 //! Link triangulation by every rule, from any triangulation: assertions hold, and facets match.
 
 use super::{check_circles, check_facets, knots};
-use spmesh_audit::config::FacetCounts;
+use spmesh_audit::configurations::FacetCounts;
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 use spmesh_reference::configurations::lines;
 use spmesh_reference::sets::Random;

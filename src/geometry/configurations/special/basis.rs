@@ -1,4 +1,4 @@
-//! How B-splines of degree 2 are collected (thesis 8.2.5 and 8.3.1).
+//! Collects B-splines of degree 2 into functions (thesis 8.2.5 and 8.3.1).
 
 use crate::configurations::knots::Knots;
 use crate::delaunay2::distinct;
@@ -8,7 +8,7 @@ use spmesh_model::configurations::{FARAWAY, Link, Links};
 use spmesh_model::functions::{Function, FunctionKind};
 use std::collections::BTreeMap;
 
-/// What is to be collected.
+/// The functions to collect.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Collection {
     /// Faces with a box spline.
@@ -36,7 +36,7 @@ impl Places {
         Places { firsts, is_apart }
     }
 
-    /// What the B-spline of two knots belongs to, as far as places go.
+    /// The function that the B-spline of two knots belongs to because of coinciding knots, if any.
     fn kind(&self, [p, q]: [u32; 2]) -> Option<FunctionKind> {
         let [p, q] = [p, q].map(|id| self.firsts[id as usize]);
         if p == q {

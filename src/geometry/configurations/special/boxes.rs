@@ -1,20 +1,20 @@
-//! Configurations whose B-splines sum to box splines, the ZP elements, inside of grids (thesis 8.2).
+//! Configurations whose B-splines sum to box splines, the ZP elements, inside grids (thesis 8.2).
 //!
-//! Each cell of a grid is split along a diagonal, always the same. The link of a knot amid four cells is then
-//! a hexagon; of this, its two neighbours along the diagonals are cut as ears, and the diamond of the other
+//! Each cell of a grid is split along the same diagonal. The link of a knot amid four cells is then a
+//! hexagon; of this, its two neighbours along the diagonals are cut as ears, and the diamond of the other
 //! four is split (figure 8.3). Links of diagonals are null then, and the ZP element of a face is half the sum
 //! of the B-splines of its four sides (theorem 8.2.4; the printed factor 1/4! is that of another
 //! normalisation), for either diagonal and either split.
 //!
-//! What the grid does not determine, links of knots on the border of a grid and all that is between grids
-//! (8.2.5), is left to constrained Delaunay triangulation and the rule. A face has a box spline if all its
-//! corners are amid cells. The thesis drops all B-splines between such knots; here the half that no box
-//! spline takes remains a function, so that all sum to one.
+//! Constrained Delaunay triangulation and the rule determine the rest: links of knots on the border of a
+//! grid, and everything between grids (8.2.5). A face has a box spline if all its corners are surrounded by
+//! cells. The thesis drops all B-splines between such knots; here the half that no box spline takes remains a
+//! function, so that all sum to one.
 
 use super::Special;
 use super::basis::Collection;
 use super::constrained::Constrained;
-use super::diagonals::Diagonals;
+use crate::configurations::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::{MAX_POINTS, distinct};
@@ -58,14 +58,14 @@ pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
     let places = distinct(knots.points());
     let repeated: HashSet<u32> =
         (0..).zip(&places).filter(|&(id, &first)| id != first).map(|(_, &first)| first).collect();
-    // All integers in this range are different numbers.
+    // All integers in this range are exact in f64.
     let whole = |c: f64| (c.fract() == 0.0 && c.abs() < (1u64 << 53) as f64).then_some(c as i64);
     let site = |id: u32| Some([whole(knots.at(id)[0])?, whole(knots.at(id)[1])?]);
     let ids = (0..knots.len() as u32).filter(|&id| places[id as usize] == id && !repeated.contains(&id));
     let sites: HashMap<[i64; 2], u32> = ids.clone().filter_map(|id| Some((site(id)?, id))).collect();
     let cell = |id: u32| -> Option<Cell> {
         let [x, y] = site(id)?;
-        let corner = |across, up| sites.get(&[x + across, y + up]).copied();
+        let corner = |neighbours, up| sites.get(&[x + neighbours, y + up]).copied();
         Some([id, corner(1, 0)?, corner(1, 1)?, corner(0, 1)?])
     };
     let cells: Vec<Cell> = ids.filter_map(cell).collect();
@@ -80,8 +80,8 @@ pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
 /// (thesis 8.2.5).
 ///
 /// `more` are knots between the grids. Knots of the patches come first, row by row; where patches touch,
-/// those at one place are one. Cells with knots on their sides, where patches meet in T-junctions, or inside
-/// are no cells.
+/// those at one place are one. Cells with knots on their sides (T-junctions of patches) or inside do not
+/// count as cells.
 ///
 /// # Errors
 /// Numbers that are not finite, steps that are not counterclockwise, too many knots, grid lines that cross.
@@ -100,7 +100,7 @@ pub fn patches(patches: &[Patch], more: &[Point2], split: ZpSplit) -> Result<Spe
 }
 
 impl Patch {
-    /// Number of knots with it; `before` without.
+    /// Number of knots including this patch; `before` excludes it.
     fn check(&self, before: u64) -> Result<u64> {
         let [[a, b], [c, d]] = self.steps;
         if !self.steps.iter().chain([&self.origin]).flatten().all(|number| number.is_finite()) {

@@ -1,8 +1,8 @@
 //! Segments that a triangulation must have as edges: a constrained Delaunay triangulation, by flips.
 //!
 //! Edges that cross a segment are flipped until none is left (Sloan, "A fast algorithm for generating
-//! constrained Delaunay triangulations", Computers & Structures 47, 1993), then what is new is made Delaunay
-//! again as far as segments allow.
+//! constrained Delaunay triangulations", Computers & Structures 47, 1993), then new edges are flipped until
+//! they are constrained Delaunay.
 
 use crate::configurations::knots::Knots;
 use crate::configurations::plane::Plane;
@@ -24,8 +24,7 @@ pub(super) struct Constrained<'a> {
     fixed: HashSet<[u32; 2]>,
 }
 
-/// Where a segment leads first: the next knot on it, and the edges that it crosses before, the right end
-/// first.
+/// The first part of a segment: the next knot on it, and the edges that it crosses before, right end first.
 struct Passage {
     to: u32,
     crossed: Vec<[u32; 2]>,
@@ -47,8 +46,7 @@ impl<'a> Constrained<'a> {
     /// Makes the segment between two knots an edge that stays; the knots on the way from `a` to `b`, both
     /// included: where others lie on the segment, it is several edges.
     ///
-    /// Cost: the square of the number of edges it crosses, which is small for all segments that one has in
-    /// mind.
+    /// Cost: the square of the number of edges it crosses, which is small for typical segments.
     ///
     /// # Errors
     /// A segment that crosses another.
@@ -72,7 +70,7 @@ impl<'a> Constrained<'a> {
     }
 
     /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment
-    /// goes through. Of knots at one place it names the first: others may be copies that nobody knows of.
+    /// goes through. Of coinciding knots it names the first: others may be copies that the user did not give.
     #[cold]
     fn crossing(&self, ends: [u32; 2], edge: [u32; 2]) -> Error {
         let firsts = distinct(self.plane.knots.points());
@@ -142,7 +140,7 @@ impl<'a> Constrained<'a> {
         around.find(|&at| vertex(after(at, 1)) == b).map(|at| after(at, 2))
     }
 
-    /// The way from `a` towards `b`, up to the next knot.
+    /// The part of the segment from `a` to `b` up to the next knot.
     fn passage(&mut self, a: u32, b: u32) -> Option<Passage> {
         let around: Vec<Corner> = self.start.star(self.corner_at[a as usize]).collect();
         for corner in around {
@@ -174,9 +172,9 @@ impl<'a> Constrained<'a> {
         let mut corner = corner;
         for _ in 0..self.start.triangles.len() {
             crossed.push([p, q]);
-            let beyond = self.start.across[corner as usize / 3][corner as usize % 3];
-            let triangle = self.start.triangles[beyond as usize / 3];
-            let v = triangle[beyond as usize % 3];
+            let neighbour = self.start.neighbours[corner as usize / 3][corner as usize % 3];
+            let triangle = self.start.triangles[neighbour as usize / 3];
+            let v = triangle[neighbour as usize % 3];
             if v == FARAWAY {
                 return None;
             }
@@ -187,7 +185,7 @@ impl<'a> Constrained<'a> {
                 Sign::Negative => std::mem::replace(&mut p, v),
             };
             let place = (0..).zip(triangle).find(|&(_, other)| other == left_behind)?.0;
-            corner = beyond - beyond % 3 + place;
+            corner = neighbour - neighbour % 3 + place;
         }
         None
     }
@@ -232,9 +230,9 @@ impl<'a> Constrained<'a> {
 
     /// The ends of the edge that is new.
     fn flip(&mut self, corner: Corner) -> [u32; 2] {
-        let beyond = self.start.across[corner as usize / 3][corner as usize % 3];
+        let neighbour = self.start.neighbours[corner as usize / 3][corner as usize % 3];
         self.start.flip(corner);
-        [corner / 3, beyond / 3].into_iter().for_each(|triangle| self.note(triangle));
+        [corner / 3, neighbour / 3].into_iter().for_each(|triangle| self.note(triangle));
         let [v, _, w] = self.start.triangles[corner as usize / 3];
         [v, w]
     }
@@ -243,16 +241,16 @@ impl<'a> Constrained<'a> {
 impl Start {
     /// Puts a vertex on the edge opposite to a corner: four triangles take the place of two.
     fn split(&mut self, corner: Corner, middle: u32) {
-        let Around { triangles: [t, u], corners: [v, a, w, b], across: [va, aw, wb, bv] } =
+        let Around { triangles: [t, u], corners: [v, a, w, b], neighbours: [va, aw, wb, bv] } =
             self.around(corner);
         let (m, n) = (self.triangles.len() as u32, self.triangles.len() as u32 + 1);
         self.triangles[t as usize] = [v, a, middle];
         self.triangles[u as usize] = [w, b, middle];
         self.triangles.extend([[v, middle, b], [w, middle, a]]);
-        self.across.resize(self.triangles.len(), [0; 3]);
+        self.neighbours.resize(self.triangles.len(), [0; 3]);
         let inner = [(3 * t, 3 * n), (3 * t + 1, 3 * m + 2), (3 * u, 3 * m), (3 * u + 1, 3 * n + 2)];
         let outer = [(3 * t + 2, va), (3 * u + 2, wb), (3 * m + 1, bv), (3 * n + 1, aw)];
-        inner.into_iter().chain(outer).for_each(|(here, there)| self.set_across(here, there));
+        inner.into_iter().chain(outer).for_each(|(here, there)| self.set_neighbour(here, there));
     }
 }
 

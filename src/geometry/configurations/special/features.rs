@@ -3,7 +3,7 @@
 use super::Special;
 use super::basis::Collection;
 use super::constrained::{Constrained, segment, through};
-use super::diagonals::Diagonals;
+use crate::configurations::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::distinct;
@@ -20,15 +20,15 @@ pub struct Crease {
     pub has_sharp_ends: bool,
 }
 
-/// What is to be sharp, by ids of knots.
+/// Sharp features, by ids of knots.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Features {
     /// Sharp corners (scenario 1): splines interpolate there.
     pub corners: Vec<u32>,
     /// Creases (scenario 2).
     pub creases: Vec<Crease>,
-    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. One that ends
-    /// where it starts and has no knot inside makes a triangle, if it has three edges, or a polygon of them.
+    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. A closed one
+    /// without knots inside makes a triangle if it has three edges, or a polygon.
     pub lines: Vec<Vec<u32>>,
 }
 

@@ -1,18 +1,18 @@
-//! Special configurations of degree 1, for quadratic splines of a purpose (thesis, chapter 8).
+//! Special configurations of degree 1, for quadratic splines with box splines or sharp features (thesis,
+//! chapter 8).
 //!
-//! Each is knots, a triangulation of them, and diagonals that links of some knots must have: a [`Special`].
+//! A [`Special`] holds knots, a triangulation of them, and diagonals that links of some knots must have.
 //! [`zp`] and [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2), [`features()`] makes corners
-//! and creases sharp, and linear elements linear (8.3.1). The B-splines of degree 2 that belong together, on
-//! account of knots at one place for instance, are summed: [`Special::functions`] says how.
+//! and creases sharp, and linear elements linear (8.3.1). [`Special::functions`] sums the B-splines of degree
+//! 2 that belong together, such as those of coinciding knots.
 
 mod basis;
 mod boxes;
 mod constrained;
-mod diagonals;
 mod features;
 
+pub use super::diagonals::Diagonals;
 pub use boxes::{Patch, ZpSplit, patches, zp};
-pub use diagonals::Diagonals;
 pub use features::{Crease, Features, features};
 pub use spmesh_model::functions::{Function, FunctionKind};
 
@@ -23,19 +23,19 @@ use basis::Collection;
 use spmesh_core::error::Result;
 use spmesh_model::configurations::{Configurations, Links};
 
-/// Knots with what configurations of degree 1 need for a purpose.
+/// Knots with a start and required diagonals for special configurations of degree 1.
 #[derive(Debug, Clone)]
 pub struct Special {
-    /// The knots: those given, with the same ids, and after them those that the purpose needs.
+    /// The knots: the given ones, with the same ids, and after them those that were added.
     pub knots: Knots,
     /// The triangulation.
     pub start: Start,
-    /// What links of single knots must have.
+    /// Diagonals that links of single knots must have.
     pub diagonals: Diagonals,
     collection: Collection,
 }
 
-/// The functions that quadratic splines are made of, if nothing is special but knots at one place: as
+/// The functions that quadratic splines are made of, if nothing is special except coinciding knots: as
 /// [`Special::functions`].
 ///
 /// # Errors
@@ -45,7 +45,7 @@ pub fn functions(knots: &Knots, links: &Links) -> Result<Vec<Function>> {
 }
 
 impl Special {
-    /// All degrees from 0 to `degree`, in order: `rule` triangulates what is not determined.
+    /// All degrees from 0 to `degree`, in order: `rule` triangulates what the required diagonals leave open.
     ///
     /// # Errors
     /// Those of [`super::generate`].
@@ -62,9 +62,9 @@ impl Special {
 
     /// The functions that quadratic splines are made of, as sums of B-splines; `links` are those of degree 1.
     ///
-    /// Each B-spline has shares of one altogether: so the functions sum to one where the B-splines do. Those
-    /// of null links are zero, and left out; of a link through the faraway point, the finite edges make the
-    /// B-spline.
+    /// The shares of each B-spline sum to one, so the functions sum to one where the B-splines do. B-splines
+    /// of null links are zero and left out; that of a link through the faraway point is made of its finite
+    /// edges.
     ///
     /// # Errors
     /// Links of another size.

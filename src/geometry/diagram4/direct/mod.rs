@@ -16,10 +16,12 @@ use super::canonical::canonical;
 use super::exact::Exactness;
 use super::simplices::{INFINITE, insertions};
 use super::sites::Sites;
+use crate::predicates::Extent;
+use crate::predicates::exact_integers::integers_of;
 use foldhash::{HashMap, HashSet};
 use horizon::{Facet, in_common};
 use spmesh_core::error::Result;
-use spmesh_model::cells4::{Cell4, Cells4};
+use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use std::time::Instant;
 use tuple::{Integer, Tuple};
 
@@ -38,18 +40,26 @@ pub(super) fn cells(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {
     let order = insertions(sites)?;
     stats.order = started.elapsed();
     let started = Instant::now();
-    let cells = if sites.exactness != Exactness::Big && sites.greatest <= INT128_MAX {
-        build(sites.integers(), &order, stats)
-    } else {
-        build(sites.big_integers(), &order, stats)
-    };
+    let cells =
+        if sites.exactness != Exactness::Big && Extent::of(&sites.points).max_difference() <= INT128_MAX {
+            build(integers(sites), &order, stats)
+        } else {
+            build(integers_of(&sites.points), &order, stats)
+        };
     stats.insertion = started.elapsed();
     Ok(cells)
 }
 
+/// The points as integers about the centre of their box; they are integers of that width.
+fn integers(sites: &Sites) -> Vec<[i128; 4]> {
+    let centre = sites.centre.map(|x| (x / sites.unit) as i128);
+    let from = |point: &Point4| std::array::from_fn(|axis| point[axis] as i128 - centre[axis]);
+    sites.points.iter().map(from).collect()
+}
+
 fn build<T: Integer>(points: Vec<[T; 4]>, order: &[u32], stats: &mut Stats) -> Cells4 {
     let mut diagram = Direct { points, cells: Vec::new(), free: Vec::new() };
-    diagram.begin(std::array::from_fn(|place| order[place]));
+    diagram.insert_first(std::array::from_fn(|place| order[place]));
     let mut start = 0;
     for &q in &order[5..] {
         start = diagram.insert(q, start, stats);
@@ -91,7 +101,7 @@ struct Direct<T> {
 
 impl<T: Integer> Direct<T> {
     /// The simplex of five points that span space, and the cells around it.
-    fn begin(&mut self, simplex: [u32; 5]) {
+    fn insert_first(&mut self, simplex: [u32; 5]) {
         let at = |number: u32| &self.points[number as usize];
         let mut cells = vec![(simplex.to_vec(), Tuple::sphere(simplex.map(at)))];
         for side in 0..5 {

@@ -1,15 +1,16 @@
-//! What a new point takes away: the simplices whose spheres it is in.
+//! The cavity of a new point: the simplices whose spheres contain it.
 
 use super::coefficient::Coefficient;
 use super::complex::{Complex, FACETS, Facet, facet, simplex_of};
 
-/// How far ahead memory is fetched.
+/// Simplices to prefetch ahead.
 const AHEAD: usize = 3;
 
 /// Simplices in conflict with a point, and the border around them.
 ///
-/// Which of its neighbours a simplex in conflict is the first to meet, and which are in conflict, no
-/// processor predicts: so both lists are written to each time, and it is only counted if that was meant.
+/// Whether a neighbour is in conflict is unpredictable, and so is whether it was met before. To avoid
+/// branches, every neighbour is written to the end of both lists, and the count of the right list is
+/// incremented.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
     dead: Vec<u32>,
@@ -24,7 +25,7 @@ impl Cavity {
         &self.dead[..self.dead_count]
     }
 
-    /// The facets between them and those that stay, as facets of the former.
+    /// The facets between them and the simplices that stay, as facets of the former.
     pub(super) fn border(&self) -> &[Facet] {
         &self.border[..self.border_count]
     }
@@ -34,21 +35,21 @@ impl Cavity {
     pub(super) fn find<C: Coefficient>(&mut self, complex: &mut Complex<C>, q: u32, found: usize) {
         let p = complex.lifted(q);
         (self.dead_count, self.border_count) = (0, 0);
-        self.make_room();
+        self.reserve();
         complex.spheres[found][4] = C::DEAD;
         self.dead[0] = found as u32;
         self.dead_count = 1;
         let mut next = 0;
         while next < self.dead_count {
-            self.make_room();
+            self.reserve();
             let at = self.dead[next] as usize;
             next += 1;
             if next + AHEAD < self.dead_count {
                 complex.fetch_neighbours(self.dead[next + AHEAD] as usize);
             }
-            let beyond = complex.simplices[at].beyond;
-            for (side, beyond) in beyond.into_iter().enumerate() {
-                let other = simplex_of(beyond);
+            let neighbours = complex.simplices[at].neighbours;
+            for (side, neighbour) in neighbours.into_iter().enumerate() {
+                let other = simplex_of(neighbour);
                 let determinant = complex.determinant(other);
                 let is_alive = determinant >= C::default();
                 let value = complex.value(other, &p);
@@ -66,9 +67,9 @@ impl Cavity {
         }
     }
 
-    /// Makes room for all neighbours of a simplex in both lists.
+    /// Reserves space for all neighbours of a simplex in both lists.
     #[inline(always)]
-    fn make_room(&mut self) {
+    fn reserve(&mut self) {
         for (list, count) in [(&mut self.dead, self.dead_count), (&mut self.border, self.border_count)] {
             if list.len() < count + FACETS {
                 list.resize(2 * (count + FACETS), 0);

@@ -1,19 +1,19 @@
-//! The numbers that spheres are kept in.
+//! Number types for the coefficients of spheres.
 
 use std::fmt::Debug;
 
-/// A coefficient of a sphere: as narrow as coordinates allow, because memory is what insertions wait for.
+/// A coefficient of a sphere, as narrow as the coordinates allow: insertion is bound by memory.
 pub(in crate::diagram4) trait Coefficient: Copy + Debug + Default + PartialOrd {
-    /// What the sphere of a simplex that is dead has in the place of the determinant.
+    /// Replaces the determinant in the sphere of a dead simplex.
     const DEAD: Self;
 
-    /// A coefficient.
+    /// Converts a coefficient.
     fn of(value: f64) -> Self;
 
-    /// The determinant of a simplex, which is positive.
+    /// Converts the determinant of a simplex, which is positive.
     fn determinant(value: f64) -> Self;
 
-    /// The coefficient as what in-sphere tests calculate with.
+    /// The coefficient as an f64, for in-sphere tests.
     fn value(self) -> f64;
 }
 
@@ -25,7 +25,7 @@ impl Coefficient for f64 {
         value
     }
 
-    /// Only of a simplex that is almost flat it is not seen to be positive in rounded arithmetic.
+    /// Rounding can make the determinant of an almost flat simplex zero or negative: clamp it.
     #[inline(always)]
     fn determinant(value: f64) -> f64 {
         value.max(f64::MIN_POSITIVE)
@@ -44,7 +44,7 @@ impl Coefficient for i32 {
     #[inline(always)]
     fn of(value: f64) -> i32 {
         debug_assert!(value as i32 as f64 == value);
-        // Safety: coefficients of small integers are integers of 32 bits.
+        // Safety: coefficients of small integers fit 32 bits.
         unsafe { value.to_int_unchecked() }
     }
 

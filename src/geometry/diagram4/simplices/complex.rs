@@ -1,4 +1,4 @@
-//! Simplices in flat arrays.
+//! The simplices of the triangulation, in flat arrays.
 
 use super::coefficient::Coefficient;
 use super::lanes::{LANES, Lanes};
@@ -33,46 +33,45 @@ pub(in crate::diagram4) fn facet(simplex: usize, side: usize) -> Facet {
     (simplex as u32) << 3 | side as u32
 }
 
-/// Where a facet leads that has no neighbour yet: to simplex 0, which is none.
-pub(super) const NOBODY: Facet = 0;
+/// Neighbour of a facet that has none yet: a facet of simplex 0, a dummy.
+pub(super) const NO_NEIGHBOUR: Facet = 0;
 
-/// Most simplices: facets are numbered in 31 bits.
+/// Maximum number of simplices: facets are numbered in 31 bits.
 pub(super) const SIMPLICES_MAX: usize = 1 << 28;
 
-/// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of
-/// the hull.
+/// A positively oriented simplex: det(b - a, c - a, d - a, e - a) > 0. The faraway point stands for any point
+/// beyond the facet of the hull.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::diagram4) struct Simplex {
     pub(in crate::diagram4) vertices: [u32; FACETS],
-    /// Across each facet, which facet of which simplex it is.
-    pub(in crate::diagram4) beyond: [Facet; FACETS],
+    /// For each facet, the same facet as seen from the neighbouring simplex.
+    pub(in crate::diagram4) neighbours: [Facet; FACETS],
 }
 
-/// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside of a sphere, or beyond a
-/// hyperplane of the hull. m is positive for a sphere, 0 for a hyperplane, and negative for what is no
-/// simplex any more.
+/// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside a sphere, or beyond a hyperplane
+/// of the hull. m is positive for a sphere, 0 for a hyperplane, and negative for a dead simplex.
 pub(in crate::diagram4) type Sphere<C> = [C; 6];
 
-/// Rounding errors of values, if coordinates differ by at most 1.
+/// Bound on the rounding errors of values, if coordinates differ by at most 1.
 ///
 /// The sum of magnitudes of all terms that a value expands to is at most 480, and of each at most 47 factors 1 + e,
 /// |e| <= 2^-53, deviate: 480 * 47 < 2^15. Of hyperplanes it is less.
 const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
 
-/// The point as in-sphere tests want it.
+/// A point as the vector (x, |x|^2, 1) of in-sphere tests.
 pub(super) type Lifted = [f64; 6];
 
 pub(in crate::diagram4) struct Complex<'a, C> {
     pub(in crate::diagram4) sites: &'a Sites,
-    /// The number of the site of each vertex; vertices are numbered as they are inserted.
+    /// The site of each vertex; vertices are numbered in order of insertion.
     pub(in crate::diagram4) order: Vec<u32>,
     pub(in crate::diagram4) near: Vec<Point4>,
-    /// The first is none: see [`NOBODY`].
+    /// The first is a dummy: see [`NO_NEIGHBOUR`].
     pub(in crate::diagram4) simplices: Vec<Simplex>,
     pub(in crate::diagram4) spheres: Vec<Sphere<C>>,
-    /// Simplices that are dead.
+    /// Numbers of dead simplices.
     pub(super) free: Vec<u32>,
-    /// Values of greater magnitude have the right sign.
+    /// Values of greater magnitude have the correct sign.
     rounding: f64,
 }
 
@@ -105,21 +104,21 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         self.spheres[simplex][4]
     }
 
-    /// Has the neighbours of a simplex brought into the cache.
+    /// Prefetches the neighbours of a simplex.
     #[inline(always)]
     pub(super) fn fetch_neighbours(&self, simplex: usize) {
-        for beyond in self.simplices[simplex].beyond {
-            prefetch(&self.spheres, simplex_of(beyond));
-            prefetch(&self.simplices, simplex_of(beyond));
+        for neighbour in self.simplices[simplex].neighbours {
+            prefetch(&self.spheres, simplex_of(neighbour));
+            prefetch(&self.simplices, simplex_of(neighbour));
         }
     }
 
-    /// Whether the simplex is one of the triangulation, and finite.
+    /// Whether the simplex is alive and finite.
     pub(in crate::diagram4) fn is_finite(&self, simplex: usize) -> bool {
         self.determinant(simplex) > C::default()
     }
 
-    /// Whether it is one of the triangulation, and infinite.
+    /// Whether the simplex is alive and infinite.
     pub(in crate::diagram4) fn is_infinite(&self, simplex: usize) -> bool {
         self.determinant(simplex) == C::default()
     }
@@ -132,21 +131,22 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         even + odd
     }
 
-    /// Whether vertex `q`, at `p`, is inside of the sphere of a simplex.
+    /// Whether vertex `q`, at `p`, is inside the sphere of a simplex.
     #[inline(always)]
     pub(super) fn is_in_conflict(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         let value = self.value(simplex, p);
         if self.is_clear(value, simplex) { value < 0.0 } else { self.decide(simplex, q, p) }
     }
 
-    /// Whether the sign of a value decides, as it is. Exact values of small integers: zero is on the sphere.
+    /// Whether the sign of a value is conclusive. Values of small integers are exact: zero means on the
+    /// sphere.
     #[inline(always)]
     pub(super) fn is_clear(&self, value: f64, simplex: usize) -> bool {
         value.abs() > self.rounding || (self.rounding == 0.0 && !self.is_infinite(simplex))
     }
 
-    /// Beyond a facet of the hull the sign of the hyperplane decides, on it the neighbour's sphere (thesis
-    /// 4.4).
+    /// Decides a conflict exactly. For an infinite simplex, the side of its hyperplane decides; for a point
+    /// on that hyperplane, the sphere of the finite neighbour (thesis 4.4).
     #[inline(never)]
     pub(super) fn decide(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         match self.sign(simplex, q) {
@@ -161,9 +161,9 @@ impl<'a, C: Coefficient> Complex<'a, C> {
 
     /// The finite simplex across the hull from an infinite one.
     pub(in crate::diagram4) fn neighbour_inside(&self, simplex: usize) -> Option<usize> {
-        let Simplex { vertices, beyond, .. } = &self.simplices[simplex];
+        let Simplex { vertices, neighbours, .. } = &self.simplices[simplex];
         let side = vertices.iter().position(|&vertex| vertex == INFINITE)?;
-        Some(simplex_of(beyond[side]))
+        Some(simplex_of(neighbours[side]))
     }
 
     /// The sign of the value of a vertex.
@@ -196,8 +196,8 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         }
     }
 
-    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; which vertex
-    /// it is of each, `sides` say.
+    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; `sides` gives
+    /// the place of that vertex in each.
     #[inline(always)]
     pub(super) fn spheres_of(
         &self,
@@ -213,7 +213,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         ];
         let origin = o.map(|x| Lanes([x; LANES]));
         let corners = [0, 1, 2, 3].map(|i| difference(self.corners(facets.map(|facet| facet[i])), &origin));
-        // Moved to the front, the common vertex passes as many others as its number.
+        // Moving the common vertex to the front passes as many others as its place.
         let signs = Lanes(sides.map(|side| if side % 2 == 0 { 1.0 } else { -1.0 }));
         let (n, m) = sphere(corners);
         let s = m * lift(&origin) - dot(&n, &origin);
@@ -229,7 +229,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         })
     }
 
-    /// The points of four vertices, axis by axis; anything for the faraway point.
+    /// The points of four vertices, axis by axis; an arbitrary point for the faraway point.
     #[inline(always)]
     fn corners(&self, vertices: [u32; LANES]) -> [Lanes; 4] {
         let last = self.near.len() - 1;
@@ -242,7 +242,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
         let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
         let n = normal([a, b, c].map(|p| difference(p, &o)));
-        // Moved to the end, the faraway point passes 4 - side others; beyond the hull values are negative.
+        // Moving the faraway point to the end passes 4 - side others; values beyond the hull are negative.
         let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
         [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]
     }

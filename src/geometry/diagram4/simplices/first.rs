@@ -1,4 +1,4 @@
-//! Five points that are not in a hyperplane.
+//! Finds five points that do not lie in a hyperplane.
 
 use crate::diagram4::sites::Sites;
 use crate::predicates::exact_integers::integers;
@@ -6,10 +6,10 @@ use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Moves the first five points that span space to the front, others stay in their order.
+/// Moves the first five points that span space to the front; the others keep their order.
 ///
 /// # Errors
-/// There are none; the message has the dimension of the points.
+/// Usage, if no five points span space; the message gives the dimension of the points.
 pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
     let Some(&first) = order.first() else {
         return Err(Error::usage("no points, where a diagram in 4 dimensions needs at least 5"));
@@ -42,16 +42,16 @@ pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
     Ok(())
 }
 
-/// A vector, and the axis that no row after it has.
+/// A vector, and the axis that is eliminated from all later rows.
 struct Row {
     vector: [BigInt; 4],
     axis: usize,
 }
 
-/// The vector from the origin to the point without its parts along the basis, times some integer, unless
-/// nothing is left (Gauss's elimination without division).
+/// The vector from the origin to the point without its parts along the basis, times some integer; `None` if
+/// that is zero (Gaussian elimination without division).
 fn reduced(origin: Point4, point: Point4, basis: &[Row]) -> Option<Row> {
-    // All in one unit: that of the points, for each alone, will do, as rows may be scaled.
+    // Each pair may have a unit of its own, as rows may be scaled.
     let [o, p] = integers([origin, point]);
     let mut vector: [BigInt; 4] = std::array::from_fn(|axis| &p[axis] - &o[axis]);
     for row in basis {

@@ -1,4 +1,4 @@
-//! Insertion of points: simplices in conflict give way to a star around the new point.
+//! Inserts points: a star around the new point replaces the simplices in conflict.
 
 use super::cavity::Cavity;
 use super::coefficient::Coefficient;
@@ -20,15 +20,15 @@ pub(super) struct Insertion<'a, C> {
 }
 
 impl<'a, C: Coefficient> Insertion<'a, C> {
-    /// Begins with the simplex of the first five points, which span space.
+    /// A triangulation of the first five points, which span space.
     pub(super) fn new(complex: Complex<'a, C>) -> Insertion<'a, C> {
         let (cavity, links) = (Cavity::default(), Links::default());
         let mut insertion = Insertion { complex, cavity, star: Vec::new(), links, created: 6, tests: 0 };
-        insertion.begin();
+        insertion.insert_first();
         insertion
     }
 
-    fn begin(&mut self) {
+    fn insert_first(&mut self) {
         let complex = &mut self.complex;
         let mut vertices = [0, 1, 2, 3, 4];
         let [a, b, c, d, e] = vertices.map(|vertex| complex.point(vertex));
@@ -36,33 +36,33 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         if orientation(exactness, [a, b, c, d], e) == Ordering::Less {
             vertices.swap(0, 1);
         }
-        // Number 1, and number i + 2 beyond its facet i, in which the faraway point takes the place of vertex
-        // i; the other vertices keep their places.
+        // Simplex 1 is finite. Simplex i + 2 is its neighbour at facet i: the faraway point replaces vertex
+        // i, and the other vertices keep their places.
         let mut all = vec![(vertices, std::array::from_fn(|side| facet(side + 2, side)))];
         for side in 0..FACETS {
             let mut vertices = vertices;
             vertices[side] = INFINITE;
-            // Opposite to the faraway point is the finite one; opposite to vertex k is the one without k,
-            // where vertex i is in its own place.
-            let mut beyond: [Facet; FACETS] =
+            // The neighbour opposite to the faraway point is the finite simplex. The one opposite to vertex k
+            // lacks k and has vertex i in its own place.
+            let mut neighbours: [Facet; FACETS] =
                 std::array::from_fn(|other| facet(if other == side { 1 } else { other + 2 }, side));
-            // Another point in the place of a vertex, on the other side of the facet, would be negative.
+            // Replacing a vertex by a point across the facet turns the orientation: swap two vertices.
             let (i, j) = if side < 2 { (2, 3) } else { (0, 1) };
             vertices.swap(i, j);
-            beyond.swap(i, j);
-            all.push((vertices, beyond));
+            neighbours.swap(i, j);
+            all.push((vertices, neighbours));
         }
-        for (vertices, beyond) in all {
+        for (vertices, neighbours) in all {
             let common = vertices.iter().position(|&vertex| vertex != INFINITE).unwrap_or_default();
             let o = complex.near[vertices[common] as usize];
             let [sphere, ..] = complex.spheres_of(&o, [&vertices; LANES], [common; LANES]);
-            complex.simplices.push(Simplex { vertices, beyond });
+            complex.simplices.push(Simplex { vertices, neighbours });
             complex.spheres.push(sphere);
         }
         fix_sides(&mut complex.simplices);
     }
 
-    /// Inserts all other points, with the widest instructions there are.
+    /// Inserts all other points, with AVX2 where the processor has it.
     ///
     /// # Errors
     /// Too many simplices.
@@ -90,13 +90,13 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         Ok(())
     }
 
-    /// Inserts vertex `q`; says where to start for a point nearby.
+    /// Inserts vertex `q`; returns a simplex to start from for a point nearby.
     #[inline(always)]
     fn insert(&mut self, q: u32, start: usize) -> Result<usize> {
         let p = self.complex.lifted(q);
         let found = self.complex.locate(q, &p, start);
         self.cavity.find(&mut self.complex, q, found);
-        self.make_room()?;
+        self.allocate()?;
         self.make_star(q);
         self.tests += (self.cavity.dead().len() + self.cavity.border().len()) as u64;
         self.created += self.star.len() as u64;
@@ -104,9 +104,9 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         Ok(self.star[0] as usize)
     }
 
-    /// Finds places for the new simplices.
+    /// Allocates the new simplices: dead ones are reused first.
     #[inline(always)]
-    fn make_room(&mut self) -> Result<()> {
+    fn allocate(&mut self) -> Result<()> {
         let Complex { simplices, spheres, free, .. } = &mut self.complex;
         let wanted = self.cavity.border().len();
         if simplices.len() + wanted > SIMPLICES_MAX {
@@ -123,7 +123,7 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         Ok(())
     }
 
-    /// Makes a simplex of each facet of the border and the new point, in places that are free, and links
+    /// Makes a simplex of each facet of the border and the new point, in the allocated places, and links
     /// them.
     #[inline(always)]
     fn make_star(&mut self, q: u32) {
@@ -141,25 +141,25 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
             for (lane, &new) in star.iter().enumerate() {
                 let (new, side) = (new as usize, sides[lane]);
                 let simplices = &mut self.complex.simplices;
-                let outer = simplices[simplex_of(facets[lane])].beyond[side];
-                simplices[simplex_of(outer)].beyond[facet_of(outer)] = facet(new, side);
+                let outer = simplices[simplex_of(facets[lane])].neighbours[side];
+                simplices[simplex_of(outer)].neighbours[facet_of(outer)] = facet(new, side);
                 self.complex.spheres[new] = spheres[lane];
                 let simplex = &mut simplices[new];
                 simplex.vertices = vertices[lane];
-                simplex.beyond[side] = outer;
+                simplex.neighbours[side] = outer;
                 self.links.link(simplices, new, &vertices[lane], side);
             }
         }
     }
 }
 
-/// Corrects which side of the simplex beyond each facet is.
+/// Corrects the side of each neighbour.
 fn fix_sides(all: &mut [Simplex]) {
     for number in 1..all.len() {
         for side in 0..FACETS {
-            let other = simplex_of(all[number].beyond[side]);
-            let back = all[other].beyond.iter().position(|&beyond| simplex_of(beyond) == number);
-            all[number].beyond[side] = facet(other, back.expect("mutual neighbours"));
+            let other = simplex_of(all[number].neighbours[side]);
+            let back = all[other].neighbours.iter().position(|&neighbour| simplex_of(neighbour) == number);
+            all[number].neighbours[side] = facet(other, back.expect("mutual neighbours"));
         }
     }
 }

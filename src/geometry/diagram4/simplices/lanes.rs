@@ -1,4 +1,4 @@
-//! Four numbers at once, in plain code that compilers turn into vector instructions.
+//! Four f64 in parallel, in plain code that compilers vectorize.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -1,22 +1,23 @@
-//! Which simplices of a star are neighbours: those that have three vertices in common besides the centre.
+//! Links the simplices of a star: two are neighbours if they have three vertices besides the centre in
+//! common.
 
-use super::complex::{FACETS, Facet, NOBODY, Simplex, facet, facet_of, simplex_of};
+use super::complex::{FACETS, Facet, NO_NEIGHBOUR, Simplex, facet, facet_of, simplex_of};
 
-/// Slots per simplex of a star, at least. Twice as many triangles as simplices are put into them.
+/// Slots per simplex of a star, at least. The table holds two triangles per simplex.
 const SLOTS: usize = 4;
 
-/// A triangle of the border of a cavity, and the first facet of the star that was met at it.
+/// A triangle of the border of a cavity, and the first facet of the star at it.
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     /// In increasing order.
     triangle: [u32; 3],
-    /// Where it was met; [`NOBODY`] in a free slot.
+    /// That facet; [`NO_NEIGHBOUR`] in a free slot.
     facet: Facet,
 }
 
-const FREE: Slot = Slot { triangle: [0; 3], facet: NOBODY };
+const FREE: Slot = Slot { triangle: [0; 3], facet: NO_NEIGHBOUR };
 
-/// A table of triangles.
+/// A hash table of triangles.
 #[derive(Debug, Default)]
 pub(super) struct Links {
     slots: Vec<Slot>,
@@ -25,7 +26,7 @@ pub(super) struct Links {
 }
 
 impl Links {
-    /// Makes room for a star of so many simplices.
+    /// Empties the table and reserves slots for a star of this many simplices.
     pub(super) fn clear(&mut self, simplices: usize) {
         let size = (simplices * SLOTS).next_power_of_two();
         if self.slots.len() < size {
@@ -37,9 +38,9 @@ impl Links {
 
     /// Links a simplex of the star with those at its triangles that came before it, if they have come.
     ///
-    /// `side` is that of the facet opposite to the centre. What has no neighbour yet leads to [`NOBODY`],
-    /// whose own links are written but mean nothing: that saves asking which of the two came first, a coin
-    /// toss for the processor.
+    /// `side` is that of the facet opposite to the centre. A facet without neighbour so far is linked to
+    /// [`NO_NEIGHBOUR`], whose own links are written but mean nothing. That saves a branch on which of the
+    /// two came first, which is unpredictable.
     #[inline(always)]
     pub(super) fn link(
         &mut self,
@@ -53,12 +54,12 @@ impl Links {
             let place = (left_out & PLACE) as usize;
             let here = facet(new, place);
             let there = self.meet([x, y, z].map(|vertex| vertex & !PLACE), here);
-            simplices[new].beyond[place] = there;
-            simplices[simplex_of(there)].beyond[facet_of(there)] = here;
+            simplices[new].neighbours[place] = there;
+            simplices[simplex_of(there)].neighbours[facet_of(there)] = here;
         }
     }
 
-    /// Leaves a facet at a triangle, and takes what has been left there.
+    /// Stores a facet at a triangle, and returns the facet stored there before.
     #[inline(always)]
     fn meet(&mut self, triangle: [u32; 3], facet: Facet) -> Facet {
         let [x, y, z] = triangle;
@@ -67,9 +68,9 @@ impl Links {
             let slot = &mut self.slots[index];
             let [a, b, c] = slot.triangle;
             let difference = (a ^ x) | (b ^ y) | (c ^ z);
-            const { assert!(NOBODY == 0) };
-            // The product is zero if the slot is free or has the triangle. Two questions would be two
-            // branches, and one of them a coin toss.
+            const { assert!(NO_NEIGHBOUR == 0) };
+            // The product is zero if the slot is free or has the triangle. Two tests would be two branches,
+            // one of them unpredictable.
             if u64::from(difference) * u64::from(slot.facet) == 0 {
                 let there = slot.facet;
                 *slot = Slot { triangle, facet };
@@ -89,7 +90,7 @@ fn hash([x, y, z]: [u32; 3]) -> u64 {
 /// Bits of the place of a vertex in its simplex.
 const PLACE: u32 = 7;
 
-/// The vertices of a simplex but one in increasing order, above the bits for their places.
+/// The vertices of a simplex but one, in increasing order, each above the bits of its place.
 #[inline(always)]
 fn sorted(vertices: &[u32; FACETS], side: usize) -> [u32; 4] {
     let mut words: [u32; 4] = std::array::from_fn(|i| {
@@ -115,7 +116,7 @@ mod tests {
     #[test]
     fn triangles_meet_twice_and_only_equal_ones() {
         let mut links = Links::default();
-        // Room for few: slots collide.
+        // Few slots, so that triangles collide.
         links.clear(16);
         let triangles: Vec<[u32; 3]> =
             (0..4u32).flat_map(|i| (0..8).map(move |j| [i * 8, 800 + j * 8, !PLACE])).collect();

@@ -4,18 +4,18 @@ use super::coefficient::Coefficient;
 use super::complex::{Complex, FACETS, INFINITE, Lifted, simplex_of, without};
 use crate::diagram4::determinant::{difference, dot, normal};
 
-/// Steps after which rounding is taken to have led the walk in a circle.
+/// Steps after which the walk is assumed to cycle because of rounding.
 const STEPS_MAX: usize = 100_000;
 
-/// Powers of a point that differ by less, relatively, are taken to be equal.
+/// Relative difference below which two powers of a point count as equal.
 const TIE: f64 = 1e-9;
 
 impl<C: Coefficient> Complex<'_, C> {
     /// A simplex in conflict with vertex `q` at `p`.
     ///
-    /// Where two spheres meet, the powers of a point with respect to them are equal on the hyperplane of the
-    /// facet between, and less on the side of the own simplex: so the walk goes to the lesser power (thesis
-    /// 3.6.4). Equal spheres say nothing, and the hyperplane has to be asked.
+    /// On the hyperplane of the facet between two simplices, a point has equal powers with respect to both
+    /// spheres; on either side, the power is less for the simplex of that side. So the walk goes to the
+    /// lesser power (thesis 3.6.4). Between equal spheres, the side of the hyperplane decides.
     #[inline(always)]
     pub(super) fn locate(&self, q: u32, p: &Lifted, start: usize) -> usize {
         let mut at = self.neighbour_inside(start).unwrap_or(start);
@@ -36,10 +36,10 @@ impl<C: Coefficient> Complex<'_, C> {
     #[inline(always)]
     fn step(&self, at: usize, q: u32, p: &Lifted) -> Option<usize> {
         let (value, m) = (self.value(at, p), self.determinant(at).value());
-        let beyond = self.simplices[at].beyond;
+        let neighbours = self.simplices[at].neighbours;
         let turn = q as usize % FACETS;
         (turn..turn + FACETS).map(|i| i % FACETS).find_map(|side| {
-            let next = simplex_of(beyond[side]);
+            let next = simplex_of(neighbours[side]);
             let next_m = self.determinant(next).value();
             let is_nearer = if next_m == 0.0 {
                 self.is_in_conflict(next, q, p)
@@ -67,7 +67,7 @@ impl<C: Coefficient> Complex<'_, C> {
         (own > 0.0 && new < 0.0) || (own < 0.0 && new > 0.0)
     }
 
-    /// Looks at all simplices.
+    /// Searches all simplices.
     #[cold]
     fn search(&self, q: u32, p: &Lifted) -> usize {
         let is_wanted = |&simplex: &usize| !self.is_dead(simplex) && self.is_in_conflict(simplex, q, p);

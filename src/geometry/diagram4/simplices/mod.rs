@@ -1,20 +1,19 @@
-//! The 4D Delaunay triangulation that remains if each point, as it is inserted, is raised infinitesimally, by
-//! far more than all before it: a point on a sphere counts as outside.
+//! The 4D Delaunay triangulation under a symbolic perturbation: each point is raised infinitesimally as it is
+//! inserted, by far more than all points before it, so that a point on a sphere counts as outside.
 //!
 //! The thesis (4.4) lowers points, so that a point on a sphere counts as inside. Then each point of a grid
-//! triangulates all cubes around it anew: 30 million simplices are created for the full 16^4 grid, and 10
-//! million if points are raised. A point that is no vertex is inside of the sphere of the simplex that it
-//! lies in, or beyond the hull, so it always finds a place; and a facet in a hyperplane with the point is
-//! never between a simplex in conflict and one that is not, so no simplex is flat.
+//! retriangulates all cubes around it: the full 16^4 grid creates 30 million simplices, but 10 million if
+//! points are raised. A point that is no vertex is inside the sphere of the simplex that contains it, or
+//! beyond the hull, so it is always in conflict with some simplex. A facet in a hyperplane with the point is
+//! never on the border of the cavity, so no new simplex is flat.
 //!
-//! Simplices and their spheres are in flat arrays. A point is inserted as Bowyer (1981) and Watson (1981) do
-//! it, along a Hilbert curve; an in-sphere test is the product of two vectors of six. `locate` is the walk to
-//! a simplex in conflict, `cavity` finds the others, `insertion` puts the star of the point in their place,
-//! and `links` makes its simplices neighbours.
+//! Simplices and their spheres are in flat arrays. Points are inserted by the algorithm of Bowyer (1981) and
+//! Watson (1981), along a Hilbert curve; an in-sphere test is the product of two vectors of length six.
+//! `locate` walks to a simplex in conflict, `cavity` finds the others, `insertion` replaces them by the star
+//! of the point, and `links` links its simplices.
 //!
-//! What a processor cannot predict is not asked: which simplex of a cavity is met first, which of two
-//! neighbours. Both answers are written down, and one is kept. Of the full 16^4 grid that saves a third of
-//! the time.
+//! Unpredictable branches are avoided: both outcomes are written, and one is kept. On the full 16^4 grid that
+//! saves a third of the time.
 
 mod cavity;
 mod coefficient;
@@ -39,10 +38,10 @@ use std::time::Instant;
 
 /// Triangulates sites.
 ///
-/// Cost: 40 bytes per simplex, and six coefficients.
+/// Cost: 40 bytes and six coefficients per simplex.
 ///
 /// # Errors
-/// All points are in a hyperplane; too many simplices.
+/// All points are in a hyperplane, or there are too many simplices.
 pub(super) fn triangulate<'a, C: Coefficient>(sites: &'a Sites, stats: &mut Stats) -> Result<Complex<'a, C>> {
     let started = Instant::now();
     let order = insertions(sites)?;

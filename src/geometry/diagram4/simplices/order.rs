@@ -9,11 +9,11 @@ use spmesh_core::error::Result;
 
 /// The sites in the order of their insertion, five that span space first.
 ///
-/// Of a full grid, one pass along the curve creates four times as many simplices as rounds of sublattices do,
-/// rounds of points taken at random twice as many, and lexicographic order twenty times as many.
+/// On a full grid, compared with rounds of sublattices, one pass along the curve creates four times as many
+/// simplices, rounds of random points twice as many, and lexicographic order twenty times as many.
 ///
 /// # Errors
-/// There are none.
+/// Usage, if no five sites span space.
 pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
     let extent = Extent::of(&sites.points);
     let curve: Vec<u32> = SpatialOrder::default().sort(&sites.points, &extent, Curve::Hilbert).collect();
@@ -26,28 +26,27 @@ pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
     Ok(order)
 }
 
-/// Whether at least half of the integer points of the box are there.
+/// Whether the sites are at least half of the integer points of their box.
 ///
-/// If fewer are, sublattices still save simplices, but not time: there are more rounds then than of one point
-/// in three.
+/// With fewer sites, sublattices still save simplices, but no time, because there are more rounds.
 fn is_grid(sites: &Sites, extent: &Extent<4>) -> bool {
     let box_points: f64 = (0..4).map(|axis| extent.upper[axis] - extent.lower[axis] + 1.0).product();
     sites.exactness != Exactness::Big && sites.points.len() as f64 >= 0.5 * box_points
 }
 
-/// Every few first, then those between (a BRIO).
+/// A biased randomized insertion order: a few points first, then those between.
 fn rounds(curve: &[u32]) -> impl Iterator<Item = u32> {
     Rounds::new(curve.len()).map(|place| curve[place as usize])
 }
 
-/// Integer points by the sublattice that they are of, those of the least dense one first.
+/// Sorts integer points by sublattice, the sparsest first.
 ///
-/// Every second point of Z^4 is of D4, whose cells have eight vertices; in the centre of each is one of the
-/// other points of Z^4, or of two more classes like it. Such a point makes 16 simplices, where one in a
-/// triangulation of random points makes about 130. Every second point of D4 in turn is of an image of Z^4
-/// turned and enlarged by the root of two, so that all begins anew.
+/// Every second point of Z^4 is in D4, whose cells have eight vertices. The centre of each cell is a point of
+/// one of three classes, one of which is the rest of Z^4. Such a point creates 16 simplices, but a point
+/// among random points about 130. Every second point of D4 in turn is in a copy of Z^4, rotated and scaled by
+/// the square root of two, and so on.
 ///
-/// Of a sample whether an integer is even is as good as random, and so are the rounds.
+/// In a random sample, parities are random, and so are the rounds.
 fn by_sublattices(sites: &Sites, extent: &Extent<4>, curve: &[u32]) -> Vec<u32> {
     let level = |&number: &u32| {
         let point = sites.points[number as usize];
@@ -59,7 +58,7 @@ fn by_sublattices(sites: &Sites, extent: &Extent<4>, curve: &[u32]) -> Vec<u32> 
     }
     let mut order = Vec::with_capacity(curve.len());
     for points in levels.iter().rev() {
-        // Of points that are almost all of one class, the class says nothing.
+        // Where almost all points are in one class, classes do not help.
         if points.len() > FEW * order.len() {
             order.extend(rounds(points));
         } else {
@@ -69,14 +68,14 @@ fn by_sublattices(sites: &Sites, extent: &Extent<4>, curve: &[u32]) -> Vec<u32> 
     order
 }
 
-/// Rounds that may be so many times as large as all before.
+/// Largest ratio of a class to all classes before it for which it is one round.
 const FEW: usize = 4;
 
-/// Levels of integers of up to 21 bits.
+/// Number of levels of integers of up to 21 bits.
 const LEVELS: usize = 4 * 21 + 1;
 
-/// The number of the last lattice of the sequence Z^4, D4, Z^4 turned, D4 turned, 2 Z^4, ... that a point is
-/// of.
+/// The number of the last lattice in the sequence Z^4, D4, Z^4 rotated, D4 rotated, 2 Z^4, ... that contains
+/// the point.
 fn level(mut point: [u64; 4]) -> u32 {
     let mut level = 0;
     while point != [0; 4] {

@@ -14,15 +14,15 @@ use spmesh_io::source::panic_guard::guarded;
 use spmesh_io::source::structure::{Models, Structure, read_structure};
 use spmesh_stream::ends_with_end;
 
-/// What is to be done.
+/// A file to triangulate.
 #[derive(Debug)]
 pub(super) struct Job<'f> {
     pub(super) file: &'f Path,
-    /// Name of the output without its ending, relative to the folder of outputs.
+    /// Name of the output without its extension, relative to the folder of outputs.
     pub(super) stem: PathBuf,
 }
 
-/// How it ended.
+/// The result of a job.
 #[derive(Debug)]
 pub(super) struct End {
     pub(super) result: Result<Vec<Model>>,
@@ -105,7 +105,7 @@ fn has_distinct_numbers(structure: &Structure) -> bool {
     numbers.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// Stem, model and the ending of the product.
+/// Stem, model and the extension of the product.
 fn output_name(stem: &Path, product: Product, model: Option<i64>) -> PathBuf {
     let mut name = stem.as_os_str().to_os_string();
     if let Some(number) = model.filter(|_| product == Product::Mesh) {
@@ -129,7 +129,8 @@ fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-/// Whether what an earlier run made of a file is there still, complete, and not older than the file.
+/// Whether the outputs that an earlier run made of a file still exist, are complete, and are not older than
+/// the file.
 pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified()).ok();
     let input_changed = changed(file);
@@ -137,7 +138,7 @@ pub(super) fn is_still_there(file: &Path, done: &DoneFile, folder: &Path) -> boo
         let path = folder.join(output);
         let is_complete = || -> std::io::Result<bool> {
             let mut output = File::open(&path)?;
-            let is_mesh = path.extension().is_some_and(|ending| ending == "spm");
+            let is_mesh = path.extension().is_some_and(|extension| extension == "spm");
             Ok(output.metadata()?.len() == *bytes && (!is_mesh || ends_with_end(&mut output)?))
         };
         is_complete().unwrap_or(false) && input_changed <= changed(&path)

@@ -1,5 +1,5 @@
-//! Many files, several at a time: each becomes an output of its own, and a line of the summary. A file that
-//! cannot be triangulated is a line, too, and does not keep the others from being done.
+//! Triangulates many files in parallel. Each file becomes an output and a line of the summary. A file that
+//! fails becomes a line too, and the others continue.
 
 mod file;
 mod names;
@@ -17,30 +17,30 @@ use spmesh_core::parallel;
 use spmesh_io::source::structure::Format;
 use summary::{Done, Summary};
 
-/// A sweep to be done.
+/// Options of a sweep.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// The files; one that is given twice is done once.
+    /// The files; duplicates are done once.
     pub files: Vec<PathBuf>,
-    /// Their format, if it is not to be told by their content.
+    /// Their format; detected from the content if `None`.
     pub format: Option<Format>,
     /// What to do with each of them.
     pub options: Options,
-    /// The options in words, for the summary: outputs of other options are not what is wanted.
+    /// The options in words, for the summary; outputs made with other options are made again.
     pub options_text: String,
     /// Folder of the outputs.
     pub folder: PathBuf,
     /// Where the summary goes; "-" is stdout.
     pub summary: PathBuf,
-    /// Files that are worked on at the same time.
+    /// Number of files in parallel.
     pub threads: usize,
-    /// Leave out what the summary calls done, if its outputs are there.
+    /// Skip files that the summary lists as done, if their outputs exist.
     pub resume: bool,
     /// Stop at the first file that fails.
     pub strict: bool,
 }
 
-/// How a sweep went.
+/// Outcome of a sweep.
 #[derive(Debug, Clone, Default)]
 pub struct Outcome {
     /// Files that were done.
@@ -49,28 +49,28 @@ pub struct Outcome {
     pub skipped: u64,
     /// Files that failed.
     pub failed: u64,
-    /// What was done, over all models of all files.
+    /// Sums over all models of all files.
     pub stats: Stats,
 }
 
-/// What is told while a sweep goes on.
+/// Progress of a sweep.
 #[derive(Debug)]
 pub enum News<'n> {
-    /// There are so many files.
+    /// The number of files.
     Files(u64),
-    /// One more is done, or need not be done again.
+    /// One more file is done, or was skipped.
     Done,
-    /// One more failed.
+    /// One more file failed.
     Failed(&'n Error),
 }
 
-/// Does all files, the largest first, and tells `listener` of each.
+/// Triangulates all files, the largest first, and reports each to `listener`.
 ///
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// If the folder or the summary cannot be written, or is none. With `strict`, the error of the first file
-/// that fails. Otherwise failures are counted.
+/// If the folder or the summary cannot be written, or the summary to resume is malformed. With `strict`, the
+/// error of the first file that fails; otherwise failures are counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
     fs::create_dir_all(folder)
@@ -111,10 +111,10 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     Ok(outcome)
 }
 
-/// About how many times longer a file is when it is decompressed.
+/// Estimated ratio of decompression.
 const GZIP_FACTOR: u64 = 4;
 
-/// The files that are not done yet; of the others `skip` is told.
+/// The files that are not done yet; `skip` is called for the others.
 fn left_to_do<'f>(
     files: Vec<&'f Path>,
     done: &mut Done,
@@ -134,7 +134,8 @@ fn left_to_do<'f>(
     left
 }
 
-/// The jobs, the largest file first: if it came last, all threads but one would wait for it.
+/// The jobs, the largest file first: otherwise threads could idle while one works on the largest file at the
+/// end.
 fn jobs<'f>(files: Vec<&'f Path>, done: &Done) -> Vec<Job<'f>> {
     let stems = names::stems(&files, &done.stems());
     let mut jobs: Vec<(u64, Job<'f>)> =
@@ -143,9 +144,9 @@ fn jobs<'f>(files: Vec<&'f Path>, done: &Done) -> Vec<Job<'f>> {
     jobs.into_iter().map(|(_, job)| job).collect()
 }
 
-/// About the number of bytes to be read, as far as that can be known.
+/// Estimated number of bytes to read.
 fn work(file: &Path) -> u64 {
     let bytes = fs::metadata(file).map_or(0, |metadata| metadata.len());
-    let is_compressed = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"));
+    let is_compressed = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     if is_compressed { bytes.saturating_mul(GZIP_FACTOR) } else { bytes }
 }

@@ -1,19 +1,19 @@
-//! Names of outputs: short, and different for different inputs.
+//! Chooses names of outputs: short and distinct.
 
 use std::collections::{HashMap, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::path::{Component, Path, PathBuf};
 
-/// Endings of inputs that say nothing but their format.
+/// Extensions of inputs that denote a format only.
 const FORMATS: [&str; 12] =
     ["pdb", "ent", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
 
-/// The name of the output of each input, without its ending: relative to the folder of outputs, and none of
-/// `taken`.
+/// The name of the output of each input, without its extension: relative to the folder of outputs, and none
+/// of `taken`.
 ///
-/// It is the base name without the ending of a format; if several inputs would get the same, with the ending;
-/// if that is the same too, with as many of the folders above as tell them apart. Names that differ in the
-/// case of letters only count as the same, because to some file systems they are.
+/// It is the base name without the extension of a format; with the extension, if several inputs would get the
+/// same name; with as many parent folders as needed, if that is the same too. Names that differ in case only
+/// count as equal, because some file systems ignore case.
 pub(super) fn stems(inputs: &[&Path], taken: &HashSet<PathBuf>) -> Vec<PathBuf> {
     let taken: HashSet<OsString> = taken.iter().map(|path| folded(path)).collect();
     let levels_max: Vec<usize> = inputs.iter().map(|input| parts(input).len()).collect();
@@ -37,7 +37,7 @@ pub(super) fn stems(inputs: &[&Path], taken: &HashSet<PathBuf>) -> Vec<PathBuf> 
     }
 }
 
-/// Gives numbers to what is still the same.
+/// Numbers names that are still equal.
 fn numbered(mut stems: Vec<PathBuf>, mut taken: HashSet<OsString>) -> Vec<PathBuf> {
     for stem in &mut stems {
         let plain = stem.clone().into_os_string();
@@ -52,12 +52,12 @@ fn numbered(mut stems: Vec<PathBuf>, mut taken: HashSet<OsString>) -> Vec<PathBu
     stems
 }
 
-/// The name at a level: without ending, with ending, and from then on with one folder more each.
+/// The name at a level: without extension, with extension, then with one more folder per level.
 fn stem(input: &Path, level: usize) -> PathBuf {
     let parts = parts(input);
     match (level, parts.split_last()) {
         (_, None) => PathBuf::from("input"),
-        (0, Some((base, _))) => without_ending(base).into(),
+        (0, Some((base, _))) => without_extension(base).into(),
         (level, Some(_)) => parts[parts.len() - level.min(parts.len())..].iter().collect(),
     }
 }
@@ -75,14 +75,14 @@ fn parts(input: &Path) -> Vec<OsString> {
     normal.collect()
 }
 
-fn without_ending(base: &OsStr) -> OsString {
-    let is = |name: &Path, endings: &[&str]| {
-        let ending = name.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
-        endings.contains(&&ending[..])
+fn without_extension(base: &OsStr) -> OsString {
+    let is = |name: &Path, extensions: &[&str]| {
+        let extension = name.extension().and_then(OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
+        extensions.contains(&&extension[..])
     };
     let mut name = Path::new(base).to_path_buf();
-    for endings in [&["gz"][..], &FORMATS] {
-        if is(&name, endings) {
+    for extensions in [&["gz"][..], &FORMATS] {
+        if is(&name, extensions) {
             name.set_extension("");
         }
     }

@@ -1,4 +1,5 @@
-//! The summary of a sweep: a line per mesh, or per file that failed. It is also the memory of what is done.
+//! The summary of a sweep: a line per mesh, or per file that failed. `--resume` reads it to find the files
+//! that are done.
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -13,7 +14,7 @@ use spmesh_core::output::Output;
 const COLUMNS: &str = "file\tmodel\tatoms\tunique_points\ttetrahedra\thull_facets\tseconds\tpeak_memory_bytes\t\
                        output\toutput_bytes\toptions\terror";
 
-/// Number of columns, and places of some of them.
+/// Number of columns, and indices of some of them.
 const WIDTH: usize = 12;
 const FILE: usize = 0;
 const OUTPUT: usize = 8;
@@ -21,18 +22,18 @@ const OUTPUT_BYTES: usize = 9;
 const OPTIONS: usize = 10;
 const ERROR: usize = 11;
 
-/// A line to be.
+/// The data of a line.
 #[derive(Debug)]
 pub(super) struct Line<'l> {
     pub(super) file: &'l Path,
     pub(super) options: &'l str,
     pub(super) time: Duration,
-    /// Most memory that the work on the file took, in bytes, where it was measured.
+    /// Peak memory for the file in bytes, if it was measured.
     pub(super) peak_memory: Option<u64>,
     pub(super) result: std::result::Result<Written<'l>, &'l Error>,
 }
 
-/// What was written of a model.
+/// The output of a model.
 #[derive(Debug)]
 pub(super) struct Written<'l> {
     pub(super) report: &'l Report,
@@ -67,12 +68,12 @@ impl Line<'_> {
     }
 }
 
-/// Text without tabs and ends of lines, so that it fits a field.
+/// Escapes tabs and line breaks, so that the text fits a field.
 fn escaped(text: &str) -> String {
     text.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n").replace('\r', "\\r")
 }
 
-/// What an earlier run has done: for each of its files the lines, if none of them says that it failed.
+/// The files that an earlier run has done, with their lines; files that failed are left out.
 #[derive(Debug, Default)]
 pub(super) struct Done {
     by_file: HashMap<String, DoneFile>,
@@ -88,11 +89,10 @@ pub(super) struct DoneFile {
 }
 
 impl Done {
-    /// Reads the summary of an earlier run; nothing is done if there is none. A last line that is not
-    /// complete does not count.
+    /// Reads the summary of an earlier run; empty if there is none. An incomplete last line is ignored.
     ///
     /// # Errors
-    /// If the file cannot be read, or is no such summary.
+    /// If the file cannot be read, or is not a summary.
     pub(super) fn read(path: &Path) -> Result<Done> {
         let name = path.display();
         let text = match fs::read(path) {
@@ -132,12 +132,12 @@ impl Done {
         (file.options == escaped(options)).then_some(file)
     }
 
-    /// Forgets a file, which is to be done again.
+    /// Removes a file, which will be done again.
     pub(super) fn forget(&mut self, path: &Path) {
         self.by_file.remove(&escaped(&path.to_string_lossy()));
     }
 
-    /// Names of all outputs without their endings, and without each of their endings.
+    /// Names of all outputs, without one, two, ... of their extensions.
     pub(super) fn stems(&self) -> HashSet<PathBuf> {
         let outputs = self.by_file.values().flat_map(|file| &file.outputs);
         let stems = outputs.flat_map(|(output, _)| {
@@ -196,7 +196,7 @@ impl Summary {
             summary.output = Box::new(Output::create(path, false)?);
             summary.name = "stdout".into();
         } else {
-            // What an earlier run has written must not be lost if this one is killed here.
+            // The file is replaced atomically: a kill here must not lose the summary of the earlier run.
             let mut start = Output::create(path, false)?;
             start.write_all(summary.text.as_bytes()).map_err(|e| summary.failed(e))?;
             start.commit()?;

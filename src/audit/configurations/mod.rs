@@ -3,11 +3,11 @@
 //!
 //! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word: what splines need, by
 //! whatever rule the configurations were made. [`check_circles`] is the definition of Delaunay
-//! configurations, [`check_centroids`] what makes centroid triangulations planar. [`StreamAudit`] asks all of
-//! it of a stream.
+//! configurations, [`check_centroids`] what makes centroid triangulations planar. [`StreamAudit`] checks all
+//! of them for a stream.
 
+mod arrays;
 mod circles;
-mod configurations;
 mod disk;
 mod facets;
 mod knots;
@@ -16,13 +16,13 @@ mod set;
 mod stream;
 mod tree;
 
+pub use arrays::Configurations;
 pub use circles::check_circles;
-pub use configurations::Configurations;
 pub use facets::{FacetCounts, check_facets, check_start};
 pub use knots::Knots;
 pub use planar::check_centroids;
 pub use set::ConfigurationSet;
 pub use stream::{DegreeProof, Proof, StreamAudit, Violation, check};
 
-// Two terms of the stream format, which are data and not code.
+// Two terms of the stream format: data, not code.
 pub(super) use spmesh_model::configurations::{Claim, FARAWAY};

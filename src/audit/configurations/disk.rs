@@ -1,4 +1,4 @@
-//! Circles of three knots, to tell in plain arithmetic where they certainly are not.
+//! Circles of three knots, with rounded tests for where they certainly are not.
 
 use super::Knots;
 use crate::exact::plane::Xy;
@@ -6,7 +6,7 @@ use crate::exact::plane::Xy;
 /// Sizes between which no product underflows or overflows.
 const LEAST: f64 = 1e-70;
 const GREATEST: f64 = 1e70;
-/// More than what a sum of products loses by rounding, relative to the products.
+/// Bound on the relative rounding error of a sum of products.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The inside of a circle: where `slope y - curve y²` is positive, with `y = x - origin`.
@@ -17,7 +17,7 @@ pub(super) struct Disk {
     origin: Xy,
     slope: Xy,
     curve: f64,
-    /// Sizes of the products that slope and curve are sums of; none if they are not sure.
+    /// Magnitudes of the products that slope and curve are sums of; `None` if out of range.
     sizes: Option<[f64; 2]>,
 }
 
@@ -57,7 +57,7 @@ impl Disk {
             far += ends[0].abs().max(ends[1].abs());
         }
         let lost = ROUNDING * (slope_size + curve_size * far) * far;
-        // Not a number is not less than anything.
+        // NaN compares false.
         let is_outside = far < GREATEST && greatest < -lost;
         !is_outside
     }

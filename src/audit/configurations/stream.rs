@@ -6,7 +6,8 @@ use super::{check_centroids, check_circles, check_facets, check_start};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_stream::Event;
 
-/// Audit of one stream of configurations: begin with the default, give it every event, and ask for the proof.
+/// Audit of one stream of configurations: start with the default, pass it every event, then call
+/// [`StreamAudit::prove`].
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
 /// block.
@@ -19,7 +20,7 @@ pub struct StreamAudit {
     proof: Option<std::result::Result<Proof, Violation>>,
 }
 
-/// What was proved, in figures.
+/// Counts of what was proved.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Proof {
     /// Knots, copies included.
@@ -50,19 +51,19 @@ pub struct DegreeProof {
     pub is_counted: bool,
 }
 
-/// The first thing that is wrong.
+/// The first violation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
     /// Name of the claim that does not hold: `circles`, `facets`, `centroids` or `counts`.
     pub claim: &'static str,
     /// The degree.
     pub degree: usize,
-    /// What is wrong, and where.
+    /// Describes the violation and where it is.
     pub message: String,
 }
 
 impl StreamAudit {
-    /// Takes what the next event holds.
+    /// Adds the next event.
     ///
     /// # Errors
     /// If there are too many configurations to hold.
@@ -84,14 +85,14 @@ impl StreamAudit {
         failure.map_or(Ok(()), Err)
     }
 
-    /// What [`StreamAudit::prove`] found.
+    /// The result of [`StreamAudit::prove`].
     #[must_use]
     pub fn proof(&self) -> Option<&std::result::Result<Proof, Violation>> {
         self.proof.as_ref()
     }
 }
 
-/// Proves of each degree what there is to be proved.
+/// Proves the claims of each degree.
 ///
 /// # Errors
 /// The first violation.

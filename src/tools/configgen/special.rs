@@ -1,17 +1,16 @@
-//! What special configurations are for, and what they need.
+//! Kinds of special configurations, and the coordinates they need.
 
 use std::str::FromStr;
 
-use super::options::{Border, Options, RuleName};
 use super::sites::Sites;
-use spmesh_core::error::{Error, Result};
+use spmesh_core::error::Result;
 use spmesh_geometry::configurations::Knots;
 use spmesh_geometry::configurations::special::{self, Features, Patch, Special, ZpSplit};
 use spmesh_stream::Coordinates;
 
-/// What splines are to have (thesis, chapter 8).
+/// Special configurations for splines with sharp or box-spline parts (thesis, chapter 8).
 #[derive(Debug, Clone, PartialEq)]
-pub enum Purpose {
+pub enum SpecialKind {
     /// Box splines on squares of the integer grid (figure 8.3).
     Boxes(ZpSplit),
     /// Box splines on grids, with the knots of the input between them (8.2.5).
@@ -20,7 +19,7 @@ pub enum Purpose {
     Features(Features),
 }
 
-/// What `--box` says.
+/// The value of `--box`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BoxName(pub ZpSplit);
 
@@ -39,52 +38,27 @@ impl FromStr for BoxName {
     }
 }
 
-impl Purpose {
-    /// Whether the options that came with it mean something.
-    ///
-    /// # Errors
-    /// They do not.
-    pub(super) fn check(&self, options: &Options) -> Result<()> {
-        if matches!(options.rule, RuleName::Heights | RuleName::Weights) {
-            let what = "the rules lifted:... come with a triangulation of their own: leave out --box, --patches or \
-                        --features, or take another rule";
-            return Err(Error::usage(what));
-        }
-        if options.flips.is_some() {
-            let what = "--flip would undo what --box, --patches and --features make: leave out one of them";
-            return Err(Error::usage(what));
-        }
-        if !matches!(self, Purpose::Patches(..)) {
-            return Ok(());
-        }
-        if options.border != Border::Free || options.pull_apart.is_some() {
-            let what = "knots of --patches are no knots of the input: leave out --boundary and --pull-apart, or give all as points with --box";
-            return Err(Error::usage(what));
-        }
-        if options.rule.needs_values() {
-            return Err(Error::usage("knots of --patches have no values: take another rule"));
-        }
-        Ok(())
-    }
-
-    /// Whether knots come with it, so that there need not be others.
+impl SpecialKind {
+    /// Whether it brings knots of its own, so that the input may be empty.
     pub(super) fn has_knots(&self) -> bool {
-        matches!(self, Purpose::Patches(..))
+        matches!(self, SpecialKind::Patches(..))
     }
 
-    /// The same sites in coordinates that the purpose can add knots to.
+    /// The same sites in coordinates in which knots can be added.
     pub(super) fn place(&self, sites: Sites) -> Sites {
         match self {
-            Purpose::Boxes(_) => sites.in_world(),
-            Purpose::Patches(..) => {
+            SpecialKind::Boxes(_) => sites.in_world(),
+            SpecialKind::Patches(..) => {
                 let mut sites = sites.in_world();
                 sites.frame.elevations = None;
                 sites
             }
-            Purpose::Features(features) if features.creases.iter().all(|crease| crease.has_sharp_ends) => {
+            SpecialKind::Features(features)
+                if features.creases.iter().all(|crease| crease.has_sharp_ends) =>
+            {
                 sites
             }
-            Purpose::Features(_) => sites.with_room_for_middles(),
+            SpecialKind::Features(_) => sites.with_room_for_middles(),
         }
     }
 
@@ -94,15 +68,15 @@ impl Purpose {
     /// As [`special::zp`], [`special::patches`] and [`special::features()`].
     pub(super) fn set_up(&self, knots: &Knots) -> Result<Special> {
         match self {
-            Purpose::Boxes(split) => special::zp(knots, *split),
-            Purpose::Patches(patches, split) => special::patches(patches, knots.points(), *split),
-            Purpose::Features(features) => special::features(knots, features),
+            SpecialKind::Boxes(split) => special::zp(knots, *split),
+            SpecialKind::Patches(patches, split) => special::patches(patches, knots.points(), *split),
+            SpecialKind::Features(features) => special::features(knots, features),
         }
     }
 }
 
 impl Sites {
-    /// With coordinates that mean what they are.
+    /// The same sites in world coordinates.
     fn in_world(mut self) -> Sites {
         let coordinates = std::mem::replace(&mut self.frame.coordinates, Coordinates::F64);
         for point in &mut self.points {
@@ -115,7 +89,7 @@ impl Sites {
         self
     }
 
-    /// With coordinates that halves of sums can be stored in: a grid becomes twice as fine, if it then fits
+    /// The same sites in coordinates that can hold midpoints: a grid becomes twice as fine, if it then fits
     /// 32 bits.
     fn with_room_for_middles(mut self) -> Sites {
         let Coordinates::I32 { scale, offset } = self.frame.coordinates else { return self };

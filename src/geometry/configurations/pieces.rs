@@ -1,47 +1,15 @@
-//! Diagonals that links of single knots must have, whatever the rule is.
+//! Triangulates a link that must have given diagonals: they cut it into pieces, which the rule triangulates.
 
-use crate::configurations::polygon::Triangulator;
+use super::polygon::Triangulator;
 use crate::predicates::Predicates2;
 use spmesh_core::error::{Error, Result};
 
-/// For some knots, diagonals of their links: the rule triangulates what is left between them.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Diagonals {
-    /// The knot and the ends, sorted.
-    rows: Vec<(u32, [u32; 2])>,
-}
-
-impl Diagonals {
-    pub(super) fn new(mut rows: Vec<(u32, [u32; 2])>) -> Diagonals {
-        rows.sort_unstable();
-        Diagonals { rows }
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
-    }
-
-    /// The ends of those of a set; none if it is not a single knot. Cost: a binary search.
-    pub fn of(&self, set: &[u32]) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {
-        let rows = match *set {
-            [knot] => {
-                let start = self.rows.partition_point(|row| row.0 < knot);
-                &self.rows[start..start + self.rows[start..].partition_point(|row| row.0 == knot)]
-            }
-            _ => &[],
-        };
-        rows.iter().map(|row| row.1)
-    }
-}
-
 impl<P: Predicates2> Triangulator<'_, P> {
-    /// Triangulates the polygon, and has the given diagonals among its edges.
+    /// Triangulates the polygon so that the given diagonals are edges.
     ///
     /// # Errors
-    /// What is no diagonal of it, or crosses another.
-    pub(in crate::configurations) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
+    /// A segment that is no diagonal of the polygon, or crosses another.
+    pub(super) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
         let mut pieces = vec![self.polygon.clone()];
         for [p, q] in diagonals {
             let place = |piece: &[u32], v| piece.iter().position(|&other| other == v);
@@ -66,7 +34,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
         Ok(())
     }
 
-    /// Makes a piece the polygon.
+    /// Sets the polygon to a piece.
     fn take(&mut self, piece: &[u32]) {
         self.polygon.clear();
         self.polygon.extend_from_slice(piece);

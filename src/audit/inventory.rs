@@ -1,15 +1,15 @@
-//! What a stream holds, in numbers.
+//! Counts the content of a stream.
 
-use super::survey_configurations::ConfigurationSurvey;
-use super::survey4::Survey4;
+use super::inventory_configurations::ConfigurationInventory;
+use super::inventory4::Inventory4;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 
-/// Figures of a stream, gathered event by event. It verifies what the reader of the container has no memory
-/// for: that nothing finalized comes again.
+/// Counts of a stream, gathered event by event. It also verifies a rule for which the reader of the container
+/// has no memory: nothing comes again after its finalization.
 #[derive(Debug, Default)]
-pub struct Survey {
+pub struct Inventory {
     live: LiveVertices<()>,
     vertices_per_simplex: usize,
     vertices_per_wall: usize,
@@ -22,9 +22,9 @@ pub struct Survey {
     cells: CellPoints,
     /// Points since the last tag.
     run: u64,
-    /// What is of four dimensions.
-    four: Survey4,
-    configurations: ConfigurationSurvey,
+    /// The content of four dimensions.
+    four: Inventory4,
+    configurations: ConfigurationInventory,
 }
 
 /// Size of a patch.
@@ -49,23 +49,23 @@ pub struct CellPoints {
     pub max: u64,
 }
 
-impl Survey {
-    /// A survey of a stream with this header.
+impl Inventory {
+    /// An inventory of a stream with this header.
     #[must_use]
     pub fn new(header: &Header) -> Self {
-        Survey {
+        Inventory {
             vertices_per_simplex: header.kind.vertices_per_simplex(),
             vertices_per_wall: header.kind.vertices_per_wall(),
             finalized: header.tree.map(FinalizedCells::new),
-            ..Survey::default()
+            ..Inventory::default()
         }
     }
 
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news,
-    /// or a vertex is used after its finalization.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag repeats an
+    /// earlier one, or a vertex is used after its finalization.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -107,19 +107,19 @@ impl Survey {
         self.totals
     }
 
-    /// What is of four dimensions.
+    /// The content of four dimensions.
     #[must_use]
-    pub fn four(&self) -> &Survey4 {
+    pub fn four(&self) -> &Inventory4 {
         &self.four
     }
 
     /// The configurations.
     #[must_use]
-    pub fn configurations(&self) -> &ConfigurationSurvey {
+    pub fn configurations(&self) -> &ConfigurationInventory {
         &self.configurations
     }
 
-    /// Bounding box of what was read, in stored coordinates, of two or three dimensions.
+    /// Bounding box of all points, in stored coordinates, of two or three dimensions.
     #[must_use]
     pub fn found_bounds(&self) -> Option<Bounds> {
         self.found

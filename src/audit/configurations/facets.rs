@@ -27,7 +27,7 @@ struct Rows {
 /// Cost: a sort of 3 (c_k + c_(k+1)) rows of k + 4 words, held in memory.
 ///
 /// # Errors
-/// Degrees that do not follow each other; the first facet that violates it (kind [`ErrorKind::Audit`]).
+/// Degrees that are not consecutive; the first facet that violates it (kind [`ErrorKind::Audit`]).
 pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<FacetCounts> {
     if upper.degree() != lower.degree() + 1 {
         let (low, high) = (lower.degree(), upper.degree());

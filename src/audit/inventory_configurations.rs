@@ -1,11 +1,11 @@
-//! What a stream of configurations holds, in numbers.
+//! Counts the content of a stream of configurations.
 
-use super::config::{Claim, FARAWAY};
+use super::configurations::{Claim, FARAWAY};
 use spmesh_stream::ConfigurationBlock;
 
-/// Figures of the configurations of one degree.
+/// Counts of the configurations of one degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct DegreeSurvey {
+pub struct DegreeInventory {
     /// The degree.
     pub degree: u32,
     /// What they claim to be.
@@ -18,17 +18,17 @@ pub struct DegreeSurvey {
     pub infinite: u64,
 }
 
-/// Figures of all degrees, gathered block by block.
+/// Counts of all degrees, gathered block by block.
 #[derive(Debug, Default)]
-pub struct ConfigurationSurvey {
-    degrees: Vec<DegreeSurvey>,
+pub struct ConfigurationInventory {
+    degrees: Vec<DegreeInventory>,
     last: Option<Vec<u32>>,
 }
 
-impl ConfigurationSurvey {
-    /// Figures by increasing degree.
+impl ConfigurationInventory {
+    /// Counts by increasing degree.
     #[must_use]
-    pub fn degrees(&self) -> &[DegreeSurvey] {
+    pub fn degrees(&self) -> &[DegreeInventory] {
         &self.degrees
     }
 
@@ -36,15 +36,15 @@ impl ConfigurationSurvey {
     pub(super) fn block(&mut self, block: &ConfigurationBlock) {
         if self.degrees.last().is_none_or(|last| last.degree != block.degree) {
             let (degree, claim) = (block.degree, block.claim);
-            self.degrees.push(DegreeSurvey { degree, claim, groups: 0, finite: 0, infinite: 0 });
+            self.degrees.push(DegreeInventory { degree, claim, groups: 0, finite: 0, infinite: 0 });
             self.last = None;
         }
-        let Some(survey) = self.degrees.last_mut() else { return };
+        let Some(inventory) = self.degrees.last_mut() else { return };
         let goes_on = block.groups().next().is_some_and(|(first, _)| self.last.as_deref() == Some(first));
         let infinite = block.boundaries.iter().filter(|boundary| boundary[2] == FARAWAY).count() as u64;
-        survey.groups += block.counts.len() as u64 - u64::from(goes_on);
-        survey.finite += block.boundaries.len() as u64 - infinite;
-        survey.infinite += infinite;
+        inventory.groups += block.counts.len() as u64 - u64::from(goes_on);
+        inventory.finite += block.boundaries.len() as u64 - infinite;
+        inventory.infinite += infinite;
         self.last = block.last_interior().map(<[u32]>::to_vec).or(self.last.take());
     }
 }

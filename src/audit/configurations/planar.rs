@@ -1,4 +1,4 @@
-//! Whether centroid triangulations are planar.
+//! Checks that centroid triangulations are planar.
 //!
 //! The centroid triangulation of order k + 1 has the (k + 1)-sets as vertices, at their centroids. A
 //! configuration (B, I) of degree k is the triangle of the sets I + b, one of degree k - 1 that of the sets
@@ -37,7 +37,7 @@ impl BorderEdge<'_> {
 /// k + 1 is a convex polygon; edges may be in line. With matching facets, and the same of degree k - 1, that
 /// triangulation is planar. Copies of a knot count as the limit that [`Knots`] has.
 ///
-/// Cost: an orientation per configuration, integers without limit for each infinite one.
+/// Cost: an orientation per configuration, big integers for each infinite one.
 ///
 /// # Errors
 /// The first violation (kind [`ErrorKind::Audit`]).

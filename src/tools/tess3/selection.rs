@@ -1,9 +1,9 @@
-//! The atoms that the user wants, or what there would be to choose from.
+//! Selects atoms; if none is left, the error tells what other flags would select.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selected, Selection, Structure};
 
-/// Index of the model to be triangulated: the first one, unless another is wanted.
+/// Index of the model to triangulate: the first one by default.
 ///
 /// # Errors
 /// Usage, if there is no such model, or if points without names are to be selected by name.
@@ -17,13 +17,13 @@ pub(super) fn model_index(structure: &Structure, selection: &Selection) -> Resul
 /// The atoms of a selection.
 ///
 /// # Errors
-/// Usage, if there is none; the message says what there would be.
+/// Usage, if no atom is selected; the message tells what other flags would select.
 pub(super) fn select<'s>(structure: &'s Structure, selection: &Selection) -> Result<Selected<'s>> {
     let selected = structure.select(selection)?;
     if selected.points().is_empty() { Err(nothing_left(structure, selection)) } else { Ok(selected) }
 }
 
-/// What there would be with other flags.
+/// The error for an empty selection, with the counts that other flags would give.
 fn nothing_left(structure: &Structure, selection: &Selection) -> Error {
     let count = |selection: &Selection| structure.select(selection).map_or(0, |s| s.points().len());
     let relaxed = [
@@ -46,7 +46,7 @@ fn nothing_left(structure: &Structure, selection: &Selection) -> Error {
     Error::usage(message)
 }
 
-/// What there is: " of 644: 524 ATOM and 120 HETATM records in the chains A, B".
+/// Describes all atoms: " of 644: 524 ATOM and 120 HETATM records in the chains A, B".
 fn describe(all: &Selected<'_>) -> String {
     const CHAINS_MAX: usize = 12;
     let mut chains: Vec<&str> = Vec::new();

@@ -1,11 +1,11 @@
-//! What a stream of four dimensions holds, in numbers.
+//! Counts the content of a stream of four dimensions.
 
 use spmesh_model::cells4::Point4;
 use spmesh_stream::Event;
 
-/// Figures of a stream of four dimensions, gathered event by event.
+/// Counts of a stream of four dimensions, gathered event by event.
 #[derive(Debug, Default)]
-pub struct Survey4 {
+pub struct Inventory4 {
     /// Smallest and largest x, y, z, t.
     pub found_bounds: Option<[Point4; 2]>,
     /// Points whose value is known.
@@ -22,8 +22,8 @@ pub struct Survey4 {
     pub neighbours_max: usize,
 }
 
-impl Survey4 {
-    /// Adds what an event holds that is of four dimensions.
+impl Inventory4 {
+    /// Adds an event with content of four dimensions.
     pub(super) fn event(&mut self, event: &Event) {
         match event {
             Event::Points4(block) => {

@@ -1,4 +1,4 @@
-//! Whether circles have the knots inside that they should.
+//! Checks that circles contain the right knots.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,4 @@
-//! What a stream of configurations holds, as far as the audit is concerned.
+//! The content of a stream of configurations that the audit needs.
 
 use super::{Configurations, Knots};
 use crate::exact::plane::Xy;
@@ -14,7 +14,7 @@ pub struct ConfigurationSet {
     pub degrees: Vec<Configurations>,
 }
 
-/// Gathers knots and configurations from events; what else a stream holds is left out.
+/// Gathers knots and configurations from events; other content is ignored.
 #[derive(Debug, Default)]
 pub(super) struct Collector {
     points: Vec<Xy>,
@@ -22,7 +22,7 @@ pub(super) struct Collector {
 }
 
 impl Collector {
-    /// Takes what the next event holds.
+    /// Adds the next event.
     ///
     /// # Errors
     /// If there are too many configurations to hold.

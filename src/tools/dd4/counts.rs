@@ -1,10 +1,10 @@
-//! How large a diagram is.
+//! Counts of the elements of a diagram.
 
 use spmesh_model::cells4::Cells4;
 
-/// Sizes of a diagram.
+/// Counts of the elements of a diagram.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Figures {
+pub struct Counts {
     /// Finite cells.
     pub finite: u64,
     /// Finite cells of more than five vertices.
@@ -19,26 +19,26 @@ pub struct Figures {
     pub vertices_max: u64,
 }
 
-impl Figures {
+impl Counts {
     /// Counts cells.
     #[must_use]
     pub fn of(cells: &Cells4) -> Self {
-        let mut figures = Figures::default();
+        let mut counts = Counts::default();
         let mut neighbours = 0;
         for cell in cells.iter() {
             let vertices = cell.vertices.len() as u64;
             if cell.is_infinite {
-                figures.infinite += 1;
+                counts.infinite += 1;
             } else {
-                figures.finite += 1;
-                figures.not_simplices += u64::from(vertices > 5);
-                figures.vertices_max = figures.vertices_max.max(vertices);
+                counts.finite += 1;
+                counts.not_simplices += u64::from(vertices > 5);
+                counts.vertices_max = counts.vertices_max.max(vertices);
             }
-            figures.vertex_references += vertices;
+            counts.vertex_references += vertices;
             neighbours += cell.neighbours.len() as u64;
         }
-        figures.facets = neighbours / 2;
-        figures
+        counts.facets = neighbours / 2;
+        counts
     }
 
     /// Finite and infinite cells.
@@ -47,20 +47,20 @@ impl Figures {
         self.finite + self.infinite
     }
 
-    /// Share of the finite cells that are not simplices; 0 of none.
+    /// Share of the finite cells that are not simplices; 0 without cells.
     #[must_use]
     pub fn share_not_simplices(&self) -> f64 {
         self.not_simplices as f64 / self.finite.max(1) as f64
     }
 
-    /// Cells, facets and vertex references together: what figure 3.9 of the thesis shows.
+    /// Cells, facets and vertex references together: figure 3.9 of the thesis shows this sum.
     #[must_use]
     pub fn elements(&self) -> u64 {
         self.cells() + self.facets + self.vertex_references
     }
 
-    /// Bytes of the cells: two lists each, of 32-bit numbers behind their length. This is the size of the
-    /// output in table 3.4 of the thesis.
+    /// Size of the cells in bytes: two lists of 32-bit numbers each, preceded by their length. This is the
+    /// size of the output in table 3.4 of the thesis.
     #[must_use]
     pub fn cell_bytes(&self) -> u64 {
         4 * (2 * self.cells() + self.vertex_references + 2 * self.facets)
