@@ -1,4 +1,5 @@
-//! The lanes that are everywhere against those of the processor at hand, which the integration tests prove right.
+//! The lanes that are everywhere against those of the processor at hand, which the integration tests prove
+//! right.
 
 use super::{Kernel, Point3, Tetrahedralization};
 use std::borrow::Cow;

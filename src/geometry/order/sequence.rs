@@ -1,4 +1,4 @@
-//! In which sequence points along a curve are inserted.
+//! The sequence in which points along a curve are inserted.
 
 use super::counting::sizes_to_starts;
 use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
@@ -33,11 +33,12 @@ impl Sequence {
         })
     }
 
-    /// The numbers of `points`, which are stored along a curve, by their [`BitLevels`], the highest first; those of one
-    /// level in this sequence.
+    /// The numbers of `points`, which are stored along a curve, by their [`BitLevels`], the highest first;
+    /// those of one level in this sequence.
     ///
-    /// All points inserted so far then have as many bits in common as the level of the last one says. Where the
-    /// thesis (3.4.1) has them in "reverse order", it calls level 0 the first, which contradicts its purpose.
+    /// All points inserted so far then have as many bits in common as the level of the last one says. Where
+    /// the thesis (3.4.1) has them in "reverse order", it calls level 0 the first, which contradicts its
+    /// purpose.
     ///
     /// Domain: finite coordinates, at most 2^32 points. Cost: O(n), 5 bytes per point.
     #[must_use]
@@ -92,10 +93,11 @@ impl Iterator for Insertions {
 
 impl ExactSizeIterator for Insertions {}
 
-/// The numbers from 0 to `count - 1` shuffled (Fisher and Yates; numbers by SplitMix64 of Steele, Lea and Flood, 2014).
+/// The numbers from 0 to `count - 1` shuffled (Fisher and Yates; numbers by SplitMix64 of Steele, Lea and
+/// Flood, 2014).
 ///
-/// Each choice scales 64 random bits to the numbers that are left, whose probabilities differ by less than 2^-32 of
-/// themselves.
+/// Each choice scales 64 random bits to the numbers that are left, whose probabilities differ by less than
+/// 2^-32 of themselves.
 fn shuffled(count: usize, seed: u64) -> Vec<u32> {
     let mut numbers: Vec<u32> = (0..count as u64).map(|number| number as u32).collect();
     let mut state = seed;
