@@ -1,9 +1,9 @@
-//! Exact Delaunay triangulation in the plane and in space, for sets of points in memory and for streams of points that are
-//! larger than memory.
+//! Exact Delaunay triangulation in the plane and in space, for sets of points in memory and for streams of
+//! points that are larger than memory.
 //!
-//! The result never depends on rounding: all decisions are exact. It is canonical: ties between cocircular or cospherical
-//! points are broken by a rule that looks only at their coordinates, so a set of points has one triangulation, whatever the
-//! order of the points.
+//! The result never depends on rounding: all decisions are exact. It is canonical: ties between cocircular or
+//! cospherical points are broken by a rule that looks only at their coordinates, so a set of points has one
+//! triangulation, whatever the order of the points.
 //!
 //! # Points of the plane
 //!
@@ -52,9 +52,9 @@
 //! # Streams
 //!
 //! A [`StreamWriter`](stream::StreamWriter) writes points, or a mesh, block by block; a
-//! [`StreamReader`](stream::StreamReader) reads and checks them. [`reduce::triangulate`] turns a stream of points into a stream
-//! of triangles. It needs memory for the whole set only if the stream does not say when parts of the plane are complete; the
-//! program `spfinalize` adds that.
+//! [`StreamReader`](stream::StreamReader) reads and checks them. [`reduce::triangulate`] turns a stream of
+//! points into a stream of triangles. It needs memory for the whole set only if the stream does not say when
+//! parts of the plane are complete; the program `spfinalize` adds that.
 //!
 //! ```
 //! use spmesh::reduce::{self, Options};

@@ -1,4 +1,5 @@
-//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane, of space and of four dimensions.
+//! Exact predicates, orders of insertion, and the Delaunay kernels of the plane, of space and of four
+//! dimensions.
 
 pub mod configurations;
 pub mod delaunay2;

@@ -2,8 +2,8 @@
 
 use crate::predicates::Sign;
 
-/// Where a point lies: in the interior of exactly one simplex of some dimension, or outside. Vertices are indices of input
-/// points.
+/// Where a point lies: in the interior of exactly one simplex of some dimension, or outside. Vertices are
+/// indices of input points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Location {
@@ -20,10 +20,11 @@ pub enum Location {
 }
 
 impl Location {
-    /// The location of a point in a closed simplex, given the side of the point at the facet opposite to each vertex.
+    /// The location of a point in a closed simplex, given the side of the point at the facet opposite to each
+    /// vertex.
     ///
-    /// Domain: no sign is negative, and one at least is positive. The point lies in the face of the vertices with positive
-    /// signs.
+    /// Domain: no sign is negative, and one at least is positive. The point lies in the face of the vertices
+    /// with positive signs.
     pub(crate) fn in_simplex<const N: usize>(number: u32, vertices: [u32; N], signs: [Sign; N]) -> Location {
         let mut face = [u32::MAX; N];
         let mut count = 0;

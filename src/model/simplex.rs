@@ -2,12 +2,13 @@
 
 /// The corners of the facets of a tetrahedron; entry `i` is the facet opposite to corner `i`.
 ///
-/// If the tetrahedron abcd is positively oriented, det(b - a, c - a, d - a) > 0, each facet is clockwise as seen from its
-/// opposite corner and counterclockwise as seen from outside: for facet pqr and a point o on the inner side,
-/// det(p - o, q - o, r - o) > 0.
+/// If the tetrahedron abcd is positively oriented, det(b - a, c - a, d - a) > 0, each facet is clockwise as
+/// seen from its opposite corner and counterclockwise as seen from outside: for facet pqr and a point o on
+/// the inner side, det(p - o, q - o, r - o) > 0.
 pub const TETRAHEDRON_FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// [`TETRAHEDRON_FACETS`] as seen from the opposite corner, if the tetrahedron is positively oriented: counterclockwise.
+/// [`TETRAHEDRON_FACETS`] as seen from the opposite corner, if the tetrahedron is positively oriented:
+/// counterclockwise.
 pub const TETRAHEDRON_FACETS_FROM_INSIDE: [[usize; 3]; 4] = reversed(TETRAHEDRON_FACETS);
 
 const fn reversed(mut facets: [[usize; 3]; 4]) -> [[usize; 3]; 4] {

@@ -1,5 +1,5 @@
-//! From the triangulated sphere to a [`super::Triangles`], in place: infinite triangles go, and vertices become
-//! indices of input points.
+//! From the triangulated sphere to a [`super::Triangles`], in place: infinite triangles go, and vertices
+//! become indices of input points.
 
 use super::half_edge::{HalfEdge, NONE, number_of, previous, triangle_of};
 use super::mesh::Mesh;
@@ -17,8 +17,8 @@ pub(super) struct Extraction<'a> {
 }
 
 impl Extraction<'_> {
-    /// Leaves the finite triangles at the start of the array, fills the other arrays, and returns the number of
-    /// triangles; `points` is the number of input points, duplicates included.
+    /// Leaves the finite triangles at the start of the array, fills the other arrays, and returns the number
+    /// of triangles; `points` is the number of input points, duplicates included.
     pub(super) fn run(mut self, points: usize) -> usize {
         let hull_sides = self.hull_sides();
         // Half-edges of the hull, by origin.
@@ -52,7 +52,8 @@ impl Extraction<'_> {
         let mut side = first;
         loop {
             sides.push(side);
-            // From outside an edge is seen clockwise: the next one is across the edge from its end to infinity.
+            // From outside an edge is seen clockwise: the next one is across the edge from its end to
+            // infinity.
             side = previous(self.mesh.neighbour(previous(side)));
             if side == first {
                 return sides;

@@ -3,8 +3,8 @@
 /// No triangle: beyond an edge of the hull, or at a vertex without triangles.
 pub const NONE: u32 = u32::MAX;
 
-/// Words of a triangle ([`super::Triangle`]): three vertices counterclockwise, an unused word, the neighbouring
-/// half-edges opposite to the vertices, an unused word.
+/// Words of a triangle ([`super::Triangle`]): three vertices counterclockwise, an unused word, the
+/// neighbouring half-edges opposite to the vertices, an unused word.
 pub(super) const WORDS: usize = 8;
 /// First of the words that hold the neighbouring half-edges.
 pub(super) const NEIGHBOURS: u32 = 4;
@@ -12,7 +12,8 @@ pub(super) const NEIGHBOURS: u32 = 4;
 /// A half-edge is the word of the vertex opposite to it; its triangle is the word of its first vertex.
 pub(super) type HalfEdge = u32;
 
-/// The two triangles that vertex `v` brings: there are always twice as many triangles as vertices, but for four.
+/// The two triangles that vertex `v` brings: there are always twice as many triangles as vertices, but for
+/// four.
 ///
 /// Vertices are numbered along a curve, so that what is close in the plane is close in memory.
 #[inline(always)]

@@ -1,24 +1,25 @@
-//! Insertion of points: the triangles in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
-//! 1981).
+//! Insertion of points: the triangles in conflict with a point give way to a star around it (Bowyer, 1981;
+//! Watson, 1981).
 
 use super::half_edge::{HalfEdge, next, previous, triangle_of, triangles_of};
 use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly};
 use super::mesh::Mesh;
 use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
 
-/// With lifts k, l, m of three points around the new one, the rounded in-circle determinant has the sign of the exact
-/// one if its magnitude is more than this times k l + l m + m k.
+/// With lifts k, l, m of three points around the new one, the rounded in-circle determinant has the sign of
+/// the exact one if its magnitude is more than this times k l + l m + m k.
 ///
-/// The bound of the filter ([`crate::predicates`]) is [`INCIRCLE_BOUND`] times the sum of magnitudes, of which each
-/// term is a lift times the magnitudes of the two products of a cross product, which are together at most the product
-/// of two distances, so at most half the sum of two lifts. The margin is for the rounding of the bound.
+/// The bound of the filter ([`crate::predicates`]) is [`INCIRCLE_BOUND`] times the sum of magnitudes, of
+/// which each term is a lift times the magnitudes of the two products of a cross product, which are together
+/// at most the product of two distances, so at most half the sum of two lifts. The margin is for the rounding
+/// of the bound.
 const ERROR: f64 = INCIRCLE_BOUND * (1.0 + 1e-6);
 
-/// If the bound of integers is below this, their sum of magnitudes is below 2^53, and so is every intermediate:
-/// nothing was rounded.
+/// If the bound of integers is below this, their sum of magnitudes is below 2^53, and so is every
+/// intermediate: nothing was rounded.
 const ROUNDED: f64 = ERROR * 9_007_199_254_740_992.0;
 
-/// A vertex as the new point sees it.
+/// A vertex in coordinates relative to the new point.
 #[derive(Debug, Clone, Copy)]
 struct TranslatedVertex {
     vertex: u32,
@@ -36,7 +37,8 @@ impl TranslatedVertex {
     }
 }
 
-/// An edge around the part of the cavity that is known: whether the triangle beyond is in conflict will be asked.
+/// An edge of the border of the known part of the cavity. Its outer triangle is yet to be tested for
+/// conflict.
 #[derive(Debug, Clone, Copy)]
 struct Pending {
     neighbour: HalfEdge,
@@ -56,7 +58,7 @@ pub(super) struct Insertion<'s, 'a, P> {
     unfiltered: u64,
 }
 
-/// Buffers of one insertion, to be used again.
+/// Buffers of one insertion, which the next one reuses.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
     pending: Vec<Pending>,
@@ -65,7 +67,7 @@ pub(super) struct Cavity {
 }
 
 impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
-    /// Nothing inserted but the corners of the four triangles of `sphere`.
+    /// Begins with the corners of the four triangles of `mesh`.
     pub(super) fn new(mesh: Mesh<'s>, predicates: &'a mut P, cavity: &'a mut Cavity) -> Self {
         Insertion { mesh, predicates, cavity, tests: 0, unfiltered: 0 }
     }
@@ -76,10 +78,12 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         self.mesh
     }
 
-    /// Inserts vertex `q`, which is no vertex yet; says where to start for a point at `then`.
+    /// Inserts vertex `q`, which is not in the mesh yet; returns where to start the walk to a point at
+    /// `then`.
     ///
-    /// The cavity is passed counterclockwise, depth first: its triangles form a tree, since no vertex lies inside, so
-    /// that none is met twice and no marks are needed. Each edge of its border makes a triangle with `q`.
+    /// The cavity is passed counterclockwise, depth first: its triangles form a tree, since no vertex lies
+    /// inside, so that none is met twice and no marks are needed. Each edge of its border makes a triangle
+    /// with `q`.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: Start, then: Point2) -> Start {
         let at = self.mesh.point(q);
@@ -113,7 +117,8 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         star.close(&mut self.mesh)
     }
 
-    /// Makes a triangle in conflict the whole cavity: the start of one of its edges, and that edge. The others wait.
+    /// Makes a triangle in conflict the whole cavity: the start of one of its edges, and that edge. The
+    /// others wait.
     #[inline(always)]
     fn open_cavity(&mut self, q: u32, start: Start, at: Point2) -> (TranslatedVertex, Pending) {
         let (t, [a, b, c], [bc, ca, ab]) = self.find_conflict(start, at);
@@ -130,8 +135,9 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         (a, Pending { neighbour: neighbours[2], end: b, cross: ab })
     }
 
-    /// Whether the new point, at `at`, is in the circle of the triangle beyond an edge, which has the vertex `apex`
-    /// opposite to it; with the cross products of the start of the edge and the apex, and of the apex and its end.
+    /// Whether the new point, at `at`, is in the circle of the triangle beyond an edge, which has the vertex
+    /// `apex` opposite to it; with the cross products of the start of the edge and the apex, and of the apex
+    /// and its end.
     #[inline(always)]
     fn is_in_circle(
         &mut self,
@@ -154,8 +160,8 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         }
     }
 
-    /// A triangle in conflict with a point, what the point sees of its corners, and the cross product of the ends
-    /// of the side opposite to each.
+    /// A triangle in conflict with a point, its corners relative to the point, and for each corner the cross
+    /// product of the ends of the opposite side.
     #[inline(always)]
     fn find_conflict(&mut self, start: Start, at: Point2) -> (HalfEdge, [TranslatedVertex; 3], [f64; 3]) {
         let look = |mesh: &Mesh, t| {
@@ -224,12 +230,13 @@ impl Star {
     }
 }
 
-/// Decides by a value that was not rounded, ties by the canonical perturbation: whether the new point, the origin, is
-/// in the circle of w, b, a. The point of greatest rank decides; orientations about the origin are at hand.
+/// Decides by a value that was not rounded, ties by the canonical perturbation: whether the new point, the
+/// origin, is in the circle of w, b, a. The point of greatest rank decides; orientations about the origin are
+/// at hand.
 ///
-/// If w is of greatest rank, the origin is outside, because it sees the edge from a to b counterclockwise: a point
-/// on that edge or beyond it, but in the circle of the triangle on this side, is strictly inside of the circle of the
-/// one on the other, which is no tie; and edges further out face the same way.
+/// If w is of greatest rank, the origin is outside, because it sees the edge from a to b counterclockwise: a
+/// point on that edge or beyond it, but in the circle of the triangle on this side, is strictly inside of the
+/// circle of the one on the other, which is no tie; and edges further out face the same way.
 #[inline(always)]
 fn settle(
     value: f64,

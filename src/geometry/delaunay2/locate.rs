@@ -92,10 +92,12 @@ pub(super) fn walk_exactly<P: Predicates2>(
     }
 }
 
-/// Whether `q`, which is no vertex, lies in the circle of triangle `t`, ties broken by the canonical perturbation.
+/// Whether `q`, which is no vertex, lies in the circle of triangle `t`, ties broken by the canonical
+/// perturbation.
 ///
-/// The circle of an infinite triangle is the open half-plane beyond its edge of the hull, and that edge: a point on
-/// its line but off the edge is in the circle if it is in that of the triangle on the other side, which it is not.
+/// The circle of an infinite triangle is the open half-plane beyond its edge of the hull, and that edge: a
+/// point on its line but off the edge is in the circle if it is in that of the triangle on the other side,
+/// which it is not.
 #[cold]
 #[inline(never)]
 pub(super) fn is_in_conflict<P: Predicates2>(

@@ -3,8 +3,8 @@
 use super::half_edge::{HalfEdge, NEIGHBOURS, NONE, WORDS, triangles_of};
 use crate::predicates::Point2;
 
-/// The vertex at infinity. Its coordinates are not numbers, so that no comparison of rounded values decides a test
-/// of a triangle that has it as a corner: such tests fall through every filter.
+/// The vertex at infinity. Its coordinates are not numbers, so that no comparison of rounded values decides a
+/// test of a triangle that has it as a corner: such tests fall through every filter.
 pub(super) const INFINITE: u32 = 0;
 
 /// Points and triangles. Vertices are numbered from 1 on; [`INFINITE`] is at index 0 of the points.
@@ -92,7 +92,8 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// The half-edge opposite to the vertex at infinity, if `t` has it: the other side of an edge of the hull.
+    /// The half-edge opposite to the vertex at infinity, if `t` has it: the other side of an edge of the
+    /// hull.
     #[inline(always)]
     pub(super) fn hull_side(&self, t: HalfEdge) -> Option<HalfEdge> {
         (t..t + 3).find(|&h| self.opposite(h) == INFINITE)

@@ -1,8 +1,9 @@
 //! The bulk kernel in 2D: the canonical Delaunay triangulation of an array of points.
 //!
-//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `mesh` is the
-//! data structure, `locate` the walk to the next point, `insertion` what it changes, `extract` what comes out.
+//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that
+//! each go along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it.
+//! `mesh` is the data structure, `locate` the walk to the next point, `insertion` what it changes, `extract`
+//! what comes out.
 
 mod build;
 mod distinct;
@@ -31,7 +32,8 @@ use spmesh_core::error::{Error, Result};
 pub const MAX_POINTS: usize = 268_000_000;
 const _: () = assert!(16 * (MAX_POINTS + 2) < u32::MAX as usize);
 
-/// The kernel with its buffers. One that is used again touches no new page: faster than a fresh one.
+/// The kernel with its buffers. A kernel that is used again touches no new memory pages, which makes it
+/// faster than a new one.
 #[derive(Debug, Default)]
 pub struct Kernel {
     order: SpatialOrder,
@@ -54,14 +56,16 @@ impl Kernel {
 
     /// Triangulates `points` into `triangles`, whose buffers are reused.
     ///
-    /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one
-    /// of least index; the others are listed in [`Triangles::duplicates`]. Degenerate input of every kind is
-    /// fine: cocircular points are triangulated canonically, and collinear points give no triangles.
+    /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex,
+    /// the one of least index; the others are listed in [`Triangles::duplicates`]. Degenerate input of every
+    /// kind is fine: cocircular points are triangulated canonically, and collinear points give no triangles.
     ///
-    /// Errors: a coordinate that is not finite, too many points; the triangulation is as it was then.
+    /// # Errors
+    /// Malformed, if a coordinate is not finite; usage, if there are too many points. `triangles` is
+    /// unchanged then.
     ///
-    /// Cost: O(n) for points that are spread evenly, or clustered evenly; about 40 bytes per point in the kernel and 68 in
-    /// the triangles.
+    /// Cost: O(n) for points that are spread evenly, or clustered evenly; about 40 bytes per point in the
+    /// kernel and 68 in the triangles.
     pub fn triangulate(&mut self, points: &[Point2], triangles: &mut Triangles) -> Result<()> {
         if points.len() > MAX_POINTS {
             return Err(Error::usage(format!(
@@ -109,7 +113,8 @@ impl Kernel {
         &self.counts
     }
 
-    /// Fills `indices` and `points` with the distinct points in order along the curve, after the vertex at infinity.
+    /// Fills `indices` and `points` with the distinct points in order along the curve, after the vertex at
+    /// infinity.
     fn take_sorted(&mut self, points: &[Point2], extent: &Extent, duplicates: &mut Vec<[u32; 2]>) {
         const _: () = assert!(INFINITE == 0);
         self.indices.clear();
@@ -131,7 +136,7 @@ impl Kernel {
         }
     }
 
-    /// What comes out if all points are on one line.
+    /// Writes the result for points that all lie on one line.
     fn extract_line(&self, points: &[Point2], out: &mut Triangles) {
         out.triangle_of_vertex.resize(points.len(), NONE);
         out.hull.extend(&self.indices[1..]);
@@ -141,8 +146,9 @@ impl Kernel {
 
 /// Canonical Delaunay triangulation of `points`, whose vertices are indices of `points`.
 ///
-/// Equal points are one vertex, the one of least index. Points on one line, or fewer than three different points, have no
-/// triangles. A program that triangulates many sets uses a [`Kernel`], which reuses its buffers.
+/// Equal points are one vertex, the one of least index. Points on one line, or fewer than three different
+/// points, have no triangles. A program that triangulates many sets uses a [`Kernel`], which reuses its
+/// buffers.
 ///
 /// # Errors
 /// Malformed, if a coordinate is not finite; usage, if there are more than [`MAX_POINTS`] points.

@@ -25,7 +25,8 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// The neighbour across the edge opposite to corner `side`, as its corner opposite to that edge; `None` at the hull.
+    /// The neighbour across the edge opposite to corner `side`, as its corner opposite to that edge; `None`
+    /// at the hull.
     ///
     /// # Panics
     /// If `side` is above 2.
@@ -37,16 +38,16 @@ impl Triangle {
     }
 }
 
-/// The arrays of a Delaunay triangulation, which a [`Kernel`](super::Kernel) fills again and again. Vertices are indices of input
-/// points; the points themselves are not kept.
+/// The arrays of a Delaunay triangulation, which a [`Kernel`](super::Kernel) fills again and again. Vertices
+/// are indices of input points; the points themselves are not kept.
 #[derive(Debug, Default)]
 pub struct Triangles {
     pub(super) memory: TriangleMemory,
-    /// For each input point a triangle at it, such that turning counterclockwise from it meets all others before
-    /// the hull; [`NONE`] for duplicates, and for all if there are no triangles.
+    /// For each input point a triangle at it, from which a counterclockwise turn meets all others before the
+    /// hull; [`NONE`] for duplicates, and for all if there are no triangles.
     pub triangle_of_vertex: Vec<u32>,
-    /// Vertices of the hull, counterclockwise; all points on its boundary are vertices. If there are no triangles,
-    /// all distinct points, in lexicographic order.
+    /// Vertices of the hull, counterclockwise; all points on its boundary are vertices. If there are no
+    /// triangles, all distinct points, in lexicographic order.
     pub hull: Vec<u32>,
     /// Points left out because an equal point of lesser index is there: `[duplicate, vertex]`.
     pub duplicates: Vec<[u32; 2]>,
@@ -76,8 +77,8 @@ impl Triangles {
         })
     }
 
-    /// The triangle to the left of the edge from `a` to `b`, as the corner opposite to the edge; `None` if there is
-    /// no such edge or no triangle to its left. Cost: the degree of `a`.
+    /// The triangle to the left of the edge from `a` to `b`, as the corner opposite to the edge; `None` if
+    /// there is no such edge or no triangle to its left. Cost: the degree of `a`.
     #[must_use]
     pub fn left_of(&self, a: u32, b: u32) -> Option<Corner> {
         self.corners_of(a).find_map(|Corner { triangle, corner }| {
@@ -105,7 +106,8 @@ pub(super) struct TriangleMemory {
 }
 
 impl TriangleMemory {
-    /// Memory for the triangles of `vertices` vertices, including the vertex at infinity. Its content is arbitrary.
+    /// Memory for the triangles of `vertices` vertices, including the vertex at infinity. Its content is
+    /// arbitrary.
     ///
     /// The system zeroes fresh memory when it is first touched; nothing is zeroed here.
     pub(super) fn allocate(&mut self, vertices: usize) -> &mut [u32] {

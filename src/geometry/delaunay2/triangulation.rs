@@ -7,8 +7,8 @@ use std::ops::Deref;
 
 /// A Delaunay triangulation with its points. All vertices are indices of the input points.
 ///
-/// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space. The arrays of the kernel are at
-/// hand too, by way of [`Deref`].
+/// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space. The arrays of
+/// the kernel are at hand too, by way of [`Deref`].
 #[derive(Debug, Default)]
 pub struct Triangulation {
     points: Vec<Point2>,
@@ -35,12 +35,14 @@ impl Triangulation {
         &self.points
     }
 
-    /// The triangles by their vertices, counterclockwise. Their numbers are those of [`Triangulation::neighbours`].
+    /// The triangles by their vertices, counterclockwise. Their numbers are those of
+    /// [`Triangulation::neighbours`].
     pub fn simplices(&self) -> impl ExactSizeIterator<Item = [u32; 3]> + '_ {
         self.triangles.triangles().iter().map(|triangle| triangle.vertices)
     }
 
-    /// The triangles across the edges opposite to the three vertices of triangle `number`; `None` at the hull.
+    /// The triangles across the edges opposite to the three vertices of triangle `number`; `None` at the
+    /// hull.
     ///
     /// # Panics
     /// If there is no such triangle.

@@ -9,7 +9,8 @@ use std::arch::x86_64::{
 };
 use std::ops::{Add, Mul, Sub};
 
-/// A register of AVX2. It exists only where the processor has AVX2 and FMA: it is made from an [`Avx2Fma`] or from others.
+/// A register of AVX2. It exists only where the processor has AVX2 and FMA: it is made from an [`Avx2Fma`] or
+/// from others.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Avx2(__m256d);
 
@@ -17,7 +18,8 @@ pub(super) struct Avx2(__m256d);
 macro_rules! instructions {
     ($($code:tt)*) => {
         // SAFETY: the code below uses it only where an `Avx2` or an `Avx2Fma` exists, so the processor has AVX2 and FMA;
-        // the instructions on registers have no other precondition, and the store writes to an array of four numbers.
+        // the instructions on registers have no other precondition, and the store writes to an array of four
+        // numbers.
         unsafe { $($code)* }
     };
 }

@@ -19,7 +19,7 @@ pub(super) struct Build<'a> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) is_timed: bool,
-    /// Whether only instructions that every processor has are used.
+    /// Whether portable instructions are used only.
     pub(super) is_portable: bool,
     /// The numbers of the vertices in the order of insertion.
     pub(super) insertions: Insertions,
@@ -27,7 +27,7 @@ pub(super) struct Build<'a> {
     pub(super) infinite_lift: f64,
 }
 
-/// What came of it.
+/// The result of a build.
 pub(super) enum Built {
     /// The whole.
     Complex(Complex),
@@ -37,13 +37,13 @@ pub(super) enum Built {
     TooMany,
 }
 
-/// Most tetrahedra, so that there is room in the numbers for one more star of all vertices.
+/// Greatest number of tetrahedra. It leaves numbers for one more star of all vertices.
 pub(super) const TETRAHEDRA_MAX: usize = (1 << 29) - 2 * MAX_POINTS;
 
 impl Build<'_> {
     /// The complex.
     ///
-    /// Inlined, like all that it calls with lanes, into functions for one kind of processor each.
+    /// Inlined, like everything that it calls with lanes, into one function per kind of processor.
     #[inline(always)]
     pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Built {
         let Some(first) = self.first_tetrahedron(predicates) else {

@@ -6,21 +6,22 @@ use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
 use spmesh_core::prefetch::prefetch;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
-/// First of the words that say what is across.
+/// First of the words that hold the neighbouring facets.
 const FIRST_NEIGHBOUR: usize = 4;
 
-/// Memory for so many is asked for at first. It costs nothing until it is touched, but to enlarge it would: uniform points
-/// have 6.8, points of a surface up to 9.
+/// Tetrahedra per vertex that memory is reserved for at first: uniform points have 6.8, points of a surface
+/// up to 9. Memory costs nothing until it is touched; enlarging it would cost a copy.
 const TETRAHEDRA_PER_VERTEX: usize = 9;
 
-/// In place of the vertices of a tetrahedron that is no longer there.
+/// Stands for each vertex of a deleted tetrahedron.
 pub(super) const DELETED: u32 = u32::MAX;
 
-/// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first vertex.
+/// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first
+/// vertex.
 pub(super) type Facet = u32;
 
-/// For a facet that is entered, and which of its [`TETRAHEDRON_FACETS`] is the first one as seen by who enters: the corners in
-/// that order.
+/// For a facet that is entered, and which of its [`TETRAHEDRON_FACETS`] is the first one as seen by who
+/// enters: the corners in that order.
 const ENTERED: [[[usize; 3]; 3]; 4] = entered();
 
 const fn entered() -> [[[usize; 3]; 3]; 4] {
@@ -51,7 +52,7 @@ pub(super) fn corner(facet: Facet) -> usize {
 pub(super) struct Complex {
     pub(super) vertices: Vec<Vertex>,
     pub(super) tetrahedra: Vec<Tetrahedron>,
-    /// Tetrahedra that are not there: to be used before new ones are made.
+    /// Deleted tetrahedra, whose places are reused before the array grows.
     pub(super) free: Vec<u32>,
 }
 
@@ -98,7 +99,7 @@ impl Complex {
         cast_slice_mut(&mut self.tetrahedra)
     }
 
-    /// All tetrahedra, those that are not there among them.
+    /// All tetrahedra, including deleted ones.
     pub(super) fn words_of_tetrahedra(&self) -> impl Iterator<Item = u32> + use<> {
         (0..self.words().len() as u32).step_by(WORDS)
     }
@@ -127,7 +128,7 @@ impl Complex {
         self.words()[facet as usize]
     }
 
-    /// Has the neighbours of the tetrahedron of a facet brought into the cache.
+    /// Prefetches the neighbours of the tetrahedron of a facet.
     #[inline(always)]
     pub(super) fn fetch_neighbours(&self, facet: Facet) {
         for other in self.tetrahedra[facet as usize / WORDS].neighbours {
@@ -135,20 +136,20 @@ impl Complex {
         }
     }
 
-    /// The facet of the other tetrahedron.
+    /// The same facet as a facet of the neighbouring tetrahedron.
     #[inline(always)]
     pub(super) fn neighbour(&self, facet: Facet) -> Facet {
         self.words()[facet as usize + FIRST_NEIGHBOUR]
     }
 
-    /// Says which facet of another tetrahedron is across.
+    /// Sets the neighbouring facet, in this direction only.
     #[inline(always)]
     pub(super) fn set_neighbour(&mut self, facet: Facet, other: Facet) {
         self.words_mut()[facet as usize + FIRST_NEIGHBOUR] = other;
     }
 
-    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a is
-    /// the given vertex, in the order seen by who enters.
+    /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of
+    /// which a is the given vertex, in the order seen by who enters.
     #[inline(always)]
     pub(super) fn neighbours_behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
         let Tetrahedron { vertices, neighbours } = &self.tetrahedra[facet as usize / WORDS];
@@ -158,13 +159,13 @@ impl Complex {
         ENTERED[i][rotation].map(|corner| neighbours[corner])
     }
 
-    /// Makes a tetrahedron one that is not there; what was across stays.
+    /// Marks a tetrahedron as deleted; its neighbouring facets stay.
     #[inline(always)]
     pub(super) fn delete(&mut self, t: u32) {
         self.tetrahedra[t as usize / WORDS].vertices = [DELETED; 4];
     }
 
-    /// A tetrahedron to be written.
+    /// The place of a tetrahedron yet to be written: one that was deleted, or a new one.
     #[inline(always)]
     pub(super) fn allocate(&mut self) -> u32 {
         if let Some(slot) = self.free.pop() {

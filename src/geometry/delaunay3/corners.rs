@@ -1,12 +1,12 @@
-//! Tetrahedra without their neighbours, in order along the curve: what is left to do is to write them.
+//! Tetrahedra without their neighbours, in order along the curve, ready to be written.
 //!
-//! Insertion in rounds leaves tetrahedra all over the array. Without their neighbours they need half of it only, so that
-//! they can be sorted into the other half, and the first one is free for whoever writes them.
+//! Insertion in rounds leaves tetrahedra in no useful order. Without their neighbours they need only half of
+//! the array, so they are sorted into the other half; the first half is then free for the writer.
 
 use super::tetrahedralization::{Tetrahedralization, Tetrahedron, Vertex};
 use crate::order::sizes_to_starts;
 
-/// Tetrahedra that come without order among themselves, and greatest number of such groups.
+/// Tetrahedra of a group, which have no order among themselves, and greatest number of groups.
 const GROUP: usize = 4096;
 const GROUPS_MAX: usize = 1 << 14;
 
@@ -21,20 +21,20 @@ pub struct Corners {
     end: usize,
 }
 
-/// What [`Corners`] consists of.
+/// The parts of [`Corners`].
 #[derive(Debug)]
 pub struct CornerParts<'c> {
     /// The vertices in order along the curve.
     pub vertices: &'c [Vertex],
     /// The corners of each tetrahedron: indices of vertices, positively oriented.
     pub tetrahedra: &'c [[u32; 4]],
-    /// Memory that is not used any more, with anything in it: four words or more for each of the tetrahedra.
+    /// Unused memory of arbitrary content: four words or more for each of the tetrahedra.
     pub spare: &'c mut [u32],
 }
 
 impl Tetrahedralization {
-    /// The corners of the tetrahedra that `keep` wants, told by their indices; in order of their last vertex along the
-    /// curve, up to some thousands that come together.
+    /// The corners of the tetrahedra whose indices `keep` accepts, ordered by their last vertex along the
+    /// curve, in groups of some thousands.
     ///
     /// Cost: two passes, and no memory.
     #[must_use]
@@ -78,7 +78,7 @@ fn group([a, b, c, d]: [u32; 4], shift: u32) -> usize {
 }
 
 impl Corners {
-    /// All of it.
+    /// The parts.
     pub fn parts(&mut self) -> CornerParts<'_> {
         let quadruples: &mut [[u32; 4]] = bytemuck::cast_slice_mut(&mut self.storage);
         let (before, rest) = quadruples.split_at_mut(self.start);

@@ -1,5 +1,5 @@
-//! The predicates behind one door: they are asked where the filter does not decide, which is rare, and the rest need not be
-//! compiled for each arithmetic.
+//! The predicates as a trait object. They are called only where the filter does not decide, which is rare, so
+//! the rest of the kernel is compiled once and not for each arithmetic.
 
 use crate::predicates::{Numbers, Point3, PredicateCounts, Predicates3, Sign};
 

@@ -3,7 +3,8 @@
 use super::complex::{Complex, DELETED};
 use super::tetrahedralization::{NONE, Tetrahedron, WORDS};
 
-/// Leaves the finite tetrahedra and vertices in the arrays of the complex; returns the number of facets of the hull.
+/// Leaves the finite tetrahedra and vertices in the arrays of the complex; returns the number of facets of
+/// the hull.
 pub(super) fn extract(complex: &mut Complex) -> usize {
     let mut holes = Vec::new();
     let mut hull_facets = 0;

@@ -1,5 +1,5 @@
-//! Insertion of points: the tetrahedra in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
-//! 1981).
+//! Insertion of points: the tetrahedra in conflict with a point give way to a star around it (Bowyer, 1981;
+//! Watson, 1981).
 
 use super::complex::{Complex, DELETED, Facet, tetrahedron_of};
 use super::exact::Exact;
@@ -17,8 +17,8 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 /// A facet around the part of the cavity that is known, with the test of the tetrahedron beyond.
 #[derive(Debug, Clone, Copy)]
 struct Pending {
-    /// Positive if the new point is in the sphere of that tetrahedron, negative if it is not; NaN if rounding may have
-    /// changed the sign.
+    /// Positive if the new point is in the sphere of that tetrahedron, negative if it is not; NaN if rounding
+    /// may have changed the sign.
     value: f64,
     /// Numbers of the corners in the star, counterclockwise as the new point sees them.
     corners: [u32; 3],
@@ -27,14 +27,14 @@ struct Pending {
     apex: u32,
 }
 
-/// Buffers of one insertion, to be used again.
+/// Buffers of one insertion, which the next one reuses.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
     star: Star,
     /// A queue, written without branches: longer than what is in it.
     pending: Vec<Pending>,
     end: usize,
-    /// For each vertex of the star, by number: where the new point sees it, and its lift.
+    /// For each vertex of the star, by number: its coordinates relative to the new point, and its lift.
     translated: Vec<[f64; 4]>,
 }
 
@@ -52,8 +52,8 @@ pub(super) struct Insertion<'a, L: Lanes> {
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
     pub(super) timer: PhaseTimer,
-    /// The lift of the vertex at infinity: of about the size of others, for the sake of the filter; integer if
-    /// coordinates are.
+    /// The lift of the vertex at infinity: of about the size of others, for the sake of the filter; integer
+    /// if coordinates are.
     pub(super) infinite_lift: f64,
     /// In-sphere tests that the filter did not decide.
     pub(super) unfiltered: u64,
@@ -68,9 +68,10 @@ impl<L: Lanes> Insertion<'_, L> {
         self.complex
     }
 
-    /// Inserts vertex `q`, which is no vertex yet; says where to start for a point nearby.
+    /// Inserts vertex `q`, which is not in the mesh yet; returns where to start the walk to a point nearby.
     ///
-    /// Tests are made where facets are queued, and used when their turn comes: so no test waits for the branch before it.
+    /// The test of a tetrahedron is computed when its facet is queued, and used when the facet is taken from
+    /// the queue, so that no test waits for the branch before it.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: u32) -> u32 {
         let at = self.complex.point(q);
@@ -79,13 +80,14 @@ impl<L: Lanes> Insertion<'_, L> {
         while next < self.cavity.end {
             let facet = self.cavity.pending[next];
             next += 1;
-            // Its neighbours will be wanted if it is taken. (What stands behind the end is of an earlier insertion.)
+            // If it is taken, its neighbours are needed. (Entries behind the end are of an earlier
+            // insertion.)
             let later = &self.cavity.pending[(next + 1).min(self.cavity.pending.len() - 1)];
             self.complex.fetch_neighbours(later.neighbour);
             if facet.value < 0.0 {
                 self.cavity.star.border.push((facet.corners, facet.neighbour));
             } else if self.complex.opposite(facet.neighbour) == DELETED {
-                // Found through another facet meanwhile.
+                // Another facet has led to it in the meantime.
             } else if facet.value > 0.0 || self.decide(at, &facet) {
                 self.take(at, &facet);
             } else {
@@ -147,7 +149,7 @@ impl<L: Lanes> Insertion<'_, L> {
         let places = &mut self.cavity.pending[self.cavity.end..][..3];
         let mut len = 0;
         for i in 0..3 {
-            // What is in the cavity already is overwritten, without a branch.
+            // The entry of a tetrahedron that is in the cavity already is overwritten, without a branch.
             places[len.min(2)] =
                 Pending { value: values[i], corners: corners[i], neighbour: neighbours[i], apex: apexes[i] };
             len += usize::from(apexes[i] != DELETED);
@@ -155,7 +157,7 @@ impl<L: Lanes> Insertion<'_, L> {
         self.cavity.end += len;
     }
 
-    /// Room for one more tetrahedron in the cavity.
+    /// Makes the buffers long enough for one more tetrahedron in the cavity.
     #[inline(always)]
     fn reserve(&mut self) {
         let Cavity { star, pending, end, translated } = &mut *self.cavity;
@@ -171,13 +173,14 @@ impl<L: Lanes> Insertion<'_, L> {
         TranslatedVertex::new(&self.complex, vertex, from, self.infinite_lift)
     }
 
-    /// The in-sphere tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order, given
-    /// the vertices opposite to the facets.
+    /// The in-sphere tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this
+    /// order, given the vertices opposite to the facets.
     ///
-    /// In the lane of a facet without p, which is a, b or c, let n and m be the next two corners. With the new point as
-    /// origin, the determinant of the rows (x, lift) of d, n, m and the apex e has the sign wanted. Its minors are made
-    /// of n x m, and of d x p in the lanes of the other two facets. The vertex at infinity has the row (0, 0, 0, lift),
-    /// which makes it the sign of a volume. The bound of the filter holds all the more.
+    /// In the lane of a facet without p, which is a, b or c, let n and m be the next two corners. With the
+    /// new point as origin, the determinant of the rows (x, lift) of d, n, m and the apex e has the sign
+    /// wanted. Its minors are made of n x m, and of d x p in the lanes of the other two facets. The vertex at
+    /// infinity has the row (0, 0, 0, lift), which makes it the sign of a volume. The bound of the filter
+    /// holds all the more.
     #[inline(always)]
     fn values(&self, at: Point3, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
         let [a, b, c] = abc;
@@ -203,7 +206,8 @@ impl<L: Lanes> Insertion<'_, L> {
         value.where_greater(value * value, bound)
     }
 
-    /// The translations of three vertices, column by column; anything for those of tetrahedra that are not there.
+    /// The translations of three vertices, column by column; arbitrary values for vertices of deleted
+    /// tetrahedra.
     #[inline(always)]
     fn apexes(&self, at: Point3, apexes: [u32; 3]) -> [L; 4] {
         let infinite = self.complex.infinite();
@@ -253,7 +257,7 @@ impl<L: Lanes> Insertion<'_, L> {
         is_in_conflict(&self.complex, tetrahedron_of(facet.neighbour), at, self.predicates)
     }
 
-    /// A tetrahedron in conflict with a point, and what the point sees of its corners.
+    /// A tetrahedron in conflict with a point, and its corners relative to the point.
     #[inline(always)]
     fn find_conflict(&mut self, at: Point3, start: u32) -> (u32, [TranslatedVertex; 4]) {
         let t = walk(&self.complex, start, at);

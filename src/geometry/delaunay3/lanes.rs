@@ -1,13 +1,14 @@
 //! Vectors of four `f64`, one per lane, which the vector units of processors compute with at once.
 //!
-//! The search of a cavity tests the three neighbours of a tetrahedron at once. Each has a lane; the fourth lane is unused.
+//! The search of a cavity tests the three neighbours of a tetrahedron at once. Each has a lane; the fourth
+//! lane is unused.
 
 use std::ops::{Add, Mul, Sub};
 
 /// Three numbers, and a fourth that is ignored.
 ///
-/// Every vector is made from a token or from other vectors, so that a vector exists only where the processor has its
-/// instructions.
+/// Every vector is made from a token or from other vectors, so that a vector exists only where the processor
+/// has its instructions.
 pub(super) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// Proves that the processor has the instructions.
     type Token: Copy;

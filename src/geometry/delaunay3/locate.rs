@@ -45,7 +45,8 @@ pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
     tetrahedron_of(facet)
 }
 
-/// Walks from `t` to a tetrahedron in conflict with `q`, exactly. In a Delaunay tetrahedralization this walk ends.
+/// Walks from `t` to a tetrahedron in conflict with `q`, exactly. In a Delaunay tetrahedralization this walk
+/// ends.
 #[cold]
 #[inline(never)]
 pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates: &mut dyn Exact) -> u32 {
@@ -71,11 +72,11 @@ pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates:
     }
 }
 
-/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, ties broken by the canonical perturbation. It
-/// does if `t` is no longer there: it gave way to `q`.
+/// Whether `q`, which is no vertex, lies in the sphere of tetrahedron `t`, ties broken by the canonical
+/// perturbation. It does if `t` is no longer there: it gave way to `q`.
 ///
-/// The sphere of an infinite tetrahedron is the open half-space beyond its facet of the hull, and what the sphere of
-/// the tetrahedron on the other side has in common with the plane between them (thesis 4.4).
+/// The sphere of an infinite tetrahedron is the open half-space beyond its facet of the hull, and what the
+/// sphere of the tetrahedron on the other side has in common with the plane between them (thesis 4.4).
 #[cold]
 #[inline(never)]
 pub(super) fn is_in_conflict(complex: &Complex, t: u32, q: Point3, predicates: &mut dyn Exact) -> bool {

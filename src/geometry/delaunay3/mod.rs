@@ -1,9 +1,9 @@
 //! The bulk kernel in 3D: the canonical Delaunay tetrahedralization of an array of points.
 //!
-//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small tetrahedra
-//! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
-//! cavity, `star` what takes its place, `extract` what comes out.
+//! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that
+//! each go along the curve ([`Rounds`](crate::order::Rounds)), so that the next point is near and finds small
+//! tetrahedra around it. `complex` is the data structure, `locate` the walk to the next point, `insertion`
+//! the search of the cavity, `star` what takes its place, `extract` what comes out.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -38,7 +38,8 @@ use std::borrow::Cow;
 use std::time::Instant;
 use tie::EXACT;
 
-/// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32 bits.
+/// Greatest number of points: the words of tetrahedra, 8 for each of about 8 per point, are numbered in 32
+/// bits.
 pub const MAX_POINTS: usize = 60_000_000;
 
 /// The kernel with its buffers.
@@ -54,7 +55,7 @@ pub struct Kernel {
     pub by_bit_levels: bool,
     /// Whether the parts of insertions are timed ([`Stats`]), which takes some time itself.
     pub is_timed: bool,
-    /// Whether only instructions that every processor has are used: for tests.
+    /// Whether portable instructions are used only: for tests.
     is_portable: bool,
 }
 
@@ -65,15 +66,18 @@ impl Kernel {
         Kernel::default()
     }
 
-    /// Tetrahedralizes `points` into `mesh`, whose buffers are reused. Owned points are freed as soon as they are copied.
+    /// Tetrahedralizes `points` into `mesh`, whose buffers are reused. Owned points are freed as soon as they
+    /// are copied.
     ///
-    /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one of
-    /// least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input of every kind is
-    /// fine: cospherical points are triangulated canonically, and points in a plane give no tetrahedra.
+    /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex,
+    /// the one of least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input
+    /// of every kind is fine: cospherical points are triangulated canonically, and points in a plane give no
+    /// tetrahedra.
     ///
     /// # Errors
-    /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged then. I/O, if there
-    /// are too many tetrahedra, which even [`MAX_POINTS`] points have only in rare configurations.
+    /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged
+    /// then. I/O, if there are too many tetrahedra, which even [`MAX_POINTS`] points have only in rare
+    /// configurations.
     ///
     /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
@@ -158,8 +162,9 @@ impl Kernel {
 
 /// Canonical Delaunay tetrahedralization of `points`.
 ///
-/// Equal points are one vertex, the one of least index. Points in one plane, or fewer than four different points, have no
-/// tetrahedra. A program that tetrahedralizes many sets uses a [`Kernel`], which reuses its buffers.
+/// Equal points are one vertex, the one of least index. Points in one plane, or fewer than four different
+/// points, have no tetrahedra. A program that tetrahedralizes many sets uses a [`Kernel`], which reuses its
+/// buffers.
 ///
 /// # Errors
 /// As [`Kernel::triangulate`].
@@ -194,8 +199,8 @@ impl WithPredicates3 for Build<'_> {
     }
 }
 
-/// The lift of the vertex at infinity: of about the size of those of neighbours, so that it does not spoil the bound
-/// of the filter.
+/// The lift of the vertex at infinity: of about the size of those of neighbours, so that it does not spoil
+/// the bound of the filter.
 fn infinite_lift(extent: &Extent<3>, vertices: usize) -> f64 {
     let side = (extent.max_difference() / (vertices as f64).powf(0.4)).clamp(1e-75, 1e75);
     let lift = side * side;

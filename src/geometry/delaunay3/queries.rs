@@ -16,7 +16,8 @@ impl Tetrahedralization {
         self.tetrahedra.iter().map(|tetrahedron| self.input_indices(tetrahedron.vertices))
     }
 
-    /// The tetrahedra across the facets opposite to the four vertices of tetrahedron `number`; `None` at the hull.
+    /// The tetrahedra across the facets opposite to the four vertices of tetrahedron `number`; `None` at the
+    /// hull.
     ///
     /// # Panics
     /// If there is no such tetrahedron.

@@ -1,4 +1,4 @@
-//! The cavity of a new point while it is found, and the star that takes its place.
+//! The border of the cavity of a new point, and the star that replaces the cavity.
 
 use super::complex::{Complex, Facet};
 use super::tetrahedralization::Vertex;
@@ -9,13 +9,13 @@ const STRIDE: usize = 64;
 /// No vertex.
 const NO_VERTEX: u32 = u32::MAX;
 
-/// What is known of the cavity and its border; its buffers are used again.
+/// The known part of the cavity and of its border. The next insertion reuses the buffers.
 #[derive(Debug)]
 pub(super) struct Star {
-    /// Tetrahedra of the cavity, to be written again.
+    /// Tetrahedra of the cavity, whose places the star reuses.
     pub(super) slots: Vec<u32>,
-    /// Facets of its border: numbers of their corners, counterclockwise as the new point sees them, and the facet of the
-    /// tetrahedron outside.
+    /// Facets of its border: numbers of their corners, counterclockwise as the new point sees them, and the
+    /// facet of the tetrahedron outside.
     pub(super) border: Vec<([u32; 3], Facet)>,
     /// Vertices of the cavity, and behind them [`NO_VERTEX`].
     vertices: Vec<u32>,
@@ -51,7 +51,7 @@ impl Star {
         }
     }
 
-    /// Greatest number of vertices without further ado.
+    /// Number of vertices that the buffers hold before they grow.
     #[inline(always)]
     pub(super) fn capacity(&self) -> usize {
         self.vertices.len()
@@ -63,7 +63,8 @@ impl Star {
         self.vertices[number as usize]
     }
 
-    /// The number of a vertex, which it gets if it has none; without a branch, for nobody could foresee it.
+    /// The number of a vertex; a vertex without a number gets the next one. Branch-free, because the branch
+    /// would be unpredictable.
     #[inline(always)]
     pub(super) fn number(&mut self, vertex: u32, vertices: &mut [Vertex]) -> u32 {
         let entry = &mut vertices[vertex as usize];
@@ -104,8 +105,8 @@ impl Star {
         self.slots[wanted - 1]
     }
 
-    /// A tetrahedron of the star has the new vertex as its corner 0, then those of the facet. Across from a corner of
-    /// the facet is what lies to the left of the other two in opposite direction.
+    /// A tetrahedron of the star has the new vertex as its corner 0, then those of the facet. Across from a
+    /// corner of the facet is what lies to the left of the other two in opposite direction.
     #[inline(always)]
     fn write_by_table(&mut self, complex: &mut Complex, q: u32) {
         let edge = |a: u32, b: u32| (a as usize * STRIDE + b as usize) % (STRIDE * STRIDE);

@@ -1,11 +1,11 @@
-//! What a tetrahedralization took.
+//! Work and time of a tetrahedralization.
 
 use std::time::{Duration, Instant};
 
 /// Work and time of one tetrahedralization: the columns of thesis table 3.3.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Stats {
-    /// Tetrahedra made, infinite ones included, those that did not last among them.
+    /// Tetrahedra created, including infinite ones and those deleted later.
     pub created: u64,
     /// In-sphere tests of the search for cavities.
     pub insphere_tests: u64,
@@ -13,18 +13,18 @@ pub struct Stats {
     pub order: Duration,
     /// Time for all insertions.
     pub insertion: Duration,
-    /// Of the time for insertions, if it was measured: the walks, the search of the cavities with its predicates, and
-    /// writing the stars.
+    /// Time for the walks. This phase and the next two are zero unless
+    /// [`Kernel::is_timed`](super::Kernel::is_timed).
     pub locate: Duration,
-    /// See `locate`.
+    /// Time for the search of the cavities, with its predicates.
     pub cavity: Duration,
-    /// See `locate`.
+    /// Time for writing the stars.
     pub update: Duration,
     /// Greatest number of bytes that the kernel and its result held at once.
     pub bytes: u64,
 }
 
-/// Splits the time of an insertion in parts, if anyone wants to know: looking at a clock takes its time.
+/// Splits the time of insertions into phases, on request only: reading the clock takes time itself.
 #[derive(Debug)]
 pub(super) struct PhaseTimer {
     last: Option<Instant>,

@@ -1,4 +1,4 @@
-//! What the kernel hands out: flat arrays.
+//! The output of the kernel: flat arrays.
 
 use super::stats::Stats;
 use crate::predicates::Point3;
@@ -24,7 +24,7 @@ pub struct Vertex {
     pub at: Point3,
     /// Index of the input point.
     pub index: u32,
-    /// Number among the vertices of a cavity, if it is one of them: otherwise anything.
+    /// Its number among the vertices of a cavity; arbitrary if it is not one of them.
     pub(super) local: u32,
 }
 
@@ -42,7 +42,7 @@ impl Vertex {
 pub struct Tetrahedron {
     /// Indices of its vertices a, b, c, d, such that det(b - a, c - a, d - a) > 0.
     pub vertices: [u32; 4],
-    /// Where the facets opposite to the vertices are in the words of their other tetrahedra.
+    /// The neighbouring facets opposite to the vertices, as words of the array of tetrahedra.
     pub(super) neighbours: [u32; 4],
 }
 
@@ -57,8 +57,11 @@ impl Tetrahedron {
         Tetrahedron { vertices, neighbours: neighbours.map(|corner| corner.map_or(NONE, word)) }
     }
 
-    /// The tetrahedron across the facet opposite to a corner, as its corner opposite to that facet; `None` beyond the
-    /// hull.
+    /// The neighbour across the facet opposite to corner `side`, as its corner opposite to that facet; `None`
+    /// at the hull.
+    ///
+    /// # Panics
+    /// If `side` is above 3.
     #[inline]
     #[must_use]
     pub fn neighbour(&self, side: usize) -> Option<Corner> {
@@ -68,6 +71,10 @@ impl Tetrahedron {
 }
 
 /// A Delaunay tetrahedralization.
+///
+/// [`Tetrahedralization::tetrahedra`] and [`Tetrahedralization::vertices`] are the arrays of the kernel, in
+/// which a tetrahedron names its vertices by their places in the array of vertices. All other methods speak
+/// of indices of input points, like those of [`Triangulation`](crate::delaunay2::Triangulation).
 #[derive(Debug, Default)]
 pub struct Tetrahedralization {
     pub(super) vertices: Vec<Vertex>,
@@ -76,7 +83,7 @@ pub struct Tetrahedralization {
     pub duplicates: Vec<[u32; 2]>,
     /// Number of facets of the hull.
     pub hull_facets: usize,
-    /// What making it took.
+    /// Work and time that it took.
     pub stats: Stats,
 }
 

@@ -1,22 +1,22 @@
-//! Ties between points with integer coordinates, from values that were not rounded.
+//! Ties between points with integer coordinates, decided by values without rounding errors.
 
 use super::translated::InSphere;
 use crate::predicates::Point3;
 
-/// If the greatest lift is below this, nothing was rounded: with integers, all that the in-sphere determinant is made of is
-/// below 2^53, because the sum of the magnitudes of its products is at most 8/sqrt(3) times the power 2.5 of the
-/// greatest lift ([`crate::predicates::spatial::filter`]).
+/// If the greatest lift is below this, nothing was rounded: with integers, all that the in-sphere determinant
+/// is made of is below 2^53, because the sum of the magnitudes of its products is at most 8/sqrt(3) times the
+/// power 2.5 of the greatest lift ([`crate::predicates::spatial::filter`]).
 pub(super) const EXACT: f64 = 1.3e6;
 const _: () = assert!(
     64.0 / 3.0 * (EXACT * EXACT * EXACT * EXACT * EXACT) < 9_007_199_254_740_992.0 * 9_007_199_254_740_992.0
 );
 
-/// Whether the new point, which is the origin, is in the sphere of a tetrahedron by the canonical perturbation, although it
-/// lies on it.
+/// Whether the new point, which is the origin, is in the sphere of a tetrahedron by the canonical
+/// perturbation, although it lies on it.
 ///
-/// Of the five points that of greatest rank decides whose lift makes a difference: if it is a corner, by the orientation
-/// of the tetrahedron with the origin in its place, which is the volume under the facet opposite to it; if it is the
-/// origin, which would be raised out of the sphere, by no.
+/// Of the five points that of greatest rank decides whose lift makes a difference: if it is a corner, by the
+/// orientation of the tetrahedron with the origin in its place, which is the volume under the facet opposite
+/// to it; if it is the origin, which would be raised out of the sphere, by no.
 pub(super) fn is_inside(test: &InSphere) -> bool {
     let mut decisive = ([0.0; 3], -1.0);
     for (corner, &volume) in test.corners.iter().zip(&test.volumes) {

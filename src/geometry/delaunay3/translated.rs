@@ -1,4 +1,4 @@
-//! Vertices as the new point sees them.
+//! Vertices in coordinates relative to the new point.
 
 use super::complex::Complex;
 use crate::predicates::{Point3, insphere_is_certain};
@@ -46,7 +46,7 @@ pub(super) fn volume(p: Point3, q: Point3, r: Point3) -> f64 {
     dot(p, cross(q, r))
 }
 
-/// The in-sphere determinant of a tetrahedron as the new point sees it.
+/// The in-sphere determinant of a tetrahedron and the new point.
 pub(super) struct InSphere {
     pub(super) corners: [TranslatedVertex; 4],
     /// The volumes under its facets.

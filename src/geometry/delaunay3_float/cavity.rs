@@ -15,7 +15,8 @@ pub(super) struct Cavity {
     /// Tetrahedra to be replaced.
     pub(super) tetrahedra: Vec<u32>,
     pub(super) walls: Vec<Wall>,
-    /// Tetrahedra that are in the cavity, or not, whatever the values of their spheres; the last entry of one counts.
+    /// Tetrahedra that are in the cavity, or not, whatever the values of their spheres; the last entry of one
+    /// counts.
     pub(super) decided: Vec<(u32, bool)>,
     /// No others are in the cavity.
     pub(super) is_narrow: bool,
@@ -45,7 +46,7 @@ impl Cavity {
         (met / 2 == self.search).then_some(met & 1 == 1)
     }
 
-    /// Takes down what a tetrahedron is.
+    /// Records whether a tetrahedron is in the cavity.
     #[inline(always)]
     pub(super) fn add(&mut self, t: u32, is_inside: bool) {
         self.met[t as usize] = self.search * 2 + u32::from(is_inside);
@@ -58,8 +59,9 @@ impl Cavity {
         self.decided.iter().rev().find(|decided| decided.0 == t).map(|decided| decided.1)
     }
 
-    /// Decides what to change where the point does not see a facet: the tetrahedron behind it is left out, but if that
-    /// is the seed, or the cavity is narrow, the one in front of it is taken in. False if nothing is left to be changed.
+    /// Decides what to change where the point does not see a facet: the tetrahedron behind it is left out,
+    /// but if that is the seed, or the cavity is narrow, the one in front of it is taken in. False if nothing
+    /// is left to be changed.
     pub(super) fn decide(&mut self, seed: u32) -> bool {
         let before = self.decided.len();
         for i in 0..self.walls.len() {

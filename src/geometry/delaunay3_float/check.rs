@@ -40,12 +40,13 @@ pub(super) fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f
     if exact == Sign::Zero {
         stats.wrong_zeros += u64::from(value != 0.0);
     } else {
-        // No sign of one that is not a number is right.
+        // A NaN has no right sign.
         stats.wrong_signs += u64::from(value.is_nan() || Sign::of(value) != exact);
     }
 }
 
-/// Whether `value` is not the in-sphere determinant of points with integer coordinates that are near each other.
+/// Whether `value` is not the in-sphere determinant of points with integer coordinates that are near each
+/// other.
 fn is_rounded([o, a, b, c]: [Point3; 4], p: Point3, value: f64) -> bool {
     let is_integer = |p: Point3| p.iter().all(|x| x.trunc() == *x);
     let differences = [a, b, c, p].map(|q| difference(q, o));
@@ -78,6 +79,6 @@ mod tests {
             assert_eq!(is_rounded([o, a, b, c], p, value), expected, "{scale}");
         }
         let [o, a, b, c] = tetrahedron.map(|p| p.map(|x: f64| x * 0.5));
-        assert!(!is_rounded([o, a, b, c], [1.0; 3], 1e300), "unknown of numbers that are not integers");
+        assert!(!is_rounded([o, a, b, c], [1.0; 3], 1e300), "unknown for coordinates that are not integers");
     }
 }

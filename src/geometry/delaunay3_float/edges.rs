@@ -1,4 +1,4 @@
-//! Which two facets around a cavity share an edge.
+//! Pairs of facets around a cavity that share an edge.
 
 const CLOSED: u32 = u32::MAX;
 
@@ -10,7 +10,7 @@ struct Slot {
     side: u32,
 }
 
-/// What a table of edges says of the side of a facet.
+/// What a table of edges knows of the edge of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shared {
     /// No other side was at this edge so far.
@@ -29,7 +29,7 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    /// Empties the table, and makes room for the edges of a surface of `facets` triangles.
+    /// Empties the table, and makes it large enough for the edges of a surface of `facets` triangles.
     pub(super) fn clear(&mut self, facets: usize) {
         let slots = (4 * facets).next_power_of_two();
         if self.stamp == u32::MAX || self.slots.len() < slots {

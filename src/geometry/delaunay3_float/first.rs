@@ -6,10 +6,11 @@ use crate::delaunay3::Vertex;
 use crate::order::Insertions;
 use crate::predicates::Sign;
 
-/// Four vertices, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a plane.
+/// Four vertices, positively oriented for exact arithmetic and for rounded arithmetic; none if all are in a
+/// plane.
 ///
-/// The first to be inserted, the second, the first that is not collinear with them, the first after that that is not
-/// coplanar.
+/// The first to be inserted, the second, the first that is not collinear with them, the first after that that
+/// is not coplanar.
 pub(super) fn first_tetrahedron(vertices: &[Vertex], mut insertions: Insertions) -> Option<[u32; 4]> {
     let at = |v: u32| vertices[v as usize].at;
     let (a, b) = (insertions.next()?, insertions.next()?);

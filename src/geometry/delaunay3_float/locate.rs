@@ -24,8 +24,8 @@ pub(super) struct Tested {
 }
 
 impl Tested {
-    /// Whether the point is inside or on the sphere. One on the plane of a facet of the hull is not taken to be: the
-    /// tetrahedron on the other side tells.
+    /// Whether the point is inside or on the sphere. One on the plane of a facet of the hull is not taken to
+    /// be: the tetrahedron on the other side tells.
     #[inline(always)]
     fn is_conflict(&self) -> bool {
         self.value > 0.0 || self.value == 0.0 && self.volume > 0.0
@@ -43,8 +43,8 @@ enum Step {
 }
 
 impl State<'_> {
-    /// A tetrahedron whose sphere has `p` inside or on it, or else one that `p` is in; none if rounding led all walks
-    /// astray.
+    /// A tetrahedron whose sphere has `p` inside or on it, or else one that `p` is in; none if rounding led
+    /// all walks astray.
     pub(super) fn locate(&mut self, p: Point3) -> Option<u32> {
         let mut start = self.start;
         for attempt in 0..WALKS_MAX {
@@ -87,7 +87,8 @@ impl State<'_> {
         None
     }
 
-    /// Walks from `t` to the tetrahedron that `p` is in, by determinants alone: an infinite one, if it is outside.
+    /// Walks from `t` to the tetrahedron that `p` is in, by determinants alone: an infinite one, if it is
+    /// outside.
     pub(super) fn containing(&mut self, mut t: u32, p: Point3) -> Option<u32> {
         if !self.mesh.is_finite(t) {
             t = self.mesh.beside_faraway(t);
@@ -141,10 +142,11 @@ impl State<'_> {
         self.mesh.is_beyond(t, side, p)
     }
 
-    /// Whether a point is on the side of `there` of the plane of a facet, by the values of the spheres on both sides.
+    /// Whether a point is on the side of `there` of the plane of a facet, by the values of the spheres on
+    /// both sides.
     ///
-    /// The weights cancel the coefficients of the lift, which are the volumes: what is left is the equation of the plane.
-    /// It is zero if the spheres coincide, or if the point is in the plane.
+    /// The weights cancel the coefficients of the lift, which are the volumes: what is left is the equation
+    /// of the plane. It is zero if the spheres coincide, or if the point is in the plane.
     #[inline(always)]
     fn is_nearer(&mut self, here: Tested, there: Tested) -> bool {
         self.stats.orientation_tests += 1;

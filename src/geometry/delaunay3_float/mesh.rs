@@ -8,7 +8,7 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 /// The faraway point (thesis 4.3), never the first vertex of a tetrahedron.
 pub(super) const FARAWAY: u32 = u32::MAX;
 
-/// In place of the first vertex of a tetrahedron that is no longer there.
+/// Stands for each vertex of a deleted tetrahedron.
 const DELETED: u32 = u32::MAX;
 
 /// A facet of a tetrahedron, `tetrahedron * 4 + corner` with the opposite corner.
@@ -32,7 +32,8 @@ pub(super) fn corner_of(facet: Facet) -> usize {
     (facet & 3) as usize
 }
 
-/// A tetrahedron: its vertices, positively oriented, and for each facet the same one as that of the other tetrahedron.
+/// A tetrahedron: its vertices, positively oriented, and for each facet the same facet of the neighbouring
+/// tetrahedron.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(super) struct Tetrahedron {
@@ -72,7 +73,7 @@ pub(super) struct Mesh<'a> {
     pub(super) tetrahedra: Vec<Tetrahedron>,
     /// Of each tetrahedron, if they are kept.
     spheres: Option<Vec<Sphere>>,
-    /// Tetrahedra that are not there.
+    /// Deleted tetrahedra.
     free: Vec<u32>,
 }
 
@@ -116,7 +117,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Room for a tetrahedron, none if there are too many.
+    /// The place of a new tetrahedron; `None` if there are too many.
     #[inline(always)]
     pub(super) fn slot(&mut self) -> Option<u32> {
         if let Some(slot) = self.free.pop() {
@@ -177,7 +178,7 @@ impl<'a> Mesh<'a> {
         orientation(p, a, b, c) < 0.0
     }
 
-    /// Whether a tetrahedron is there, and not infinite.
+    /// Whether a tetrahedron is finite and not deleted.
     pub(super) fn is_finite(&self, t: u32) -> bool {
         let vertices = &self.tetrahedra[t as usize].vertices;
         vertices[0] != DELETED && faraway_corner(vertices).is_none()

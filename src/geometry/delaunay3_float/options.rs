@@ -2,7 +2,7 @@
 
 use crate::order::{Curve, Sequence};
 
-/// How [`triangulate`] goes about it.
+/// Options of [`triangulate`](super::triangulate).
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// The curve along which points are stored and inserted.

@@ -1,12 +1,12 @@
-//! Where the time of insertions goes.
+//! Time of the phases of insertions.
 
 use super::stats::Seconds;
 use std::time::{Duration, Instant};
 
-/// One insertion of so many is timed: reading the clock takes a while itself.
+/// One insertion in this many is timed: reading the clock takes time itself.
 const SAMPLE: u32 = 8;
 
-/// The parts of an insertion.
+/// The phases of an insertion.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Phase {
     Locate,
@@ -14,7 +14,7 @@ pub(super) enum Phase {
     Update,
 }
 
-/// Time of all insertions, and of the parts of some.
+/// Time of all insertions, and of the phases of a sample of them.
 #[derive(Debug, Default)]
 pub(super) struct PhaseTimer {
     all: Option<Instant>,
@@ -23,7 +23,7 @@ pub(super) struct PhaseTimer {
 }
 
 impl PhaseTimer {
-    /// Starts the time of all.
+    /// Starts the time of all insertions.
     pub(super) fn begin_all(&mut self) {
         self.all = Some(Instant::now());
     }
@@ -34,7 +34,7 @@ impl PhaseTimer {
         self.last = number.is_multiple_of(SAMPLE).then(Instant::now);
     }
 
-    /// A part of it ends.
+    /// A phase of the insertion ends.
     #[inline(always)]
     pub(super) fn end(&mut self, phase: Phase) {
         if let Some(last) = &mut self.last {
@@ -44,7 +44,7 @@ impl PhaseTimer {
         }
     }
 
-    /// All insertions end: divides their time as that of those in the sample.
+    /// Ends the time of all insertions, and divides it among the phases as in the sample.
     pub(super) fn end_all(&mut self, seconds: &mut Seconds) {
         let all = self.all.take().map_or(0.0, |begin| begin.elapsed().as_secs_f64());
         let parts = self.parts.map(|part| part.as_secs_f64());

@@ -1,4 +1,5 @@
-//! The search of a cavity: tetrahedra whose spheres have the new point inside, changed until it sees all facets around.
+//! The search of a cavity: tetrahedra whose spheres have the new point inside, changed until it sees all
+//! facets around.
 
 use super::mesh::{sphere_of, tetrahedron_of};
 use super::phase_timer::Phase;
@@ -12,8 +13,8 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 const SEARCHES_MAX: usize = 20;
 
 impl State<'_> {
-    /// Finds the tetrahedra around `seed` that are in conflict with vertex `v`, and the new ones that are to replace
-    /// them; false if it does not see all facets around, or these are not a sphere.
+    /// Finds the tetrahedra around `seed` that are in conflict with vertex `v`, and the new ones that are to
+    /// replace them; false if it does not see all facets around, or these are not a sphere.
     #[inline(always)]
     pub(super) fn find_star(&mut self, v: u32, seed: u32) -> bool {
         self.search(v, seed);
@@ -26,8 +27,9 @@ impl State<'_> {
         is_seen && self.star.pair(&self.cavity.walls)
     }
 
-    /// Finds a cavity that is not as the values of spheres have it: one around the tetrahedron that the point is in,
-    /// without those that hide facets, or just that tetrahedron; with its neighbour, if the point is on a facet.
+    /// Finds a cavity that is not as the values of spheres have it: one around the tetrahedron that the point
+    /// is in, without those that hide facets, or just that tetrahedron; with its neighbour, if the point is
+    /// on a facet.
     #[cold]
     #[inline(never)]
     pub(super) fn repair_star(&mut self, v: u32, seed: u32) -> bool {
@@ -85,8 +87,8 @@ impl State<'_> {
         self.patience.spend(next * (1 + self.cavity.decided.len()));
     }
 
-    /// Whether `p` is inside or on the sphere of a tetrahedron; ties are broken as in thesis 4.4: if `p` is in the plane
-    /// of a facet of the hull, as for the finite tetrahedron on the other side.
+    /// Whether `p` is inside or on the sphere of a tetrahedron; ties are broken as in thesis 4.4: if `p` is
+    /// in the plane of a facet of the hull, as for the finite tetrahedron on the other side.
     #[inline(always)]
     fn is_in_conflict(&mut self, t: u32, p: Point3) -> bool {
         if !self.cavity.decided.is_empty()

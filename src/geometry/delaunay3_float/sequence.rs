@@ -1,4 +1,5 @@
-//! The order in which points are inserted (thesis 3.4.1): levels of common low bits, and a curve within each level.
+//! The order in which points are inserted (thesis 3.4.1): levels of common low bits, and a curve within each
+//! level.
 
 use super::options::Options;
 use crate::delaunay3::Vertex;

@@ -23,15 +23,17 @@ pub(super) fn orientation(a: Point3, b: Point3, c: Point3, d: Point3) -> f64 {
     dot(difference(b, a), cross(difference(c, a), difference(d, a)))
 }
 
-/// The hyperplane through the lifted vertices of a tetrahedron: the tuple of thesis 3.4.2, for coordinates relative to
-/// the first vertex. That vertex is on the sphere, so the constant of the tuple is zero and not stored, and the high bits
-/// that the coordinates of neighbours share are subtracted off before anything is rounded.
+/// The hyperplane through the lifted vertices of a tetrahedron: the tuple of thesis 3.4.2, for coordinates
+/// relative to the first vertex. That vertex is on the sphere, so the constant of the tuple is zero and not
+/// stored, and the high bits that the coordinates of neighbours share are subtracted off before anything is
+/// rounded.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(32))]
 pub(super) struct Sphere {
     /// Coefficients of the coordinates.
     normal: Point3,
-    /// Coefficient of the lift, negated: six times the volume, zero for the half-space of an infinite tetrahedron.
+    /// Coefficient of the lift, negated: six times the volume, zero for the half-space of an infinite
+    /// tetrahedron.
     pub(super) volume: f64,
 }
 
@@ -55,7 +57,8 @@ impl Sphere {
         Sphere { normal: cross(difference(a, o), difference(b, o)), volume: 0.0 }
     }
 
-    /// Positive if `p` is inside, zero if it is on the sphere: the in-sphere determinant, if `o` is the first vertex.
+    /// Positive if `p` is inside, zero if it is on the sphere: the in-sphere determinant, if `o` is the first
+    /// vertex.
     #[inline(always)]
     pub(super) fn value(&self, o: Point3, p: Point3) -> f64 {
         let d = difference(p, o);

@@ -36,9 +36,9 @@ impl Star {
 
     /// Finds the walls that share an edge: false unless the walls are a sphere.
     ///
-    /// Two walls at each edge, with different corners opposite to it, make the tetrahedra of the star fit together, and one
-    /// at least finite. By Euler's relation the surface is a sphere then, unless it is several that touch, or worse, and
-    /// the number of vertices makes up for it by chance.
+    /// Two walls at each edge, with different corners opposite to it, make the tetrahedra of the star fit
+    /// together, and one at least finite. By Euler's relation the surface is a sphere then, unless it is
+    /// several that touch, or worse, and the number of vertices makes up for it by chance.
     #[inline(always)]
     pub(super) fn pair(&mut self, walls: &[Wall]) -> bool {
         self.number += 1;

@@ -1,4 +1,4 @@
-//! What inserting points works on.
+//! The triangulation while points are inserted.
 
 use super::cavity::Cavity;
 use super::mesh::Mesh;
@@ -9,14 +9,15 @@ use super::stats::Stats;
 use crate::delaunay3::Vertex;
 use spmesh_core::random::Random;
 
-/// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run endless.
+/// Work per point, in tetrahedra, after which walks and cavities are kept short: rounding must not make a run
+/// endless.
 const WORK_PER_POINT: u64 = 10_000;
 
 /// Tetrahedra per walk or cavity until then, and from then on.
 const LONG: usize = 1 << 26;
 const SHORT: usize = 1000;
 
-/// What walks and cavities may cost.
+/// The work that walks and cavities may still cost.
 #[derive(Debug)]
 pub(super) struct Patience {
     left: u64,
@@ -29,14 +30,14 @@ impl Patience {
         count.min(if self.left > 0 { LONG } else { SHORT })
     }
 
-    /// Takes down that as many were visited.
+    /// Records that this many tetrahedra were visited.
     #[inline(always)]
     pub(super) fn spend(&mut self, tetrahedra: usize) {
         self.left = self.left.saturating_sub(tetrahedra as u64);
     }
 }
 
-/// The triangulation of the points inserted so far, and what inserting needs.
+/// The triangulation of the points inserted so far, and the buffers of insertions.
 pub(super) struct State<'a> {
     pub(super) mesh: Mesh<'a>,
     pub(super) options: &'a Options,
@@ -51,7 +52,7 @@ pub(super) struct State<'a> {
 }
 
 impl<'a> State<'a> {
-    /// Nothing inserted but the corners of `first`, which is positively oriented.
+    /// Begins with the corners of `first`, which is positively oriented.
     pub(super) fn new(vertices: &'a [Vertex], options: &'a Options, first: [u32; 4]) -> State<'a> {
         let mesh = Mesh::new(vertices, first, options.cache_spheres);
         State {

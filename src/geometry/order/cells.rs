@@ -10,7 +10,8 @@ const TINY: f64 = f64::from_bits((1023 - 500) << 52);
 pub(super) struct Cells<const D: usize> {
     pub(super) bits: u32,
     lower: [f64; D],
-    /// A power of two that coordinates are multiplied by first, where their differences or the scale would overflow.
+    /// A power of two that coordinates are multiplied by first, where their differences or the scale would
+    /// overflow.
     unit: f64,
     scale: f64,
 }
@@ -19,9 +20,9 @@ impl<const D: usize> Cells<D> {
     /// Most bits per axis: places on a curve have 32 bits.
     pub(super) const BITS_MAX: u32 = u32::BITS / D as u32;
 
-    /// Cells per point that the box of the points is divided into, at least. In space it is more because points may lie
-    /// on surfaces, and because one bit more per axis makes eight times as many; a longer key costs less than more
-    /// points in one cell.
+    /// Cells per point that the box of the points is divided into, at least. In space it is more because
+    /// points may lie on surfaces, and because one bit more per axis makes eight times as many; a longer key
+    /// costs less than more points in one cell.
     const CELLS_PER_POINT: f64 = if D == 2 { 8.0 } else { 64.0 };
 
     /// Cells for `count` points within `extent`, which has at least two different points.
@@ -45,8 +46,8 @@ impl<const D: usize> Cells<D> {
 
     /// The cell of a finite point within the extent.
     ///
-    /// In a tiny extent, coordinates of another axis may overflow if they are all the same: their difference is a
-    /// NaN then, which converts to 0.
+    /// In a tiny extent, coordinates of another axis may overflow if they are all the same: their difference
+    /// is a NaN then, which converts to 0.
     #[inline(always)]
     pub(super) fn of_point(&self, point: [f64; D]) -> [u32; D] {
         let last = (1 << self.bits) - 1;
@@ -55,8 +56,8 @@ impl<const D: usize> Cells<D> {
     }
 }
 
-/// Least bits per axis, from 2, with which a box of these sides, the longest of which is 1, has the `wanted` number of
-/// cells; a side shorter than a cell is as good as one.
+/// Least bits per axis, from 2, with which a box of these sides, the longest of which is 1, has the `wanted`
+/// number of cells; a side shorter than a cell is as good as one.
 fn bits_for<const D: usize>(sides: [f64; D], wanted: f64, bits_max: u32) -> u32 {
     let cells =
         |bits: &u32| sides.iter().map(|side| (side * f64::from(1u32 << bits)).max(1.0)).product::<f64>();

@@ -6,8 +6,8 @@ use spmesh_model::bits::{spread2, spread3};
 /// Boxes in a row of [`Curve::RowMajor`], as a power of two.
 const ROW_BITS: u32 = 3;
 
-/// A curve through all cells of a square or a cube. Those of a part of 2^k cells on each axis follow each other on all
-/// but the last.
+/// A curve through all cells of a square or a cube. Those of a part of 2^k cells on each axis follow each
+/// other on all but the last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Curve {
     /// From each cell to a neighbour of it (Hilbert, 1891).
@@ -15,9 +15,11 @@ pub enum Curve {
     Hilbert,
     /// By the interleaved bits of the axes (Morton, 1966), also called Z-order.
     Morton,
-    /// By the rank of the interleaved bits as a Gray code: one bit changes from cell to cell (Faloutsos, 1988).
+    /// By the rank of the interleaved bits as a Gray code: one bit changes from cell to cell (Faloutsos,
+    /// 1988).
     Gray,
-    /// By the first axis, then the second, then the third: rows of 8 boxes on each axis, and in each box again.
+    /// By the first axis, then the second, then the third: rows of 8 boxes on each axis, and in each box
+    /// again.
     RowMajor,
 }
 
@@ -40,8 +42,8 @@ impl Curve {
     }
 }
 
-/// Row-major order in boxes within boxes, as in thesis 3.4: rows through all cells would be far longer than the space
-/// between points.
+/// Row-major order in boxes within boxes, as in thesis 3.4: rows through all cells would be far longer than
+/// the space between points.
 #[inline(always)]
 fn row_major<const D: usize>(cell: [u32; D], bits: u32) -> u32 {
     let (mut place, mut left) = (0, bits);

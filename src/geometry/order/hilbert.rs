@@ -1,10 +1,10 @@
 //! The Hilbert curve through cells on two, three or four axes.
 //!
-//! Orientations of the curve, and how a cell passes one on to its parts, are those of Hamilton ("Compact Hilbert
-//! indices", 2006), for any number of axes; several bits per axis are looked up at once.
+//! Orientations of the curve, and how a cell passes one on to its parts, are those of Hamilton ("Compact
+//! Hilbert indices", 2006), for any number of axes; several bits per axis are looked up at once.
 
-/// For each orientation of the curve, and some bits of each axis, the first axis above the others: the place on the
-/// curve, above the orientation within that cell.
+/// For each orientation of the curve, and some bits of each axis, the first axis above the others: the place
+/// on the curve, above the orientation within that cell.
 struct Table<const ORIENTATIONS: usize, const CELLS: usize>([[u16; CELLS]; ORIENTATIONS]);
 
 /// Four bits per axis.
@@ -48,7 +48,8 @@ impl Step {
         Step { axes: D as u32, bits: 1 << (4 - D) }
     }
 
-    /// An orientation is by how many axes the curve is rotated, above a bit per axis for whether that is reversed.
+    /// An orientation is by how many axes the curve is rotated, above a bit per axis for whether that is
+    /// reversed.
     const fn orientation_bits(self) -> u32 {
         2 * self.axes - 1
     }

@@ -5,24 +5,24 @@ use crate::predicates::exact_integers::decompose;
 /// The highest level.
 pub const BIT_LEVEL_MAX: u32 = 8;
 
-/// Which lowest bits make a point belong to a level.
+/// The lowest bits that points of a level share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Suffixes {
-    /// On each axis the bit that most points have as their lowest, then the next above that most of those have, and so
-    /// on.
+    /// On each axis the bit that most points have as their lowest, then the next above that most of those
+    /// have, and so on.
     #[default]
     MostCommon,
     /// Zeros.
     Zeros,
 }
 
-/// Levels, from 0 to [`BIT_LEVEL_MAX`], of points by what their coordinates have in common with a suffix per axis: a
-/// point of level k has the k lowest bits of the suffix on every axis. Differences of points of level k and above are
-/// multiples of 2^k, which saves k bits of precision. (Thesis 3.4.1, "bit leveling".)
+/// Levels, from 0 to [`BIT_LEVEL_MAX`], of points by what their coordinates have in common with a suffix per
+/// axis: a point of level k has the k lowest bits of the suffix on every axis. Differences of points of level
+/// k and above are multiples of 2^k, which saves k bits of precision. (Thesis 3.4.1, "bit leveling".)
 ///
-/// Coordinates are taken as integers in two's complement, in the greatest power of two of which all of them are
-/// multiples. Where those would have more than 53 bits, suffixes are zeros, and bits are those of each coordinate's own
-/// significand.
+/// Coordinates are taken as integers in two's complement, in the greatest power of two of which all of them
+/// are multiples. Where those would have more than 53 bits, suffixes are zeros, and bits are those of each
+/// coordinate's own significand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BitLevels<const D: usize> {
     /// The binary logarithm of the unit of the integers.
@@ -62,7 +62,8 @@ fn parts(number: f64) -> (u64, i32) {
     (significand.unsigned_abs(), exponent)
 }
 
-/// Logarithm of the greatest power of two of which all coordinates are multiples, if those have at most 53 bits.
+/// Logarithm of the greatest power of two of which all coordinates are multiples, if those have at most 53
+/// bits.
 fn common_unit<const D: usize>(points: &[[f64; D]]) -> Option<i32> {
     let (mut least, mut greatest) = (i32::MAX, i32::MIN);
     for (significand, exponent) in points.as_flattened().iter().map(|&number| parts(number)) {

@@ -1,7 +1,7 @@
 //! Spatial order of points: along a curve, and the sequence in which they are inserted then.
 //!
-//! A kernel stores distinct points in their order along a [`Curve`], which [`SpatialOrder`] finds, and inserts them in
-//! a [`Sequence`] of their places in that order.
+//! A kernel stores distinct points in their order along a [`Curve`], which [`SpatialOrder`] finds, and
+//! inserts them in a [`Sequence`] of their places in that order.
 
 mod cells;
 mod counting;
@@ -22,13 +22,15 @@ use crate::predicates::{Extent, lexicographic};
 use cells::Cells;
 use radix::{Keyed, RadixSort};
 
-/// Points of one cell are ordered along a finer curve if they are more than this, and lexicographically if not.
+/// Points of one cell are ordered along a finer curve if they are more than this, and lexicographically if
+/// not.
 const FEW: usize = 12;
 
 /// Points on two, three or four axes sorted along a curve; reusable, so that its pages are touched once.
 ///
-/// Points of one cell of the curve are sorted along a curve of their own if they are many, which makes the order as
-/// good where points cluster as elsewhere. Equal points are neighbours in the order, that of least index first.
+/// Points of one cell of the curve are sorted along a curve of their own if they are many, which makes the
+/// order as good where points cluster as elsewhere. Equal points are neighbours in the order, that of least
+/// index first.
 ///
 /// Shape: 16 bytes per point of the greatest set so far, until it is dropped.
 #[derive(Debug, Default)]
@@ -39,8 +41,8 @@ pub struct SpatialOrder {
 impl SpatialOrder {
     /// Indices of `points`, whose extent is `extent`, in their order along `curve`.
     ///
-    /// Domain: two to four axes, finite coordinates, at most 2^32 points. Cost: O(n), and O(m log m) at most for
-    /// every level of m points in one cell.
+    /// Domain: two to four axes, finite coordinates, at most 2^32 points. Cost: O(n), and O(m log m) at most
+    /// for every level of m points in one cell.
     pub fn sort<const D: usize>(
         &mut self,
         points: &[[f64; D]],
@@ -72,8 +74,8 @@ fn for_groups(items: &mut [Keyed], work: impl FnMut(&mut [Keyed])) {
 
 /// Sorts items of equal keys.
 ///
-/// Each level divides the box of the points at least by three on its longer side, so the recursion is no deeper
-/// than the 2,100 binary orders of magnitude of a coordinate allow.
+/// Each level divides the box of the points at least by three on its longer side, so the recursion is no
+/// deeper than the 2,100 binary orders of magnitude of a coordinate allow.
 fn refine<const D: usize>(points: &[[f64; D]], curve: Curve, items: &mut [Keyed]) {
     let point = |item: &Keyed| points[item.index() as usize];
     if items.len() <= FEW {

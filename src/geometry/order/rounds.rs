@@ -1,4 +1,4 @@
-//! Rounds that each spread over a whole set of points.
+//! Rounds of insertion, each of which covers the whole set of points.
 
 /// The stride of the first round is `1 << FIRST`.
 const FIRST: u32 = 9;
@@ -7,17 +7,17 @@ const FIRST: u32 = 9;
 const FACTOR: u32 = 3;
 const _: () = assert!(FIRST.is_multiple_of(FACTOR));
 
-/// The numbers from 0 to `count - 1`, which are places along a curve: every 512th first, then every 64th, every 8th,
-/// and the rest.
+/// The numbers from 0 to `count - 1`, which are places along a curve: every 512th first, then every 64th,
+/// every 8th, and the rest.
 ///
-/// Each round spreads over the whole set and makes an eighth of the next, so that a point finds small simplices around
-/// it, as in a random order; within a round the next point is near.
+/// Each round spreads over the whole set and makes an eighth of the next, so that a point finds small
+/// simplices around it, as in a random order; within a round the next point is near.
 #[derive(Debug, Clone)]
 pub struct Rounds {
     next: usize,
     shift: u32,
     count: usize,
-    /// How many numbers have not come yet.
+    /// How many numbers are still to come.
     left: usize,
 }
 

@@ -1,4 +1,4 @@
-//! In which sequence points along a curve are inserted.
+//! The sequence in which points along a curve are inserted.
 
 use super::counting::sizes_to_starts;
 use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
@@ -34,11 +34,12 @@ impl Sequence {
         })
     }
 
-    /// The numbers of `points`, which are stored along a curve, by their [`BitLevels`], the highest first; those of one
-    /// level in this sequence.
+    /// The numbers of `points`, which are stored along a curve, by their [`BitLevels`], the highest first;
+    /// those of one level in this sequence.
     ///
-    /// All points inserted so far then have as many bits in common as the level of the last one says. Where the
-    /// thesis (3.4.1) has them in "reverse order", it calls level 0 the first, which contradicts its purpose.
+    /// All points inserted so far then have as many bits in common as the level of the last one says. Where
+    /// the thesis (3.4.1) has them in "reverse order", it calls level 0 the first, which contradicts its
+    /// purpose.
     ///
     /// Domain: finite coordinates, at most 2^32 points. Cost: O(n), 5 bytes per point.
     #[must_use]

@@ -2,8 +2,8 @@
 //!
 //! The filters are Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust geometric
 //! predicates", 1997, bounds A): with u = 2^-53 the rounded determinant differs from the exact one by at most
-//! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with every
-//! product replaced by its magnitude, provided that nothing over- or underflows.
+//! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with
+//! every product replaced by its magnitude, provided that nothing over- or underflows.
 
 use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big};
 use robust::Coord;
@@ -76,12 +76,12 @@ fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
 ///
 /// Domain: every coordinate is zero or its magnitude lies in [2^-170, 2^240]. Why this suffices:
 ///
-/// * Underflow. All coordinates are multiples of g = 2^-222, the unit in the last place of 2^-170; so are their
-///   differences and the rounding errors of these. Every product that is formed has at most four such factors,
-///   so every term of an expansion is a multiple of g^4 = 2^-888 and, being above the least subnormal 2^-1074,
-///   exactly representable. The sum of magnitudes is zero (and with it the exact determinant, as a difference
-///   rounds to zero only if it is zero) or at least 2^-888, so that the smallest error bound formed from it, with
-///   a factor near 2^-101, is a normal number.
+/// * Underflow. All coordinates are multiples of g = 2^-222, the unit in the last place of 2^-170; so are
+///   their differences and the rounding errors of these. Every product that is formed has at most four such
+///   factors, so every term of an expansion is a multiple of g^4 = 2^-888 and, being above the least
+///   subnormal 2^-1074, exactly representable. The sum of magnitudes is zero (and with it the exact
+///   determinant, as a difference rounds to zero only if it is zero) or at least 2^-888, so that the smallest
+///   error bound formed from it, with a factor near 2^-101, is a normal number.
 /// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
 ///   multiplies it by 2^27 + 1, and the result stays below 2^996.
 #[derive(Debug, Default)]
@@ -146,11 +146,12 @@ impl Predicates2 for ExpansionPredicates {
     }
 }
 
-/// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk first.
+/// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk
+/// first.
 ///
-/// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two is
-/// then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a lift
-/// at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
+/// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two
+/// is then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a
+/// lift at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
 /// [`ExpansionPredicates`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
 pub struct FiniteFloatPredicates {

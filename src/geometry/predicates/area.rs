@@ -2,14 +2,14 @@
 
 use super::Point2;
 
-/// From this part of the sum of its two products on, a determinant in plain arithmetic is good to about 2^-47: each
-/// product and its factors are off by three roundings of 2^-53.
+/// From this part of the sum of its two products on, a determinant in plain arithmetic is good to about
+/// 2^-47: each product and its factors are off by three roundings of 2^-53.
 const TRUSTED: f64 = 1.0 / 16.0;
 
 /// Signed area of the triangle abc: positive if it is counterclockwise.
 ///
-/// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are zero or have
-/// magnitudes in the range of [`super::ExpansionPredicates`].
+/// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are
+/// zero or have magnitudes in the range of [`super::ExpansionPredicates`].
 #[inline]
 #[must_use]
 pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
@@ -22,7 +22,7 @@ pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {
     exact_area(a, b, c)
 }
 
-/// The same to two units in the last place.
+/// [`area()`] to two units in the last place, and slower.
 #[cold]
 pub fn exact_area(a: Point2, b: Point2, c: Point2) -> f64 {
     0.5 * exact_determinant(a, b, c)
@@ -49,7 +49,8 @@ fn two_sum(p: f64, q: f64) -> [f64; 2] {
     [sum, (p - (sum - of_q)) + (q - of_q)]
 }
 
-/// A sum of at most sixteen numbers, held exactly as parts that do not overlap, the least first (Shewchuk 1997, theorem 10).
+/// A sum of at most sixteen numbers, held exactly as parts that do not overlap, the least first (Shewchuk
+/// 1997, theorem 10).
 #[derive(Default)]
 struct Expansion {
     parts: [f64; 16],
@@ -80,7 +81,8 @@ impl Expansion {
         }
     }
 
-    /// The parts do not overlap, so that adding them from the least on gives the sum but for one rounding or two.
+    /// The parts do not overlap, so that adding them from the least on gives the sum but for one rounding or
+    /// two.
     fn rounded(&self) -> f64 {
         self.parts[..self.count].iter().sum()
     }

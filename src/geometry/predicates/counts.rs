@@ -1,7 +1,7 @@
-//! How many decisions each stage of the predicates took: shows that exactness is cheap.
+//! Number of decisions by each stage of the predicates.
 
-/// Decisions by stage. Every call of `orient2d`, `incircle`, `orient3d` or `insphere` is one decision in exactly one of the
-/// first four.
+/// Decisions by stage. Every call of `orient2d`, `incircle`, `orient3d` or `insphere` is one decision in
+/// exactly one of the first four.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PredicateCounts {
     /// Decided in `f64` because the value exceeds its error bound.

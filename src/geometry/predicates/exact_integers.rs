@@ -1,4 +1,5 @@
-//! Finite `f64` as integers of arbitrary size: they are dyadic rationals, so one power of two makes integers of all of them.
+//! Finite `f64` as integers of arbitrary size: they are dyadic rationals, so one power of two makes integers
+//! of all of them.
 
 use num_bigint::BigInt;
 

@@ -1,6 +1,7 @@
-//! What the choice of arithmetic has to know of a chunk of points.
+//! The properties of a chunk of points that the choice of arithmetic depends on.
 
-/// Bounding box of a chunk of points of the plane, or of space with `D = 3`, and which numbers its coordinates are.
+/// Bounding box of a chunk of points of the plane, or of space with `D = 3`, and which numbers its
+/// coordinates are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent<const D: usize = 2> {
     /// Least coordinate of each axis; `INFINITY` if there is no point.
@@ -45,7 +46,8 @@ impl<const D: usize> Extent<D> {
         extent
     }
 
-    /// Greatest difference of two coordinates of the same axis, rounded; may be infinite. Zero if there is no point.
+    /// Greatest difference of two coordinates of the same axis, rounded; may be infinite. Zero if there is no
+    /// point.
     #[must_use]
     pub fn max_difference(&self) -> f64 {
         (0..D).fold(0.0, |greatest, axis| greatest.max(self.upper[axis] - self.lower[axis]))

@@ -3,11 +3,11 @@
 //! Bounds. Let D be the greatest difference of two coordinates of an axis; all arguments are differences.
 //!
 //! * `orient2d` is a difference of two products: every intermediate is at most 2 D^2.
-//! * `incircle` is a sum of three products of a lift (at most 2 D^2) and a cross product (at most 2 D^2): every
-//!   intermediate is at most 12 D^4.
+//! * `incircle` is a sum of three products of a lift (at most 2 D^2) and a cross product (at most 2 D^2):
+//!   every intermediate is at most 12 D^4.
 //!
-//! Up to D = 2^41 the differences themselves are exact in `f64`: the difference of two integers is an integer,
-//! and below 2^53 it is representable, so the rounded difference is the exact one.
+//! Up to D = 2^41 the differences themselves are exact in `f64`: the difference of two integers is an
+//! integer, and below 2^53 it is representable, so the rounded difference is the exact one.
 
 use super::adaptive::{Estimate, difference};
 use super::{Numbers, Point2, PredicateCounts, Predicates2, Sign};
@@ -73,8 +73,9 @@ pub struct Int128;
 
 /// Two `i128`. Domain: differences of at most 2^41 (the full range of an `i32` is below 2^32).
 ///
-/// A lift is at most 2^83. Written as `high * 2^42 + low` with `low < 2^42` it has `high <= 2^41`; a cross product
-/// is at most 2^83; so the sums of three products `high * cross` and `low * cross` stay below 3 * 2^125 < 2^127.
+/// A lift is at most 2^83. Written as `high * 2^42 + low` with `low < 2^42` it has `high <= 2^41`; a cross
+/// product is at most 2^83; so the sums of three products `high * cross` and `low * cross` stay below 3 *
+/// 2^125 < 2^127.
 #[derive(Debug, Default)]
 pub struct IntPair;
 
@@ -129,9 +130,9 @@ impl Width for IntPair {
 
 /// Filter in `f64`, then integers of the given width.
 ///
-/// The sum of magnitudes that the filter needs anyway is a sum of non-negative integers; if it comes out below
-/// 2^53 no intermediate of it, and so none of the determinant, was rounded: the value is exact, zero included.
-/// This decides nearly all tests between neighbours, however wide the chunk is.
+/// The sum of magnitudes that the filter needs anyway is a sum of non-negative integers; if it comes out
+/// below 2^53 no intermediate of it, and so none of the determinant, was rounded: the value is exact, zero
+/// included. This decides nearly all tests between neighbours, however wide the chunk is.
 #[derive(Debug, Default)]
 pub struct IntegerPredicates<W> {
     counts: PredicateCounts,

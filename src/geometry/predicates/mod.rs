@@ -1,9 +1,18 @@
-//! Exact predicates of computational geometry. They know no mesh.
+//! Exact predicates of computational geometry, independent of any mesh.
 //!
-//! The sign is never wrong; only the price differs. [`Arithmetic::of`] looks once at the coordinates of a chunk
-//! and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs an algorithm
-//! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`FiniteFloatPredicates`]. In space,
-//! [`Arithmetic3`] and [`FiniteFloatPredicates3`] do the same. Where a size is wanted and not a sign, [`area()`] is accurate.
+//! All arithmetics give the right sign; they differ in cost. [`Arithmetic::of`] examines the coordinates of a
+//! chunk once and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs
+//! an algorithm monomorphised for it. A caller without a chunk, or with a few calls only, uses
+//! [`FiniteFloatPredicates`]. In space, [`Arithmetic3`] and [`FiniteFloatPredicates3`] do the same.
+//! [`area()`] computes an accurate area.
+//!
+//! ```
+//! use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign};
+//!
+//! // In `f64`, all products of this determinant underflow to zero.
+//! let sign = FiniteFloatPredicates::default().orient2d([0.0, 0.0], [1e-200, 1e-200], [1e-200, 2e-200]);
+//! assert_eq!(sign, Sign::Positive);
+//! ```
 
 mod adaptive;
 mod area;
@@ -85,14 +94,14 @@ pub trait Predicates2 {
 
     /// [`Predicates2::incircle`] with ties broken by the canonical perturbation: never zero in its domain.
     ///
-    /// The lift of each point is raised by an infinitesimal that depends on its lexicographic rank (x, then y);
-    /// the larger rank dominates. Only the order of the four coordinates matters, so the answer does not depend
-    /// on the order of insertion.
+    /// The lift of each point is raised by an infinitesimal that depends on its lexicographic rank (x, then
+    /// y); the larger rank dominates. Only the order of the four coordinates matters, so the answer does not
+    /// depend on the order of insertion.
     ///
     /// Domain: abc counterclockwise, all four points distinct.
     ///
-    /// Source: Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations", 2011;
-    /// same rule as CGAL's `Delaunay_triangulation_2`.
+    /// Source: Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations",
+    /// 2011; same rule as CGAL's `Delaunay_triangulation_2`.
     #[inline(always)]
     fn incircle_perturbed(&mut self, a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
         match self.incircle(a, b, c, d) {
@@ -108,7 +117,7 @@ pub trait Predicates2 {
     fn counts_mut(&mut self) -> &mut PredicateCounts;
 }
 
-/// An algorithm that wants predicates and does not care for their arithmetic.
+/// An algorithm that works with predicates of any arithmetic.
 pub trait WithPredicates2 {
     /// What it computes.
     type Output;
@@ -121,11 +130,11 @@ pub trait WithPredicates2 {
 pub enum Arithmetic {
     /// Integers whose differences are small enough for plain `f64` to be exact throughout.
     SmallInteger,
-    /// Integers; what the filter leaves is decided in `i64`.
+    /// Integers; `i64` decides where the filter does not.
     Integer64,
-    /// Integers; what the filter leaves is decided in `i128`.
+    /// Integers; `i128` decides where the filter does not.
     Integer128,
-    /// Integers, a full `i32` range and beyond; what the filter leaves is decided in pairs of `i128`.
+    /// Integers of the full `i32` range and beyond; pairs of `i128` decide where the filter does not.
     IntegerPair,
     /// Floating point in the range where expansions neither over- nor underflow.
     Expansion,

@@ -1,4 +1,4 @@
-//! The canonical perturbation: how four cocircular or five cospherical points are told apart.
+//! The canonical perturbation, which decides ties between four cocircular or five cospherical points.
 
 use super::{Point2, Point3, Predicates2, Predicates3, Sign, big};
 use std::cmp::Ordering;
@@ -20,10 +20,10 @@ pub fn lexicographic<const D: usize>(a: [f64; D], b: [f64; D]) -> Ordering {
 
 /// In-circle sign of four distinct cocircular points, abc counterclockwise, under the perturbation.
 ///
-/// The point of largest rank dominates. If it is d, its lift rises above the plane of the others: outside.
-/// If it is a vertex of the triangle, the derivative of the determinant in its lift is the orientation of the
-/// triangle with that vertex replaced by d. No three of four distinct points of a circle are collinear, so that
-/// orientation is never zero and smaller ranks are never asked.
+/// The point of largest rank dominates. If it is d, its lift rises above the plane of the others: outside. If
+/// it is a vertex of the triangle, the derivative of the determinant in its lift is the orientation of the
+/// triangle with that vertex replaced by d. No three of four distinct points of a circle are collinear, so
+/// that orientation is never zero and smaller ranks never matter.
 #[cold]
 pub(super) fn cocircular<P: Predicates2 + ?Sized>(
     predicates: &mut P,
@@ -49,9 +49,10 @@ pub(super) fn cocircular<P: Predicates2 + ?Sized>(
 
 /// In-sphere sign of five distinct cospherical points, abcd positively oriented, under the perturbation.
 ///
-/// As in the plane, the point of largest rank dominates, but a vertex does not decide if the tetrahedron with that
-/// vertex replaced by e is flat: the next rank does. It always decides. If e lay in the planes of two facets it would
-/// be on the line of the edge that these share, and on the sphere, so equal to an end of the edge.
+/// As in the plane, the point of largest rank dominates, but a vertex does not decide if the tetrahedron with
+/// that vertex replaced by e is flat: the next rank does. It always decides. If e lay in the planes of two
+/// facets it would be on the line of the edge that these share, and on the sphere, so equal to an end of the
+/// edge.
 #[inline(never)]
 pub(super) fn cospherical<P: Predicates3 + ?Sized>(
     predicates: &mut P,

@@ -1,37 +1,40 @@
 //! Conservative test whether a circumscribing ball lies in a box: true only if it certainly does.
 //!
-//! [`super::circle`] in space: the error bounds of thesis 5.7, which treats circles, carried over to spheres. Input is
-//! any f64, or integers; coefficients are taken about one vertex of the tetrahedron, which keeps them small.
+//! [`super::circle`] in space: the error bounds of thesis 5.7, which treats circles, carried over to spheres.
+//! Input is any f64, or integers; coefficients are taken about one vertex of the tetrahedron, which keeps
+//! them small.
 //!
 //! # Derivation
 //!
-//! Write `u = 2^-53`, hats for computed values, and take vertex `a` as origin, so that `b`, `c` and `d` stand for
-//! differences. Every bound below is rounded up in its constant by one at least, which absorbs all terms of order `u^2`,
-//! the rounding of the sums of magnitudes `n` among them; each bound that is itself computed in floating point is
-//! multiplied by [`SLACK`], which is far more than its few roundings.
+//! Write `u = 2^-53`, hats for computed values, and take vertex `a` as origin, so that `b`, `c` and `d` stand
+//! for differences. Every bound below is rounded up in its constant by one at least, which absorbs all terms
+//! of order `u^2`, the rounding of the sums of magnitudes `n` among them; each bound that is itself computed
+//! in floating point is multiplied by [`SLACK`], which is far more than its few roundings.
 //!
 //! * *Differences*: relative error at most `u` for f64 input, none for integers below 2^53.
-//! * *Squared lengths* `p = |b|^2`, `q = |c|^2`, `r = |d|^2`: sums of three squares, nothing cancels. Each square has the
-//!   errors of two factors and a rounding, two sums round: relative error `5 u`; for exact differences `3 u`.
-//! * *Minors*, the components of `X = c x d`, `Y = d x b`, `Z = b x c`, with `n` the sum of the magnitudes of the two
-//!   products: two differences and a rounding per product, one rounding of the result: `4 u n`; for exact differences
-//!   `2 u n`.
-//! * *Sixfold volume* `v = b . X`, with `n_v = |b_x| n_Xx + |b_y| n_Xy + |b_z| n_Xz`: per product the error of a
-//!   difference, of a minor, and a rounding; two sums round: `1 + 4 + 1 + 2`, so `|v - v^| <= 9 u n_v^`; for exact
-//!   differences `0 + 2 + 1 + 2`, so `6 u n_v^`.
-//! * *Numerators* `m = p X + q Y + r Z`, per axis, with `n = p n_X + q n_Y + r n_Z`: per product a squared length, a minor,
-//!   a rounding; two sums round: `5 + 4 + 1 + 2`, so `|m - m^| <= 13 u n^`; for exact differences `3 + 2 + 1 + 2`, so
-//!   `9 u n^`.
-//! * *Underflow*: only where the three squared lengths are between 2^-200 and 2^200 is anything claimed. Then nothing
-//!   overflows, and a product that underflows errs by 2^-1075 at most: two of them in a minor, which is multiplied by
-//!   2^200 at most, and three more in sums and squares. [`UNDERFLOW`] covers all of it many times over.
-//! * *Centre* `o = m / 2v` relative to `a`. With `E_v < |v^|`,
-//!   `|m/2v - m^/2v^| <= (E_m + 2 |o^| E_v) / 2 (|v^| - E_v)`, and the product with a rounded reciprocal adds `2 u |o^|`.
-//!   If `|v^| <= 2 E_v` nothing is claimed.
-//! * *Radius* `|o| <= |o^| + E_x + E_y + E_z`, and the computed `|o^|` is off by less than `4 u |o^|`. An underflow of its
-//!   squares is far below the rest, as the radius is half a side at least.
-//! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of the
-//!   magnitudes; `4 u` times that sum covers them.
+//! * *Squared lengths* `p = |b|^2`, `q = |c|^2`, `r = |d|^2`: sums of three squares, nothing cancels. Each
+//!   square has the errors of two factors and a rounding, two sums round: relative error `5 u`; for exact
+//!   differences `3 u`.
+//! * *Minors*, the components of `X = c x d`, `Y = d x b`, `Z = b x c`, with `n` the sum of the magnitudes of
+//!   the two products: two differences and a rounding per product, one rounding of the result: `4 u n`; for
+//!   exact differences `2 u n`.
+//! * *Sixfold volume* `v = b . X`, with `n_v = |b_x| n_Xx + |b_y| n_Xy + |b_z| n_Xz`: per product the error
+//!   of a difference, of a minor, and a rounding; two sums round: `1 + 4 + 1 + 2`, so `|v - v^| <= 9 u n_v^`;
+//!   for exact differences `0 + 2 + 1 + 2`, so `6 u n_v^`.
+//! * *Numerators* `m = p X + q Y + r Z`, per axis, with `n = p n_X + q n_Y + r n_Z`: per product a squared
+//!   length, a minor, a rounding; two sums round: `5 + 4 + 1 + 2`, so `|m - m^| <= 13 u n^`; for exact
+//!   differences `3 + 2 + 1 + 2`, so `9 u n^`.
+//! * *Underflow*: only where the three squared lengths are between 2^-200 and 2^200 is anything claimed. Then
+//!   nothing overflows, and a product that underflows errs by 2^-1075 at most: two of them in a minor, which
+//!   is multiplied by 2^200 at most, and three more in sums and squares. [`UNDERFLOW`] covers all of it many
+//!   times over.
+//! * *Centre* `o = m / 2v` relative to `a`. With `E_v < |v^|`, `|m/2v - m^/2v^| <= (E_m + 2 |o^| E_v) / 2
+//!   (|v^| - E_v)`, and the product with a rounded reciprocal adds `2 u |o^|`. If `|v^| <= 2 E_v` nothing is
+//!   claimed.
+//! * *Radius* `|o| <= |o^| + E_x + E_y + E_z`, and the computed `|o^|` is off by less than `4 u |o^|`. An
+//!   underflow of its squares is far below the rest, as the radius is half a side at least.
+//! * *Sides*: `a + o + r` is summed in floating point with three roundings, each below `u` times the sum of
+//!   the magnitudes; `4 u` times that sum covers them.
 
 use super::Point3;
 use spmesh_model::bounds::Region;
@@ -63,11 +66,12 @@ impl SphereBounds {
     /// Bounds for integer coordinates below 2^52 in magnitude, whose differences are exact.
     pub const INTEGER: SphereBounds = SphereBounds { volume: 6.0 * U, numerator: 9.0 * U };
 
-    /// Whether the closed ball bounded by the sphere through four points certainly lies in the open interior of
-    /// `region`, so that no point outside of the half-open region lies in it or on it.
+    /// Whether the closed ball bounded by the sphere through four points certainly lies in the open interior
+    /// of `region`, so that no point outside of the half-open region lies in it or on it.
     ///
-    /// May answer false for a ball that is inside; never true for one that is not. Sides at infinity hold everything back
-    /// from nothing. Of points more than 2^100 or less than 2^-100 apart nothing is ever claimed.
+    /// May answer false for a ball that is inside; never true for one that is not. Sides at infinity hold
+    /// everything back from nothing. Of points more than 2^100 or less than 2^-100 apart nothing is ever
+    /// claimed.
     ///
     /// Source: thesis 5.4 and 5.7; the module's text has the derivation.
     #[inline]

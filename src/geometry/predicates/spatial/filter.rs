@@ -2,51 +2,54 @@
 //!
 //! # Derivation
 //!
-//! Write u = 2^-53. Both determinants are sums of products of exact differences of coordinates. Evaluated in `f64`,
-//! each of these products comes with a factor (1 + d1)(1 + d2)..., |di| <= u, one for each rounding on its way into
-//! the sum; with at most n of them, the value is off by at most n u (1 + 2 n u) S, where S is the sum of the
-//! magnitudes of the products. Fused operations round less often. In whatever order sums are taken, and for every
-//! choice of the 2 by 2 minors, n is at most
+//! Write u = 2^-53. Both determinants are sums of products of exact differences of coordinates. Evaluated in
+//! `f64`, each of these products comes with a factor (1 + d1)(1 + d2)..., |di| <= u, one for each rounding on
+//! its way into the sum; with at most n of them, the value is off by at most n u (1 + 2 n u) S, where S is
+//! the sum of the magnitudes of the products. Fused operations round less often. In whatever order sums are
+//! taken, and for every choice of the 2 by 2 minors, n is at most
 //!
-//! * `orient3d`, a cross product times a vector: 3 differences; product and difference of the minor; product with the
-//!   third factor, and 2 sums: 8.
-//! * `insphere`, four products of a square and an `orient3d` of the other three: 5 differences; product and 2 sums of
-//!   the square; 5 of the determinant without its differences; product with the square, and 3 sums: 17.
+//! * `orient3d`, a cross product times a vector: 3 differences; product and difference of the minor; product
+//!   with the third factor, and 2 sums: 8.
+//! * `insphere`, four products of a square and an `orient3d` of the other three: 5 differences; product and 2
+//!   sums of the square; 5 of the determinant without its differences; product with the square, and 3 sums:
+//!   17.
 //!
 //! ## In terms of the magnitudes
 //!
-//! The same sum with every product replaced by its magnitude comes out as S^ >= (1 - n u) S. So the value has the
-//! sign of the exact one if its magnitude is more than n u (1 + 2^-40) S^, the 2^-40 being far more than what was
-//! left out. This is the filter of [`Estimate`].
+//! The same sum with every product replaced by its magnitude comes out as S^ >= (1 - n u) S. So the value has
+//! the sign of the exact one if its magnitude is more than n u (1 + 2^-40) S^, the 2^-40 being far more than
+//! what was left out. This is the filter of [`Estimate`].
 //!
 //! ## In terms of the lengths
 //!
-//! The magnitudes of the products of a determinant with rows p, q, r sum up to the permanent of the magnitudes. A
-//! permanent is linear in each row and symmetric in the rows, so its greatest value for rows of length 1 is attained
-//! where all rows are equal (Banach, 1938): 6 xyz <= 6 / 3^1.5. Hence S <= 2/sqrt(3) |p| |q| |r| for `orient3d`, and with
-//! M the greatest square of a length, S <= 4 * 2/sqrt(3) M^2.5 for `insphere`. Of the squares that were computed, 5
-//! roundings each, M^2.5 is at most m^2.5 (1 + 13 u).
+//! The magnitudes of the products of a determinant with rows p, q, r sum up to the permanent of the
+//! magnitudes. A permanent is linear in each row and symmetric in the rows, so its greatest value for rows of
+//! length 1 is attained where all rows are equal (Banach, 1938): 6 xyz <= 6 / 3^1.5. Hence S <= 2/sqrt(3) |p|
+//! |q| |r| for `orient3d`, and with M the greatest square of a length, S <= 4 * 2/sqrt(3) M^2.5 for
+//! `insphere`. Of the squares that were computed, 5 roundings each, M^2.5 is at most m^2.5 (1 + 13 u).
 //!
-//! So |value - exact| <= 8 u * 2/sqrt(3) sqrt(k l m) (1 + 100 u), and <= 17 u * 8/sqrt(3) m^2.5 (1 + 100 u). The bounds
-//! are on the squares, which saves a root: 64 * 4/3 u^2 k l m, and 289 * 64/3 u^2 m^5. Their constants are rounded up by
-//! one part in 10^4, which covers these 100 u and the roundings of both sides of the comparison.
+//! So |value - exact| <= 8 u * 2/sqrt(3) sqrt(k l m) (1 + 100 u), and <= 17 u * 8/sqrt(3) m^2.5 (1 + 100 u).
+//! The bounds are on the squares, which saves a root: 64 * 4/3 u^2 k l m, and 289 * 64/3 u^2 m^5. Their
+//! constants are rounded up by one part in 10^4, which covers these 100 u and the roundings of both sides of
+//! the comparison.
 //!
 //! ## Overflow and underflow
 //!
-//! * Overflow. If the right side is infinite or a NaN, or `value` is a NaN, the comparison is false. If it is finite,
-//!   m^2.5 < 2^512 times a small constant, and nothing on the way to the value has overflown; should only the square of
-//!   the value overflow, the comparison is rightly true. For `orient3d` the same holds in its domain, where
-//!   k l < 2^808 does not overflow.
-//! * Underflow, `insphere`, any finite coordinates. Differences and sums do not underflow, a product that does is off by
-//!   at most 2^-1075. If m < 2^-202, the value is below 5 * 2^-505 < 2^-500, and the comparison with [`TINY`] = 2^-1000
-//!   is false. Else the errors of products and what they are multiplied by are in all below 2^-1069 max(1, m^1.5), which
-//!   is less than 2^-500 u m^2.5. The fifth power of m does not underflow, and that its product with the bound may is
-//!   nothing compared to `TINY`.
-//! * Underflow, `orient3d`. With k = l = m any finite coordinates are fine, as before: below m = 2^-334 the comparison is
-//!   false, above it errors of 2^-1071 max(1, sqrt(m)) do not matter, and the cube of m does not underflow. With
-//!   different squares, coordinates have to be in the domain of [`super::ExpansionPredicates3`] or integers: all are
-//!   multiples of 2^-184, squares are zero or at least 2^-368, so that k l does not underflow, and whether its product
-//!   with m does is nothing compared to `TINY`.
+//! * Overflow. If the right side is infinite or a NaN, or `value` is a NaN, the comparison is false. If it is
+//!   finite, m^2.5 < 2^512 times a small constant, and nothing on the way to the value has overflown; should
+//!   only the square of the value overflow, the comparison is rightly true. For `orient3d` the same holds in
+//!   its domain, where k l < 2^808 does not overflow.
+//! * Underflow, `insphere`, any finite coordinates. Differences and sums do not underflow, a product that
+//!   does is off by at most 2^-1075. If m < 2^-202, the value is below 5 * 2^-505 < 2^-500, and the
+//!   comparison with [`TINY`] = 2^-1000 is false. Else the errors of products and what they are multiplied by
+//!   are in all below 2^-1069 max(1, m^1.5), which is less than 2^-500 u m^2.5. The fifth power of m does not
+//!   underflow, and that its product with the bound may is nothing compared to `TINY`.
+//! * Underflow, `orient3d`. With k = l = m any finite coordinates are fine, as before: below m = 2^-334 the
+//!   comparison is false, above it errors of 2^-1071 max(1, sqrt(m)) do not matter, and the cube of m does
+//!   not underflow. With different squares, coordinates have to be in the domain of
+//!   [`super::ExpansionPredicates3`] or integers: all are multiples of 2^-184, squares are zero or at least
+//!   2^-368, so that k l does not underflow, and whether its product with m does is nothing compared to
+//!   `TINY`.
 
 use crate::predicates::Point3;
 use crate::predicates::adaptive::{Estimate, UNIT_ROUNDOFF};
@@ -55,26 +58,30 @@ const SLACK: f64 = 1.0 + 1.0 / (1u64 << 40) as f64;
 const ORIENT3D_BOUND: f64 = 8.0 * UNIT_ROUNDOFF * SLACK;
 const INSPHERE_BOUND: f64 = 17.0 * UNIT_ROUNDOFF * SLACK;
 
-/// [`orient3d_is_certain`] if the square of the value is more than this times the squares of the three lengths.
+/// [`orient3d_is_certain`] if the square of the value is more than this times the squares of the three
+/// lengths.
 pub(crate) const ORIENT3D_SQUARED_BOUND: f64 = 64.0 * 4.0 / 3.0 * 1.0001 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
 
-/// [`insphere_is_certain`] if the square of the value is more than this times the fifth power of the greatest square.
+/// [`insphere_is_certain`] if the square of the value is more than this times the fifth power of the greatest
+/// square.
 pub(crate) const INSPHERE_SQUARED_BOUND: f64 = 289.0 * 64.0 / 3.0 * 1.0001 * UNIT_ROUNDOFF * UNIT_ROUNDOFF;
 
 /// 2^-1000: added to the right side, makes the comparison false where products underflow.
 pub(crate) const TINY: f64 = f64::from_bits((1023 - 1000) << 52);
 
-/// Whether a computed det(p, q, r) of rounded differences has the sign of the exact one, given the product of the
-/// computed squares of their lengths. The squares are multiplied one by one, or one is taken to the third power.
+/// Whether a computed det(p, q, r) of rounded differences has the sign of the exact one, given the product of
+/// the computed squares of their lengths. The squares are multiplied one by one, or one is taken to the third
+/// power.
 ///
-/// Domain: numbers that are not [`super::Numbers::FiniteFloats`]; any if the product is a third power of the greatest square.
+/// Domain: numbers that are not [`super::Numbers::FiniteFloats`]; any if the product is a third power of the
+/// greatest square.
 #[inline(always)]
 pub(crate) fn orient3d_is_certain(value: f64, squares: f64) -> bool {
     value * value > ORIENT3D_SQUARED_BOUND * squares + TINY
 }
 
-/// Whether the in-sphere determinant, computed of differences to one of the points, has the sign of the exact one, given
-/// the greatest of the computed squares of their lengths.
+/// Whether the in-sphere determinant, computed of differences to one of the points, has the sign of the exact
+/// one, given the greatest of the computed squares of their lengths.
 ///
 /// Domain: any; false where a coordinate is a NaN.
 #[inline(always)]

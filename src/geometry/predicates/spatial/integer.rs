@@ -1,17 +1,17 @@
 //! Predicates of integer coordinates, in the narrowest arithmetic that is exact for the chunk.
 //!
-//! Bounds. Let D be the greatest difference of two coordinates of an axis, so that all points lie in a cube of side
-//! D. The magnitude of a determinant of differences to one of the points is convex in every point, so it is greatest
-//! with all points in corners:
+//! Bounds. Let D be the greatest difference of two coordinates of an axis, so that all points lie in a cube
+//! of side D. The magnitude of a determinant of differences to one of the points is convex in every point, so
+//! it is greatest with all points in corners:
 //!
 //! * A 2 by 2 minor is twice the area of a triangle in a square: at most D^2.
-//! * `orient3d` is six times the volume of a tetrahedron in the cube: at most 2 D^3. On the way, it is a sum of three
-//!   products of a minor and a difference, each at most D^3: at most 3 D^3.
-//! * `insphere` is a sum of four products of a square (at most 3 D^2) and an `orient3d` (at most 2 D^3): every
-//!   intermediate is at most 24 D^5.
+//! * `orient3d` is six times the volume of a tetrahedron in the cube: at most 2 D^3. On the way, it is a sum
+//!   of three products of a minor and a difference, each at most D^3: at most 3 D^3.
+//! * `insphere` is a sum of four products of a square (at most 3 D^2) and an `orient3d` (at most 2 D^3):
+//!   every intermediate is at most 24 D^5.
 //!
-//! The differences themselves are exact in `f64`: the difference of two integers is an integer, and below 2^53 it is
-//! representable, so the rounded difference is the exact one.
+//! The differences themselves are exact in `f64`: the difference of two integers is an integer, and below
+//! 2^53 it is representable, so the rounded difference is the exact one.
 
 use super::float::differences_from;
 use super::{Int64, Int128, Numbers, Point3, PredicateCounts, Predicates3, Sign};
@@ -106,9 +106,9 @@ native_width!(Int128, i64, i128, 2.34e7);
 
 /// Filter in `f64`, then integers of the given width.
 ///
-/// The sum of magnitudes that the filter needs anyway is a sum of products of non-negative integers; if it comes out
-/// below 2^53 no intermediate of it was rounded, but for factors of zero, and so none of the determinant: the value is
-/// exact, zero included.
+/// The sum of magnitudes that the filter needs anyway is a sum of products of non-negative integers; if it
+/// comes out below 2^53 no intermediate of it was rounded, but for factors of zero, and so none of the
+/// determinant: the value is exact, zero included.
 #[derive(Debug, Default)]
 pub struct IntegerPredicates3<W> {
     counts: PredicateCounts,

@@ -1,7 +1,7 @@
 //! The predicates of space, as [`super::Predicates2`] and [`super::Arithmetic`] are those of the plane.
 //!
-//! A tetrahedron abcd is positively oriented if det(b - a, c - a, d - a) > 0: seen from d, the triangle abc is
-//! counterclockwise; the thumb of the right hand points to d if the fingers go from a to b to c.
+//! A tetrahedron abcd is positively oriented if det(b - a, c - a, d - a) > 0: seen from d, the triangle abc
+//! is counterclockwise; the thumb of the right hand points to d if the fingers go from a to b to c.
 
 pub(crate) mod filter;
 mod float;
@@ -27,14 +27,14 @@ pub trait Predicates3 {
 
     /// [`Predicates3::insphere`] with ties broken by the canonical perturbation: never zero in its domain.
     ///
-    /// The lift of each point is raised by an infinitesimal that depends on its lexicographic rank (x, then y, then z);
-    /// the larger rank dominates. Only the order of the coordinates matters, so the answer does not depend on the order
-    /// of insertion, and since no point is moved in space, no tetrahedron is flat.
+    /// The lift of each point is raised by an infinitesimal that depends on its lexicographic rank (x, then
+    /// y, then z); the larger rank dominates. Only the order of the coordinates matters, so the answer does
+    /// not depend on the order of insertion, and since no point is moved in space, no tetrahedron is flat.
     ///
     /// Domain: abcd positively oriented, all five points distinct.
     ///
-    /// Source: Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations", 2011;
-    /// same rule as CGAL's `Delaunay_triangulation_3`.
+    /// Source: Devillers and Teillaud, "Perturbations for Delaunay and weighted Delaunay 3D triangulations",
+    /// 2011; same rule as CGAL's `Delaunay_triangulation_3`.
     #[inline(always)]
     fn insphere_perturbed(&mut self, a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
         match self.insphere(a, b, c, d, e) {
@@ -50,7 +50,7 @@ pub trait Predicates3 {
     fn counts_mut(&mut self) -> &mut PredicateCounts;
 }
 
-/// An algorithm that wants predicates of space and does not care for their arithmetic.
+/// An algorithm that works with predicates of space of any arithmetic.
 pub trait WithPredicates3 {
     /// What it computes.
     type Output;
@@ -63,9 +63,9 @@ pub trait WithPredicates3 {
 pub enum Arithmetic3 {
     /// Integers whose differences are small enough for plain `f64` to be exact throughout.
     SmallInteger,
-    /// Integers; what the filter leaves is decided in `i64`.
+    /// Integers; `i64` decides where the filter does not.
     Integer64,
-    /// Integers; what the filter leaves is decided in `i128`.
+    /// Integers; `i128` decides where the filter does not.
     Integer128,
     /// Wider integers, and floating point in the range where expansions neither over- nor underflow.
     Expansion,
