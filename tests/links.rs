@@ -105,7 +105,9 @@ fn anchors(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (_, line) in prose(text) {
         let level = line.bytes().take_while(|&byte| byte == b'#').count();
-        let Some(title) = line[level..].strip_prefix(' ').filter(|_| (1..=6).contains(&level)) else { continue };
+        let Some(title) = line[level..].strip_prefix(' ').filter(|_| (1..=6).contains(&level)) else {
+            continue;
+        };
         let anchor = anchor_of(title);
         let count = counts.entry(anchor.clone()).or_default();
         found.push(if *count == 0 { anchor } else { format!("{anchor}-{count}") });

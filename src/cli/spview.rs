@@ -20,7 +20,7 @@ use spmesh_core::system;
 use spmesh_io::raster::Light;
 use spmesh_io::source::name_of;
 use spmesh_stream::{Kind, StreamReader};
-use spmesh_view::{Fill, Form, Moments, Options, Picture, Survey, When};
+use spmesh_view::{Extent, Fill, Form, Moments, Options, Picture, When};
 use tee::Tee;
 
 const TOOL: &str = "spview";
@@ -179,10 +179,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let (input, name) = open_input(&flags.input)?;
     let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
     let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
-    let survey = flags.survey(&reader)?;
-    options.surveyed = survey.and_then(|survey| survey.bounds);
+    let extent = flags.extent(&reader)?;
+    options.extent = extent.and_then(|extent| extent.bounds);
     let moments =
-        Moments { at: flags.moment(&reader, survey)?, every: flags.snapshot.map(|Every(count)| count) };
+        Moments { at: flags.moment(&reader, extent)?, every: flags.snapshot.map(|Every(count)| count) };
     let mut progress = Progress::new(&flags.common, "drawing", reader.header().points);
     let mut take = |picture: &Picture| outputs.put(picture);
     let drawn = spmesh_view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
@@ -241,7 +241,7 @@ impl Flags {
     }
 
     /// Reads a file to its end, if its header does not say what is asked for.
-    fn survey<R: Read>(&self, reader: &StreamReader<R>) -> Result<Option<Survey>> {
+    fn extent<R: Read>(&self, reader: &StreamReader<R>) -> Result<Option<Extent>> {
         let header = reader.header();
         if header.kind.has_knots()
             || header.kind.is_4d()
@@ -258,11 +258,11 @@ impl Flags {
         let name = name_of(&self.input);
         let file = File::open(&self.input).map_err(|error| Error::io("opening", error).of_input(&name))?;
         let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, file), name)?;
-        spmesh_view::survey(&mut reader).map(Some)
+        Extent::read(&mut reader).map(Some)
     }
 
     /// The number of triangles or points that `--at` means.
-    fn moment<R: Read>(&self, reader: &StreamReader<R>, survey: Option<Survey>) -> Result<Option<u64>> {
+    fn moment<R: Read>(&self, reader: &StreamReader<R>, extent: Option<Extent>) -> Result<Option<u64>> {
         let part = match self.at {
             None => return Ok(None),
             Some(Moment::Count(count)) => return Ok(Some(count)),
@@ -270,9 +270,9 @@ impl Flags {
         };
         let header = reader.header();
         let is_mesh = header.kind != Kind::Points;
-        let total = match survey {
-            Some(Survey { totals, .. }) if is_mesh => Some(totals.simplices),
-            Some(Survey { totals, .. }) => Some(totals.points),
+        let total = match extent {
+            Some(Extent { totals, .. }) if is_mesh => Some(totals.simplices),
+            Some(Extent { totals, .. }) => Some(totals.points),
             None => header.points.filter(|_| !is_mesh),
         };
         let Some(total) = total else {

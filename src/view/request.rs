@@ -1,13 +1,13 @@
-//! What can be asked of which stream.
+//! Which options suit which stream.
 
-use super::{Fill, Moments, Options};
+use super::options::{Fill, Moments, Options};
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Header, Kind};
 
-/// Checks that a stream can be drawn, and so.
+/// Checks that a stream can be drawn as the options ask.
 ///
 /// # Errors
-/// Usage, if it has nothing that could be seen from above, or lacks what options ask for.
+/// Usage, if the stream cannot be drawn in the plane, or lacks what the options ask for.
 pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
     let kind = header.kind;
     let refuse = |what: String| Err(Error::usage(what));
