@@ -4,7 +4,8 @@ use serde_json::{Value, json};
 
 use spmesh_audit::{Faults, Figures};
 
-/// A line per kind of fault; those that arithmetic finds with their share, exactly and in plain floating point.
+/// A line per kind of fault; those that arithmetic finds with their share, exactly and in plain floating
+/// point.
 pub(super) fn text(figures: &Figures) -> String {
     let total = figures.tetrahedra;
     let mut text =
@@ -45,8 +46,8 @@ pub(super) fn text(figures: &Figures) -> String {
     text + &format!("  {:<12} {:>27}: vertices - edges + facets - tetrahedra\n", "euler", figures.euler)
 }
 
-/// One object. `share_not_delaunay` is that of the tetrahedra with a neighbour's vertex inside of their sphere or on
-/// it, `share_not_positive` that of inverted and flat ones.
+/// One object. `share_not_delaunay` is that of the tetrahedra with a neighbour's vertex inside of their
+/// sphere or on it, `share_not_positive` that of inverted and flat ones.
 pub(super) fn json(figures: &Figures) -> Value {
     let faults = |faults: &Faults| {
         json!({
