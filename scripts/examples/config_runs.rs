@@ -1,8 +1,9 @@
 //! Configurations for figures, and many runs of link triangulation.
 //!
-//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N random knots with
-//! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
-//! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
+//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N
+//! random knots with random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs
+//! COUNT DEGREE SEED` makes COUNT runs from random knots, flips and rules up to a degree, checks that facets
+//! match, and prints a row per degree, tab-separated.
 
 use spmesh_audit::config as audit;
 use spmesh_core::error::Result;
@@ -29,7 +30,7 @@ impl Random {
     }
 }
 
-/// What happened at one degree.
+/// The counts of one degree.
 #[derive(Default, Clone)]
 struct Row {
     runs: usize,
@@ -105,7 +106,7 @@ fn runs(count: u64, degree: usize, seed: u64) {
         let knots = (degree + 4) as u64 + random.below(20);
         let points = points(&mut random, knots as usize, run % 3);
         let Ok(knots) = Knots::new(points) else { continue };
-        // Knots on one line have no configurations.
+        // Collinear knots have no configurations.
         let Ok(mut lower) = flipped(&knots, random.below(60) as usize, random.bits()) else { continue };
         for row in rows.iter_mut().skip(1) {
             match step(&knots, &lower, &rule(&mut random, knots.len()), row) {

@@ -1,11 +1,11 @@
-//! Tries the 4D engine on random degenerate sets: both routes must agree, in any order of the points, in integers and in
-//! fractions, and an exact audit that shares no code with them must pass.
+//! Fuzzes the 4D engine with random degenerate sets. Both routes must agree, for any order of the points, for
+//! integers and fractions, and an exact audit that shares no code with them must pass.
 //!
 //! ```text
 //! cargo run --release --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
-//! Set `I` of a seed alone: `--set I`. A set that fails is made as small as possible and written to a file.
+//! Set `I` of a seed alone: `--set I`. Shrinks a failing set and writes it to a file.
 
 mod fuzzing;
 
@@ -44,7 +44,7 @@ impl Trial<4> for Diagrams {
     }
 }
 
-/// Checks all that must hold; says how many cells there are.
+/// Checks a set and returns its number of cells.
 fn try_set(points: &[Point4], random: &mut Random) -> usize {
     let Some(diagram) = by(Route::Simplices, points) else {
         assert!(by(Route::Direct, points).is_none());
