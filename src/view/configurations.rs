@@ -217,7 +217,8 @@ impl Diagram<'_> {
                 self.set.degrees.iter().map(|configurations| configurations.degree().to_string()).collect();
             let known = known.join(", ");
             Error::usage(format!(
-                "an order, or a set, of so many knots needs configurations of a degree that is one less; the stream has degrees {known}"
+                "an order, or a set, of {} knots needs configurations of one degree less; the stream has degrees {known}",
+                degree.wrapping_add(1)
             ))
         })
     }

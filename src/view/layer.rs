@@ -86,8 +86,8 @@ impl<T: Drawable> Layer<T> {
     fn paint_kept(&mut self, scene: Option<&Scene>, style: &Style) -> Result<()> {
         let Some(scene) = scene else {
             return Err(Error::usage(format!(
-                "the header does not say where the stream lies, and there are more than {VECTORS_MAX} triangles or \
-                 points: give --bounds, or a file instead of a pipe"
+                "the header does not state the bounds of the stream, and there are more than {VECTORS_MAX} \
+                 triangles or points: give --bounds, or a file instead of a pipe"
             )));
         };
         self.canvas = Some(paint(&self.kept, scene, style));
