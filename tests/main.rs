@@ -12,6 +12,7 @@ mod dem;
 mod finalize;
 mod house;
 mod links;
+mod manifest;
 mod output;
 mod pipelines;
 mod points4;

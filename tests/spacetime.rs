@@ -4,13 +4,14 @@ mod meshes;
 mod simplices;
 mod values;
 
-use spmesh_geometry::diagram4::{Diagram, diagram};
+use spmesh_geometry::diagram4::diagram;
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 use spmesh_reference::sets::Random;
 
 /// The diagram of points with values.
-pub fn with_values(points: Vec<Point4>, value: impl Fn(Point4) -> f64) -> Diagram {
+pub fn with_values(points: Vec<Point4>, value: impl Fn(Point4) -> f64) -> Diagram4 {
     let values = points.iter().map(|&point| value(point)).collect();
     diagram(points, Some(values)).expect("points span space").0
 }

@@ -349,8 +349,8 @@ fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<E
     events
 }
 
-/// Patches with random imports and finalization, then a residual of what is live. A tetrahedral mesh has labels that
-/// lag behind its vertices, or none.
+/// Patches with random imports and finalization, then a residual of what is live. A tetrahedral mesh has
+/// labels that lag behind its vertices, or none.
 fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
     let mut live: Vec<(u64, Point)> = Vec::new();
     let mut events = Vec::new();

@@ -2,29 +2,24 @@
 
 use std::fs::File;
 use std::io::{Read, Write};
-use std::os::fd::AsRawFd;
+use std::os::fd::AsFd;
 
 use spmesh_core::system::widen_pipe;
 
 use crate::programs::{run, start};
 
-/// Bytes that the pipe of `file` holds; negative if it is no pipe.
+/// Capacity of the pipe of `file`, in bytes; `None` if it is no pipe.
 #[cfg(target_os = "linux")]
-fn pipe_len(file: &impl AsRawFd) -> i32 {
-    // SAFETY: takes a descriptor, touches no memory.
-    unsafe { libc::fcntl(file.as_raw_fd(), libc::F_GETPIPE_SZ) }
+fn pipe_len(file: &impl AsFd) -> Option<usize> {
+    rustix::pipe::fcntl_getpipe_size(file).ok()
 }
 
 /// 1 MiB if the system lets another pipe hold that much, and otherwise what `pipe` holds: a user who has many pipes
 /// may be refused.
 #[cfg(target_os = "linux")]
-fn widest(pipe: &impl AsRawFd) -> i32 {
+fn widest(pipe: &impl AsFd) -> Option<usize> {
     let (_reader, probe) = std::io::pipe().expect("a pipe");
-    // SAFETY: takes a descriptor and an integer, touches no memory.
-    match unsafe { libc::fcntl(probe.as_raw_fd(), libc::F_SETPIPE_SZ, 1 << 20) } {
-        len if len < 0 => pipe_len(pipe),
-        len => len,
-    }
+    rustix::pipe::fcntl_setpipe_size(&probe, 1 << 20).ok().or_else(|| pipe_len(pipe))
 }
 
 #[test]
@@ -48,7 +43,7 @@ fn what_is_no_pipe_stays_as_it_is() {
     for path in ["/dev/null", "/proc/self/exe"] {
         let file = File::open(path).expect("it is there");
         widen_pipe(&file);
-        assert!(pipe_len(&file) < 0);
+        assert_eq!(pipe_len(&file), None);
     }
 }
 

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 use files::{Paths, timed};
 use spmesh_geometry::configurations::{self, Knots, Rule};
-use spmesh_geometry::delaunay2::{Kernel, Triangulation};
+use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const ROUNDS: usize = 3;
 
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let points = read(source)?;
     let (mut kernel_seconds, mut config_seconds, mut bytes, mut count) = (f64::INFINITY, f64::INFINITY, 0, 0);
     for _ in 0..ROUNDS {
-        let mut mesh = Triangulation::default();
+        let mut mesh = Triangles::default();
         let (result, seconds) = timed(|| Kernel::new().triangulate(&points, &mut mesh));
         result?;
         drop(mesh);

@@ -1,8 +1,8 @@
 //! Times the 4D diagram, in one thread.
 //!
 //! `diagram4_time POINTS` is the engine as one of the programs that `scripts/bench` compares: the points are
-//! in memory, and given away. With `--audit` it proves the diagram, too; with `--direct` it takes the other
-//! route. POINTS has quadruples of little-endian f64.
+//! in memory, and given away. With `--audit` it proves the diagram, too; with `--direct`, in a build with
+//! `--features experiments`, it takes the other route. POINTS has quadruples of little-endian f64.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]
@@ -12,8 +12,9 @@ use std::error::Error;
 use std::fs::File;
 
 use files::{read_tuples, timed};
-use spmesh_geometry::diagram4::{Diagram, Route, Stats, diagram_by};
+use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
 use spmesh_model::cells4::Cells4;
+use spmesh_model::diagram4::Diagram4;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -21,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: diagram4_time POINTS [--audit] [--direct]".into());
     };
     let has = |flag: &str| flags.iter().any(|word| word == flag);
-    let route = if has("--direct") { Route::Direct } else { Route::Simplices };
+    let route = if has("--direct") { direct() } else { Route::Simplices };
     let points = read_tuples(&mut File::open(points)?)?;
     let (result, seconds) = timed(|| diagram_by(route, points, None));
     let (diagram, stats) = result?;
@@ -33,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 /// A line of JSON.
-fn report(diagram: &Diagram, stats: &Stats, seconds: f64) {
+fn report(diagram: &Diagram4, stats: &Stats, seconds: f64) {
     let sizes = Sizes::of(&diagram.cells);
     let times = [stats.order, stats.insertion, stats.merge].map(|time| time.as_secs_f64());
     let figures = [
@@ -79,4 +80,14 @@ impl Sizes {
         }
         sizes
     }
+}
+
+#[cfg(feature = "experiments")]
+fn direct() -> Route {
+    Route::Direct
+}
+
+#[cfg(not(feature = "experiments"))]
+fn direct() -> Route {
+    panic!("--direct is an experiment: build with --features experiments")
 }

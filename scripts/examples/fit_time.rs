@@ -7,7 +7,8 @@
 
 use spmesh_core::error::Result;
 use spmesh_splines::fitting::{
-    Cover, Equations, Normal, Observation, ObservationReader, Observations, summarise, thin_plate,
+    Equations, NormalEquations, Observation, ObservationReader, Observations, SplineSpace, summarise,
+    thin_plate,
 };
 use std::num::NonZeroUsize;
 use std::time::Instant;
@@ -84,17 +85,17 @@ fn main() -> std::result::Result<(), Box<dyn std::error::Error>> {
     let threads = rest.first().map_or(Ok(NonZeroUsize::MIN), |word| word.parse())?;
     let lambda: f64 = rest.get(1).map_or(Ok(0.0), |word| word.parse())?;
     let places = places(functions.parse()?);
-    let cover = timed("configurations and basis", || Cover::of(places))?;
-    println!("{} functions", cover.basis.len());
-    let normal = timed("normal equations", || Normal::of(&cover.basis, &made, threads))?;
+    let space = timed("configurations and basis", || SplineSpace::of(places))?;
+    println!("{} functions", space.basis.len());
+    let normal = timed("normal equations", || NormalEquations::of(&space.basis, &made, threads))?;
     println!("{} entries", normal.matrix.entries_len());
-    let energy = timed("energy", || thin_plate(&cover.basis))?;
+    let energy = timed("energy", || thin_plate(&space.basis))?;
     let coefficients = timed("solution", || {
         let energy = (lambda > 0.0).then_some(&energy);
-        let equations = Equations::new(&cover.basis, &normal, energy)?;
+        let equations = Equations::new(&space.basis, &normal, energy)?;
         equations.solve(lambda * equations.unit())
     })?;
-    let summary = timed("residuals", || summarise(&cover.basis, &coefficients, &made, threads))?;
+    let summary = timed("residuals", || summarise(&space.basis, &coefficients, &made, threads))?;
     println!("rms {:.3e}, worst {:?}", summary.root_mean_square, summary.worst.map(|worst| worst.residual));
     if let Some(line) =
         std::fs::read_to_string("/proc/self/status")?.lines().find(|line| line.starts_with("VmHWM"))

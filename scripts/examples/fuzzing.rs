@@ -163,9 +163,7 @@ fn attempted<const D: usize, T: Trial<D>>(set: u64, points: &[[f64; D]]) -> Resu
 
 /// CPU time of all threads. Wall time would count the load of other processes.
 fn cpu_time() -> Duration {
-    let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // Safety: the call writes one struct, which lives on the stack.
-    unsafe { libc::clock_gettime(libc::CLOCK_PROCESS_CPUTIME_ID, &mut time) };
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 

@@ -35,7 +35,7 @@ fn read_set(input: &mut impl Read) -> io::Result<Option<Vec<[f64; 3]>>> {
 
 fn write_set(mesh: &Tetrahedralization, output: &mut impl Write) -> io::Result<()> {
     let tetrahedra = mesh.tetrahedra();
-    let sides = tetrahedra.iter().flat_map(|tetrahedron| (0..4).map(|side| tetrahedron.across(side)));
+    let sides = tetrahedra.iter().flat_map(|tetrahedron| (0..4).map(|side| tetrahedron.neighbour(side)));
     let hull = sides.filter(Option::is_none).count();
     output.write_all(&(tetrahedra.len() as u32).to_le_bytes())?;
     output.write_all(&(hull as u32).to_le_bytes())?;

@@ -10,7 +10,7 @@
 mod files;
 
 use files::{Paths, timed};
-use spmesh_geometry::delaunay2::{Kernel, Triangulation};
+use spmesh_geometry::delaunay2::{Kernel, Triangles};
 
 const LEAF_POINTS: usize = 20_000;
 
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// One round, fresh.
 fn compare(paths: &Paths, points: &[[f64; 2]]) -> Result<(), Box<dyn std::error::Error>> {
-    let mut mesh = Triangulation::default();
+    let mut mesh = Triangles::default();
     let (result, seconds) = timed(|| Kernel::new().triangulate(points, &mut mesh));
     result?;
     Ok(paths.write_triangles(
@@ -41,7 +41,7 @@ fn tune(points: &[[f64; 2]], rounds: usize) -> Result<(), Box<dyn std::error::Er
         println!("{name:<14} {seconds:8.3} s  {:7.3} us/point", seconds * 1e6 / points.len() as f64);
     };
     let mut kernel = Kernel::new();
-    let mut mesh = Triangulation::default();
+    let mut mesh = Triangles::default();
     for round in 0..rounds {
         let (result, seconds) = timed(|| kernel.triangulate(points, &mut mesh));
         result?;

@@ -21,8 +21,8 @@ pub enum Check {
     Vertices,
     /// No vertex is used after it was finalized, and all are finalized at the end.
     Finalization,
-    /// The boundary is one convex cycle or surface that goes around once; or all vertices lie on a line, in space in a
-    /// plane.
+    /// The boundary is one convex cycle or surface that goes around once; or all vertices lie on a line, in
+    /// space in a plane.
     Hull,
     /// Simplices of all dimensions are as many as in a disk or ball.
     Euler,

@@ -16,8 +16,8 @@ pub(super) enum Meeting<T> {
     Twice(T),
 }
 
-/// Facets of `N` corners between their simplex and that of their twin, each with what is to be known of its simplex:
-/// the apex at least.
+/// Facets of `N` corners between their simplex and that of their twin, each with what is to be known of its
+/// simplex: the apex at least.
 ///
 /// Memory: the boundary of the simplices seen so far, which is the front of the stream and the hull.
 #[derive(Debug)]
@@ -29,7 +29,8 @@ pub(super) struct OpenFacets<const N: usize, T> {
 #[derive(Debug, Clone, Copy)]
 struct Side<T> {
     simplex: T,
-    /// Whether the corners in increasing order are in the order that the simplex has them, but for even permutations.
+    /// Whether the corners in increasing order are in the order that the simplex has them, but for even
+    /// permutations.
     is_increasing: bool,
 }
 
@@ -38,8 +39,8 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         OpenFacets { open: HashMap::default() }
     }
 
-    /// Adds a facet. Its twin has the opposite order: an edge the other direction, a triangle that is counterclockwise
-    /// seen from outside of one tetrahedron the same seen from outside of the other.
+    /// Adds a facet. Its twin has the opposite order: an edge the other direction, a triangle that is
+    /// counterclockwise seen from outside of one tetrahedron the same seen from outside of the other.
     pub(super) fn meet(&mut self, facet: [u64; N], simplex: T) -> Meeting<T> {
         let (sorted, is_increasing) = increasing(facet);
         match self.open.entry(sorted) {

@@ -1,37 +1,36 @@
 //! Proves what a stream claims, block by block, in memory of the stream's width and its boundary.
 //!
-//! The audit shares nothing with the code that makes meshes: it has its own exact arithmetic and its own
-//! view of vertices, edges, facets and cells. Only the reader of the container is common ground.
+//! The audit shares nothing with the code that makes meshes: it has its own exact arithmetic and its own view
+//! of vertices, edges, facets and cells. Only the reader of the container is common ground.
 //!
 //! # Why the checks of a whole mesh are enough
-//!
 //! (Of a triangle mesh; [`tetrahedra`] has the argument for tetrahedral meshes.)
 //!
 //! The audit sees each triangle once and forgets what is finalized. It never compares distant triangles, and
-//! need not. Let every triangle be strictly counterclockwise; let every directed edge meet its twin except the
-//! edges of one cycle, around a convex polygon, once; let every vertex have a triangle.
+//! need not. Let every triangle be strictly counterclockwise; let every directed edge meet its twin except
+//! the edges of one cycle, around a convex polygon, once; let every vertex have a triangle.
 //!
 //! *The triangles tile the polygon.* The boundaries of the triangles, added up as chains, cancel along every
 //! pair of twins, and what is left is the cycle. So for every point off all edges, the number of triangles
-//! that cover it (each winds around it once) is the winding number of the cycle: one inside of the
-//! polygon, zero outside. No two triangles overlap and none is missing.
+//! that cover it (each winds around it once) is the winding number of the cycle: one inside of the polygon,
+//! zero outside. No two triangles overlap and none is missing.
 //!
 //! *No two vertices coincide, and none lies inside of an edge or a triangle of others.* Around a vertex
 //! without open edges, its triangles are joined edge to edge in closed fans, which cover its neighbourhood
-//! completely. A vertex with one open edge in and one out lies on the polygon, and its triangles cover the part
-//! of its neighbourhood inside of the polygon. The cycle passes every position of the polygon once. So a second
-//! vertex at the same place, or a triangle around it, would cover something twice.
+//! completely. A vertex with one open edge in and one out lies on the polygon, and its triangles cover the
+//! part of its neighbourhood inside of the polygon. The cycle passes every position of the polygon once. So a
+//! second vertex at the same place, or a triangle around it, would cover something twice.
 //!
-//! *Each vertex closes by itself*: when it is finalized its triangles must go around it once, or from one open edge to
-//! the other ([`winding`]). That follows, too, for a vertex of a mesh that passes; but a mesh that branches at a vertex,
-//! or has a second sheet there, is refused at that vertex instead of at the end.
+//! *Each vertex closes by itself*: when it is finalized its triangles must go around it once, or from one
+//! open edge to the other ([`winding`]). That follows, too, for a vertex of a mesh that passes; but a mesh
+//! that branches at a vertex, or has a second sheet there, is refused at that vertex instead of at the end.
 //!
 //! *Directed edges are unique*, because two triangles to the left of one edge would overlap. An edge that is
 //! used again while it is open is reported at once, one that is used again later by its consequences.
 //!
-//! So the mesh is a triangulation of its vertices. Every interior edge is locally Delaunay, hence by Delaunay's
-//! lemma the whole is; with the perturbed lifts the same lemma shows that it is the canonical one, of which
-//! there is one only. Euler's relation follows too, and is checked as a test of the audit itself.
+//! So the mesh is a triangulation of its vertices. Every interior edge is locally Delaunay, hence by
+//! Delaunay's lemma the whole is; with the perturbed lifts the same lemma shows that it is the canonical one,
+//! of which there is one only. Euler's relation follows too, and is checked as a test of the audit itself.
 
 mod cells;
 mod check;
@@ -77,10 +76,11 @@ use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind};
 
-/// Audit of one stream of two or three dimensions: give it every event, and ask for the report. Those of four dimensions
-/// have [`diagram::StreamAudit`], configurations [`config::StreamAudit`].
+/// Audit of one stream of two or three dimensions: give it every event, and ask for the report. Those of four
+/// dimensions have [`diagram::StreamAudit`], configurations [`config::StreamAudit`].
 ///
-/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
+/// block.
 pub struct Audit {
     state: State,
     given: Option<PointSet>,

@@ -17,7 +17,8 @@ use super::vertices::Vertices;
 use spmesh_model::bounds::{Point, Region};
 use spmesh_stream::{Event, Header, Patch, Totals};
 
-/// What can be proved of final simplices one by one, with the vertices that are live and the facets that are open.
+/// What can be proved of final simplices one by one, with the vertices that are live and the facets that are
+/// open.
 pub(super) trait FinalSimplices<const D: usize> {
     /// What simplices and their facets are called.
     const NAMES: [&'static str; 2];
@@ -30,8 +31,8 @@ pub(super) trait FinalSimplices<const D: usize> {
 
     fn new(standard: Standard) -> Self;
 
-    /// Checks a patch; a vertex that it finalizes must be closed on all sides: an open facet would be a wall, whose corners
-    /// are in the residual.
+    /// Checks a patch; a vertex that it finalizes must be closed on all sides: an open facet would be a wall,
+    /// whose corners are in the residual.
     fn patch(&mut self, patch: &Patch, ledger: &mut Ledger) -> Result<(), Violation>;
 
     fn vertices(&self) -> &Vertices<Self::Star>;
@@ -186,7 +187,8 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
         }
     }
 
-    /// Every wall is an open facet, and every open facet has a wall: a final simplex lies on the same side of both.
+    /// Every wall is an open facet, and every open facet has a wall: a final simplex lies on the same side of
+    /// both.
     fn check_walls(&mut self, ledger: &mut Ledger) -> Result<(), Violation> {
         let [simplex, facet] = S::NAMES;
         for wall in self.walls.chunks_exact(D) {

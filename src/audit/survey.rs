@@ -64,8 +64,8 @@ impl Survey {
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news, or a
-    /// vertex is used after its finalization.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag is no news,
+    /// or a vertex is used after its finalization.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {

@@ -1,22 +1,23 @@
 //! How often the simplices around a vertex go around it.
 //!
-//! Let all simplices at a vertex be positive, and let each of their facets at it meet its twin. Seen from the vertex they
-//! are positive arcs or triangles on a small circle or sphere, joined without a border; so they cover every direction
-//! equally often, and it is enough to count for one. If that is once, they tile the circle or sphere: the link is one
-//! cycle or one sphere, wound once. (Two fans that close at one vertex count two, and so does a fan that goes around twice
-//! before it closes.)
+//! Let all simplices at a vertex be positive, and let each of their facets at it meet its twin. Seen from the
+//! vertex they are positive arcs or triangles on a small circle or sphere, joined without a border; so they
+//! cover every direction equally often, and it is enough to count for one. If that is once, they tile the
+//! circle or sphere: the link is one cycle or one sphere, wound once. (Two fans that close at one vertex
+//! count two, and so does a fan that goes around twice before it closes.)
 //!
 //! A vertex on the boundary of a mesh that is right has no simplex in some directions, and one in all others.
 //!
-//! The direction is that of an axis, infinitesimally off towards the next ones: no facet contains it, and which facets face
-//! it are comparisons in the plane and signs of projected triangles in space. From a corner of a simplex the direction
-//! leads into the simplex if all facets at this corner face away from it, hence the one opposite faces it. So a simplex
-//! counts for one corner at most.
+//! The direction is that of an axis, infinitesimally off towards the next ones: no facet contains it, and
+//! which facets face it are comparisons in the plane and signs of projected triangles in space. From a corner
+//! of a simplex the direction leads into the simplex if all facets at this corner face away from it, hence
+//! the one opposite faces it. So a simplex counts for one corner at most.
 
 use super::check::{Check, Violation};
 use super::vertices::Vertex;
 
-/// How many simplices a vertex has ahead, in the direction, and behind, in the opposite one; 65,535 stands for more, too.
+/// How many simplices a vertex has ahead, in the direction, and behind, in the opposite one; 65,535 stands
+/// for more, too.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Winding {
     ahead: u16,
@@ -30,8 +31,8 @@ pub(super) enum Place {
     Behind,
 }
 
-/// The corner of a simplex that has it ahead or behind, if there is one. `is_facing` says for the facet opposite to each
-/// corner whether its outer side faces the direction.
+/// The corner of a simplex that has it ahead or behind, if there is one. `is_facing` says for the facet
+/// opposite to each corner whether its outer side faces the direction.
 pub(super) fn corner_of<const N: usize>(is_facing: [bool; N]) -> Option<(usize, Place)> {
     let facing = is_facing.iter().rev().fold(0u32, |bits, &is_facing| bits << 1 | u32::from(is_facing));
     // Which one it is, nobody can foresee: no branch depends on it.

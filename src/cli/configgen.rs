@@ -67,13 +67,15 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 
 /// Delaunay configurations of any degree, and their generalisation.
 ///
-/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point streams) or a triangle
-/// mesh stream, and writes the configurations of all degrees up to one, which bivariate splines are defined by. The result
-/// is exact, whatever lies on one circle, on one line or in one place.
+/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point
+/// streams) or a triangle mesh stream, and writes the configurations of all degrees up to one, which
+/// bivariate splines are defined by. The result is exact, whatever lies on one circle, on one line or in one
+/// place.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
-    /// Files of points, read as one input, or one triangle mesh; - is stdin [default: -, or none with --patches]
+    /// Files of points, read as one input, or one triangle mesh; - is stdin [default: -, or none with
+    /// --patches]
     #[arg(value_name = "FILE")]
     inputs: Vec<PathBuf>,
 
@@ -85,31 +87,33 @@ pub struct Flags {
     #[arg(short, long, value_name = "K", default_value_t = 1)]
     degree: u32,
 
-    /// How links are triangulated: delaunay, lifted:heights, lifted:weights, min-weight, ear, fan, random, data or
-    /// aligned:ANGLE
+    /// How links are triangulated: delaunay, lifted:heights, lifted:weights, min-weight, ear, fan, random,
+    /// data or aligned:ANGLE
     #[arg(long, value_name = "RULE", default_value = "delaunay")]
     rule: RuleName,
 
-    /// Values of the knots for rules that need some, instead of elevations: lines of one number, or of two for gradients
+    /// Values of the knots for rules that need some, instead of elevations: lines of one number, or of two
+    /// for gradients
     #[arg(long, value_name = "FILE")]
     values: Option<PathBuf>,
 
-    /// Flip edges of the start triangulation: random:N:SEED, or aligned:ANGLE for those that come nearer to a direction
+    /// Flip edges of the start triangulation: random:N:SEED, or aligned:ANGLE for those that come nearer to a
+    /// direction
     #[arg(long, value_name = "FLIPS")]
     flip: Option<Flips>,
 
-    /// Repeat knots on the border, so that splines sum to one up to it: corners as often as the degree needs, or all of
-    /// them once, which is for degree 1
+    /// Repeat knots on the border, so that splines sum to one up to it: corners as often as the degree needs,
+    /// or all of them once, which is for degree 1
     #[arg(long, value_enum, value_name = "clamped|pulled-apart", hide_possible_values = true)]
     boundary: Option<BorderFlag>,
 
-    /// Make two of each of these knots: all, boundary, or ids between commas. Their links are triangulated from each
-    /// other, so that splines of degree 2 interpolate there
+    /// Make two of each of these knots: all, boundary, or ids between commas. Their links are triangulated
+    /// from each other, so that splines of degree 2 interpolate there
     #[arg(long, value_name = "KNOTS")]
     pull_apart: Option<Places>,
 
-    /// Make box splines where knots are on the integer grid, or on --patches: zp, and how squares and links are split: :falling
-    /// for the other diagonal of squares, :upright for that of links
+    /// Make box splines where knots are on the integer grid, or on --patches: zp, and how squares and links
+    /// are split: :falling for the other diagonal of squares, :upright for that of links
     #[arg(long = "box", value_name = "zp[:falling][:upright]", conflicts_with = "features")]
     boxes: Option<BoxName>,
 
@@ -117,7 +121,8 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", conflicts_with = "features")]
     patches: Option<PathBuf>,
 
-    /// Sharp corners, creases and linear elements: lines of corner, crease, smooth-crease or linear, and ids; - is stdin
+    /// Sharp corners, creases and linear elements: lines of corner, crease, smooth-crease or linear, and
+    /// ids; - is stdin
     #[arg(long, value_name = "FILE")]
     features: Option<PathBuf>,
 

@@ -40,8 +40,8 @@ const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with 
 
 /// Exact Delaunay diagrams of points in four dimensions.
 ///
-/// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their neighbours
-/// as a stream. The result is exact and unique: it depends on the set of points only.
+/// Reads points or volumes that change over time, and writes the cells of their Delaunay diagram with their
+/// neighbours as a stream. The result is exact and unique: it depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "dd4", version, after_help = format!("{EXAMPLES}{SOURCE_EXAMPLES}\n{PRODUCT_EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -49,13 +49,13 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of the
-    /// coordinates, which f64 rounds, so that no grid would be cospherical
+    /// All coordinates are multiples of Q, like 0.1: work with these whole numbers, and write them instead of
+    /// the coordinates, which f64 rounds, so that no grid would be cospherical
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 
-    /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008) did, which is
-    /// slower. The result is the same
+    /// How cells are found: of simplices that are made first, or directly in integers as the first dd4 (2008)
+    /// did, which is slower. The result is the same
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
 
@@ -83,11 +83,21 @@ enum RouteFlag {
     Direct,
 }
 
-impl From<RouteFlag> for Route {
-    fn from(flag: RouteFlag) -> Self {
-        match flag {
-            RouteFlag::Simplices => Route::Simplices,
-            RouteFlag::Direct => Route::Direct,
+impl RouteFlag {
+    /// The route in the engine.
+    ///
+    /// # Errors
+    /// Usage, if this build does not have it.
+    fn route(self) -> Result<Route> {
+        match self {
+            RouteFlag::Simplices => Ok(Route::Simplices),
+            #[cfg(feature = "experiments")]
+            RouteFlag::Direct => Ok(Route::Direct),
+            #[cfg(not(feature = "experiments"))]
+            RouteFlag::Direct => Err(Error::usage(
+                "--route direct is an experiment, and this build has none: install one that has them with \
+                 `cargo install --locked --path . --features experiments`",
+            )),
         }
     }
 }
@@ -104,7 +114,7 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-        let options = Options { quantum: self.quantum, route: self.route.into() };
+        let options = Options { quantum: self.quantum, route: self.route.route()? };
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }

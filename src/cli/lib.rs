@@ -27,6 +27,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 use spmesh_core::error::{Error, ErrorKind};
+use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
 use spmesh_model::bounds::Bounds;
 
@@ -160,7 +161,7 @@ const THREADS_DEFAULT_MAX: usize = 8;
 
 /// The requested number of threads; by default one per core, at most [`THREADS_DEFAULT_MAX`].
 fn threads(asked: Option<u16>) -> NonZeroUsize {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from).min(THREADS_DEFAULT_MAX);
+    let cores = || available_threads().get().min(THREADS_DEFAULT_MAX);
     NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)
 }
 

@@ -10,6 +10,7 @@ use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory};
 use spmesh_core::error::Error;
 use spmesh_core::output::Output;
+use spmesh_core::parallel::available_threads;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::source::{Input, RawType, SourceOptions};
 use spmesh_model::bounds::Bounds;
@@ -197,8 +198,7 @@ impl Flags {
     }
 
     fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.threads.map_or_else(cores, usize::from)
+        self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
     fn source_options(&self) -> SourceOptions {

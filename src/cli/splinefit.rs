@@ -19,20 +19,20 @@ const TOOL: &str = "splinefit";
 
 const EXAMPLES: &str = "\
 Examples:
-  A spline for a LIDAR tile; its knots are looked for:
+  A spline for a LIDAR tile; the program searches for knots:
     splinefit fit --keep-class 2 tile.laz -o tile.spline.spm
-  As near to all points as 0.1, with 20,000 knots at most, and how that went:
+  Within 0.1 of all points, with 20,000 knots at most, and statistics:
     splinefit fit --tol 0.1 --max-knots 20000 --stats points.txt -o fine.spline.spm
-  Over knots of one's own, smoothed by generalised cross-validation:
+  Over given knots, smoothed by generalised cross-validation:
     configgen --boundary pulled-apart knots.txt | splinefit fit --knots - --lambda gcv points.txt -o smooth.spline.spm
-  Without gross errors, which go to a list:
+  Without gross errors, which are listed:
     splinefit fit --robust tukey --rejected errors.txt points.txt -o terrain.spline.spm
   A raster of elevations, and one of slopes:
     splinefit eval terrain.spline.spm --step 0.5 -o terrain.tif
     splinefit eval terrain.spline.spm --step 0.5 --kind slope -o slope.tif
   Values at sites:
     splinefit eval terrain.spline.spm --at sites.txt
-  What the spline is like, and how far it is from points:
+  Properties of the spline, and residuals of points:
     splinefit info terrain.spline.spm points.txt
   Its control mesh for other programs:
     splinefit mesh terrain.spline.spm | spconvert --to ply -o control.ply
@@ -41,20 +41,20 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-A spline is a sum of functions over configurations of knots. Where all functions sum to one, which with a border that is pulled \
-apart is the convex hull of the knots, splines of degree k reproduce polynomials of that degree. Elsewhere nothing is \
-evaluated: sites get nan, cells no data.
+A spline is a sum of functions over configurations of knots. Its domain is where all functions sum to one; with a border that is \
+pulled apart, that is the convex hull of the knots. There splines of degree k reproduce polynomials of degree k. Outside of the domain \
+nothing is evaluated: sites get nan, cells no data.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 malformed or truncated \
 input, 5 not enough memory, 141 output closed by its reader.";
 
-/// What is said after the number of bytes that could not be had.
+/// The message after the number of bytes of a failed allocation.
 const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";
 
 /// Bivariate splines fitted to scattered points.
 ///
-/// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and coefficients. It
-/// evaluates such streams at sites and in cells of rasters.
+/// Reads points with elevations, and writes a stream of a spline: knots, configurations, functions and
+/// coefficients. It evaluates such streams at sites and in cells of rasters.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -65,16 +65,17 @@ pub struct Flags {
     common: Common,
 }
 
-/// What is done.
+/// The subcommands.
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Fit a spline to points
     Fit(Box<fit::Flags>),
     /// Evaluate a spline at sites, or in the cells of a raster
     Eval(eval::Flags),
-    /// Say what a spline is like: domain, condition, smoothness, residuals
+    /// Report domain, condition, smoothness and residuals of a spline
     Info(info::Flags),
-    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh or a picture
+    /// Write the control mesh of a spline: Greville sites with coefficients as elevations, as a triangle mesh
+    /// or a picture
     Mesh(mesh::Flags),
 }
 

@@ -19,6 +19,7 @@ use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::parallel::available_threads;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
 use spmesh_tess3::{Options, Product, Radius, Stats};
@@ -46,9 +47,9 @@ input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
-/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or compressed
-/// (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it depends on the set of
-/// points only.
+/// Reads PDB, PDBx/mmCIF, XYZ, lines of x y z, spmesh streams of points, PLY, OBJ, OFF, VTK and LAS, plain or
+/// compressed (.gz), and writes a tetrahedral mesh stream or a table. The result is exact and canonical: it
+/// depends on the set of points only.
 #[derive(Debug, Parser)]
 #[command(name = "tess3", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -71,8 +72,8 @@ pub struct Flags {
     #[arg(long)]
     contacts: bool,
 
-    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere of
-    /// at most that radius
+    /// Write only simplices of the alpha complex of this radius (Å): those with an empty circumscribed sphere
+    /// of at most that radius
     #[arg(long, value_name = "RADIUS")]
     alpha: Option<Radius>,
 
@@ -217,7 +218,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
             "--resume reads the summary of the earlier run: give it a file with --summary",
         ));
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let cores = available_threads().get();
     let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,

@@ -3,6 +3,7 @@
 pub mod error;
 pub mod limits;
 pub mod output;
+pub mod parallel;
 pub mod prefetch;
 pub mod random;
 pub mod system;

@@ -1,17 +1,22 @@
 //! Where a tool writes: stdout, or a file that appears under its name only when it is complete.
 
-use std::ffi::CString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, SeekFrom, Write};
 use std::os::fd::{AsFd, AsRawFd};
-use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+
+use rustix::fs::{AtFlags, CWD};
+#[cfg(target_os = "linux")]
+use rustix::fs::{Mode, OFlags};
 
 use crate::error::{Error, Result};
 use crate::system;
 
 const BUFFER_LEN: usize = 1 << 18;
+
+/// Permissions of a new file, narrowed by the umask of the process.
+const FILE_MODE: u32 = 0o666;
 
 /// After so many bytes a file's data are sent on to the disk, so that few are left to wait for at the end.
 const SEND_ON_LEN: u64 = 8 << 20;
@@ -148,8 +153,7 @@ fn create_file(path: &Path) -> io::Result<Sink> {
     if let Some(file) = open_unnamed(folder_of(&target)) {
         return Ok(Sink::Unnamed { file: BufWriter::with_capacity(BUFFER_LEN, file), target });
     }
-    // The mode of a plain file, which the process's mask still narrows.
-    let mode = fs::Permissions::from_mode(0o666);
+    let mode = fs::Permissions::from_mode(FILE_MODE);
     let mut builder = tempfile::Builder::new();
     let file = builder.prefix(TEMPORARY_PREFIX).permissions(mode).tempfile_in(folder_of(&target))?;
     Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target })
@@ -162,8 +166,8 @@ fn folder_of(path: &Path) -> &Path {
 /// A file without a name that can be given one later; `None` where the system or the file system cannot.
 #[cfg(target_os = "linux")]
 fn open_unnamed(folder: &Path) -> Option<File> {
-    let mut options = fs::OpenOptions::new();
-    let file = options.write(true).custom_flags(libc::O_TMPFILE).mode(0o666).open(folder).ok()?;
+    let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
+    let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(FILE_MODE)).ok()?);
     // The name is given through /proc, which may not be mounted: better to know before the work.
     descriptor_path(&file).exists().then_some(file)
 }
@@ -195,13 +199,8 @@ fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
 }
 
 fn link(file: &File, name: &Path) -> io::Result<()> {
-    let source = CString::new(descriptor_path(file).as_os_str().as_bytes())?;
-    let name = CString::new(name.as_os_str().as_bytes())?;
-    // SAFETY: both paths are NUL-terminated strings that outlive the call, which keeps neither.
-    let status = unsafe {
-        libc::linkat(libc::AT_FDCWD, source.as_ptr(), libc::AT_FDCWD, name.as_ptr(), libc::AT_SYMLINK_FOLLOW)
-    };
-    if status == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
+    rustix::fs::linkat(CWD, descriptor_path(file), CWD, name, AtFlags::SYMLINK_FOLLOW)?;
+    Ok(())
 }
 
 fn commit_named(file: BufWriter<tempfile::NamedTempFile>, target: &Path) -> io::Result<()> {

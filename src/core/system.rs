@@ -1,73 +1,68 @@
-//! What the system can be asked and told about pipes, files and folders. Nothing here is needed for a right
-//! result, so that what a system refuses is left as it is.
+//! Pipes, memory, free space and write-back, as far as the operating system offers them. No result depends on them: if the
+//! system refuses a request, the program goes on without it.
+//!
+//! `libc` serves only where `rustix` has no function: `mallopt`, `signal`, `_exit` and `sync_file_range`.
 
-use std::ffi::CString;
-use std::os::fd::{AsFd, AsRawFd};
-use std::os::unix::ffi::OsStrExt;
+use std::os::fd::AsFd;
+#[cfg(target_os = "linux")]
+use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Bytes that a pipe holds where the system allows it; by default it is 64 KiB, and both ends wait for each other
-/// all the time.
+/// Capacity of a widened pipe, in bytes. With the default of 64 KiB, the two ends keep waiting for each other.
 #[cfg(target_os = "linux")]
-const PIPE_LEN: libc::c_int = 1 << 20;
+const PIPE_LEN: usize = 1 << 20;
 
-/// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
+/// Makes a pipe hold 1 MiB. Does nothing if the pipe holds more, the file is no pipe, or the system refuses.
 #[cfg(target_os = "linux")]
 pub fn widen_pipe(file: &impl AsFd) {
-    let descriptor = file.as_fd().as_raw_fd();
-    // SAFETY: both calls take an open descriptor and integers, and touch no memory of this process.
-    unsafe {
-        let len = libc::fcntl(descriptor, libc::F_GETPIPE_SZ);
-        if (1..PIPE_LEN).contains(&len) {
-            libc::fcntl(descriptor, libc::F_SETPIPE_SZ, PIPE_LEN);
-        }
+    if rustix::pipe::fcntl_getpipe_size(file).is_ok_and(|len| len < PIPE_LEN) {
+        // The system may refuse: the sum of a user's pipes is limited.
+        let _ = rustix::pipe::fcntl_setpipe_size(file, PIPE_LEN);
     }
 }
 
-/// Makes a pipe hold 1 MiB, unless it holds more or is none, or the system refuses.
+/// Does nothing: this system has no call for the capacity of a pipe.
 #[cfg(not(target_os = "linux"))]
 pub fn widen_pipe(_file: &impl AsFd) {}
 
-/// Bytes of a block of memory that goes back to the system as soon as it is freed.
+/// Size from which a block of memory goes back to the system as soon as it is freed, in bytes.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const LARGE_BLOCK: libc::c_int = 1 << 18;
 
-/// From now on, large blocks of memory go back to the system when they are freed. glibc otherwise learns from the first
-/// of them that are freed to keep such blocks, for each thread.
+/// From now on, large blocks of memory go back to the system when they are freed. By default, glibc raises its threshold
+/// with the first large blocks that are freed, and then keeps such blocks, for each thread.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn give_back_large_blocks() {
-    // SAFETY: the call takes integers and changes nothing but where later blocks lie.
+    // SAFETY: the call takes integers and only changes where later blocks lie.
     unsafe { libc::mallopt(libc::M_MMAP_THRESHOLD, LARGE_BLOCK) };
 }
 
-/// From now on, large blocks of memory go back to the system when they are freed, as other systems do it unasked.
+/// Does nothing: other systems give large blocks back on their own.
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
-pub(crate) fn give_back_large_blocks() {}
+pub fn give_back_large_blocks() {}
 
-/// What is said, and the exit code, where the process would abort.
+/// The message and the exit code of an abort.
 static AT_ABORT: OnceLock<(&str, u8)> = OnceLock::new();
 
-/// From now on, says `message` on stderr and exits with `code` where the process would abort, which Rust does when it
-/// cannot have the memory that it needs. The first call counts.
+/// From now on, an abort prints `message` on stderr and exits with `code`. Rust aborts if it cannot allocate. Only the
+/// first call has an effect.
 pub fn exit_at_abort(message: &'static str, code: u8) {
     let handler: extern "C" fn(libc::c_int) = exit_with_message;
     if AT_ABORT.set((message, code)).is_ok() {
-        // SAFETY: the handler only makes calls that are allowed in one, and does not return.
+        // SAFETY: the handler only makes async-signal-safe calls, and does not return.
         unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
     }
 }
 
 extern "C" fn exit_with_message(_signal: libc::c_int) {
     let (message, code) = AT_ABORT.get().copied().unwrap_or(("", 1));
-    // SAFETY: the message is as long as it says, and nothing of this process runs after the second call.
-    unsafe {
-        libc::write(libc::STDERR_FILENO, message.as_ptr().cast(), message.len());
-        libc::_exit(code.into());
-    }
+    let _ = rustix::io::write(rustix::stdio::stderr(), message.as_bytes());
+    // SAFETY: the call ends the process without running anything else in it.
+    unsafe { libc::_exit(code.into()) };
 }
 
-/// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for it.
+/// Starts to write `len` bytes of a file from `offset` on to the disk, without waiting for the end of it.
 #[cfg(target_os = "linux")]
 pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
     let (Ok(offset), Ok(len)) = (offset.try_into(), len.try_into()) else { return };
@@ -75,42 +70,30 @@ pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
     unsafe { libc::sync_file_range(file.as_fd().as_raw_fd(), offset, len, libc::SYNC_FILE_RANGE_WRITE) };
 }
 
-/// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for it.
+/// Does nothing: this system has no call that only starts to write.
 #[cfg(not(target_os = "linux"))]
 pub(crate) fn start_write_back(_file: &impl AsFd, _offset: u64, _len: u64) {}
 
-/// Bytes that can still be written below `folder`, if the system tells.
+/// Bytes that can still be written below `folder`; `None` if the system does not tell.
+#[must_use]
 pub fn free_bytes(folder: &Path) -> Option<u64> {
-    let path = CString::new(folder.as_os_str().as_bytes()).ok()?;
-    let mut found = std::mem::MaybeUninit::<libc::statvfs>::uninit();
-    // SAFETY: the path is NUL-terminated and the structure as long as the call expects; both outlive it.
-    if unsafe { libc::statvfs(path.as_ptr(), found.as_mut_ptr()) } != 0 {
-        return None;
-    }
-    // SAFETY: the call succeeded, so it filled the structure.
-    let found = unsafe { found.assume_init() };
-    #[allow(clippy::unnecessary_cast, reason = "the widths of the fields differ between systems")]
-    Some((found.f_bavail as u64).saturating_mul(found.f_frsize as u64))
+    let found = rustix::fs::statvfs(folder).ok()?;
+    Some(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs), as far as the system tells.
+/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs); `false` if the system does not tell.
 #[cfg(target_os = "linux")]
+#[must_use]
 pub fn is_in_memory(folder: &Path) -> bool {
     const TMPFS: u32 = 0x0102_1994;
     const RAMFS: u32 = 0x8584_58f6;
-    let Ok(path) = CString::new(folder.as_os_str().as_bytes()) else { return false };
-    let mut found = std::mem::MaybeUninit::<libc::statfs>::uninit();
-    // SAFETY: the path is NUL-terminated and the structure as long as the call expects; both outlive it.
-    if unsafe { libc::statfs(path.as_ptr(), found.as_mut_ptr()) } != 0 {
-        return false;
-    }
-    // SAFETY: the call succeeded, so it filled the structure.
-    let kind = unsafe { found.assume_init() }.f_type as u32;
-    kind == TMPFS || kind == RAMFS
+    // The width of the field differs between architectures; magic numbers have 32 bits.
+    rustix::fs::statfs(folder).is_ok_and(|found| matches!(found.f_type as u32, TMPFS | RAMFS))
 }
 
-/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs), as far as the system tells.
+/// `false`: this system is not asked.
 #[cfg(not(target_os = "linux"))]
-pub(crate) fn is_in_memory(_folder: &Path) -> bool {
+#[must_use]
+pub fn is_in_memory(_folder: &Path) -> bool {
     false
 }

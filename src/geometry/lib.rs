@@ -3,8 +3,14 @@
 pub mod configurations;
 pub mod delaunay2;
 pub mod delaunay3;
+#[cfg(feature = "experiments")]
 pub mod delaunay3_float;
 pub mod diagram4;
+mod location;
 pub mod order;
 pub mod predicates;
+#[cfg(target_arch = "x86_64")]
+mod processor;
 pub mod spacetime;
+
+pub use location::Location;

@@ -12,10 +12,10 @@ pub fn spread2(x: u32) -> u64 {
     (x | x << 1) & 0x5555_5555_5555_5555
 }
 
-/// Undoes [`spread2`]: moves bit 2i to bit i, whatever the odd bits are.
+/// Undoes [`spread2`]: moves bit 2i to bit i and ignores odd bits.
 #[inline(always)]
 #[must_use]
-pub fn gather2(x: u64) -> u32 {
+pub(crate) fn gather2(x: u64) -> u32 {
     let mut x = x & 0x5555_5555_5555_5555;
     x = (x | x >> 1) & 0x3333_3333_3333_3333;
     x = (x | x >> 2) & 0x0f0f_0f0f_0f0f_0f0f;
@@ -36,7 +36,7 @@ pub fn spread3(x: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// Undoes [`spread3`]: moves bit 3i to bit i, whatever the other bits are.
+/// Undoes [`spread3`]: moves bit 3i to bit i and ignores the other bits.
 #[inline(always)]
 #[must_use]
 pub fn gather3(x: u64) -> u32 {

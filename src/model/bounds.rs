@@ -47,7 +47,8 @@ impl Bounds {
         self
     }
 
-    /// The box of what of it can be in a region, if anything can; `are_whole` says that coordinates are whole numbers.
+    /// The part of the box that can hold points of a region, if any; `are_whole` says that coordinates are
+    /// integers.
     #[must_use]
     pub fn within<const D: usize>(&self, region: &Region<D>, are_whole: bool) -> Option<Bounds> {
         let mut bounds = *self;
@@ -68,8 +69,8 @@ impl Bounds {
     }
 }
 
-/// A half-open box `[min, max)` in the plane, or in space with `D = 3`, so that a point on a common border belongs to
-/// one tile only. Sides may be infinite.
+/// A half-open box `[min, max)` in the plane, or in space with `D = 3`, so that a point on a common border
+/// belongs to one tile only. Sides may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Region<const D: usize = 2> {
     /// Included lower sides.

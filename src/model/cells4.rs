@@ -1,4 +1,5 @@
-//! Cells of four dimensions in flat arrays: what the engines of 4D diagrams make, and what their streams carry.
+//! Cells of four dimensions in flat arrays: what the engines of 4D diagrams make, and what their streams
+//! carry.
 
 use spmesh_core::prefetch::prefetch;
 
@@ -10,14 +11,15 @@ const INFINITE: u32 = 1 << 31;
 
 /// Cells of four dimensions: each a set of vertices, with the cells across its facets.
 ///
-/// A finite cell is the convex hull of its vertices. An infinite cell lies beyond a facet of the convex hull of all
-/// points: its vertices are those of that facet, and its last vertex is the faraway point, which is not listed (thesis
-/// 4.3). Vertices and neighbours are numbers of points and of cells, in increasing order.
+/// A finite cell is the convex hull of its vertices. An infinite cell lies beyond a facet of the convex hull
+/// of all points: its vertices are those of that facet, and its last vertex is the faraway point, which is
+/// not listed (thesis 4.3). Vertices and neighbours are numbers of points and of cells, in increasing order.
 ///
 /// Memory: 4 bytes per vertex and per neighbour of each cell, and 12 bytes per cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Cells4 {
-    /// For each cell: the number of vertices, marked if it is infinite; the number of neighbours; vertices; neighbours.
+    /// For each cell: the number of vertices, marked if it is infinite; the number of neighbours; vertices;
+    /// neighbours.
     words: Vec<u32>,
     /// Where each cell begins.
     starts: Vec<u32>,
@@ -35,9 +37,9 @@ pub struct Cell4<'a> {
 }
 
 impl Cells4 {
-    /// No cells, with room for so many, and so many vertices and neighbours in all.
+    /// An empty list with capacity for `cells` cells with `numbers` vertices and neighbours in total.
     #[must_use]
-    pub fn with_room(cells: usize, numbers: usize) -> Cells4 {
+    pub fn with_capacity(cells: usize, numbers: usize) -> Cells4 {
         Cells4 { words: Vec::with_capacity(2 * cells + numbers), starts: Vec::with_capacity(cells) }
     }
 

@@ -18,11 +18,12 @@ pub enum Claim {
 
 /// All configurations (B, I) of one degree k: three knots B, counterclockwise, and k knots I.
 ///
-/// Grouped by I. Interior sets are sorted, and so are groups, lexicographically; within a group come the configurations of
-/// three knots, the least first, in lexicographic order, then the *infinite* ones `[p, q, FARAWAY]`: lines with I to the left
-/// of the direction from p to q and all else, but p and q, to the right. (A knot on the line counts as left if it is between
-/// p and q, and as right otherwise.) These make all links closed; splines are defined by the others alone. The one group of
-/// degree 0 is in the order of the triangulation.
+/// Grouped by I. Interior sets are sorted, and so are groups, lexicographically; within a group come the
+/// configurations of three knots, the least first, in lexicographic order, then the *infinite* ones `[p, q,
+/// FARAWAY]`: lines with I to the left of the direction from p to q and all else, but p and q, to the right.
+/// (A knot on the line counts as left if it is between p and q, and as right otherwise.) These make all links
+/// closed; splines are defined by the others alone. The one group of degree 0 is in the order of the
+/// triangulation.
 ///
 /// Shape: 12 bytes per configuration, 4 (k + 1) per group.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -55,8 +56,8 @@ impl Configurations {
         Configurations { degree, claim, interiors: Vec::new(), offsets, boundaries: Vec::new(), finite: 0 }
     }
 
-    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. What is near in it should be near
-    /// in the plane: so it is not sorted.
+    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. What is near in it
+    /// should be near in the plane: so it is not sorted.
     pub fn of_triangles(claim: Claim, mut triangles: Vec<[u32; 3]>) -> Configurations {
         triangles.iter_mut().for_each(|triangle| *triangle = normalised(*triangle));
         triangles.sort_by_key(|triangle| triangle[2] == FARAWAY);
@@ -92,8 +93,8 @@ impl Configurations {
         *self = sorted;
     }
 
-    /// Makes the boundaries after the last group the group of `interior`, which is greater than those before; nothing if
-    /// there are none.
+    /// Makes the boundaries after the last group the group of `interior`, which is greater than those before;
+    /// nothing if there are none.
     pub fn close_group(&mut self, interior: &[u32]) {
         debug_assert_eq!(interior.len(), self.degree);
         let start = self.offsets[self.offsets.len() - 1] as usize;
@@ -139,9 +140,11 @@ impl Configurations {
 
     /// Appends configurations with one interior set, to the last group if that has the same set.
     ///
-    /// Domain: groups, and boundaries in a group, in the order that the type has, and in its form; nothing is checked.
+    /// Domain: groups, and boundaries in a group, in the order that the type has, and in its form; nothing is
+    /// checked.
     ///
-    /// Errors: too many configurations.
+    /// # Errors
+    /// Too many configurations.
     pub fn extend(&mut self, interior: &[u32], boundaries: &[[u32; 3]]) -> Result<()> {
         debug_assert_eq!(interior.len(), self.degree);
         let Ok(end) = u32::try_from(self.boundaries.len() + boundaries.len()) else {
@@ -236,8 +239,8 @@ fn normalised([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a, b, c]
 }
 
-/// The links of all sets of one size k (k-sets): the closed polygons that the configurations of degree k - 1 leave around
-/// them, and that those of degree k triangulate.
+/// The links of all sets of one size k (k-sets): the closed polygons that the configurations of degree k - 1
+/// leave around them, and that those of degree k triangulate.
 ///
 /// Sorted by set. Shape: 4 bytes per vertex, 4 (k + 1) per set.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -253,8 +256,8 @@ pub struct Links {
 pub struct Link<'a> {
     /// The set, sorted.
     pub set: &'a [u32],
-    /// The polygon, counterclockwise, the least vertex first; [`FARAWAY`] is a vertex where the set is on the border of all
-    /// knots. The edges go from each vertex to the next, and from the last to the first.
+    /// The polygon, counterclockwise, the least vertex first; [`FARAWAY`] is a vertex where the set is on the
+    /// border of all knots. The edges go from each vertex to the next, and from the last to the first.
     pub polygon: &'a [u32],
 }
 

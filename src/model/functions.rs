@@ -7,12 +7,14 @@ pub enum FunctionKind {
     Edge([u32; 2]),
     /// The tent of a knot that is pulled apart, with halves of tents of edges that are linear elements.
     Vertex(u32),
-    /// All B-splines between two places of which one at least is pulled apart: where both are, the tent of the edge.
+    /// All B-splines between two places of which one at least is pulled apart: where both are, the tent of
+    /// the edge.
     Tent([u32; 2]),
-    /// The two B-splines of a crease with smooth ends, from knot to knot, which are the first two; the last one is the knot
-    /// between them.
+    /// The two B-splines of a crease with smooth ends, from knot to knot, which are the first two; the last
+    /// one is the knot between them.
     Crease([u32; 3]),
-    /// The box spline (ZP element) of integral one, for a face in unit coordinates, given by its corners, counterclockwise.
+    /// The box spline (ZP element) of integral one, for a face in unit coordinates, given by its corners,
+    /// counterclockwise.
     Face([u32; 4]),
 }
 

@@ -1,4 +1,7 @@
-//! Bivariate splines over Delaunay configurations (thesis, chapters 6 to 8): bases, and fits to data.
+//! Bivariate splines over Delaunay configurations (thesis, chapters 6 to 8).
+//!
+//! [`bases`] evaluates bases of spline functions, their derivatives and whole rasters. [`fitting`] computes
+//! coefficients and knots from data.
 
 pub mod bases;
 pub mod fitting;

@@ -1,6 +1,7 @@
 //! The frame around every block: tag, sequence number, length and checksum.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
+use spmesh_core::error::{Error, Result};
 
 /// Length of the frame before the payload, in bytes.
 pub(super) const FRAME_LEN: usize = 16;
@@ -98,5 +99,14 @@ impl Frame {
 
     fn checksum_with(&self, payload: &[u8]) -> u32 {
         crc32c::crc32c_append(crc32c::crc32c(&self.head), payload)
+    }
+}
+
+/// The records of a payload, `len` bytes each; refuses a remainder.
+pub(super) fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
+    if bytes.len().is_multiple_of(len) {
+        Ok(bytes.chunks_exact(len))
+    } else {
+        Err(Error::malformed(format!("{} bytes are not a whole number of records of {len}", bytes.len())))
     }
 }

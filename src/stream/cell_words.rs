@@ -1,8 +1,9 @@
-//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a later one.
+//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a
+//! later one.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
-use super::payload::whole_records;
+use super::block::whole_records;
 use super::rules4::check_cell;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CELL_WORDS_MAX;
@@ -11,7 +12,7 @@ use spmesh_model::cells4::{Cell4, Cells4};
 /// Marks an infinite cell in the word that counts its vertices.
 pub(super) const INFINITE: u32 = 1 << 31;
 
-/// The words of the cell that is not complete. Memory: what has arrived, whatever its counts promise.
+/// The words of the incomplete cell. Memory: the words that have arrived; stated counts allocate nothing.
 #[derive(Debug, Default)]
 pub(super) struct CellWords {
     open: Vec<u32>,
@@ -40,7 +41,7 @@ impl CellWords {
     }
 }
 
-/// The first cell of `words` and what is behind it; `None` if there is no whole one.
+/// The first cell of `words` and the words after it; `None` if it is incomplete.
 fn split_cell(words: &[u32]) -> Result<Option<(Cell4<'_>, &[u32])>> {
     let [marked, neighbours, rest @ ..] = words else { return Ok(None) };
     let (vertices, neighbours) = (u64::from(marked & !INFINITE), u64::from(*neighbours));

@@ -1,4 +1,4 @@
-//! The rules of configurations that span blocks, for readers of either form and for the writer.
+//! The rules of configurations that span blocks; the reader, the text twin and the writer share them.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,7 @@ use super::kind::Kind;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::configurations::{Claim, FARAWAY};
 
-/// What later blocks are compared with.
+/// State against which later blocks are checked.
 #[derive(Debug, Default)]
 pub(super) struct ConfigurationRules {
     degree: Option<(u32, Claim)>,

@@ -1,4 +1,4 @@
-//! Reads a stream of configurations, whole.
+//! Reads a whole stream of configurations or of a spline.
 
 use std::io::Read;
 
@@ -17,7 +17,8 @@ pub struct ConfigurationSet {
     pub heights: Option<Vec<f64>>,
     /// Configurations, by increasing degree.
     pub degrees: Vec<Configurations>,
-    /// Functions that quadratic splines are made of, if the stream lists any: otherwise all B-splines of links are.
+    /// Functions that quadratic splines are made of, if the stream lists any: otherwise all B-splines of
+    /// links are.
     pub functions: Vec<Function>,
     /// Coefficients of functions, if there is a spline.
     pub coefficients: Vec<f64>,
@@ -57,13 +58,16 @@ pub struct Collector {
 }
 
 impl Collector {
-    /// Nothing yet of a stream with this header.
+    /// An empty collector for a stream with this header.
     #[must_use]
     pub fn new(header: &Header) -> Self {
         Collector { heights: header.has_elevation.then(Vec::new), ..Collector::default() }
     }
 
     /// Takes the next event of a stream of configurations.
+    ///
+    /// # Errors
+    /// Usage, if there are too many configurations.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -90,7 +94,7 @@ impl Collector {
         Ok(())
     }
 
-    /// What was gathered.
+    /// The set gathered so far.
     #[must_use]
     pub fn finish(self) -> ConfigurationSet {
         let Collector { points, heights, degrees, functions, coefficients } = self;

@@ -15,7 +15,7 @@ const CLAIMS: [(Claim, &str); 3] =
 
 /// The name of a claim in text twins.
 pub fn claim_name(claim: Claim) -> &'static str {
-    CLAIMS.iter().find(|(known, _)| *known == claim).expect("every standing has its name").1
+    CLAIMS.iter().find(|(known, _)| *known == claim).expect("every claim has its name").1
 }
 
 /// The claim of this name, if there is one.
@@ -36,7 +36,8 @@ pub struct ConfigurationBlock {
     pub interiors: Vec<u32>,
     /// Number of configurations of each group.
     pub counts: Vec<u32>,
-    /// Boundaries, group by group; [`spmesh_model::configurations::FARAWAY`] is in the last place of infinite ones.
+    /// Boundaries, group by group; [`spmesh_model::configurations::FARAWAY`] is in the last place of infinite
+    /// ones.
     pub boundaries: Vec<[u32; 3]>,
 }
 
@@ -106,8 +107,7 @@ impl ConfigurationBlock {
     /// Appends the payload.
     pub(super) fn encode(&self, payload: &mut Vec<u8>) {
         let claim = CLAIMS.iter().position(|(claim, _)| *claim == self.claim);
-        let head =
-            [self.degree, claim.expect("every standing has its code") as u32, self.counts.len() as u32];
+        let head = [self.degree, claim.expect("every claim has its code") as u32, self.counts.len() as u32];
         let words =
             head.iter().chain(&self.interiors).chain(&self.counts).chain(self.boundaries.as_flattened());
         words.for_each(|word| payload.extend_from_slice(&word.to_le_bytes()));
@@ -145,7 +145,10 @@ impl ConfigurationBlock {
     }
 }
 
-/// That a degree is one that streams may have.
+/// Checks that streams allow a degree.
+///
+/// # Errors
+/// Malformed, if it is above the maximum.
 pub fn check_degree(degree: u32) -> Result<()> {
     if degree <= CONFIGURATION_DEGREE_MAX {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What a stream says, block by block.
+//! Decoded blocks of a stream.
 
 use super::configurations::ConfigurationBlock;
 use super::points4::Points4;
@@ -17,14 +17,14 @@ pub enum Event {
     Cells(Vec<CellCode>),
     /// A piece of the mesh.
     Patch(Patch),
-    /// Labels of the next vertices that have none yet, in the order of their ids. What a label means, the producer
-    /// says.
+    /// Labels of the next vertices that have none yet, in the order of their ids. What a label means, the
+    /// producer says.
     Labels(Vec<u64>),
     /// Points of a residual, each with its vertex id if it was written in an earlier patch.
     ResidualPoints(Vec<(Option<u64>, Point)>),
-    /// Facets between residual points (counted over all their blocks), `vertices_per_wall` numbers each, with a final
-    /// simplex on one side and one that is not final on the other. The final triangle lies to the left of a directed
-    /// edge; a facet in space is counterclockwise as seen from its final tetrahedron.
+    /// Facets between residual points (counted over all their blocks), `vertices_per_wall` numbers each, with
+    /// a final simplex on one side and one that is not final on the other. The final triangle lies to the
+    /// left of a directed edge; a facet in space is counterclockwise as seen from its final tetrahedron.
     Walls(Vec<u32>),
     /// Points of four dimensions.
     Points4(Points4),

@@ -9,9 +9,9 @@ use spmesh_model::cells::{CellCode, CellTree};
 
 /// The part of a finalization tree that is final.
 ///
-/// The cells of the deepest level are consecutive location codes in Morton order, and every cell is a range of
-/// them, so the final part is a set of disjoint ranges. Ranges that touch are one: complete siblings become
-/// their parent, and a stream that tags its cells along the curve needs a handful of ranges.
+/// The cells of the deepest level are consecutive location codes in Morton order, and every cell is a range
+/// of them, so the final part is a set of disjoint ranges. Ranges that touch are one: complete siblings
+/// become their parent, and a stream that tags its cells along the curve needs a handful of ranges.
 ///
 /// Cost: `finalize` is amortized O(log ranges). `check_point` is four comparisons while points stay in the
 /// largest open cell around the last one that was looked up, O(depth + log ranges) otherwise.
@@ -70,8 +70,8 @@ impl FinalizedCells {
     /// Makes `cell` final. Parts of it may be final already, but not all of it.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final already:
-    /// itself, an ancestor, or all of its parts.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final
+    /// already: itself, an ancestor, or all of its parts.
     pub fn finalize(&mut self, cell: CellCode) -> Result<()> {
         if !self.tree.is_valid(cell) {
             return Err(Error::malformed(format!("location code {} is not a cell of the tree", cell.0)));
@@ -128,7 +128,8 @@ impl FinalizedCells {
     /// Checks that a point may still come.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's cube.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's
+    /// cube.
     #[inline]
     pub fn check_point(&mut self, point: Point) -> Result<()> {
         if self.open.contains(point, self.tree.dims()) { Ok(()) } else { self.look_up(point) }
@@ -142,7 +143,8 @@ impl FinalizedCells {
         points.iter().try_for_each(|&point| self.check_point(point))
     }
 
-    /// Checks that points with the bounding box `bounds` may still come: at once, if the box lies in one open cell.
+    /// Checks that points with the bounding box `bounds` may still come: at once, if the box lies in one open
+    /// cell.
     ///
     /// # Errors
     /// As [`FinalizedCells::check_point`], for the first point that may not.

@@ -1,4 +1,4 @@
-//! Functions that splines are made of, as sums of B-splines, and coefficients of splines: as blocks hold them, and their rules.
+//! Encoding and rules of spline functions (sums of B-splines) and of spline coefficients.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
@@ -15,19 +15,19 @@ const TERM_LEN: usize = 16;
 const KINDS: [(&str, usize); 5] = [("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4)];
 
 /// The name of a kind in text twins, and its knots.
-pub fn kind_parts(kind: &FunctionKind) -> (&'static str, &[u32]) {
+pub fn function_kind_parts(kind: &FunctionKind) -> (&'static str, &[u32]) {
     let (code, knots) = parts(kind);
     (KINDS[code].0, knots)
 }
 
 /// The code of the kind with this name, if there is one, and the number of its knots.
-pub fn kind_of_name(name: &[u8]) -> Option<(usize, usize)> {
+pub fn function_kind_of_name(name: &[u8]) -> Option<(usize, usize)> {
     let code = KINDS.iter().position(|(known, _)| known.as_bytes() == name)?;
     Some((code, KINDS[code].1))
 }
 
 /// The kind with a code and as many knots as it has.
-pub fn kind_of(code: usize, knots: &[u32]) -> Option<FunctionKind> {
+pub fn function_kind(code: usize, knots: &[u32]) -> Option<FunctionKind> {
     Some(match (code, knots) {
         (0, &[p, q]) => FunctionKind::Edge([p, q]),
         (1, &[p]) => FunctionKind::Vertex(p),
@@ -87,7 +87,7 @@ fn decode_one(payload: &mut &[u8]) -> Result<Function> {
         )));
     };
     let knots: Vec<u32> = take(4 * count as u64)?.chunks_exact(4).map(LE::read_u32).collect();
-    let kind = kind_of(code as usize, &knots).expect("a kind has as many knots as it has");
+    let kind = function_kind(code as usize, &knots).expect("a kind has as many knots as it has");
     let term = |bytes: &[u8]| {
         let set = [LE::read_u32(bytes), LE::read_u32(&bytes[4..])];
         (set, LE::read_f64(&bytes[8..]))
@@ -107,7 +107,7 @@ pub(super) fn decode_coefficients(payload: &[u8]) -> Result<Vec<f64>> {
     Ok(payload.chunks_exact(8).map(LE::read_f64).collect())
 }
 
-/// What later functions and coefficients are compared with, for readers of either form and for the writer.
+/// State against which later functions are checked; the reader, the text twin and the writer share it.
 #[derive(Debug, Default)]
 pub(super) struct FunctionRules {
     last: Option<FunctionKind>,
@@ -116,7 +116,7 @@ pub(super) struct FunctionRules {
 impl FunctionRules {
     /// The rules of the next function; `knots` came before.
     pub(super) fn function(&mut self, function: &Function, knots: u64) -> Result<()> {
-        let (name, of_kind) = kind_parts(&function.kind);
+        let (name, of_kind) = function_kind_parts(&function.kind);
         let fail = |what: String| Err(Error::malformed(format!("function {name} {of_kind:?} {what}")));
         if of_kind.iter().any(|&knot| u64::from(knot) >= knots) {
             return fail(format!("is not of numbers of {knots} knots"));
@@ -127,7 +127,7 @@ impl FunctionRules {
         if let Some(last) = self.last.replace(function.kind)
             && last >= function.kind
         {
-            let (name, of_last) = kind_parts(&last);
+            let (name, of_last) = function_kind_parts(&last);
             return fail(format!("does not follow {name} {of_last:?}"));
         }
         if function.terms.is_empty() {

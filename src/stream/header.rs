@@ -1,4 +1,4 @@
-//! The header: what the stream holds, in which coordinates, and what is known beforehand.
+//! The header: kind, coordinates, and what the producer knew beforehand.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -64,7 +64,7 @@ impl Coordinates {
         }
     }
 
-    /// Whether a stored value fits the encoding: finite, and for integers a whole number of 32 bits.
+    /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
     #[must_use]
     pub fn can_store(&self, value: f64) -> bool {
         match self {
@@ -111,8 +111,8 @@ pub struct Header {
     pub coordinates: Coordinates,
     /// Dimensions of the geometry: 2, 3 or 4.
     pub dims: u8,
-    /// Whether two-dimensional points carry an elevation, or four-dimensional ones a value. False in three dimensions,
-    /// where z is geometry.
+    /// Whether two-dimensional points carry an elevation, or four-dimensional ones a value. False in three
+    /// dimensions, where z is geometry.
     pub has_elevation: bool,
     /// Box that holds all points of the stream, in stored coordinates; `None` if unknown or empty. Writers
     /// give the smallest one where they can.
@@ -279,7 +279,10 @@ impl Header {
         Ok(header)
     }
 
-    /// The rules that hold between the fields, for writer and reader alike.
+    /// Checks the rules between fields; writer and reader share them.
+    ///
+    /// # Errors
+    /// The rule that is broken, as text.
     pub fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
@@ -351,7 +354,8 @@ impl Header {
     }
 }
 
-/// Where a header body has the region: lower sides, then upper ones. That of space takes the place of a tree too.
+/// Where a header body has the region: lower sides, then upper ones. That of space takes the place of a tree
+/// too.
 fn region_place(kind: Kind) -> Range<usize> {
     if kind == Kind::PartialTetrahedralMesh { 136..184 } else { 152..184 }
 }

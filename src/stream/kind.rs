@@ -11,8 +11,8 @@ pub enum Kind {
     TriangleMesh,
     /// The final triangles of a region and its residual, to be merged with those of other regions.
     PartialTriangleMesh,
-    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; a label for each vertex, or
-    /// for none.
+    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; a label for each
+    /// vertex, or for none.
     TetrahedralMesh,
     /// Points of four dimensions, each with a value or none with one.
     Points4,
@@ -20,8 +20,8 @@ pub enum Kind {
     Cells4,
     /// Points of four dimensions and the simplices between them.
     Simplices4,
-    /// Knots, and the configurations of one or several degrees (B, I) of them; functions of quadratic splines, if links of
-    /// degree 1 make others than B-splines.
+    /// Knots, and the configurations of one or several degrees (B, I) of them; functions of quadratic
+    /// splines, if links of degree 1 make others than B-splines.
     Configurations,
     /// The same with one degree, and with coefficients for the functions.
     Splines,
@@ -140,7 +140,7 @@ impl Kind {
 
     /// The kind with this code in the header, if there is one.
     #[must_use]
-    pub fn from_code(code: u16) -> Option<Self> {
+    pub(crate) fn from_code(code: u16) -> Option<Self> {
         ROWS.iter().find(|row| row.code == code).map(|row| row.kind)
     }
 
@@ -168,13 +168,13 @@ impl Kind {
         self.row().dims
     }
 
-    /// Whether it is of four dimensions, with blocks of its own.
+    /// Whether the geometry is four-dimensional, with block types of its own.
     #[must_use]
     pub fn is_4d(self) -> bool {
         self.dims() == [4]
     }
 
-    /// Whether END counts vertices apart from points, and points that were merged. The knots of configurations are points.
+    /// Whether END counts vertices and merged points besides points. Knots of configurations count as points.
     #[must_use]
     pub fn has_vertices(self) -> bool {
         !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()
@@ -192,7 +192,8 @@ impl Kind {
         self.row().blocks.contains(&Tag::Walls)
     }
 
-    /// Whether its header may have a finalization tree. In that of a partial mesh in space the region takes the place.
+    /// Whether its header may have a finalization tree. In that of a partial mesh in space the region takes
+    /// the place.
     #[must_use]
     pub fn may_have_tree(self) -> bool {
         !self.is_4d() && !self.has_knots() && self != Kind::PartialTetrahedralMesh

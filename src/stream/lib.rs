@@ -1,6 +1,51 @@
-//! The spmesh stream: one container for finalized points, meshes and residuals.
+//! Reader and writer of spmesh streams: one container for points, meshes, 4D diagrams and splines.
 //!
-//! `formats/spmesh.md` is the specification; this module is its reader and its writer. Tools meet only here.
+//! A stream is a header, then blocks with checksums, then an END block with totals. [`Header`] states the
+//! [`Kind`] of the stream, which decides what blocks it may hold, and how stored coordinates map to the world
+//! ([`Coordinates`], [`Crs`]). Coordinates in blocks are *stored* coordinates.
+//!
+//! - [`StreamWriter`] writes blocks; only [`StreamWriter::end`] completes a stream.
+//! - [`StreamReader`] decodes and checks one block at a time, and returns it as an [`Event`]. It verifies
+//!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
+//!   the stream.
+//! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
+//!   patches may still use, and cells that no later point lies in.
+//! - [`ConfigurationSet`] and [`Diagram4`] hold whole streams in memory, for consumers that need all at once.
+//!
+//! `formats/spmesh.md` specifies every byte. Tools exchange data through this crate only.
+//!
+//! # Example
+//!
+//! ```
+//! use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader, StreamWriter};
+//!
+//! # fn main() -> spmesh_core::error::Result<()> {
+//! // Three points of space, written to memory.
+//! let points = vec![[0.0, 0.0, 0.5], [1.0, 0.0, 0.25], [0.0, 1.0, -2.0]];
+//! let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
+//! let mut writer = StreamWriter::new(Vec::new(), header)?;
+//! writer.points(&points)?;
+//! // A stream of points counts its points itself: END ignores both arguments.
+//! let bytes = writer.end(0, 0)?;
+//!
+//! let mut reader = StreamReader::new(&bytes[..], "memory")?;
+//! assert_eq!(reader.header().dims, 3);
+//! let mut found = Vec::new();
+//! while let Some(event) = reader.next_event()? {
+//!     if let Event::Points(block) = event {
+//!         found.extend(block);
+//!     }
+//! }
+//! assert_eq!(found, points);
+//! assert_eq!(reader.totals().points, 3);
+//!
+//! // A truncated stream is an error, never a shorter one.
+//! let mut reader = StreamReader::new(&bytes[..bytes.len() - 1], "memory")?;
+//! let last = std::iter::from_fn(|| reader.next_event().transpose()).last();
+//! assert!(last.is_some_and(|event| event.is_err()));
+//! # Ok(())
+//! # }
+//! ```
 
 mod block;
 mod cell_words;
@@ -9,7 +54,6 @@ mod configuration_rules;
 mod configuration_set;
 mod configurations;
 mod diagram4;
-mod ending;
 mod event;
 mod finalized;
 mod functions;
@@ -21,6 +65,7 @@ mod payload;
 mod points4;
 mod reader;
 mod rules4;
+mod tail;
 mod tally;
 mod triangles;
 mod write_configurations;
@@ -29,11 +74,10 @@ mod writer;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};
-pub use diagram4::Diagram4;
-pub use ending::ends_with_end;
+pub use diagram4::{Diagram4Collector, read_diagram4};
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
-pub use functions::{kind_of, kind_of_name, kind_parts};
+pub use functions::{function_kind, function_kind_of_name, function_kind_parts};
 pub use header::{Coordinates, Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;
@@ -42,6 +86,7 @@ pub use payload::{check_place, decode_points};
 pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
+pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;
 pub use write_configurations::{Content, configurations_header, write_configurations, write_content};

@@ -54,7 +54,8 @@ impl<T: Copy> LiveVertices<T> {
     /// The value of a live vertex that a residual point names, and forgets the vertex: no patch follows.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named before.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named
+    /// before.
     pub fn retire(&mut self, id: u64) -> Result<T> {
         self.live
             .remove(&id)

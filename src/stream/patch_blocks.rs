@@ -1,4 +1,4 @@
-//! Patches that are encoded before their place in the stream is known.
+//! Patches that are encoded before their position in the stream is known.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
@@ -29,8 +29,8 @@ impl PointCode {
 }
 
 /// Patches in their order, with room for their frames. What depends on earlier blocks is filled in by
-/// [`super::StreamWriter::patches`]: frames, first ids, and the ids of imported vertices, for which references
-/// stand that mean something to the caller.
+/// [`super::StreamWriter::patches`]: frames, first ids, and the ids of imported vertices, for which
+/// references stand that mean something to the caller.
 ///
 /// Buffers are kept by [`PatchBlocks::clear`]: no patch is allocated.
 #[derive(Debug, Default)]
@@ -110,8 +110,8 @@ impl PatchBlocks {
         Ok(())
     }
 
-    /// Says which local vertices patch number `patch` finalizes, increasing. To be called for one patch after the
-    /// other, when all are there.
+    /// Says which local vertices patch number `patch` finalizes, increasing. To be called for one patch after
+    /// the other, when all are there.
     pub fn finalize(&mut self, patch: usize, locals: impl Iterator<Item = u32>) {
         let before = self.finalized.len();
         locals.for_each(|local| self.finalized.extend_from_slice(&local.to_le_bytes()));
@@ -141,7 +141,7 @@ impl PatchBlocks {
         EncodedPatch { block: &self.bytes[start..end], finalized }
     }
 
-    /// Room for `len` more bytes, whatever is in them.
+    /// Reserves `len` more bytes with unspecified contents.
     fn room(&mut self, len: usize) -> &mut [u8] {
         let start = self.used;
         self.used += len;

@@ -2,6 +2,7 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::block::whole_records;
 use super::event::{Patch, Totals};
 use super::header::{Coordinates, Header};
 use spmesh_core::error::{Error, Result};
@@ -137,7 +138,7 @@ pub(super) fn residual_points(
         .collect()
 }
 
-/// Walls of so many corners, one behind the other, between `residual_points` earlier ones.
+/// Walls of `corners` corners each, in one list, between the `residual_points` points so far.
 pub(super) fn walls(corners: usize, residual_points: u64, bytes: &[u8]) -> Result<Vec<u32>> {
     let walls: Vec<u32> = whole_records(bytes, 4 * corners)?
         .flat_map(|record| record.chunks_exact(4).map(LE::read_u32))
@@ -158,14 +159,6 @@ pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {
     match <[u64; 7]>::try_from(fields) {
         Ok(fields) => Ok(Totals::from_fields(fields)),
         Err(_) => Err(Error::malformed(format!("END of {} bytes, expected 56", bytes.len()))),
-    }
-}
-
-pub(super) fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
-    if bytes.len().is_multiple_of(len) {
-        Ok(bytes.chunks_exact(len))
-    } else {
-        Err(Error::malformed(format!("{} bytes are not a whole number of records of {len}", bytes.len())))
     }
 }
 
@@ -207,7 +200,10 @@ fn check_point(header: &Header, point: Point) -> Result<()> {
     check_place(header, point)
 }
 
-/// That a point lies where the header says that all points lie.
+/// Checks that a point lies in the bounding box, the tree and the region that the header states.
+///
+/// # Errors
+/// Malformed, if it lies outside of one.
 pub fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
         "the header's bounding box"

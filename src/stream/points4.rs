@@ -2,12 +2,12 @@
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::block::whole_records;
 use super::header::Header;
-use super::payload::whole_records;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Points of four dimensions, each with a value, or none with one.
+/// Points of four dimensions: either all have a value, or none has.
 #[derive(Debug, Clone, Default)]
 pub struct Points4 {
     /// Coordinates x, y, z, t: finite.
@@ -16,7 +16,7 @@ pub struct Points4 {
     pub values: Option<Vec<f64>>,
 }
 
-/// Values are equal if they have the same bits, so that what is not known is equal to itself.
+/// Values are equal if their bits are, so that an unknown value equals itself.
 impl PartialEq for Points4 {
     fn eq(&self, other: &Self) -> bool {
         let bits = |values: &Option<Vec<f64>>| {
@@ -48,7 +48,10 @@ impl Points4 {
     }
 }
 
-/// That a value is finite, or the one NaN that says that it is not known.
+/// Checks that a value is finite, or the canonical NaN, which means unknown.
+///
+/// # Errors
+/// Malformed, if it is anything else.
 pub fn check_value(value: f64) -> Result<()> {
     if value.is_finite() || value.to_bits() == f64::NAN.to_bits() {
         return Ok(());

@@ -1,5 +1,5 @@
-//! Reads a stream block by block and believes nothing: length before allocation, checksum before content,
-//! content before use, totals at the end.
+//! Reads a stream block by block and verifies everything: lengths before it allocates, checksums before it
+//! decodes, contents before it returns them, totals at the end.
 
 use std::io::Read;
 
@@ -22,14 +22,13 @@ use spmesh_model::bounds::{Bounds, Point};
 /// Reads one stream.
 ///
 /// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
-/// Memory: one block, and its decoded event; of a cell of four dimensions that goes on in later blocks, what of it has
-/// arrived.
+/// Memory: one block and its decoded event, and the words so far of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,
     header: Header,
     payload: Vec<u8>,
-    /// An array of points that was given back.
+    /// An array of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
     points_bounds: Option<Bounds>,
@@ -80,7 +79,7 @@ impl<R: Read> StreamReader<R> {
         &self.name
     }
 
-    /// What was read so far.
+    /// Totals of the blocks read so far.
     pub fn totals(&self) -> Totals {
         *self.tally.totals()
     }

@@ -1,4 +1,5 @@
-//! The rules of streams of four dimensions that span blocks, for readers of either form and for the writer.
+//! The rules of four-dimensional streams that span blocks; the reader, the text twin and the writer share
+//! them.
 
 use super::event::Totals;
 use super::kind::Kind;
@@ -6,7 +7,7 @@ use super::points4::Points4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 
-/// What later blocks are compared with. Of a stream of another kind nothing is checked.
+/// State against which later blocks are checked. Streams of other kinds are not checked.
 #[derive(Debug)]
 pub(super) struct Rules4 {
     kind: Kind,

@@ -1,4 +1,4 @@
-//! Counts what a stream holds, and compares it at the end with what the end states.
+//! Counts the contents of a stream, and compares them with the totals that END states.
 
 use super::chunks::ChunkCheck;
 use super::configuration_rules::ConfigurationRules;
@@ -10,7 +10,7 @@ use super::rules4::Rules4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Bounds;
 
-/// What was read so far of a stream, in whatever form it is written, with the rules that span its events.
+/// Counts of the events so far, and the rules that span events. Binary streams and their text twins share it.
 #[derive(Debug)]
 pub struct Tally {
     totals: Totals,
@@ -27,7 +27,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Nothing counted yet of a stream with this header.
+    /// Starts with zero counts for a stream with this header.
     #[must_use]
     pub fn new(header: &Header) -> Self {
         let chunks = header.tree.filter(|_| header.chunked).map(ChunkCheck::new);
@@ -48,7 +48,7 @@ impl Tally {
         }
     }
 
-    /// What was counted. A mesh has no count of points before its end.
+    /// The counts so far. The number of points of a mesh is unknown before its end.
     pub fn totals(&self) -> &Totals {
         &self.totals
     }
@@ -56,8 +56,8 @@ impl Tally {
     /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
     ///
     /// # Errors
-    /// If points of a chunked stream are not those of one cell, labels are more than the vertices so far, or what is of
-    /// four dimensions, configurations, or functions break a rule.
+    /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
+    /// if four-dimensional data, configurations or functions break a rule.
     pub fn count(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points(points) => {
@@ -125,12 +125,13 @@ impl Tally {
         Ok(())
     }
 
-    /// That the totals which the end states are those of the events before (`formats/spmesh.md` 4.14). A mesh
-    /// counts the points of the input that it was made from: each is a vertex, was merged, or waits in the
-    /// residual.
+    /// Checks the totals that END states against those of the events before (`formats/spmesh.md` 4.14). A
+    /// mesh counts the points of the input that it was made from: each is a vertex, was merged, or waits in
+    /// the residual.
     ///
     /// # Errors
-    /// If they are not, if vertices are neither final nor in the residual, or if some have a label and others none.
+    /// Malformed, if they differ, if a vertex is neither final nor in the residual, or if only some vertices
+    /// have labels.
     pub fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
         let mut counted = self.totals;
         if self.has_vertices {

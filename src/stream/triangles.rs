@@ -6,14 +6,15 @@ use super::{Header, Patch, StreamWriter};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 
-/// Triangles per patch. With three vertices of its own each, a triangle takes at most 3 * (4 + 24 + 4) bytes, so a patch
-/// stays below the maximum of a block.
+/// Triangles per patch. With three vertices of its own each, a triangle takes at most 3 * (4 + 24 + 4) bytes,
+/// so a patch stays below the maximum of a block.
 const PATCH_TRIANGLES: usize = 8000;
 
 /// Id of a vertex that no patch has so far.
 const NONE: u64 = u64::MAX;
 
-/// Writes all triangles, in their order, with the vertices below `count` that they use; `at` says where these are, stored.
+/// Writes all triangles, in their order, with the vertices below `count` that they use; `at` says where these
+/// are, stored.
 ///
 /// Domain: all vertices are used, but for `merged` ones.
 ///

@@ -58,12 +58,13 @@ pub fn configurations_header(knots: &[Point2], coordinates: Coordinates, crs: Cr
     header
 }
 
-/// Writes a stream of configurations, or of a spline, with a header of [`configurations_header`], or one like it.
+/// Writes a stream of configurations, or of a spline, with a header of [`configurations_header`], or one like
+/// it.
 ///
 /// # Errors
-/// Usage, if degrees do not increase, one is too high, or heights do not fit header and knots; malformed, if a coordinate
-/// does not fit the header, configurations or functions name knots that there are not, or a spline has not one coefficient for
-/// each function; I/O.
+/// Usage, if degrees do not increase, one is too high, or heights do not fit header and knots; malformed, if
+/// a coordinate does not fit the header, configurations or functions name knots that there are not, or a
+/// spline has not one coefficient for each function; I/O.
 pub fn write_content(header: Header, content: Content, out: impl Write) -> Result<()> {
     let Content { knots, heights, degrees, functions, coefficients } = content;
     if heights.map(<[f64]>::len) != header.has_elevation.then_some(knots.len()) {

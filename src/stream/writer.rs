@@ -1,4 +1,4 @@
-//! Writes a stream block by block. Only [`StreamWriter::end`] makes it whole.
+//! Writes a stream block by block. Only [`StreamWriter::end`] completes it.
 
 mod configurations;
 mod four;
@@ -88,8 +88,8 @@ impl<W: Write> StreamWriter<W> {
         let point_len = self.header.point_len();
         let mut rest = points;
         while !rest.is_empty() {
-            let room = (POINTS_PAYLOAD - self.points.len()) / point_len;
-            let (now, later) = rest.split_at(room.min(rest.len()));
+            let capacity = (POINTS_PAYLOAD - self.points.len()) / point_len;
+            let (now, later) = rest.split_at(capacity.min(rest.len()));
             encode_points(&self.header, now, &mut self.points)?;
             rest = later;
             if self.points.len() + point_len > POINTS_PAYLOAD {
@@ -109,8 +109,8 @@ impl<W: Write> StreamWriter<W> {
         debug_assert!(bytes.len().is_multiple_of(point_len));
         let mut rest = bytes;
         while !rest.is_empty() {
-            let room = (POINTS_PAYLOAD - self.points.len()) / point_len * point_len;
-            let (now, later) = rest.split_at(room.min(rest.len()));
+            let capacity = (POINTS_PAYLOAD - self.points.len()) / point_len * point_len;
+            let (now, later) = rest.split_at(capacity.min(rest.len()));
             self.points.extend_from_slice(now);
             rest = later;
             if self.points.len() + point_len > POINTS_PAYLOAD {
@@ -121,7 +121,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Tags cells as final: no later point lies in them. Writes what points are still waiting first.
+    /// Tags cells as final: no later point lies in them. Writes buffered points first.
     ///
     /// # Errors
     /// If writing fails.
@@ -168,8 +168,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends patches that were encoded ahead, with `id_of` for the references that stand for imported vertices;
-    /// `count` is told of each patch how many new and how many finalized vertices it has.
+    /// Appends patches that were encoded ahead, with `id_of` for the references that stand for imported
+    /// vertices; `count` is told of each patch how many new and how many finalized vertices it has.
     ///
     /// # Errors
     /// If a patch is longer than a block, or writing fails.
@@ -203,8 +203,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends the labels of the next vertices, counted from the one after the last that has a label. They must have
-    /// been written in patches before. By the end either all vertices have labels, or none has.
+    /// Appends the labels of the next vertices, counted from the one after the last that has a label. They
+    /// must have been written in patches before. By the end either all vertices have labels, or none has.
     ///
     /// # Errors
     /// If writing fails.
@@ -237,8 +237,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends walls between residual points, which must have been written before, as the numbers of their corners one
-    /// behind the other.
+    /// Appends walls between residual points, which must have been written before, as the numbers of their
+    /// corners one behind the other.
     ///
     /// # Errors
     /// If writing fails.
@@ -255,11 +255,11 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes END and flushes. For what has vertices, `input_points` of the input were triangulated and `merged` of
-    /// them coincide with another one; a points stream counts its own points and ignores both.
+    /// Writes END and flushes. Streams with vertices state that `input_points` points were triangulated, of
+    /// which `merged` coincide with another one. A points stream counts its own points and ignores both.
     ///
     /// # Errors
-    /// If a cell of four dimensions names a neighbour that is none, or writing or flushing fails.
+    /// If a 4D cell names a neighbour that does not exist, or writing or flushing fails.
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
         assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;

@@ -77,8 +77,9 @@ fn wrong_ties_are_a_matter_of_the_standard() {
     assert!(figures.is_clean(Standard::Delaunay) && !figures.is_clean(Standard::Canonical));
 }
 
-/// Whatever the mesh: nothing panics, the counts are those of trying all pairs of tetrahedra, and a mesh is clean
-/// if and only if the audit passes it. The census knows nothing of links, so they follow from what it does know.
+/// Whatever the mesh: nothing panics, the counts are those of trying all pairs of tetrahedra, and a mesh is
+/// clean if and only if the audit passes it. The census knows nothing of links, so they follow from what it
+/// does know.
 #[test]
 fn counts_agree_with_all_pairs_and_with_the_audit() {
     let (mut clean, mut wrong) = (0, 0);
@@ -158,8 +159,8 @@ fn faults_of(mesh: &Solid) -> Faults {
     faults
 }
 
-/// The apex of `other` if both have a facet in opposite directions: if replacing the apex of one by a new vertex in the
-/// place of that of the other takes an odd permutation.
+/// The apex of `other` if both have a facet in opposite directions: if replacing the apex of one by a new
+/// vertex in the place of that of the other takes an odd permutation.
 fn beyond(one: &[usize; 4], other: &[usize; 4]) -> Option<usize> {
     let shared: Vec<usize> = one.iter().copied().filter(|v| other.contains(v)).collect();
     let [p, q, r] = shared[..] else {

@@ -160,8 +160,8 @@ fn simplices_with_ties_pass_and_nothing_may_be_amiss() {
     check_simplices(&points[..16], &apart).unwrap();
 }
 
-/// Every set of positive simplices over six points: that of the diagram passes and nothing else; none of a diagram with
-/// larger cells but those that split them.
+/// Every set of positive simplices over six points: that of the diagram passes and nothing else; none of a
+/// diagram with larger cells but those that split them.
 #[test]
 fn one_of_all_sets_of_simplices_passes() {
     let mut random = Random::new(SEED + 2);

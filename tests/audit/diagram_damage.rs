@@ -95,8 +95,8 @@ fn coplanar_facets_of_different_cells_stay_apart() {
     assert_eq!(merges, 6);
 }
 
-/// The points on a grid 20 times as fine, moved a little. What agrees in the first coordinates still does, which keeps
-/// the order.
+/// The points on a grid 20 times as fine, moved a little. What agrees in the first coordinates still does,
+/// which keeps the order.
 fn nudge(points: &[Point], random: &mut Random) -> Vec<Point> {
     let mut steps: BTreeMap<&[i64], i64> = BTreeMap::new();
     let moved = points.iter().map(|point| {

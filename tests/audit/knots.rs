@@ -104,7 +104,8 @@ fn configurations_by_definition_pass() {
     }
 }
 
-/// Copies of a knot that take each other's rank are other configurations, which only ranks tell from the right ones.
+/// Copies of a knot that take each other's rank are other configurations, which only ranks tell from the
+/// right ones.
 #[test]
 fn configurations_with_other_ranks_are_refused() {
     let mut refused = 0;

@@ -35,7 +35,8 @@ fn plane() -> Partial<2> {
     Partial::of(points, 16, last.concat(), &open, region)
 }
 
-/// A lattice of 3 x 3 x 3 points in which the tetrahedra around the one amid it are final. It is the vertex 0.
+/// A lattice of 3 x 3 x 3 points in which the tetrahedra around the one amid it are final. It is the vertex
+/// 0.
 fn space() -> Partial<3> {
     let cube = cubic(3);
     let star: Vec<[usize; 4]> =

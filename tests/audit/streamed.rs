@@ -1,5 +1,5 @@
-//! Meshes as programs write them, in the plane and in space: a vertex comes with its first simplex and is finalized with
-//! its last.
+//! Meshes as programs write them, in the plane and in space: a vertex comes with its first simplex and is
+//! finalized with its last.
 
 use std::collections::{BTreeMap, BTreeSet};
 

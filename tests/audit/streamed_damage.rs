@@ -1,5 +1,5 @@
-//! Streams that are damaged, in the plane and in space: the audit refuses them if and only if what is left is not the
-//! canonical triangulation of distinct points, found by trying all simplices.
+//! Streams that are damaged, in the plane and in space: the audit refuses them if and only if what is left is
+//! not the canonical triangulation of distinct points, found by trying all simplices.
 
 use spmesh_audit::{Check, Report};
 use spmesh_stream::Patch;
@@ -154,8 +154,8 @@ fn damage<const D: usize, const N: usize>(mesh: &mut Streamed<D, N>, damage: Dam
     }
 }
 
-/// Replaces two simplices on a facet by those around the edge between their apexes: flips an edge, or makes three
-/// tetrahedra of two.
+/// Replaces two simplices on a facet by those around the edge between their apexes: flips an edge, or makes
+/// three tetrahedra of two.
 fn flip<const D: usize, const N: usize>(mesh: &mut Streamed<D, N>, i: usize) {
     let one = mesh.simplices[i];
     let is_next = |other: &[usize; N]| other.iter().filter(|vertex| one.contains(vertex)).count() == D;

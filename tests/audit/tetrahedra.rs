@@ -190,7 +190,8 @@ fn the_same_mesh_twice() {
     assert!(violation.message.contains("goes around 2 times"), "{violation:?}");
 }
 
-/// Every tetrahedron, every facet and the link of every vertex is right, but the mesh goes around its axis twice.
+/// Every tetrahedron, every facet and the link of every vertex is right, but the mesh goes around its axis
+/// twice.
 #[test]
 fn double_cover() {
     let ring = [[100, 0, 0], [-50, 87, 0], [-50, -87, 0]];

@@ -65,8 +65,8 @@ fn what_passes_is_the_tetrahedralization_of_its_vertices() {
     assert!(passed > 10);
 }
 
-/// Every set of positive tetrahedra over five or six points: the canonical one passes and nothing else. Points may
-/// coincide; then nothing may pass.
+/// Every set of positive tetrahedra over five or six points: the canonical one passes and nothing else.
+/// Points may coincide; then nothing may pass.
 #[test]
 fn one_of_all_sets_of_tetrahedra_passes() {
     let mut random = Random::new(SEED);

@@ -1,4 +1,5 @@
-//! What the kernel makes passes, of every kind of point set; and no audit of it depends on the order of the patches.
+//! What the kernel makes passes, of every kind of point set; and no audit of it depends on the order of the
+//! patches.
 
 use std::borrow::Cow;
 

@@ -32,7 +32,8 @@ fn two_sheets_at_a_vertex_of_the_plane() {
     assert!(violation.message.contains("go around it 2 times"), "{violation:?}");
 }
 
-/// A vertex on the boundary with a closed fan more: one open edge in, one out, and half of its directions twice.
+/// A vertex on the boundary with a closed fan more: one open edge in, one out, and half of its directions
+/// twice.
 #[test]
 fn fan_behind_a_vertex_of_the_hull() {
     let points = [&[[0, 0]][..], &TRIANGLE, &[[9, 9], [-9, 9]]].concat();

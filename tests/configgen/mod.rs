@@ -86,7 +86,8 @@ fn scattered(seed: u64, count: usize) -> Vec<[i64; 2]> {
     sets::uniform(&mut Random::new(seed), count, 1 << 20)
 }
 
-/// Triangles of sums of knots, by the definition of configurations; sums, which are centroids times the order.
+/// Triangles of sums of knots, by the definition of configurations; sums, which are centroids times the
+/// order.
 fn sums_by_definition(points: &[[i64; 2]], order: usize) -> Vec<Vec<Vec<f64>>> {
     let degrees = by_definition(&sets::as_floats(points), order - 1);
     let sum = |sets: [&[u32]; 2]| -> Vec<f64> {
@@ -165,7 +166,8 @@ fn counts_obey_the_identity_of_degrees() {
             assert_eq!(both, 2 * (k as u64 + 1) * (n as u64 - 2 - k as u64), "n = {n}, k = {k}");
             assert_eq!(total(&counts, k, "flat"), 0);
         }
-        // Each line through two knots, in both directions, but for the hull's with all other knots to the left.
+        // Each line through two knots, in both directions, but for the hull's with all other knots to the
+        // left.
         let lines: u64 = (0..=n - 3).map(|k| total(&counts, k, "infinite")).sum();
         assert_eq!(lines + total(&counts, 0, "infinite"), (n * (n - 1)) as u64, "n = {n}");
     }
@@ -274,7 +276,8 @@ fn edges_follow_level_lines() {
         let corners: String = square.iter().zip(values).map(|([x, y], z)| format!("{x} {y} {z}\n")).collect();
         let input = format!("0 0 4\n{corners}{around}");
         let stream = output(&["--centroids", "--degree", "1", level], input.as_bytes());
-        // The link of the centre is the square; with the centre, its triangles have doubled corners of the square.
+        // The link of the centre is the square; with the centre, its triangles have doubled corners of the
+        // square.
         let has = |p: [f64; 2], q: [f64; 2]| {
             let half = |corner: &Vec<f64>, p: [f64; 2]| [corner[0] * 2.0, corner[1] * 2.0] == p;
             triangles(&stream).iter().any(|corners| {

@@ -33,8 +33,8 @@ fn squares_amid_squares_have_box_splines() {
     for split in ["zp", "zp:falling", "zp:upright", "zp:falling:upright"] {
         let arguments = ["--box", split, "--degree", "1"];
         let counted = counts(&arguments, &grid(8, 6));
-        // Of 7 by 5 squares, 5 by 3 have no side on the border; of their vertical and horizontal sides each is in two of them,
-        // or half a function remains.
+        // Of 7 by 5 squares, 5 by 3 have no side on the border; of their vertical and horizontal sides each
+        // is in two of them, or half a function remains.
         assert_eq!(functions(&counted)[4], 15, "{split}");
         assert_eq!(functions(&counted)[1..4], [0; 3], "{split}");
         // Pairs on the diagonals of inner squares have null links.

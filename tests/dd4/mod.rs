@@ -2,6 +2,7 @@
 
 mod failures;
 mod products;
+mod routes;
 
 use std::fs;
 

@@ -1,8 +1,10 @@
 //! What is made of a diagram: simplices, values, slices, surfaces.
 
-use std::os::fd::{FromRawFd, OwnedFd};
+use std::os::fd::OwnedFd;
 use std::process::Stdio;
 
+use rustix::fs::{Mode, OFlags};
+use rustix::pty::{self, OpenptFlags};
 use serde_json::Value;
 
 use super::{as_text, diagram, proof};
@@ -15,16 +17,14 @@ fn linear() -> String {
     (0..81).map(site).map(line).collect()
 }
 
-/// Two ends of a terminal; who reads and writes at the second one sees a terminal.
+/// Two ends of a pseudo-terminal; the second one is the terminal.
 fn terminal() -> [OwnedFd; 2] {
-    let mut ends = [0; 2];
-    let [near, far] = &mut ends;
-    let none = std::ptr::null_mut();
-    // SAFETY: both descriptors are there to be written to, and the rest may be null.
-    let status = unsafe { libc::openpty(near, far, none, none.cast(), none.cast()) };
-    assert_eq!(status, 0, "{}", std::io::Error::last_os_error());
-    // SAFETY: the call succeeded, so that both are open and belong to nobody else.
-    ends.map(|end| unsafe { OwnedFd::from_raw_fd(end) })
+    let near = pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    pty::grantpt(&near).unwrap();
+    pty::unlockpt(&near).unwrap();
+    let name = pty::ptsname(&near, Vec::new()).unwrap();
+    let far = rustix::fs::open(name, OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+    [near, far]
 }
 
 #[test]

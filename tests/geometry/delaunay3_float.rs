@@ -63,20 +63,20 @@ fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
             let mut facet = corners.map(|i| tetrahedron.vertices[i]);
             facet.sort_unstable();
             *facets.entry(facet).or_default() += 1;
-            let Some(Corner { tetrahedron: other, corner }) = tetrahedron.across(side) else { continue };
+            let Some(Corner { tetrahedron: other, corner }) = tetrahedron.neighbour(side) else { continue };
             let other = mesh.tetrahedra()[other as usize];
             let mut shared = FACETS[corner as usize].map(|i| other.vertices[i]);
             shared.sort_unstable();
             assert_eq!(facet, shared);
             let back = Corner { tetrahedron: t as u32, corner: side as u32 };
-            assert_eq!(other.across(corner as usize), Some(back));
+            assert_eq!(other.neighbour(corner as usize), Some(back));
         }
     }
     for tetrahedron in mesh.tetrahedra() {
         for (side, corners) in FACETS.into_iter().enumerate() {
             let mut facet = corners.map(|i| tetrahedron.vertices[i]);
             facet.sort_unstable();
-            assert_eq!(facets[&facet], if tetrahedron.across(side).is_some() { 2 } else { 1 });
+            assert_eq!(facets[&facet], if tetrahedron.neighbour(side).is_some() { 2 } else { 1 });
         }
     }
     assert_eq!(stats.missing as usize, mesh.vertices().len() - vertices.len());
@@ -90,7 +90,7 @@ fn check_delaunay(mesh: &Tetrahedralization) {
         let corners = tetrahedron.vertices.map(|v| mesh.vertices()[v as usize].at);
         assert!(orientation(corners) > 0.0);
         for (side, facet) in FACETS.into_iter().enumerate() {
-            match tetrahedron.across(side) {
+            match tetrahedron.neighbour(side) {
                 Some(other) => {
                     let other =
                         &mesh.tetrahedra()[other.tetrahedron as usize].vertices[other.corner as usize];

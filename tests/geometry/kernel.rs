@@ -1,16 +1,16 @@
 //! The 2D kernel against independent triangulations, and its output against its own promises.
 
-use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangulation, distinct, triangulate};
+use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangles, distinct, triangulate};
 use spmesh_reference::sets::{self, Random};
 use spmesh_reference::{as_set, exhaustive, incremental};
 use std::collections::HashSet;
 
-fn triangles(mesh: &Triangulation) -> impl Iterator<Item = [u32; 3]> + '_ {
+fn triangles(mesh: &Triangles) -> impl Iterator<Item = [u32; 3]> + '_ {
     mesh.triangles().iter().map(|triangle| triangle.vertices)
 }
 
-/// Checks everything that [`Triangulation`] promises but the Delaunay property; returns the set of triangles.
-fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
+/// Checks everything that [`Triangles`] promises but the Delaunay property; returns the set of triangles.
+fn checked(points: &[[f64; 2]], mesh: &Triangles) -> Vec<[u32; 3]> {
     let dropped: HashSet<u32> = mesh.duplicates.iter().map(|pair| pair[0]).collect();
     let vertices = points.len() - dropped.len();
     for &[duplicate, vertex] in &mesh.duplicates {
@@ -29,8 +29,8 @@ fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
         for i in 0..3 {
             let (a, b) = (triangle.vertices[(i + 1) % 3], triangle.vertices[(i + 2) % 3]);
             assert_eq!(mesh.left_of(a, b), Some(Corner { triangle: t as u32, corner: i as u32 }));
-            assert_eq!(mesh.left_of(b, a), triangle.across(i));
-            if triangle.across(i).is_none() {
+            assert_eq!(mesh.left_of(b, a), triangle.neighbour(i));
+            if triangle.neighbour(i).is_none() {
                 assert!(hull_edges.insert((a, b)));
             }
         }
@@ -46,7 +46,7 @@ fn checked(points: &[[f64; 2]], mesh: &Triangulation) -> Vec<[u32; 3]> {
 
 /// Triangulates, checks, and compares with `expected`.
 fn assert_triangles(kernel: &mut Kernel, points: &[[f64; 2]], expected: &[[u32; 3]]) {
-    let mut mesh = Triangulation::default();
+    let mut mesh = Triangles::default();
     kernel.triangulate(points, &mut mesh).expect("finite points");
     assert_eq!(checked(points, &mesh), expected, "let points = vec!{points:?};");
 }
@@ -76,7 +76,7 @@ fn every_sequence_of_up_to_five_points_of_a_tiny_lattice() {
         for sequence in 0..9usize.pow(length) {
             let places = (0..length).map(|k| sequence / 9usize.pow(k) % 9);
             let points: Vec<[f64; 2]> = places.map(|i| [(i % 3) as f64, (i / 3) as f64]).collect();
-            let mut mesh = Triangulation::default();
+            let mut mesh = Triangles::default();
             kernel.triangulate(&points, &mut mesh).expect("finite points");
             checked(&points, &mesh);
             let representatives = distinct(&points);
@@ -184,7 +184,7 @@ fn many_points_in_a_tiny_extent_and_too_many() {
     let tiny = 2f64.powi(-520).powi(2);
     let mut points: Vec<[f64; 2]> = integers.iter().map(|p| p.map(|c| c as f64 * tiny)).collect();
     let mut kernel = Kernel::new();
-    let mut mesh = Triangulation::default();
+    let mut mesh = Triangles::default();
     kernel.triangulate(&points, &mut mesh).expect("finite points");
     let scaled = checked(&points, &mesh);
     assert_eq!(scaled, as_set(triangles(&triangulate(&sets::as_floats(&integers)).expect("finite points"))));
@@ -194,7 +194,7 @@ fn many_points_in_a_tiny_extent_and_too_many() {
 
     // Never touched: the number alone is refused.
     let too_many = vec![[0.0; 2]; spmesh_geometry::delaunay2::MAX_POINTS + 1];
-    let error = kernel.triangulate(&too_many, &mut Triangulation::default()).expect_err("too many");
+    let error = kernel.triangulate(&too_many, &mut Triangles::default()).expect_err("too many");
     assert!(error.to_string().contains("at most"), "{error}");
 }
 
@@ -212,12 +212,12 @@ fn order_of_input_does_not_matter() {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         random.shuffle(&mut order);
         let shuffled: Vec<[f64; 2]> = order.iter().map(|&i| floats[i as usize]).collect();
-        let mut again = Triangulation::default();
+        let mut again = Triangles::default();
         kernel.triangulate(&shuffled, &mut again).expect("finite points");
         let renamed = triangles(&again).map(|t| t.map(|v| order[v as usize]));
         assert!(triangles(&mesh).eq(renamed), "the very same triangles in the same order, seed {seed}");
-        let neighbours = |mesh: &Triangulation| -> Vec<_> {
-            mesh.triangles().iter().map(|t| [0, 1, 2].map(|side| t.across(side))).collect()
+        let neighbours = |mesh: &Triangles| -> Vec<_> {
+            mesh.triangles().iter().map(|t| [0, 1, 2].map(|side| t.neighbour(side))).collect()
         };
         assert_eq!(neighbours(&mesh), neighbours(&again));
     }
@@ -273,7 +273,7 @@ fn coordinates_that_are_not_finite_are_refused() {
 fn a_kernel_is_clean_after_an_error_and_after_larger_input() {
     let mut kernel = Kernel::new();
     let mut random = Random::new(8000);
-    let mut mesh = Triangulation::default();
+    let mut mesh = Triangles::default();
     for count in [1000, 3, 0, 1, 500, 2] {
         let points = sets::as_floats(&sets::uniform(&mut random, count, 1 << 20));
         kernel.triangulate(&[[f64::NAN; 2]], &mut mesh).expect_err("not finite");

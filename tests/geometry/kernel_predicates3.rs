@@ -47,7 +47,7 @@ fn compare(points: &[[f64; 3]], expected: Arithmetic3) -> PredicateCounts {
     assert_eq!(arithmetic, expected);
     let mut counts = PredicateCounts::default();
     arithmetic.run(Compare(points), &mut counts);
-    Arithmetic3::Total.run(Compare(points), &mut counts);
+    Arithmetic3::FiniteFloat.run(Compare(points), &mut counts);
     counts
 }
 
@@ -164,7 +164,7 @@ fn floats_near_degeneracy_at_every_scale() {
         };
         let points = near_degenerate(&mut random, scale);
         Arithmetic3::of(&Extent::of(&points)).run(Compare(&points), &mut counts);
-        Arithmetic3::Total.run(Compare(&points), &mut counts);
+        Arithmetic3::FiniteFloat.run(Compare(&points), &mut counts);
     }
     assert!(counts.filter > 0 && counts.expansion > 0 && counts.bigint > 0, "{counts:?}");
 }
@@ -201,7 +201,7 @@ fn floats_at_the_edge_of_the_expansions() {
             .collect();
         compare(&large, Arithmetic3::Expansion);
         points.push([least / 2.0, greatest, 0.0]);
-        compare(&points, Arithmetic3::Total);
+        compare(&points, Arithmetic3::FiniteFloat);
     }
 }
 
@@ -218,7 +218,7 @@ fn floats_of_wildly_different_magnitude() {
         [0.0, f64::MAX, f64::MIN],
         [-0.0, 0.0, 5e-324],
     ]);
-    let counts = compare(&points, Arithmetic3::Total);
+    let counts = compare(&points, Arithmetic3::FiniteFloat);
     assert!(counts.bigint > 0);
 }
 

@@ -2,6 +2,7 @@
 
 mod circle;
 mod configurations;
+#[cfg(feature = "experiments")]
 mod delaunay3_float;
 mod diagram4;
 mod kernel;
@@ -9,4 +10,5 @@ mod kernel3;
 mod kernel_predicates;
 mod kernel_predicates3;
 mod order;
+mod queries;
 mod sphere;

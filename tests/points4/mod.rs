@@ -12,7 +12,7 @@ use std::io::Write;
 use std::path::Path;
 
 use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::points4::{From4, Points4, Request, Selection, Spacing, read_points4};
+use spmesh_io::source::points4::{From4, Request, Selected4, Selection, Spacing, read_points4};
 use spmesh_model::cells4::Point4;
 
 use crate::programs::Folder;
@@ -34,7 +34,7 @@ fn sample(name: &str) -> From4 {
 }
 
 /// All points of a file with this content.
-fn read(content: impl AsRef<[u8]>) -> Result<Points4> {
+fn read(content: impl AsRef<[u8]>) -> Result<Selected4> {
     let folder = Folder::new();
     read_points4(&all(From4::File(folder.file("input", content))))
 }
@@ -46,13 +46,13 @@ fn gzip(content: &[u8]) -> Vec<u8> {
 }
 
 /// The value at a point.
-fn value_at(points: &Points4, place: Point4) -> f64 {
+fn value_at(points: &Selected4, place: Point4) -> f64 {
     let at = points.points.iter().position(|point| *point == place).expect("the point is there");
     points.values.as_ref().expect("there are values")[at]
 }
 
 /// Asserts that reading fails with `kind` and a message with all of `parts`.
-fn assert_fails(result: Result<Points4>, kind: ErrorKind, parts: &[&str]) {
+fn assert_fails(result: Result<Selected4>, kind: ErrorKind, parts: &[&str]) {
     let error = result.expect_err("reading should fail");
     let message = error.to_string();
     assert_eq!(error.kind(), kind, "{message}");

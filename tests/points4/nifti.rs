@@ -1,7 +1,7 @@
 //! NIfTI-1 volumes.
 
 use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::points4::{From4, Points4, Request, Spacing, read_points4};
+use spmesh_io::source::points4::{From4, Request, Selected4, Spacing, read_points4};
 
 use super::{all, assert_fails, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;
@@ -50,7 +50,7 @@ impl Header {
     }
 }
 
-fn read_world(content: &[u8]) -> Result<Points4> {
+fn read_world(content: &[u8]) -> Result<Selected4> {
     let folder = Folder::new();
     let from = From4::File(folder.file("input", content));
     read_points4(&Request { spacing: Spacing::World, ..all(from) })

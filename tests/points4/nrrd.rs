@@ -1,7 +1,7 @@
 //! NRRD volumes.
 
 use spmesh_core::error::Result;
-use spmesh_io::source::points4::{From4, Points4, Request, Spacing, read_points4};
+use spmesh_io::source::points4::{From4, Request, Selected4, Spacing, read_points4};
 
 use super::{all, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;
@@ -14,13 +14,13 @@ fn small(fields: &str) -> Vec<u8> {
 }
 
 /// As `read`, in world units.
-fn read_world(content: &[u8]) -> Result<Points4> {
+fn read_world(content: &[u8]) -> Result<Selected4> {
     let folder = Folder::new();
     let from = From4::File(folder.file("input", content));
     read_points4(&Request { spacing: Spacing::World, ..all(from) })
 }
 
-fn values(points: Points4) -> Vec<f64> {
+fn values(points: Selected4) -> Vec<f64> {
     points.values.expect("a volume has values")
 }
 
@@ -121,7 +121,7 @@ fn a_volume_that_is_compressed_as_a_whole_is_read() {
 }
 
 /// Points of a detached header in a folder of its own, with these data files beside it.
-fn detached(field: &str, files: &[(&str, &[u8])]) -> Result<Points4> {
+fn detached(field: &str, files: &[(&str, &[u8])]) -> Result<Selected4> {
     let folder = Folder::new();
     files.iter().for_each(|(name, content)| drop(folder.file(name, content)));
     let header = format!("NRRD0005\ntype: uchar\ndimension: 4\nsizes: 2 1 1 2\nencoding: raw\n{field}");

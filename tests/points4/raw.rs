@@ -1,12 +1,12 @@
 //! Volumes that are nothing but numbers.
 
 use spmesh_core::error::{ErrorKind, Result};
-use spmesh_io::source::points4::{From4, Points4, RawLayout, parse_sizes, read_points4};
+use spmesh_io::source::points4::{From4, RawLayout, Selected4, parse_sizes, read_points4};
 
 use super::{all, assert_fails, gzip};
 use crate::programs::Folder;
 
-fn read(name: &str, content: &[u8], layout: &str) -> Result<Points4> {
+fn read(name: &str, content: &[u8], layout: &str) -> Result<Selected4> {
     let folder = Folder::new();
     read_points4(&all(From4::Raw(folder.file(name, content), layout.parse().expect("a layout"))))
 }

@@ -1,8 +1,6 @@
 //! LAS, LAZ and COPC.
 
-use std::ffi::CString;
-use std::os::unix::ffi::OsStrExt;
-
+use rustix::fs::Mode;
 use spmesh_core::error::ErrorKind;
 use spmesh_core::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
 use spmesh_io::source::{Input, SourceOptions, crs_name};
@@ -229,9 +227,7 @@ fn points_that_the_header_does_not_state_are_told_of() {
 fn pipes_are_spooled_and_the_notice_says_so() {
     let folder = Folder::new();
     let path = folder.root().join("pipe.laz");
-    let name = CString::new(path.as_os_str().as_bytes()).unwrap();
-    // SAFETY: `name` is a string that ends with a zero and lives through the call.
-    assert_eq!(unsafe { libc::mkfifo(name.as_ptr(), 0o600) }, 0);
+    rustix::fs::mkfifoat(rustix::fs::CWD, &path, Mode::RUSR | Mode::WUSR).unwrap();
     let content = std::fs::read(sample("point10.laz")).unwrap();
     let writer = std::thread::spawn({
         let path = path.clone();

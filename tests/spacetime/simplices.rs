@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 
 use spmesh_audit::diagram::check_simplices;
-use spmesh_geometry::diagram4::{Diagram, diagram};
+use spmesh_geometry::diagram4::diagram;
 use spmesh_geometry::spacetime::{Rule, Subdivision, subdivide};
+use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Event, StreamReader};
 
 use super::{sampled, scattered, volume};
 use spmesh_reference::sets::Random;
 
-fn parts(diagram: &Diagram, rule: Rule) -> Subdivision {
+fn parts(diagram: &Diagram4, rule: Rule) -> Subdivision {
     subdivide(&diagram.points, diagram.values.as_deref(), &diagram.cells, rule, |_| true).unwrap()
 }
 

@@ -4,7 +4,7 @@ use spmesh_convert::Format;
 use spmesh_core::error::{ErrorKind, Result};
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{
-    Coordinates, Diagram4, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals,
+    Coordinates, Event, Header, Kind, Points4, StreamReader, StreamWriter, Totals, read_diagram4,
 };
 
 use super::{Random, joined, write};
@@ -134,7 +134,7 @@ fn long_cell() -> (Vec<u32>, Vec<u8>) {
 #[test]
 fn cells_longer_than_a_block_or_a_line_come_back() {
     let (all, bytes) = long_cell();
-    let diagram = Diagram4::read(&mut StreamReader::new(&bytes[..], "long").unwrap()).unwrap();
+    let diagram = read_diagram4(&mut StreamReader::new(&bytes[..], "long").unwrap()).unwrap();
     assert_eq!(diagram.cells.get(0), Cell4 { is_infinite: false, vertices: &all, neighbours: &[1] });
     assert_eq!(
         diagram.cells.get(1),
@@ -154,7 +154,7 @@ fn a_whole_diagram_is_read_from_cells_and_from_points() {
         let mut reader = StreamReader::new(&vector.bytes[..], "whole").unwrap();
         let kind = reader.header().kind;
         let has_values = reader.header().has_elevation;
-        let read = Diagram4::read(&mut reader);
+        let read = read_diagram4(&mut reader);
         if !matches!(kind, Kind::Points4 | Kind::Cells4) {
             let error = read.expect_err(&vector.name);
             assert_eq!(error.kind(), ErrorKind::Usage, "{}", vector.name);
@@ -167,7 +167,7 @@ fn a_whole_diagram_is_read_from_cells_and_from_points() {
         assert_eq!(diagram.values.map(|values| values.len()), has_values.then_some(diagram.points.len()));
     }
     let split = load("pass", "txt").into_iter().find(|vector| vector.name == "cells4-split").unwrap();
-    let diagram = Diagram4::read(&mut StreamReader::new(&split.bytes[..], "split").unwrap()).unwrap();
+    let diagram = read_diagram4(&mut StreamReader::new(&split.bytes[..], "split").unwrap()).unwrap();
     assert_eq!(diagram.merged, 1);
     assert_eq!(diagram.cells.get(0).neighbours, [1, 2, 3, 4, 5]);
     assert_eq!(diagram.cells.get(5).vertices, [1, 2, 3, 4]);

@@ -1,4 +1,5 @@
-//! The alpha complex, by its definition: all spheres through a simplex that could be the smallest empty one are tried.
+//! The alpha complex, by its definition: all spheres through a simplex that could be the smallest empty one
+//! are tried.
 
 use super::meshes::Mesh;
 use super::molecules::{Record, Rows, cloud, pdb};
@@ -126,7 +127,8 @@ fn a_radius_on_the_threshold_is_enough_and_nothing_less_is() {
     let less = "1.4999999999999999999999999999";
     assert_eq!(table(&brick(), &["--table", "--alpha", less]).len(), 0);
     assert_eq!(table(&brick(), &["--contacts", "--alpha", less]).len(), contacts.len() - diagonals);
-    // The edges of the brick: four of length 1 and eight of length 2, all with empty spheres of half the length.
+    // The edges of the brick: four of length 1 and eight of length 2, all with empty spheres of half the
+    // length.
     for (radius, edges) in
         [("0.5", 4), ("0.49999999999999999999", 0), ("0.99999999999999999999", 4), ("1", 12)]
     {

@@ -1,6 +1,7 @@
 //! `tess3`: structures in, meshes and tables out.
 
 mod alpha;
+#[cfg(feature = "experiments")]
 mod experiments;
 mod failures;
 mod meshes;

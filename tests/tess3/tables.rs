@@ -16,8 +16,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Volume and circumradius from the six lengths of the edges: Heron's formula for tetrahedra, and the triangle of the
-/// products of opposite edges, whose area is 6 V R.
+/// Volume and circumradius from the six lengths of the edges: Heron's formula for tetrahedra, and the
+/// triangle of the products of opposite edges, whose area is 6 V R.
 fn from_lengths(p: [[f64; 3]; 4]) -> (f64, f64) {
     let d = |i: usize, j: usize| distance(p[i], p[j]);
     let heron = |a: f64, b: f64, c: f64| {
@@ -90,7 +90,8 @@ fn contacts_are_the_edges_with_the_tetrahedra_around_them() {
 
 #[test]
 fn slivers_are_measured_to_the_last_digit() {
-    // A thousandth of the height of anything around: volume 1000 * 1000 * 0.001 / 6, the sphere almost a plane.
+    // A thousandth of the height of anything around: volume 1000 * 1000 * 0.001 / 6, the sphere almost a
+    // plane.
     let corners = [[0.0, 0.0, 0.0], [1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0], [1000.0, 1000.0, 0.001]];
     let atoms: Vec<Record> = (1..).zip(corners).map(|(i, at)| Record::carbon(i, at)).collect();
     let rows = table(&pdb(&atoms), &["--table"]);

@@ -11,8 +11,9 @@ use crate::exact::dyadic::integers;
 use crate::exact::plane::{in_circle, in_raised_circle, orientation};
 use spmesh_core::error::{Error, ErrorKind, Result};
 
-/// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken as the canonical
-/// triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for a small number e.
+/// Checks that the circle of every boundary has its interior set inside, and no other knot; ties are broken
+/// as the canonical triangulation does, and the j-th knot at a place is taken to be at `p + e (j, j * j)` for
+/// a small number e.
 ///
 /// Infinite configurations are not checked.
 ///
@@ -71,8 +72,8 @@ fn is_inside(knots: &Knots, [a, b, c]: [u32; 3], d: u32) -> bool {
     sign == Ordering::Greater
 }
 
-/// Positions with a number for e: one that exceeds no coefficient of a determinant of these points, which is less than
-/// 2^(4 bits + 16) with ranks counted.
+/// Positions with a number for e: one that exceeds no coefficient of a determinant of these points, which is
+/// less than 2^(4 bits + 16) with ranks counted.
 pub(super) fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[BigInt; 2]; N] {
     let points = integers(ids.map(|id| knots.points()[id as usize]));
     let bits = points.as_flattened().iter().map(BigInt::bits).max().unwrap_or(0).max(64);

@@ -3,7 +3,8 @@
 use super::{Claim, FARAWAY};
 use spmesh_core::error::{Error, ErrorKind, Result};
 
-/// The configurations (B, I) of one degree, grouped by I. In infinite ones, the last knot of B is [`FARAWAY`].
+/// The configurations (B, I) of one degree, grouped by I. In infinite ones, the last knot of B is
+/// [`FARAWAY`].
 ///
 /// Shape: 12 bytes per configuration, 4 (k + 1) per group.
 #[derive(Debug, Clone)]

@@ -14,15 +14,15 @@ pub struct FacetCounts {
     pub both_upper: usize,
 }
 
-/// The facets (F, J) of degree k + 1 that configurations of degrees k and k + 1 have, one row each: J sorted, F sorted, and
-/// whether it is from the higher degree and runs from the lesser to the greater end.
+/// The facets (F, J) of degree k + 1 that configurations of degrees k and k + 1 have, one row each: J sorted,
+/// F sorted, and whether it is from the higher degree and runs from the lesser to the greater end.
 struct Rows {
     width: usize,
     words: Vec<u32>,
 }
 
-/// Checks that every facet of `lower` and `upper`, of degrees k and k + 1, has exactly two configurations, in one of the
-/// three ways of proposition 6.2.1. Facets with the faraway point count like others.
+/// Checks that every facet of `lower` and `upper`, of degrees k and k + 1, has exactly two configurations, in
+/// one of the three ways of proposition 6.2.1. Facets with the faraway point count like others.
 ///
 /// Cost: a sort of 3 (c_k + c_(k+1)) rows of k + 4 words, held in memory.
 ///

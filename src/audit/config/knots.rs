@@ -10,9 +10,9 @@ const KNOTS_MAX: usize = 268_000_000;
 
 /// Knots by id.
 ///
-/// Several knots may be at one place. Their *rank* tells them apart: the number of knots at the same place with lesser ids.
-/// Claims about them are claims about the limit of distinct points, with the knot of rank j at `p + e (j, j * j)` for e > 0
-/// that goes to 0.
+/// Several knots may be at one place. Their *rank* tells them apart: the number of knots at the same place
+/// with lesser ids. Claims about them are claims about the limit of distinct points, with the knot of rank j
+/// at `p + e (j, j * j)` for e > 0 that goes to 0.
 ///
 /// Shape: 16 bytes per knot, and 4 for ranks if two knots are at one place.
 #[derive(Debug, Clone, Default)]
@@ -69,8 +69,8 @@ impl Knots {
 
 /// The rank of each knot, or nothing if all places are different.
 ///
-/// Sorted by place, then by id, the knots at one place are a run, in which each has as many lesser ids before it as its rank
-/// says. The order of places is that of numbers, for which -0 and 0 are the same.
+/// Sorted by place, then by id, the knots at one place are a run, in which each has as many lesser ids before
+/// it as its rank says. The order of places is that of numbers, for which -0 and 0 are the same.
 fn ranks(points: &[Xy]) -> Vec<u32> {
     let place_order = |a: u32, b: u32| lexicographic(points[a as usize], points[b as usize]);
     let mut ids: Vec<u32> = (0..points.len() as u32).collect();

@@ -1,11 +1,12 @@
 //! Whether centroid triangulations are planar.
 //!
-//! The centroid triangulation of order k + 1 has the (k + 1)-sets as vertices, at their centroids. A configuration (B, I) of
-//! degree k is the triangle of the sets I + b, one of degree k - 1 that of the sets I + B - b; both are homothetic to B. An
-//! edge is a facet (F, J): it joins J with either knot of F. So triangles are counterclockwise if boundaries are; and if
-//! facets match ([`super::check_facets`]), then every edge has a triangle on each side, but for those that an infinite
-//! configuration of degree k has. If these make one convex polygon that goes around once, the triangles tile it: the
-//! argument is that of [`crate`].
+//! The centroid triangulation of order k + 1 has the (k + 1)-sets as vertices, at their centroids. A
+//! configuration (B, I) of degree k is the triangle of the sets I + b, one of degree k - 1 that of the sets
+//! I + B - b; both are homothetic to B. An edge is a facet (F, J): it joins J with either knot of F. So
+//! triangles are counterclockwise if boundaries are; and if facets match ([`super::check_facets`]), then
+//! every edge has a triangle on each side, but for those that an infinite configuration of degree k has. If
+//! these make one convex polygon that goes around once, the triangles tile it: the argument is that of
+//! [`crate`].
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -32,9 +33,9 @@ impl BorderEdge<'_> {
     }
 }
 
-/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order k + 1 is a convex
-/// polygon; edges may be in line. With matching facets, and the same of degree k - 1, that triangulation is planar. Copies
-/// of a knot count as the limit that [`Knots`] has.
+/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order
+/// k + 1 is a convex polygon; edges may be in line. With matching facets, and the same of degree k - 1, that
+/// triangulation is planar. Copies of a knot count as the limit that [`Knots`] has.
 ///
 /// Cost: an orientation per configuration, integers without limit for each infinite one.
 ///
@@ -69,7 +70,8 @@ fn border<'a>(knots: &Knots, configurations: &'a Configurations) -> Result<Vec<B
     Ok(edges)
 }
 
-/// That the edges are those of one polygon that turns left by less than half a turn at each vertex, and once in all.
+/// That the edges are those of one polygon that turns left by less than half a turn at each vertex, and once
+/// in all.
 fn check_convex(knots: &Knots, edges: &[BorderEdge]) -> Result<()> {
     let fail = |what: String| Err(Error::new(ErrorKind::Audit, what));
     let mut starts: HashMap<Vec<u32>, usize> = HashMap::new();

@@ -8,9 +8,11 @@ use spmesh_stream::Event;
 
 /// Audit of one stream of configurations: begin with the default, give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
+/// block.
 ///
-/// Memory: what the stream holds; and for facets, 4 (k + 4) bytes for each of three facets of each configuration of two degrees.
+/// Memory: what the stream holds; and for facets, 4 (k + 4) bytes for each of three facets of each
+/// configuration of two degrees.
 #[derive(Debug, Default)]
 pub struct StreamAudit {
     collector: Collector,
@@ -41,7 +43,8 @@ pub struct DegreeProof {
     pub infinite: usize,
     /// Circles have their interior sets inside and nothing else: of what claims to be Delaunay.
     pub has_circles: bool,
-    /// Facets match and the centroid triangulation is planar: of degree 0, and where the degree below is in the stream.
+    /// Facets match and the centroid triangulation is planar: of degree 0, and where the degree below is in
+    /// the stream.
     pub facets: Option<FacetCounts>,
     /// There are as many as theory has it: where all degrees below are in the stream.
     pub is_counted: bool,
@@ -130,9 +133,9 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
     Ok(proof)
 }
 
-/// That there are 2 (k + 1) n - (k + 1) (k + 2) - e configurations of degree k, where e is the number of infinite ones of
-/// degrees up to k. It follows from Euler's relation of all centroid triangulations, whatever the rule (D. T. Lee's count of
-/// Voronoi vertices of order k is the Delaunay case).
+/// That there are 2 (k + 1) n - (k + 1) (k + 2) - e configurations of degree k, where e is the number of
+/// infinite ones of degrees up to k. It follows from Euler's relation of all centroid triangulations,
+/// whatever the rule (D. T. Lee's count of Voronoi vertices of order k is the Delaunay case).
 fn check_count(knots: &Knots, configurations: &Configurations, lines: usize) -> Result<()> {
     let (next, count) = (configurations.degree() as i128 + 1, configurations.finite_len() as i128);
     let expected = 2 * next * knots.len() as i128 - next * (next + 1) - lines as i128;

@@ -38,7 +38,8 @@ impl Tree {
     }
 }
 
-/// Sorts ids until the two halves of each range are on either side of the middle of the longer side of its box.
+/// Sorts ids until the two halves of each range are on either side of the middle of the longer side of its
+/// box.
 fn build(points: &[Xy], ids: &mut [u32], node: usize, boxes: &mut Vec<[Xy; 2]>) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for &id in ids.iter() {

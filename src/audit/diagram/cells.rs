@@ -1,4 +1,5 @@
-//! One finite cell of a diagram after the other: its sphere, its facets, how they close up, and the boundary there.
+//! One finite cell of a diagram after the other: its sphere, its facets, how they close up, and the boundary
+//! there.
 
 use std::cmp::Ordering;
 
@@ -80,7 +81,8 @@ impl<'a> CellsAudit<'a> {
         self.proof
     }
 
-    /// The vertices are on one sphere, and those of the neighbours of greater numbers outside: one of each is enough.
+    /// The vertices are on one sphere, and those of the neighbours of greater numbers outside: one of each is
+    /// enough.
     fn check_sphere(&mut self, number: usize, cell: Cell4) -> Result<(), Violation> {
         let mut asked = cell.vertices.to_vec();
         let later = cell.neighbours.iter().map(|&neighbour| neighbour as usize);

@@ -5,7 +5,9 @@ use super::violation::{Claim, Violation};
 
 /// Different keys among many, with room for twice as many as there are.
 ///
-/// Cost: a sort whenever the room is used up, so that a key is sorted a few times. Memory: 8 N bytes per different key.
+/// Cost: a sort whenever the room is used up, so that a key is sorted a few times.
+///
+/// Memory: 8 N bytes per different key.
 #[derive(Debug, Default)]
 pub(super) struct Distinct<const N: usize> {
     keys: Vec<[u32; N]>,

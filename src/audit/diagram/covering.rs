@@ -7,9 +7,9 @@ use spmesh_model::cells4::Point4;
 
 /// A point `o` inside of a cell, and the cells that do not contain it.
 ///
-/// It is a vertex of the cell moved towards four others, infinitely less towards each than towards the one before. So
-/// it is in no hyperplane through given points, and its side is that of the first of the five that is not in the
-/// hyperplane either.
+/// It is a vertex of the cell moved towards four others, infinitely less towards each than towards the one
+/// before. So it is in no hyperplane through given points, and its side is that of the first of the five that
+/// is not in the hyperplane either.
 ///
 /// Memory: a byte per cell.
 #[derive(Debug, Default)]
@@ -49,7 +49,8 @@ impl Covering {
         self.five
     }
 
-    /// Takes note of the side of `o` of a facet between two cells. No facet of the boundary may have it beyond.
+    /// Takes note of the side of `o` of a facet between two cells. No facet of the boundary may have it
+    /// beyond.
     pub(super) fn pass(
         &mut self,
         near: usize,

@@ -99,7 +99,8 @@ impl Meetings {
     }
 }
 
-/// The faces of the cell at hand. Vertices go by their place in the cell, facets by the place of the neighbour beyond.
+/// The faces of the cell at hand. Vertices go by their place in the cell, facets by the place of the
+/// neighbour beyond.
 #[derive(Debug, Default)]
 pub(super) struct Faces {
     pub(super) facets: Lists,
@@ -116,10 +117,10 @@ pub(super) struct Faces {
 impl Faces {
     /// Proves that the facets are all that the cell has, if they are true facets.
     ///
-    /// A ridge is what two facets share, unless that is less than three vertices. It is a polygon, and has as many
-    /// edges as vertices. If each of them is shared with another ridge of the facet, then the ridges of the facet are
-    /// complete, because they are connected through edges; and if all ridges of all facets are shared with another
-    /// facet, then the facets are complete, because they are connected through ridges.
+    /// A ridge is what two facets share, unless that is less than three vertices. It is a polygon, and has as
+    /// many edges as vertices. If each of them is shared with another ridge of the facet, then the ridges of
+    /// the facet are complete, because they are connected through edges; and if all ridges of all facets are
+    /// shared with another facet, then the facets are complete, because they are connected through ridges.
     ///
     /// Calls `edge` for each edge with the three facets it was found in, maybe more than once.
     pub(super) fn check(

@@ -27,8 +27,8 @@ pub(super) fn check_finite(points: &[Point4]) -> Result<(), Violation> {
     Err(Violation::new(Claim::Points, message).at(points, &[i as u32]))
 }
 
-/// Proves that the lists of cells are well formed, that the cells are in order and that neighbours are mutual. Returns
-/// the number of finite cells.
+/// Proves that the lists of cells are well formed, that the cells are in order and that neighbours are
+/// mutual. Returns the number of finite cells.
 pub(super) fn check_cells(points: &[Point4], cells: &Cells4) -> Result<usize, Violation> {
     if u32::try_from(cells.len()).is_err() {
         return Err(Violation::new(Claim::Cells, "more cells than 32 bits number"));

@@ -1,4 +1,5 @@
-//! The three arithmetics that every question is asked in: numbers with their error, of 128 bits, and without limit.
+//! The three arithmetics that every question is asked in: numbers with their error, of 128 bits, and without
+//! limit.
 
 use std::cmp::Ordering;
 
@@ -42,10 +43,10 @@ exact!(BigInt, BigInt::ZERO);
 
 /// A number that is known but for an error: the true value differs from `value` by at most `error`.
 ///
-/// One rounding errs by at most 2^-53 times the rounded result, and a product that underflows by at most 2^-1075 on
-/// top. The bounds are rounded themselves, in at most six operations: [`GROWTH`] makes up for that, and [`TINY`], which
-/// is part of every error, for all underflow. What overflows has an infinite error, or none that is a number, and
-/// decides nothing.
+/// One rounding errs by at most 2^-53 times the rounded result, and a product that underflows by at most
+/// 2^-1075 on top. The bounds are rounded themselves, in at most six operations: [`GROWTH`] makes up for
+/// that, and [`TINY`], which is part of every error, for all underflow. What overflows has an infinite error,
+/// or none that is a number, and decides nothing.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ball {
     value: f64,
@@ -110,7 +111,8 @@ mod tests {
         assert_eq!(TINY, 2f64.powi(-1000));
     }
 
-    /// The same expression of random numbers of all sizes, in integers: the ball holds it, and is not much too large.
+    /// The same expression of random numbers of all sizes, in integers: the ball holds it, and is not much
+    /// too large.
     #[test]
     fn balls_hold_the_true_value() {
         let mut state = 7_u64;

@@ -1,4 +1,5 @@
-//! Simplicial complexes that claim to be Delaunay: the same proof, with ties between cospherical points as they are.
+//! Simplicial complexes that claim to be Delaunay: the same proof, with ties between cospherical points as
+//! they are.
 
 use std::cmp::Ordering;
 
@@ -12,18 +13,21 @@ use super::space::{Facet, Roundness, Separation, Sphere};
 use super::violation::{Claim, Violation};
 use spmesh_model::cells4::Point4;
 
-/// Proves that simplices tile the convex hull of points, all of which are vertices, and that their spheres are empty.
+/// Proves that simplices tile the convex hull of points, all of which are vertices, and that their spheres
+/// are empty.
 ///
-/// A simplex `a`, `b`, `c`, `d`, `e` is positive if det(b - a, c - a, d - a, e - a) is. Ties are allowed: points may be on
-/// the spheres of simplices that do not have them. The proof is that of diagrams (see the module), where "strictly convex"
-/// becomes "convex".
+/// A simplex `a`, `b`, `c`, `d`, `e` is positive if det(b - a, c - a, d - a, e - a) is. Ties are allowed:
+/// points may be on the spheres of simplices that do not have them. The proof is that of diagrams (see the
+/// module), where "strictly convex" becomes "convex".
 ///
 /// Domain: any points and simplices, however wrong. If all points lie in a hyperplane there are no simplices.
 ///
+/// Cost: as for diagrams, and a sort of the facets.
+///
+/// Memory: 100 bytes per simplex, and as for diagrams.
+///
 /// # Errors
 /// The first violation that was met.
-///
-/// Cost: as for diagrams, and a sort of the facets. Memory: 100 bytes per simplex, and as for diagrams.
 pub fn check_simplices(points: &[Point4], simplices: &[[u32; 5]]) -> Result<Proof, Violation> {
     check_finite(points)?;
     check_distinct(points)?;

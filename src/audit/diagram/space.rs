@@ -8,8 +8,8 @@ use super::sites::{Extent, Question};
 /// A point relative to another.
 type Vector<T> = [T; 4];
 
-/// Whether vertices of a cell lie on one sphere, with a volume, and others outside of it. All are given relative to
-/// the first vertex of the cell.
+/// Whether vertices of a cell lie on one sphere, with a volume, and others outside of it. All are given
+/// relative to the first vertex of the cell.
 pub(super) struct Sphere {
     /// How many vectors are vertices of the cell; the others must be outside.
     pub(super) own: usize,
@@ -22,18 +22,18 @@ pub(super) enum Roundness {
     Flat,
     /// This vertex of the cell is not on the sphere of the others.
     Off(usize),
-    /// The cell is round. What is there for the other point that is furthest inside: `Greater` if all are strictly
-    /// outside, `Equal` if this one is on the sphere, `Less` if it is inside.
+    /// The cell is round. What is there for the other point that is furthest inside: `Greater` if all are
+    /// strictly outside, `Equal` if this one is on the sphere, `Less` if it is inside.
     Round { turn: Ordering, others: Ordering, worst: usize },
 }
 
 impl Question for Sphere {
     type Answer = Roundness;
 
-    /// With coordinates of at most m: a minor of two rows has at most 2 m^2, of three 6 m^3, and the volume 24 m^4; a
-    /// lift 4 m^2; so a component of the normal of the sphere 4 * 4 m^2 * 6 m^3, and the power of a point
-    /// 24 * 4 m^6 + 4 * 96 m^6 = 480 m^6. For m = 840,000 that is 1.69 * 10^38 < 2^127. These are sums of magnitudes,
-    /// so no partial sum is larger.
+    /// With coordinates of at most m: a minor of two rows has at most 2 m^2, of three 6 m^3, and the volume
+    /// 24 m^4; a lift 4 m^2; so a component of the normal of the sphere 4 * 4 m^2 * 6 m^3, and the power of a
+    /// point 24 * 4 m^6 + 4 * 96 m^6 = 480 m^6. For m = 840,000 that is 1.69 * 10^38 < 2^127. These are sums
+    /// of magnitudes, so no partial sum is larger.
     fn fits(&self, extent: Extent) -> bool {
         extent.first.max(extent.rest) <= 840_000
     }
@@ -73,9 +73,9 @@ impl Question for Sphere {
     }
 }
 
-/// What the hyperplane of a facet separates. Vectors are relative to the first vertex of the facet, and come in this
-/// order: other vertices of the facet; other vertices of its cell; other vertices of the cell beyond it; vertices of
-/// neighbouring facets of the boundary; and five points in general position.
+/// What the hyperplane of a facet separates. Vectors are relative to the first vertex of the facet, and come
+/// in this order: other vertices of the facet; other vertices of its cell; other vertices of the cell beyond
+/// it; vertices of neighbouring facets of the boundary; and five points in general position.
 pub(super) struct Facet {
     /// Vertices of the facet but the first.
     pub(super) on: usize,
@@ -161,8 +161,8 @@ impl Question for Facet {
     }
 }
 
-/// Which of some points are five in general position, or how many dimensions they span. All are given relative to the
-/// first.
+/// Which of some points are five in general position, or how many dimensions they span. All are given
+/// relative to the first.
 pub(super) struct Independent;
 
 impl Question for Independent {

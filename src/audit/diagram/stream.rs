@@ -2,19 +2,19 @@
 
 use super::{Proof, Violation, check, check_simplices};
 use spmesh_core::error::{Error, Result};
-use spmesh_stream::{Diagram4, Event, Kind};
+use spmesh_model::diagram4::Diagram4;
+use spmesh_stream::{Diagram4Collector, Event, Kind};
 
 /// Audit of one stream of cells or simplices: give it every event, and ask for the proof.
 ///
-/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each block.
+/// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each
+/// block.
 ///
 /// Memory: what the stream holds, and what [`check`] or [`check_simplices`] needs.
 #[derive(Debug)]
 pub struct StreamAudit {
     kind: Kind,
-    diagram: Diagram4,
-    /// Words of its cells.
-    words: u64,
+    diagram: Diagram4Collector,
     simplices: Vec<[u32; 5]>,
     proof: Option<std::result::Result<Proof, Violation>>,
 }
@@ -30,8 +30,8 @@ impl StreamAudit {
             let message = format!("a stream of {name} claims nothing that takes a proof: leave --audit away");
             return Err(Error::usage(message));
         }
-        let (diagram, simplices) = (Diagram4::default(), Vec::new());
-        Ok(StreamAudit { kind, diagram, words: 0, simplices, proof: None })
+        let (diagram, simplices) = (Diagram4Collector::default(), Vec::new());
+        Ok(StreamAudit { kind, diagram, simplices, proof: None })
     }
 
     /// Takes what the next event holds.
@@ -41,7 +41,7 @@ impl StreamAudit {
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Simplices4(simplices) => self.simplices.extend_from_slice(simplices),
-            event => self.diagram.event(event, &mut self.words)?,
+            event => self.diagram.event(event)?,
         }
         Ok(())
     }
@@ -51,7 +51,7 @@ impl StreamAudit {
     /// # Errors
     /// The first violation that was met.
     pub fn prove(&mut self) -> std::result::Result<Proof, Violation> {
-        let Diagram4 { points, cells, .. } = &self.diagram;
+        let Diagram4 { points, cells, .. } = self.diagram.diagram();
         let proof = match self.kind {
             Kind::Simplices4 => check_simplices(points, &self.simplices),
             _ => check(points, cells),

@@ -1,10 +1,10 @@
-//! The audit's own exact arithmetic: orientation, in-circle, in-sphere, and how the canonical triangulation breaks
-//! ties.
+//! The audit's own exact arithmetic: orientation, in-circle, in-sphere, and how the canonical triangulation
+//! breaks ties.
 //!
 //! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Else the
 //! coordinates are multiplied by a common power of two that makes them integers, and where their differences
-//! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to integers
-//! without limit.
+//! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to
+//! integers without limit.
 
 pub(super) mod dyadic;
 pub(super) mod plane;
@@ -31,7 +31,8 @@ fn decided(filtered: Option<Ordering>, exact: impl FnOnce() -> Ordering) -> Deci
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// The sign of a determinant that errs by at most `error`, if that tells. Infinities and what is no number do not.
+/// The sign of a determinant that errs by at most `error`, if that tells. Infinities and what is no number do
+/// not.
 fn decide(determinant: f64, error: f64) -> Option<Ordering> {
     if determinant > error {
         Some(Ordering::Greater)

@@ -12,25 +12,25 @@ use super::{Decided, ROUNDING, decide, decided, plane, power_of_two};
 /// A position in space, in stored coordinates. All three are finite.
 pub(crate) type Xyz = [f64; 3];
 
-/// Whether det(b - a, c - a, d - a) is positive (`Greater`), negative (`Less`) or zero (`Equal`): seen from `d`, the
-/// triangle `a`, `b`, `c` is counterclockwise, clockwise, or flat.
+/// Whether det(b - a, c - a, d - a) is positive (`Greater`), negative (`Less`) or zero (`Equal`): seen from
+/// `d`, the triangle `a`, `b`, `c` is counterclockwise, clockwise, or flat.
 pub(crate) fn orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Decided {
     decided(filtered_orientation(a, b, c, d), || exact_orientation(a, b, c, d))
 }
 
-/// Whether `e` lies inside (`Greater`), outside (`Less`) or on (`Equal`) the sphere of the positive tetrahedron
-/// `a`, `b`, `c`, `d`.
+/// Whether `e` lies inside (`Greater`), outside (`Less`) or on (`Equal`) the sphere of the positive
+/// tetrahedron `a`, `b`, `c`, `d`.
 pub(crate) fn in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Decided {
     decided(filtered_in_sphere(a, b, c, d, e), || exact_in_sphere(a, b, c, d, e))
 }
 
-/// Whether `e`, which lies on the sphere of the positive tetrahedron `a`, `b`, `c`, `d`, counts as inside or outside
-/// after the symbolic perturbation: every lift x² + y² + z² is raised by an infinitesimal, those of
+/// Whether `e`, which lies on the sphere of the positive tetrahedron `a`, `b`, `c`, `d`, counts as inside or
+/// outside after the symbolic perturbation: every lift x² + y² + z² is raised by an infinitesimal, those of
 /// lexicographically larger points infinitely more.
 ///
 /// The in-sphere determinant is linear in the lifts, so that the largest point whose coefficient is not zero
-/// decides: the coefficient of a vertex of the tetrahedron is the orientation of the tetrahedron with the vertex
-/// replaced by `e`; that of `e` is minus the orientation of the tetrahedron, which is not zero.
+/// decides: the coefficient of a vertex of the tetrahedron is the orientation of the tetrahedron with the
+/// vertex replaced by `e`; that of `e` is minus the orientation of the tetrahedron, which is not zero.
 pub(crate) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
     let mut by_rank =
         [(a, [e, b, c, d]), (b, [a, e, c, d]), (c, [a, b, e, d]), (d, [a, b, c, e]), (e, [b, a, c, d])];
@@ -47,8 +47,9 @@ pub(crate) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).all(|sign| sign == Ordering::Equal)
 }
 
-/// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is counterclockwise seen from,
-/// for any infinitesimal e: whether the first component of its normal that is not zero is positive.
+/// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is
+/// counterclockwise seen from, for any infinitesimal e: whether the first component of its normal that is not
+/// zero is positive.
 pub(crate) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
 }
@@ -85,11 +86,11 @@ pub(crate) fn float_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Ordering {
 }
 
 /// Each of the six monomials passes at most 8 roundings: three differences, a product and its difference, the
-/// product of both and two sums. So the error is below 8.1 `ROUNDING` times the sum of their magnitudes, and that is
-/// at most 8.1 `ROUNDING` above its own rounded value; 10 covers both.
+/// product of both and two sums. So the error is below 8.1 `ROUNDING` times the sum of their magnitudes, and
+/// that is at most 8.1 `ROUNDING` above its own rounded value; 10 covers both.
 ///
-/// Underflow: a product errs by at most 2^-1075 on top. With a third factor below 2^200 all such errors together
-/// stay below 2^-870. What overflows compares false.
+/// Underflow: a product errs by at most 2^-1075 on top. With a third factor below 2^200 all such errors
+/// together stay below 2^-870. What overflows compares false.
 fn filtered_orientation(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Option<Ordering> {
     let (determinant, magnitude) = estimated_orientation(a, b, c, d);
     let in_range = (0..3).all(|axis| (d[axis] - a[axis]).abs() < FACTOR_OF_FILTER);
@@ -102,7 +103,8 @@ const FACTOR_OF_FILTER: f64 = power_of_two(200);
 /// 2^-800.
 const UNDERFLOW_OF_VOLUME: f64 = power_of_two(-800);
 
-/// The in-sphere determinant in plain f64, the sum of the magnitudes of its monomials, and the sum of the lifts.
+/// The in-sphere determinant in plain f64, the sum of the magnitudes of its monomials, and the sum of the
+/// lifts.
 #[inline]
 fn estimated_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> (f64, f64, f64) {
     let [a, b, c, d] = [a, b, c, d].map(|p| [p[0] - e[0], p[1] - e[1], p[2] - e[2]]);
@@ -133,13 +135,14 @@ pub(crate) fn float_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Orderin
     sign_of(estimated_in_sphere(a, b, c, d, e).0)
 }
 
-/// Each monomial passes at most 16 roundings: five differences, a square and two sums, a product and its difference,
-/// the product with z and two sums, the product of both and two sums. So the error is below 16.1 `ROUNDING` times the
-/// sum of the magnitudes, and that is at most 16.1 `ROUNDING` above its own rounded value; 18 covers both.
+/// Each monomial passes at most 16 roundings: five differences, a square and two sums, a product and its
+/// difference, the product with z and two sums, the product of both and two sums. So the error is below 16.1
+/// `ROUNDING` times the sum of the magnitudes, and that is at most 16.1 `ROUNDING` above its own rounded
+/// value; 18 covers both.
 ///
-/// Underflow: a product errs by at most 2^-1075 on top. With all lifts below 2^400, differences are below 2^200,
-/// products of two of them and lifts below 2^402 and minors below 2^604, so that all such errors together stay below
-/// 2^-450.
+/// Underflow: a product errs by at most 2^-1075 on top. With all lifts below 2^400, differences are below
+/// 2^200, products of two of them and lifts below 2^402 and minors below 2^604, so that all such errors
+/// together stay below 2^-450.
 fn filtered_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Option<Ordering> {
     let (determinant, magnitude, lifts) = estimated_in_sphere(a, b, c, d, e);
     decide(determinant, 18.0 * ROUNDING * magnitude + UNDERFLOW_OF_SPHERE).filter(|_| lifts < LIFT_OF_FILTER)
@@ -201,7 +204,8 @@ fn exact_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
     }
 }
 
-/// The in-sphere determinant of four points relative to the fifth: lifts times the volumes of the three others.
+/// The in-sphere determinant of four points relative to the fifth: lifts times the volumes of the three
+/// others.
 fn raised_volumes<T>([a, b, c, d]: [[T; 3]; 4]) -> T
 where
     T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,

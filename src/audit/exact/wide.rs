@@ -3,10 +3,11 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
 
-/// A signed integer modulo 2^320, in two's complement, lowest limb first: exact while results stay below 2^319.
+/// A signed integer modulo 2^320, in two's complement, lowest limb first: exact while results stay below
+/// 2^319.
 ///
-/// The largest expression of the audit is the in-sphere determinant: four products of a lift of at most 3 * 2^122 and
-/// a minor of at most 6 * 2^183, so 72 * 2^305 < 2^312.
+/// The largest expression of the audit is the in-sphere determinant: four products of a lift of at most
+/// 3 * 2^122 and a minor of at most 6 * 2^183, so 72 * 2^305 < 2^312.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Wide([u64; LIMBS]);
 

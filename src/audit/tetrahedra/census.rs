@@ -1,8 +1,8 @@
-//! The faults of a tetrahedral mesh, counted instead of named: exactly, and as plain floating-point arithmetic sees
-//! them.
+//! The faults of a tetrahedral mesh, counted instead of named: exactly, and as plain floating-point
+//! arithmetic sees them.
 //!
-//! For meshes that are known to be wrong, as rounded arithmetic makes them: how wrong are they, and would a check in
-//! rounded arithmetic have noticed?
+//! For meshes that are known to be wrong, as rounded arithmetic makes them: how wrong are they, and would a
+//! check in rounded arithmetic have noticed?
 
 use std::cmp::Ordering;
 
@@ -20,7 +20,8 @@ use spmesh_stream::{Event, Patch};
 
 /// Counts the faults of a tetrahedral mesh: give it every event, and ask for the figures.
 ///
-/// Domain: the events of a stream of tetrahedra from a [`spmesh_stream::StreamReader`], however wrong the mesh is.
+/// Domain: the events of a stream of tetrahedra from a [`spmesh_stream::StreamReader`], however wrong the
+/// mesh is.
 ///
 /// Memory: as for the audit, the edges and facets between live vertices, and 4 bytes per tetrahedron.
 pub struct Census {
@@ -57,7 +58,8 @@ pub struct Figures {
     pub torn_edges: u64,
     /// Vertices - edges + facets - tetrahedra: 1 in a ball.
     pub euler: i64,
-    /// Whether the boundary was proved to be convex, closed and to go around once, or all vertices to be in a plane.
+    /// Whether the boundary was proved to be convex, closed and to go around once, or all vertices to be in a
+    /// plane.
     pub is_hull_proved: bool,
     /// Faults by exact arithmetic.
     pub exact: Faults,
@@ -234,7 +236,8 @@ impl Census {
 
     /// Two tetrahedra on a facet: where is the apex of each with respect to the sphere of the other?
     ///
-    /// Exchanging the two apexes changes the sign of the determinant, and so does the other direction of the facet.
+    /// Exchanging the two apexes changes the sign of the determinant, and so does the other direction of the
+    /// facet.
     fn neighbours(&mut self, corners: &[Corner; 4], side: usize, index: usize, beyond: Beyond) {
         let [a, b, c, d] = corners.map(|corner| corner.at);
         let (apex, opposite) = (corners[side].at, beyond.apex.at);

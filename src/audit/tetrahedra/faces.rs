@@ -6,8 +6,9 @@ use foldhash::fast::RandomState;
 
 /// Edges (`N` = 2) or facets (`N` = 3) that a later tetrahedron may have too, as increasing ids.
 ///
-/// Memory: up to twice as many as there have been between live vertices, and some thousand. Those of finalized
-/// vertices are swept out each time that the number has doubled, so that forgetting costs a constant per face.
+/// Memory: up to twice as many as there have been between live vertices, and some thousand. Those of
+/// finalized vertices are swept out each time that the number has doubled, so that forgetting costs a
+/// constant per face.
 #[derive(Debug, Default)]
 pub(super) struct SeenFaces<const N: usize> {
     faces: HashSet<[u64; N], RandomState>,

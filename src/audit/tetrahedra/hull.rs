@@ -1,24 +1,26 @@
 //! The boundary of a whole tetrahedral mesh: one convex surface, once around.
 //!
-//! The open facets are what is left of the boundaries of all tetrahedra, so they form a closed surface: along every
-//! edge as many facets go one way as the other. Let every edge belong to two facets, let none of them be concave;
-//! let a point `o` lie strictly inside of every facet's plane; and let a ray from `o` leave through one facet only.
+//! The open facets are what is left of the boundaries of all tetrahedra, so they form a closed surface: along
+//! every edge as many facets go one way as the other. Let every edge belong to two facets, let none of them
+//! be concave; let a point `o` lie strictly inside of every facet's plane; and let a ray from `o` leave
+//! through one facet only.
 //!
-//! *The surface is a star around `o`.* Projected onto a sphere around `o`, every facet is a triangle of positive area,
-//! because `o` is inside of its plane. A closed surface covers each point of the sphere off the edges equally often,
-//! since the number cannot change where an edge is crossed, and here that is once. So the facets tile the sphere, and
-//! the surface is the border of a solid that is a star around `o`. It has the topology of a sphere, it does not meet
-//! itself, and it is in one piece.
+//! *The surface is a star around `o`.* Projected onto a sphere around `o`, every facet is a triangle of
+//! positive area, because `o` is inside of its plane. A closed surface covers each point of the sphere off
+//! the edges equally often, since the number cannot change where an edge is crossed, and here that is once.
+//! So the facets tile the sphere, and the surface is the border of a solid that is a star around `o`. It has
+//! the topology of a sphere, it does not meet itself, and it is in one piece.
 //!
-//! *The star is convex.* If it were not, a segment between two of its inner points would leave it, also after any small
-//! change of these points, and the plane through the two and `o` would avoid all vertices of the surface. It cuts a
-//! polygon from the solid that is a star around `o`, so simple, and whose corners lie on edges of the surface. None of
-//! these is concave, so no corner is. But a simple polygon without a concave corner is convex.
+//! *The star is convex.* If it were not, a segment between two of its inner points would leave it, also after
+//! any small change of these points, and the plane through the two and `o` would avoid all vertices of the
+//! surface. It cuts a polygon from the solid that is a star around `o`, so simple, and whose corners lie on
+//! edges of the surface. None of these is concave, so no corner is. But a simple polygon without a concave
+//! corner is convex.
 //!
-//! Conversely all of this holds of a convex solid, for any `o` inside. The audit takes a corner of a tetrahedron,
-//! moved into the tetrahedron by infinitesimals: towards its second corner, infinitely less towards the third, and
-//! less again towards the fourth. Then the side of `o` of a plane or line is that of the first of the four corners
-//! which is not on it, and no coordinates are computed.
+//! Conversely all of this holds of a convex solid, for any `o` inside. The audit takes a corner of a
+//! tetrahedron, moved into the tetrahedron by infinitesimals: towards its second corner, infinitely less
+//! towards the third, and less again towards the fourth. Then the side of `o` of a plane or line is that of
+//! the first of the four corners which is not on it, and no coordinates are computed.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -206,8 +208,8 @@ impl Surface {
 
     /// The ray from `o` in the direction of x leaves through one facet.
     ///
-    /// As `o` is inside of all planes, the ray leaves through the facets that face its direction and, seen along it,
-    /// contain `o`. Seen so, `o` is on no line through two points.
+    /// As `o` is inside of all planes, the ray leaves through the facets that face its direction and, seen
+    /// along it, contain `o`. Seen so, `o` is on no line through two points.
     fn check_once(&self, inside: &[Corner; 4], ledger: &mut Ledger) -> Result<(), Violation> {
         let along = |corner: Corner| [corner.at[1], corner.at[2]];
         let is_left = |p: Corner, q: Corner| {

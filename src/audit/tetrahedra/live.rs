@@ -13,12 +13,12 @@ use crate::vertices::{Vertex, Vertices};
 use crate::winding::{Winding, corner_of};
 use spmesh_stream::Patch;
 
-/// The corners of each facet of a positive tetrahedron, counterclockwise seen from outside; the facet opposite to
-/// corner 0 first.
+/// The corners of each facet of a positive tetrahedron, counterclockwise seen from outside; the facet
+/// opposite to corner 0 first.
 pub(super) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// The edges of a tetrahedron. Those as far from either end of the list are opposite to each other, and the facets at one
-/// are opposite to the corners of the other.
+/// The edges of a tetrahedron. Those as far from either end of the list are opposite to each other, and the
+/// facets at one are opposite to the corners of the other.
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// The tetrahedra around a vertex: the size of its link so far.
@@ -111,8 +111,9 @@ impl LiveTetrahedra {
         Ok(())
     }
 
-    /// Takes note of the edge between two vertices, with their ids and local indices; of each of its two facets, whether
-    /// its twin was there. If one was, so was the edge; and if the other was not, it has as many open facets as before.
+    /// Takes note of the edge between two vertices, with their ids and local indices; of each of its two
+    /// facets, whether its twin was there. If one was, so was the edge; and if the other was not, it has as
+    /// many open facets as before.
     fn edge(&mut self, [p, q]: [(u64, usize); 2], is_shared: [bool; 2]) {
         let ids = edge(p.0, q.0);
         match is_shared {
@@ -172,7 +173,8 @@ impl LiveTetrahedra {
         }
     }
 
-    /// Proves that `opposite`, on the other side of the facet opposite to corner `side`, lies outside of the sphere.
+    /// Proves that `opposite`, on the other side of the facet opposite to corner `side`, lies outside of the
+    /// sphere.
     fn interior_facet(
         &self,
         corners: &[Corner; 4],

@@ -1,46 +1,47 @@
 //! Audit of a whole tetrahedral mesh.
 //!
 //! # Why the checks are enough
+//! The argument is that of triangle meshes, one dimension up. Let every tetrahedron be strictly positive; let
+//! every oriented facet meet its twin except those of one convex surface, once around ([`hull`] proves that);
+//! let every vertex have a tetrahedron.
 //!
-//! The argument is that of triangle meshes, one dimension up. Let every tetrahedron be strictly positive; let every
-//! oriented facet meet its twin except those of one convex surface, once around ([`hull`] proves that); let every
-//! vertex have a tetrahedron.
+//! *The tetrahedra tile the hull.* The boundaries of the tetrahedra, added up as chains, cancel along every
+//! pair of twins, and what is left is the surface. So for every point off all facets, the number of
+//! tetrahedra that cover it is how often the surface winds around it: once inside of the hull, never outside.
+//! No two tetrahedra overlap and none is missing.
 //!
-//! *The tetrahedra tile the hull.* The boundaries of the tetrahedra, added up as chains, cancel along every pair of
-//! twins, and what is left is the surface. So for every point off all facets, the number of tetrahedra that cover it
-//! is how often the surface winds around it: once inside of the hull, never outside. No two tetrahedra overlap and
-//! none is missing.
+//! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a
+//! vertex, its tetrahedra are positive triangles on a small sphere, joined side to side. If it has no open
+//! facets, they have no border, so they cover every direction equally often, which is at least once: all of
+//! its neighbourhood. If it has, it is a corner of the surface, which passes each of its positions once, and
+//! the border of the triangles is the outline of the convex cone inside of the surface there; so they cover
+//! the directions inside of the cone once more often than the others, which is at least once. A tetrahedron
+//! around the place that is not one of these, or that of a second vertex there, would cover directions inside
+//! of the hull a second time. In particular a vertex on the hull has open facets, so it is a corner of the
+//! surface, also inside of a flat part of it.
 //!
-//! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a vertex, its
-//! tetrahedra are positive triangles on a small sphere, joined side to side. If it has no open facets, they have no
-//! border, so they cover every direction equally often, which is at least once: all of its neighbourhood. If it has,
-//! it is a corner of the surface, which passes each of its positions once, and the border of the triangles is the
-//! outline of the convex cone inside of the surface there; so they cover the directions inside of the cone once more
-//! often than the others, which is at least once. A tetrahedron around the place that is not one of these, or that of
-//! a second vertex there, would cover directions inside of the hull a second time. In particular a vertex on the hull
-//! has open facets, so it is a corner of the surface, also inside of a flat part of it.
+//! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is
+//! used again while it is open is reported at once, one that is used again later by its consequences.
 //!
-//! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is used
-//! again while it is open is reported at once, one that is used again later by its consequences.
+//! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear
+//! function over the hull that interpolates the lifts is convex across every interior facet, because that is
+//! locally Delaunay. Along a segment between two points of the hull, which lies in it, a function that is
+//! convex at each facet crossed is convex; segments that meet an edge are limits of others. So the function
+//! is convex, the graph is the lower hull of the lifted vertices, and the whole is Delaunay. With perturbed
+//! lifts the same argument shows that the tetrahedra are those of the canonical tetrahedralization, of which
+//! there is one only: no five perturbed lifts lie in a hyperplane if four of the points are not in a plane.
 //!
-//! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear function
-//! over the hull that interpolates the lifts is convex across every interior facet, because that is locally Delaunay.
-//! Along a segment between two points of the hull, which lies in it, a function that is convex at each facet crossed
-//! is convex; segments that meet an edge are limits of others. So the function is convex, the graph is the lower hull
-//! of the lifted vertices, and the whole is Delaunay. With perturbed lifts the same argument shows that the
-//! tetrahedra are those of the canonical tetrahedralization, of which there is one only: no five perturbed lifts lie
-//! in a hyperplane if four of the points are not in a plane.
+//! *Flat parts of the hull.* There the boundary facets are the Delaunay triangulation in their plane,
+//! canonical if the mesh is. This needs no check: the sphere of the tetrahedron at a boundary facet is empty,
+//! and so is the circle that it cuts from the plane; restricted to the plane, the convex function above is
+//! the one whose graph is the lower hull of the lifts of the points there.
 //!
-//! *Flat parts of the hull.* There the boundary facets are the Delaunay triangulation in their plane, canonical if
-//! the mesh is. This needs no check: the sphere of the tetrahedron at a boundary facet is empty, and so is the circle
-//! that it cuts from the plane; restricted to the plane, the convex function above is the one whose graph is the lower
-//! hull of the lifts of the points there.
+//! The links of vertices, how often they are wound, and Euler's relation follow too. They are checked as a
+//! test of the audit itself, and because a fault found at its vertex is easier to understand than one found
+//! in the hull at the end.
 //!
-//! The links of vertices, how often they are wound, and Euler's relation follow too. They are checked as a test of the
-//! audit itself, and because a fault found at its vertex is easier to understand than one found in the hull at the end.
-//!
-//! *Facets and edges that are closed are forgotten.* One that comes again has tetrahedra where others are, so that
-//! something is covered twice, as above; nobody needs to remember it.
+//! *Facets and edges that are closed are forgotten.* One that comes again has tetrahedra where others are, so
+//! that something is covered twice, as above; nobody needs to remember it.
 
 mod census;
 mod edges;
@@ -188,11 +189,11 @@ fn finalize(
     check_link(vertex)
 }
 
-/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It is wound
-/// once.
+/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It
+/// is wound once.
 ///
-/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three triangles' sides
-/// are one edge, or half an edge if it is inner.
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three
+/// triangles' sides are one edge, or half an edge if it is inner.
 fn check_link(vertex: &Vertex<Star>) -> Result<(), Violation> {
     let Star { tetrahedra, edges, open, winding } = vertex.star;
     // Twice V - E + F, with 2 E = 3 F + border.

@@ -26,14 +26,14 @@ pub const EXAMPLES: &str = "  Simplices, for programs that take nothing else:
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Products")]
 pub struct ProductFlags {
-    /// Write simplices instead of cells: each cell as cones from its lexicographically greatest vertices (canonical), or
-    /// as cones from the barycentres of all faces that are no simplices (barycentric), where values are means; these are
-    /// not Delaunay
+    /// Write simplices instead of cells: each cell as cones from its lexicographically greatest vertices
+    /// (canonical), or as cones from the barycentres of all faces that are no simplices (barycentric), where
+    /// values are means; these are not Delaunay
     #[arg(long, value_enum, value_name = "canonical|barycentric", hide_possible_values = true, conflicts_with_all = ["at", "at_file", "slice"])]
     triangulate: Option<TriangulateFlag>,
 
-    /// Write the value at a site, interpolated, as a line of x y z t value; nan outside of the points' convex hull. May
-    /// be given several times
+    /// Write the value at a site, interpolated, as a line of x y z t value; nan outside of the points' convex
+    /// hull. May be given several times
     #[arg(long, value_name = "X,Y,Z,T", allow_hyphen_values = true, value_parser = parse_site, conflicts_with = "slice")]
     at: Vec<Point4>,
 
@@ -41,13 +41,13 @@ pub struct ProductFlags {
     #[arg(long, value_name = "FILE", conflicts_with = "slice")]
     at_file: Option<PathBuf>,
 
-    /// Write the tetrahedra that a time cuts out of the diagram, with interpolated values: VTU, or Medit by the name of
-    /// the output (.mesh)
+    /// Write the tetrahedra that a time cuts out of the diagram, with interpolated values: VTU, or Medit by
+    /// the name of the output (.mesh)
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = parse_finite)]
     slice: Option<f64>,
 
-    /// Write the surface of this value in the slice, facing where values are less: PLY, or by the name of the output OBJ,
-    /// VTU or Medit (.obj, .vtu, .mesh)
+    /// Write the surface of this value in the slice, facing where values are less: PLY, or by the name of the
+    /// output OBJ, VTU or Medit (.obj, .vtu, .mesh)
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = parse_finite, requires = "slice")]
     isosurface: Option<f64>,
 }
@@ -66,11 +66,12 @@ impl ProductFlags {
         self.at_file.as_ref().is_some_and(|path| path.as_os_str() == "-")
     }
 
-    /// What is asked for, to be written to a path. Reads the sites of `--at-file`, so that a mistake there is found
-    /// before the work.
+    /// What is asked for, to be written to a path. Reads the sites of `--at-file`, so that a mistake there is
+    /// found before the work.
     ///
     /// # Errors
-    /// If that file cannot be read; usage, if the path asks for a format that does not hold what is asked for.
+    /// If that file cannot be read; usage, if the path asks for a format that does not hold what is asked
+    /// for.
     pub fn product(&self, output: &Path) -> Result<Product> {
         if !self.at.is_empty() || self.at_file.is_some() {
             let mut sites = self.at.clone();

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use crate::open_input;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::points4::{
-    Condition, From4, Points4, RawLayout, Request, Selection, Share, Spacing, parse_sizes, read_points4,
+    Condition, From4, RawLayout, Request, Selected4, Selection, Share, Spacing, parse_sizes, read_points4,
 };
 
 /// Examples for the end of the help.
@@ -24,8 +24,8 @@ pub const EXAMPLES: &str =
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Points")]
 pub struct SourceFlags {
-    /// Points or a volume, plain or compressed (.gz); - is stdin. Lines of x y z t, or of x y z t value; NRRD (.nrrd,
-    /// .nhdr) or NIfTI-1 (.nii) of three dimensions and time; spmesh streams in four dimensions
+    /// Points or a volume, plain or compressed (.gz); - is stdin. Lines of x y z t, or of x y z t value; NRRD
+    /// (.nrrd, .nhdr) or NIfTI-1 (.nii) of three dimensions and time; spmesh streams in four dimensions
     #[arg(value_name = "FILE", help_heading = None)]
     input: Option<PathBuf>,
 
@@ -33,18 +33,18 @@ pub struct SourceFlags {
     #[arg(long, value_name = "XxYxZxT", conflicts_with_all = ["input", "raw"], value_parser = parse_sizes)]
     grid: Option<[u64; 4]>,
 
-    /// The file holds nothing but the values of a volume, x fastest: sizes, and a type of i8, u8, i16, u16, i32, u32,
-    /// i64, u64, f32 or f64 with its byte order, as in 64x64x64x20:f32le
+    /// The file holds nothing but the values of a volume, x fastest: sizes, and a type of i8, u8, i16, u16,
+    /// i32, u32, i64, u64, f32 or f64 with its byte order, as in 64x64x64x20:f32le
     #[arg(long, value_name = "XxYxZxT:TYPE", requires = "input")]
     raw: Option<RawLayout>,
 
-    /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and rounded; the
-    /// axes must be those of the world
+    /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and
+    /// rounded; the axes must be those of the world
     #[arg(long, value_enum, default_value_t = SpacingFlag::Index, value_name = "index|world", hide_possible_values = true)]
     spacing: SpacingFlag,
 
-    /// Only points that fulfil a condition: <, <=, >, >=, == or != between numbers and value, x, y, z, t, joined by and,
-    /// or, and parentheses
+    /// Only points that fulfil a condition: <, <=, >, >=, == or != between numbers and value, x, y, z, t,
+    /// joined by and, or, and parentheses
     #[arg(long = "where", value_name = "CONDITION")]
     condition: Option<Condition>,
 
@@ -79,7 +79,7 @@ impl SourceFlags {
     ///
     /// # Errors
     /// As [`read_points4`]; usage, if nothing is asked for, or stdin is a terminal.
-    pub fn read(&self) -> Result<Points4> {
+    pub fn read(&self) -> Result<Selected4> {
         read_points4(&self.request()?)
     }
 

@@ -15,13 +15,12 @@ use spmesh_splinefit::{Attribute, Spline};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Sites outside of the domain get nan, and cells there no data (-9999): splines are not extrapolated. A cell has what is at its \
-centre.
+Splines are not extrapolated: outside of the domain, sites get nan and cells no data (-9999). A cell has the value at its centre.
 
-Slopes are angles in degrees, aspects directions of steepest descent in degrees clockwise from north. Curvatures are those of \
-normal sections, along the steepest descent (profile) and across it (tangential), in one over the unit of coordinates; they are \
-positive where the surface is convex upwards. Where it is level, there is neither an aspect nor a curvature. Elevations and \
-coordinates are taken to be in the same unit. Splines of degree 2 have second derivatives that jump.";
+Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. Curvatures are those of \
+normal sections along the steepest descent (profile) and across it (tangential), in one over the unit of coordinates; they are \
+positive where the surface is convex upwards. Level places have neither aspect nor curvature. Elevations and coordinates are taken \
+to be in the same unit. Second derivatives of splines of degree 2 jump.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
@@ -30,7 +29,7 @@ pub(super) struct Flags {
     #[arg(value_name = "SPLINE")]
     spline: PathBuf,
 
-    /// Where values go; - is stdout. The ending tells the format: .tif or .asc, or else text
+    /// Output file; - is stdout. The extension selects the format: .tif or .asc, otherwise text
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
@@ -44,7 +43,7 @@ pub(super) struct Flags {
     #[command(flatten)]
     raster: RasterFlags,
 
-    /// What is evaluated
+    /// The attribute to evaluate
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Value)]
     kind: KindFlag,
 
@@ -56,7 +55,7 @@ pub(super) struct Flags {
     threads: Threads,
 }
 
-/// What `--kind` can say.
+/// Values of `--kind`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum KindFlag {
     Value,
@@ -67,7 +66,7 @@ enum KindFlag {
     Gradient,
 }
 
-/// What `--format` can say.
+/// Values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FormatFlag {
     Tif,

@@ -20,26 +20,27 @@ use spmesh_splines::fitting::Loss;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Without --knots, they are looked for: a coarse grid over the box of the points gets more, round by round, where residuals are \
-above --tol [default: 0.25 % of the range of most elevations], while there are fewer than --max-knots [default: one for 4 points, at \
-most 20,000]. With --step, they are on a grid: one knot for each point predicts terrain best, and takes most time. Points as knots are for splines of degree 2, on their convex hull: the border is pulled apart.
+Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. Each round adds knots where \
+residuals exceed --tol [default: 0.25 % of the range of most elevations], up to --max-knots [default: one for 4 points, at most \
+20,000]. With --step, knots form a grid; one knot for each point predicts terrain best and takes the most time. Points as knots are \
+for splines of degree 2 over their convex hull: the border is pulled apart.
 
-Without --lambda, knots that are given have the coefficients of least squares, if points determine them all. Otherwise waves as \
-short as two distances of points are halved, which bridges gaps, and predicts terrain best. LAMBDA multiplies the thin-plate energy (with \
-a thousandth of how much the control mesh bends), which is added to the sum of squares of residuals.
+Without --lambda, given knots get the coefficients of least squares if the points determine them all. Otherwise the default lambda \
+halves waves as short as two distances of points, which bridges gaps and predicts terrain best. LAMBDA multiplies the thin-plate \
+energy (plus a thousandth of the bending of the control mesh), which is added to the sum of squares of residuals.
 
---features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear: \
-their vertices become knots, with more between them where segments are long, and other knots near to them are left out. In GeoJSON \
-points are corners, and lines and rings are creases, unless a feature has a property spline with one of the words. Polylines may \
-meet at common vertices only.
+--features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear. Their \
+vertices become knots. Long segments get more knots, and other knots near them are dropped. In GeoJSON points are corners, and lines \
+and rings are creases, unless a feature has a property spline with one of the words. Polylines may meet at common vertices only.
 
---robust weighs points by their residuals, again and again: huber less beyond 1.345 standard deviations, tukey not at all beyond \
-4.685. These are rejected. The deviation is that of the median of magnitudes.";
+--robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard deviations, tukey reduces them to \
+zero at 4.685. Points beyond 4.685 are rejected. The deviation is estimated from the median of magnitudes.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
 pub(super) struct Flags {
-    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point streams); - is stdin
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK,
+    /// point streams); - is stdin
     #[arg(value_name = "POINTS", default_value = "-")]
     inputs: Vec<PathBuf>,
 
@@ -47,24 +48,24 @@ pub(super) struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Knots: points, a stream of configurations, or a spline whose knots are used again; - is stdin
+    /// Knots: points, a stream of configurations, or a spline whose knots are reused; - is stdin
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tol", "max_knots", "step"])]
     knots: Option<PathBuf>,
 
-    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are listed, or else one
-    /// more than the highest]
+    /// Degree of splines, where --knots has configurations of several degrees [default: 2 if functions are
+    /// listed, or else one more than the highest]
     #[arg(long, value_name = "K")]
     degree: Option<usize>,
 
-    /// Greatest residual that needs no further knot, in units of elevations
+    /// Tolerance of the search: add knots where residuals exceed T, in units of elevations
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_positive)]
     tol: Option<f64>,
 
-    /// Most places of knots
+    /// Maximum number of distinct knots
     #[arg(long, value_name = "N")]
     max_knots: Option<usize>,
 
-    /// Knots on a grid of cells with this side, instead of looking for them: those inside are moved a little
+    /// Place knots on a grid of cells with this side instead of searching; inner knots are moved slightly
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive, conflicts_with_all = ["tol", "max_knots"])]
     step: Option<f64>,
 
@@ -84,8 +85,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "FILE")]
     weights: Option<PathBuf>,
 
-    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or linear and X Y X Y ...,
-    /// or GeoJSON; - is stdin
+    /// Corners and breaklines in the coordinates of the points: lines of corner, crease, smooth-crease or
+    /// linear and X Y X Y ..., or GeoJSON; - is stdin
     #[arg(long, value_name = "FILE")]
     features: Option<PathBuf>,
 
@@ -122,7 +123,7 @@ pub(super) struct Flags {
     stats: Option<StatsFormat>,
 }
 
-/// What `--robust` can say.
+/// Values of `--robust`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum LossFlag {
     Huber,
@@ -134,7 +135,7 @@ impl Flags {
         let started = Instant::now();
         self.check_stdin()?;
         let options = self.options()?;
-        // Outputs that cannot be are better known before the work.
+        // Fail before the work if an output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
         let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
@@ -201,7 +202,7 @@ impl Flags {
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(read_weights).transpose()?;
-        // Looking for knots and robust weights take many passes.
+        // The search for knots and robust weights take many passes.
         let is_search = self.knots.is_none() && self.step.is_none();
         let often = is_search || self.robust.is_some();
         let mut progress = Progress::new(common, "reading", None);
@@ -244,5 +245,5 @@ fn read_weights(path: &PathBuf) -> Result<Vec<f64>> {
 
 fn parse_positive(text: &str) -> std::result::Result<f64, String> {
     let number = text.parse().ok().filter(|&number: &f64| number > 0.0 && number.is_finite());
-    number.ok_or_else(|| format!("{text:?} is no number above zero"))
+    number.ok_or_else(|| format!("{text:?} is not a number above zero"))
 }

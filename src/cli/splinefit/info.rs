@@ -1,4 +1,4 @@
-//! `splinefit info`: flags and what is printed.
+//! `splinefit info`: flags and output.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,19 +15,20 @@ use spmesh_io::raster::Window;
 use spmesh_io::source::{SourceOptions, crs_name};
 use spmesh_splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
 
-/// Folds that are listed for people.
+/// Segments that the text output lists.
 const LISTED: usize = 5;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions, an estimate in the 1-norm, from \
-below, for more. Splines of degree k have k - 1 continuous derivatives, but for segments between knots that are repeated, or on a \
-line with others; for degree 2, gradients of functions are compared on both sides of these. Residuals are elevations less values.";
+The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, a lower estimate in the \
+1-norm. Splines of degree k have k - 1 continuous derivatives, except across segments between knots that are repeated or collinear \
+with others. For degree 2, the gradients of functions on both sides of these segments are compared. Residuals are elevations less \
+values.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
 pub(super) struct Flags {
-    /// A spline, or configurations that one can be made over; - is stdin
+    /// A spline, or configurations; - is stdin
     #[arg(value_name = "SPLINE")]
     spline: PathBuf,
 
@@ -61,7 +62,7 @@ impl Flags {
         output.commit()
     }
 
-    /// What there is, with residuals of points if there are some.
+    /// The layout, with residuals if points are given.
     fn compare(&self) -> Result<(Layout, Option<Statistics>)> {
         if self.points.is_empty() {
             return Ok((Layout::open(&self.spline)?.0, None));

@@ -18,11 +18,11 @@ pub(super) struct Flags {
     #[arg(value_name = "SPLINE", default_value = "-")]
     spline: PathBuf,
 
-    /// Where the triangle mesh goes; - is stdout. With the ending .svg, a picture of it
+    /// Where the triangle mesh goes; - is stdout. With the extension .svg, a picture of it
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Draw the mesh as SVG, whatever the ending
+    /// Draw the mesh as SVG, independently of the extension
     #[arg(long)]
     svg: bool,
 }

@@ -1,4 +1,4 @@
-//! What a fit says when it is done.
+//! The notices and statistics of a fit.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::rows::{Row, entries, lines, seconds};
 use crate::{StatsFormat, peak_memory, say};
 use spmesh_splinefit::{Fitted, PERCENTILES, Report, Spline, Statistics};
 
-/// What the user should know.
+/// Notices for the user.
 pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -> Vec<String> {
     let mut notices = Vec::new();
     let functions = spline.layout.basis.len();
@@ -58,7 +58,7 @@ fn short(number: f64) -> String {
     }
 }
 
-/// How many points do not count.
+/// The notice about points outside of the domain.
 pub(super) fn outside(residuals: &Statistics) -> String {
     let all = residuals.count + residuals.outside;
     format!("{} of {all} points are outside of the domain, and do not count", residuals.outside)
@@ -140,7 +140,7 @@ pub(super) fn residual_rows(residuals: &Statistics) -> Vec<Row<f64>> {
     whole.into_iter().chain(parts).collect()
 }
 
-/// What only programs are told: rounds, and what was tried.
+/// Details for JSON only: rounds and trials.
 fn details(report: &Report) -> Map<String, Value> {
     let mut details = Map::new();
     if let Some(search) = &report.search {

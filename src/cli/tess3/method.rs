@@ -7,41 +7,47 @@ use clap::{Args, ValueEnum};
 use super::selection::Switch;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::order::{Curve, Sequence};
-use spmesh_tess3::{Arithmetic, Method};
+use spmesh_tess3::{Arithmetic, Method, NO_EXPERIMENTS};
+
+/// Builds without experiments hide these flags, and refuse them.
+const HAS_EXPERIMENTS: bool = cfg!(feature = "experiments");
+
+/// Seed unless another is given.
+const SEED: u64 = 1;
 
 /// How the kernel works. With exact arithmetic none of these changes the triangulation.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Experiments")]
 pub(super) struct MethodFlags {
-    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together but may not be
-    /// Delaunay
-    #[arg(long, value_enum, default_value_t = ArithmeticFlag::Exact, value_name = "exact|float", hide_possible_values = true)]
+    /// Arithmetic of the predicates: float is that of the first tess3 (2003), whose tetrahedra fit together
+    /// but may not be Delaunay
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = ArithmeticFlag::Exact, value_name = "exact|float", hide_possible_values = true)]
     arithmetic: ArithmeticFlag,
 
     /// Order in which points are inserted: along a curve, or at random
-    #[arg(long, value_enum, default_value_t = OrderFlag::Hilbert, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, default_value_t = OrderFlag::Hilbert, value_name = "hilbert|morton|gray|row-major|random", hide_possible_values = true)]
     order: OrderFlag,
 
-    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one pass
-    /// [default: rounds, with --arithmetic float pass]
-    #[arg(long, value_enum, value_name = "rounds|pass", hide_possible_values = true)]
+    /// How often insertion goes along the curve: in a few rounds, each with more of the points, or in one
+    /// pass [default: rounds, with --arithmetic float pass]
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, value_name = "rounds|pass", hide_possible_values = true)]
     sequence: Option<SequenceFlag>,
 
     /// Whether points that have more of their lowest bits in common are inserted first
     /// [default: off, with --arithmetic float on]
-    #[arg(long, value_enum, value_name = "on|off", hide_possible_values = true)]
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_enum, value_name = "on|off", hide_possible_values = true)]
     bit_levels: Option<Switch>,
 
     /// Seed of --order random, and of the walks of --arithmetic float
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, hide = !HAS_EXPERIMENTS, value_name = "N", default_value_t = SEED)]
     seed: u64,
 
     /// Compare the signs of --arithmetic float with the exact ones and count the wrong ones; slow
-    #[arg(long)]
+    #[arg(long, hide = !HAS_EXPERIMENTS)]
     check_signs: bool,
 
     /// For --stats, measure the time for point location, predicates and update; it takes some itself
-    #[arg(long)]
+    #[arg(long, hide = !HAS_EXPERIMENTS)]
     timed: bool,
 }
 
@@ -77,8 +83,11 @@ enum SequenceFlag {
 
 impl MethodFlags {
     /// # Errors
-    /// Usage, if signs that are never wrong are to be checked.
+    /// Usage, if signs that are never wrong are to be checked, or if the build has no experiments.
     pub(super) fn method(&self) -> Result<Method> {
+        if !HAS_EXPERIMENTS && !self.is_default() {
+            return Err(Error::usage(NO_EXPERIMENTS));
+        }
         let curve = match self.order {
             OrderFlag::Hilbert | OrderFlag::Random => Curve::Hilbert,
             OrderFlag::Morton => Curve::Morton,
@@ -99,6 +108,14 @@ impl MethodFlags {
             (false, true) => return Err(Error::usage("--check-signs goes with --arithmetic float")),
         };
         Ok(Method { arithmetic, curve, sequence, by_bit_levels, seed: self.seed, is_timed: self.timed })
+    }
+
+    fn is_default(&self) -> bool {
+        let MethodFlags { arithmetic, order, sequence, bit_levels, seed, check_signs, timed } = *self;
+        (arithmetic, order, seed) == (ArithmeticFlag::Exact, OrderFlag::Hilbert, SEED)
+            && sequence.is_none()
+            && bit_levels.is_none()
+            && !(check_signs || timed)
     }
 }
 

@@ -17,8 +17,8 @@ pub(super) struct SelectionFlags {
     #[arg(long, value_name = "CHAIN,...", value_delimiter = ',')]
     chain: Vec<String>,
 
-    /// Which alternate locations: of each residue the conformer that is occupied most (best), or that comes first;
-    /// all of them; or those of this name
+    /// Which alternate locations: of each residue the conformer that is occupied most (best), or that comes
+    /// first; all of them; or those of this name
     #[arg(long, value_name = "best|first|all|NAME", default_value = "best", value_parser = parse_altlocs)]
     altloc: Altlocs,
 

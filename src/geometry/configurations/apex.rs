@@ -1,4 +1,5 @@
-//! The rules at work: each picks the apex of a triangle on an edge, which leaves a polygon on either side of it.
+//! The rules at work: each picks the apex of a triangle on an edge, which leaves a polygon on either side of
+//! it.
 
 use super::insertion::LARGE;
 use super::polygon::Triangulator;
@@ -47,14 +48,15 @@ impl<P: Predicates2> Triangulator<'_, P> {
         Ok(())
     }
 
-    /// The place whose circle with the edge has no other vertex inside, whatever is in the way: nothing is, where all
-    /// triangles are those of the lift.
+    /// The place whose circle with the edge has no other vertex inside, whatever is in the way: nothing is,
+    /// where all triangles are those of the lift.
     pub(super) fn empty_apex(&mut self, i: usize, j: usize) -> Option<usize> {
         self.best_apex(i, j, |_, _| true)
     }
 
-    /// The same among those that both ends of the edge see: the constrained Delaunay triangulation. (Of those, one with
-    /// another of them inside its circle is worse than that one; and of the right one, none is inside.)
+    /// The same among those that both ends of the edge see: the constrained Delaunay triangulation. (Of
+    /// those, one with another of them inside its circle is worse than that one; and of the right one, none
+    /// is inside.)
     fn constrained_apex(&mut self, i: usize, j: usize) -> Option<usize> {
         self.best_apex(i, j, |this, k| this.sees(i, k) && this.sees(k, j))
     }
@@ -98,8 +100,8 @@ impl<P: Predicates2> Triangulator<'_, P> {
         self.set.iter().fold(seed, |seed, &knot| Random::new(seed ^ u64::from(knot)).bits())
     }
 
-    /// For each pair of places the apex of the triangulation of least weight between them (Klincsek, 1980). Of equal ones,
-    /// the first.
+    /// For each pair of places the apex of the triangulation of least weight between them (Klincsek, 1980).
+    /// Of equal ones, the first.
     fn least_weight(&mut self) -> Vec<Option<usize>> {
         let count = self.polygon.len();
         let mut apexes = vec![None; count * count];
@@ -124,7 +126,8 @@ impl<P: Predicates2> Triangulator<'_, P> {
         apexes
     }
 
-    /// Diagonals from the least knot to all that it sees; what is left goes on without it, from its least knot.
+    /// Diagonals from the least knot to all that it sees; what is left goes on without it, from its least
+    /// knot.
     fn split_fan(&mut self) -> Result<()> {
         let mut pieces: Vec<Vec<usize>> = vec![(0..self.polygon.len()).collect()];
         while let Some(mut piece) = pieces.pop() {

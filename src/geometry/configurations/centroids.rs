@@ -1,11 +1,13 @@
-//! Centroid triangulations: k-sets as points, configurations of two degrees as triangles (thesis 7.3 and 7.4).
+//! Centroid triangulations: k-sets as points, configurations of two degrees as triangles (thesis 7.3 and
+//! 7.4).
 
 use super::knots::Knots;
 use crate::predicates::Point2;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::Configurations;
 
-/// A planar triangulation of the centroids of k-sets; with Delaunay configurations, the order-k Delaunay triangulation.
+/// A planar triangulation of the centroids of k-sets; with Delaunay configurations, the order-k Delaunay
+/// triangulation.
 #[derive(Debug, Clone, Default)]
 pub struct CentroidMesh {
     pub(super) order: usize,
@@ -13,20 +15,27 @@ pub struct CentroidMesh {
     pub(super) sets: Vec<u32>,
     /// Centroids of the k-sets, in lexicographic order of the sets. Coordinates are rounded.
     pub vertices: Vec<Point2>,
-    /// Counterclockwise; those from the higher degree (one knot of the boundary and all of the interior make a vertex), then
-    /// those from the lower degree (two of the boundary). Triangles of copies of a knot may be flat.
+    /// Counterclockwise; those from the higher degree (one knot of the boundary and all of the interior make
+    /// a vertex), then those from the lower degree (two of the boundary). Triangles of copies of a knot may
+    /// be flat.
     pub triangles: Vec<[u32; 3]>,
     /// Number of triangles from the higher degree.
     pub from_upper: usize,
 }
 
 impl CentroidMesh {
-    /// The centroid triangulation of order k, by the union map from the configurations of degrees k - 2 and k - 1.
+    /// The centroid triangulation of order k, by the union map from the configurations of degrees k - 2 and
+    /// k - 1.
     ///
-    /// `lower` is `None` for the order 1, which is the start triangulation itself. Shape: c_(k-1) + c_(k-2) triangles.
+    /// `lower` is `None` for the order 1, which is the start triangulation itself.
     ///
-    /// Errors: degrees that do not follow each other; too many triangles. Cost: little more than linear, if no knot is in very
-    /// many of the sets; 12 (k + 1) bytes per triangle for a time.
+    /// Shape: c_(k-1) + c_(k-2) triangles.
+    ///
+    /// Cost: little more than linear, if no knot is in very many of the sets; 12 (k + 1) bytes per triangle
+    /// for a time.
+    ///
+    /// # Errors
+    /// Degrees that do not follow each other; too many triangles.
     pub fn of(knots: &Knots, lower: Option<&Configurations>, upper: &Configurations) -> Result<CentroidMesh> {
         let expected = upper.degree().checked_sub(1);
         if lower.map(Configurations::degree) != expected {
@@ -48,7 +57,8 @@ impl CentroidMesh {
             [[a], [b], [c]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         for ([a, b, c], interior) in lower.into_iter().flat_map(Configurations::iter) {
-            // Opposite to the order of a, b, c: the centroids lie point-symmetrically to the corners that they lack.
+            // Opposite to the order of a, b, c: the centroids lie point-symmetrically to the corners that
+            // they lack.
             [[b, c], [c, a], [a, b]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         let mut mesh = CentroidMesh { order, from_upper: upper.len(), ..CentroidMesh::default() };
@@ -69,8 +79,8 @@ impl CentroidMesh {
         &self.sets[vertex as usize * self.order..][..self.order]
     }
 
-    /// Numbers the different sets among the corners of triangles, of knots below `knots`: a counting sort by least knots, and
-    /// what has the same least knot is little.
+    /// Numbers the different sets among the corners of triangles, of knots below `knots`: a counting sort by
+    /// least knots, and what has the same least knot is little.
     fn join(&mut self, corners: &[u32], knots: usize) {
         let set = |at: u32| &corners[at as usize * self.order..][..self.order];
         let mut order = by_least(corners, self.order, knots);

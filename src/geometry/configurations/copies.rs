@@ -1,9 +1,10 @@
-//! Copies of knots, inserted one by one into the triangulation of the first knots of all places (Bowyer, 1981; Watson, 1981).
+//! Copies of knots, inserted one by one into the triangulation of the first knots of all places (Bowyer,
+//! 1981; Watson, 1981).
 
 use super::knots::Knots;
 use super::plane::Plane;
 use super::surface::{Corner, Start};
-use crate::predicates::TotalPredicates;
+use crate::predicates::FiniteFloatPredicates;
 use foldhash::{HashMap, HashMapExt};
 use spmesh_core::random::Random;
 use std::collections::BTreeMap;
@@ -14,13 +15,14 @@ type Present = BTreeMap<u32, u32>;
 impl Start {
     /// Inserts all knots of a rank above 0.
     ///
-    /// The edge to the nearest knot of P(e) will be there, so a triangle around that one is in conflict. Copies come in random
-    /// order: then stars are small on average, those of nearest knots as well, as a knot is nearest to five others at most. In
-    /// the order of ranks, each copy would take over a large part of the star of the one before.
+    /// The edge to the nearest knot of P(e) will be there, so a triangle around that one is in conflict.
+    /// Copies come in random order: then stars are small on average, those of nearest knots as well, as a
+    /// knot is nearest to five others at most. In the order of ranks, each copy would take over a large part
+    /// of the star of the one before.
     ///
     /// Cost: O(n log n) expected for n knots, whatever the number of places.
     pub(super) fn insert_copies(&mut self, knots: &Knots) {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut corner_at = self.corners_at(knots.len());
         let place = |id: u32| knots.at(id).map(|c| if c == 0.0 { 0 } else { c.to_bits() });
@@ -68,7 +70,8 @@ impl Start {
         std::iter::from_fn(move || {
             let corner = next?;
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            // The edge opposite to the following vertex ends at this one; beyond it, this is the vertex after.
+            // The edge opposite to the following vertex ends at this one; beyond it, this is the vertex
+            // after.
             let beyond = self.across[t][(i + 1) % 3];
             let after = beyond - beyond % 3 + (beyond % 3 + 1) % 3;
             next = (after != first).then_some(after);
@@ -78,8 +81,15 @@ impl Start {
 
     /// Replaces the triangles in conflict with a knot by a star around it.
     ///
-    /// All knots stay vertices, so that the cavity has none inside, and its triangles are a tree: none is met twice.
-    fn insert(&mut self, plane: &mut Plane<TotalPredicates>, id: u32, first: u32, corner_at: &mut [Corner]) {
+    /// All knots stay vertices, so that the cavity has none inside, and its triangles are a tree: none is met
+    /// twice.
+    fn insert(
+        &mut self,
+        plane: &mut Plane<FiniteFloatPredicates>,
+        id: u32,
+        first: u32,
+        corner_at: &mut [Corner],
+    ) {
         let [a, b, c] = self.triangles[first as usize];
         let [across_a, across_b, across_c] = self.across[first as usize];
         // Edges to look across, the cavity to the left of them; the last comes first.
@@ -122,8 +132,8 @@ impl Start {
     }
 }
 
-/// Of the knots at one place that are present, the nearest to that of a rank. A knot of rank j lies at (j, j²), so it is the
-/// next of lesser or the next of greater rank.
+/// Of the knots at one place that are present, the nearest to that of a rank. A knot of rank j lies at (j,
+/// j²), so it is the next of lesser or the next of greater rank.
 fn nearest(present: &Present, rank: u32) -> Option<u32> {
     let square = |other: u32| {
         let (difference, sum) = (u128::from(rank.abs_diff(other)), u128::from(rank) + u128::from(other));

@@ -1,7 +1,9 @@
-//! From configurations to the links of the next size: edges opposite to corners, gathered by set (thesis 7.4).
+//! From configurations to the links of the next size: edges opposite to corners, gathered by set (thesis
+//! 7.4).
 //!
-//! The link of J has the edge (a, b) for each configuration (vab, I) with I and v together J. Edges are put in order by the
-//! least knot of J, with a counting sort; what has the same least knot is little, and is sorted by the rest of J.
+//! The link of J has the edge (a, b) for each configuration (vab, I) with I and v together J. Edges are put
+//! in order by the least knot of J, with a counting sort; what has the same least knot is little, and is
+//! sorted by the rest of J.
 
 use super::knots::Knots;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -31,11 +33,13 @@ struct Bucket {
     polygon: Vec<u32>,
 }
 
-/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets by their least
-/// knots, which come as `order` has them, and then in lexicographic order. `order` has all knots.
+/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets by
+/// their least knots, which come as `order` has them, and then in lexicographic order. `order` has all knots.
 ///
-/// Errors: those of `visit`; edges that do not make one closed polygon. Cost: O(c k log c) for c configurations; 16 bytes per
-/// configuration.
+/// Cost: O(c k log c) for c configurations; 16 bytes per configuration.
+///
+/// # Errors
+/// Those of `visit`; edges that do not make one closed polygon.
 pub(super) fn for_each_link(
     knots: &Knots,
     configurations: &Configurations,
@@ -55,7 +59,8 @@ pub(super) fn for_each_link(
 
 /// The links that configurations leave; see [`Links`].
 ///
-/// Errors: a link that is no closed polygon, which configurations of [`super::link_triangulate`] do not have.
+/// # Errors
+/// A link that is no closed polygon, which configurations of [`super::link_triangulate`] do not have.
 pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     let mut links = Links::new(configurations.degree() + 1);
     let order: Vec<u32> = (0..knots.len() as u32).collect();
@@ -66,8 +71,8 @@ pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     Ok(links)
 }
 
-/// Corners of configurations by the least knot of their set, or rather the place of that in the order of visits: then they
-/// are read one after the other.
+/// Corners of configurations by the least knot of their set, or rather the place of that in the order of
+/// visits: then they are read one after the other.
 struct Corners {
     /// Thrice the number of the configuration, and the place of the corner.
     records: Vec<u32>,

@@ -1,17 +1,20 @@
-//! Large links: vertices inserted in random order (Chew, "Building Voronoi diagrams for convex polygons in linear expected
-//! time", 1990; as for one cell of a higher-order Voronoi diagram by Aggarwal, Guibas, Saxe and Shor, 1989).
+//! Large links: vertices inserted in random order (Chew, "Building Voronoi diagrams for convex polygons in
+//! linear expected time", 1990; as for one cell of a higher-order Voronoi diagram by Aggarwal, Guibas, Saxe
+//! and Shor, 1989).
 //!
-//! Planes that have the lifted knots of J below them or on them, and the lifted vertices of the link of J above or on them, are
-//! a convex cell of the dual space. Its corners at three facets of vertices are the triangles of the link, and the facet of
-//! each vertex borders on those of J in one stretch: they are its sides that are seen from the plane which touches the lift at
-//! the vertex. Nothing of this needs all vertices. So those of any part are a polygon in the same cyclic order, and the facet of
-//! one vertex more cuts off a tree of triangles that starts at the edge between its neighbours, which are known: vertices are
+//! Planes that have the lifted knots of J below them or on them, and the lifted vertices of the link of J
+//! above or on them, are a convex cell of the dual space. Its corners at three facets of vertices are the
+//! triangles of the link, and the facet of each vertex borders on those of J in one stretch: they are its
+//! sides that are seen from the plane which touches the lift at the vertex. Nothing of this needs all
+//! vertices. So those of any part are a polygon in the same cyclic order, and the facet of one vertex more
+//! cuts off a tree of triangles that starts at the edge between its neighbours, which are known: vertices are
 //! taken out of the polygon in random order, and come back the other way around.
 //!
-//! Triangles of a part of the vertices may be clockwise, or flat: J is not within the vertices then, and their planes stand for
-//! the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes them as they are. No lift decides whether
-//! a vertex is in conflict with three others on its line. It is taken not to be, as if it was moved by less than all vertices
-//! before, and such triangles are gone in the end.
+//! Triangles of a part of the vertices may be clockwise, or flat: J is not within the vertices then, and
+//! their planes stand for the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes
+//! them as they are. No lift decides whether a vertex is in conflict with three others on its line. It is
+//! taken not to be, as if it was moved by less than all vertices before, and such triangles are gone in the
+//! end.
 
 use super::polygon::Triangulator;
 use super::surface::Corner;
@@ -87,8 +90,8 @@ impl Ears {
         Ears { triangles, across, edge_after, waiting: Vec::new(), free: Vec::new() }
     }
 
-    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict, none of which is met
-    /// twice, as all triangles are a tree.
+    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict, none of
+    /// which is met twice, as all triangles are a tree.
     fn insert(
         &mut self,
         place: u32,
@@ -145,7 +148,7 @@ mod tests {
     use crate::configurations::rule::Rule;
     use crate::configurations::special::Diagonals;
     use crate::configurations::{Lift, Start, generate};
-    use crate::predicates::TotalPredicates;
+    use crate::predicates::FiniteFloatPredicates;
     use spmesh_model::configurations::FARAWAY;
     use spmesh_model::configurations::{Claim, Configurations};
 
@@ -160,11 +163,12 @@ mod tests {
         all
     }
 
-    /// Triangulates all links that are bounded in both ways; the number of those with more than four vertices.
+    /// Triangulates all links that are bounded in both ways; the number of those with more than four
+    /// vertices.
     fn compare(knots: &Knots, start: Configurations, rule: &Rule, degree: usize) -> usize {
         let (claim, diagonals) = (start.claim(), Diagonals::default());
         let order: Vec<u32> = (0..knots.len() as u32).collect();
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut triangulator = Triangulator::new(knots, (rule, &diagonals), claim, &mut predicates);
         let mut compared = 0;
         for configurations in generate(knots, start, rule, degree).expect("degrees") {
@@ -267,7 +271,7 @@ mod tests {
             let knots = Knots::new(points).expect("knots");
             let start = Start::delaunay(&knots).expect("triangles").configurations();
             let order: Vec<u32> = (0..knots.len() as u32).collect();
-            let (mut predicates, diagonals) = (TotalPredicates::default(), Diagonals::default());
+            let (mut predicates, diagonals) = (FiniteFloatPredicates::default(), Diagonals::default());
             let rule = (&Rule::Delaunay, &diagonals);
             let mut triangulator = Triangulator::new(&knots, rule, Claim::Delaunay, &mut predicates);
             let mut largest = 0;

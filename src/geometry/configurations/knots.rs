@@ -1,16 +1,18 @@
 //! Knots: points with ids, of which several may be at one place.
 //!
 //! # Repeated knots
+//! Configurations are combinatorial: a knot that is there twice is two knots. To tell copies apart, the set
+//! is taken as the limit of P(e) for e > 0 that goes to 0, where the knot of *rank* j is at `p + e (j,
+//! j * j)`; the rank is the number of knots at the same place with lesser ids. For e small enough the knots
+//! of P(e) are distinct, and every sign is that of the first coefficient of a polynomial in e that is not
+//! zero (`symbolic`). What is left undecided are knots of P(e) on one circle or line, as in any set of
+//! distinct points, and the canonical perturbation of lifts decides it, by the lexicographic order of P(e).
+//! So the result is what is right for an ordinary set of points, which then moves together: nothing of the
+//! theory has to be redone. Triangles of two copies and another knot are counterclockwise in P(e) and have no
+//! area at e = 0.
 //!
-//! Configurations are combinatorial: a knot that is there twice is two knots. To tell copies apart, the set is taken as the
-//! limit of P(e) for e > 0 that goes to 0, where the knot of *rank* j is at `p + e (j, j * j)`; the rank is the number of
-//! knots at the same place with lesser ids. For e small enough the knots of P(e) are distinct, and every sign is that of the
-//! first coefficient of a polynomial in e that is not zero (`symbolic`). What is left undecided are knots of P(e) on one
-//! circle or line, as in any set of distinct points, and the canonical perturbation of lifts decides it, by the lexicographic
-//! order of P(e). So the result is what is right for an ordinary set of points, which then moves together: nothing of the
-//! theory has to be redone. Triangles of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
-//!
-//! Copies lie on a parabola, no three on a line; and no four on a circle, which would need abscissae with the sum zero.
+//! Copies lie on a parabola, no three on a line; and no four on a circle, which would need abscissae with the
+//! sum zero.
 
 use crate::delaunay2::{MAX_POINTS, distinct};
 use crate::predicates::{Point2, Sign, lexicographic};
@@ -28,7 +30,10 @@ pub struct Knots {
 impl Knots {
     /// Knots at `points`, with the indices as ids.
     ///
-    /// Errors: a coordinate that is not finite, more than [`MAX_POINTS`] knots. Cost: a sort.
+    /// Cost: a sort.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite, more than [`MAX_POINTS`] knots.
     pub fn new(points: Vec<Point2>) -> Result<Knots> {
         if points.len() > MAX_POINTS {
             let found = points.len();
@@ -89,7 +94,8 @@ impl Knots {
         self.points[id as usize]
     }
 
-    /// Lexicographic order of P(e), as polynomials in e: abscissa, its displacement, ordinate, its displacement.
+    /// Lexicographic order of P(e), as polynomials in e: abscissa, its displacement, ordinate, its
+    /// displacement.
     #[must_use]
     pub fn order(&self, a: u32, b: u32) -> Ordering {
         let (p, q) = (self.at(a), self.at(b));

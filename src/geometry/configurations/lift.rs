@@ -1,7 +1,7 @@
 //! Other lifts than x² + y²: projective configurations (thesis 7.3).
 
 use super::knots::Knots;
-use crate::predicates::{Sign, big};
+use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 
@@ -26,8 +26,8 @@ impl Lift {
         }
     }
 
-    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies under a function of
-    /// which only values are known is not defined.
+    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies under
+    /// a function of which only values are known is not defined.
     pub(super) fn check(&self, knots: &Knots) -> Result<()> {
         let (found, expected) = (self.values().len(), knots.len());
         if found != expected {
@@ -44,7 +44,8 @@ impl Lift {
         Ok(())
     }
 
-    /// Positive if the last of four knots is below the plane of the others, which are counterclockwise; not perturbed.
+    /// Positive if the last of four knots is below the plane of the others, which are counterclockwise; not
+    /// perturbed.
     pub(super) fn sign(&self, knots: &Knots, ids: [u32; 4]) -> Sign {
         let d = knots.at(ids[3]);
         let value = |id: u32| self.values()[id as usize];
@@ -77,7 +78,7 @@ impl Lift {
     fn exact_sign(&self, points: [[f64; 2]; 4], values: [f64; 4]) -> Sign {
         let mut numbers: Vec<[f64; 3]> = (0..4).map(|i| [points[i][0], points[i][1], values[i]]).collect();
         numbers.push([1.0, 0.0, 0.0]);
-        let numbers = big::integers_of(&numbers);
+        let numbers = exact_integers::integers_of(&numbers);
         let one = &numbers[4][0];
         let [a, b, c, d] = std::array::from_fn(|i| {
             let [x, y, value] = &numbers[i];

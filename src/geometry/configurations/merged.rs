@@ -3,17 +3,18 @@
 use super::centroids::{CentroidMesh, centroid};
 use super::knots::Knots;
 use crate::delaunay2::distinct;
-use crate::predicates::{Predicates2, Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use foldhash::{HashMap, HashMapExt};
 
 impl CentroidMesh {
     /// The same with one vertex for sets that have the same places, and without flat triangles.
     ///
-    /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side. What else is flat,
-    /// knots on a line of which some are moved symbolically, is on the border: inside of it, other triangles would end amid an edge.
+    /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side.
+    /// What else is flat, knots on a line of which some are moved symbolically, is on the border: inside of
+    /// it, other triangles would end amid an edge.
     #[must_use]
     pub fn without_flat(&self, knots: &Knots) -> CentroidMesh {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let firsts = distinct(knots.points());
         let mut numbers: HashMap<Vec<u32>, u32> = HashMap::new();
         let mut merged = CentroidMesh { order: self.order(), ..CentroidMesh::default() };

@@ -1,14 +1,16 @@
 //! Delaunay configurations of any degree, and what generalises them (thesis 6.2.2 and chapter 7).
 //!
-//! A configuration of degree k is a pair (B, I): three knots B, and the k knots I that their circle has inside. [`delaunay`] and
-//! [`Start`] give those of degree 0, the triangles of a triangulation; [`link_triangulate`] goes from each degree to the next:
-//! the triangles with interior set J triangulate the polygon that those of the degree before leave around J, its link. Any
-//! rule for polygons will do (proved by Schmitt, "Bivariate B-splines from convex configurations", J. Comput. System Sci. 120,
-//! 2021); [`Rule::Delaunay`] gives the Delaunay configurations. What theory promises of links is asserted in every step.
+//! A configuration of degree k is a pair (B, I): three knots B, and the k knots I that their circle has
+//! inside. [`delaunay`] and [`Start`] give those of degree 0, the triangles of a triangulation;
+//! [`link_triangulate`] goes from each degree to the next: the triangles with interior set J triangulate the
+//! polygon that those of the degree before leave around J, its link. Any rule for polygons will do (proved by
+//! Schmitt, "Bivariate B-splines from convex configurations", J. Comput. System Sci. 120, 2021);
+//! [`Rule::Delaunay`] gives the Delaunay configurations. What theory promises of links is asserted in every
+//! step.
 //!
-//! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the arrays, `gathering`
-//! the way from configurations to links, `polygon`, `rule`, `apex` and `insertion` that from links to configurations.
-//! [`special`] sets up starts and links for splines of a purpose.
+//! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the
+//! arrays, `gathering` the way from configurations to links, `polygon`, `rule`, `apex` and `insertion` that
+//! from links to configurations. [`special`] sets up starts and links for splines of a purpose.
 
 mod apex;
 mod border;
@@ -45,15 +47,18 @@ use spmesh_core::error::{Error, Result};
 
 /// The configurations of the next degree: every link is triangulated by `rule` (thesis, table 7.1).
 ///
-/// Domain: `configurations` are of the same knots. With [`Rule::Delaunay`] all the way from [`delaunay`] on, these are exactly
-/// the Delaunay configurations; with [`Rule::Lifted`] from [`Start::lifted`] on and the same lift, the projective ones.
+/// Domain: `configurations` are of the same knots. With [`Rule::Delaunay`] all the way from [`delaunay`] on,
+/// these are exactly the Delaunay configurations; with [`Rule::Lifted`] from [`Start::lifted`] on and the
+/// same lift, the projective ones.
 ///
-/// Errors: parameters of the rule that do not fit; a link that is neither a simple polygon nor null (kind
-/// [`spmesh_core::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from elsewhere); a link with more vertices than the rule
-/// takes.
+/// Cost: O(c k log c) for c configurations, and what the rule costs per link of m vertices: O(m) expected
+/// decisions for [`Rule::Delaunay`] and [`Rule::Lifted`] all the way from their starts, O(m³) for others;
+/// links have about 6 vertices.
 ///
-/// Cost: O(c k log c) for c configurations, and what the rule costs per link of m vertices: O(m) expected decisions for
-/// [`Rule::Delaunay`] and [`Rule::Lifted`] all the way from their starts, O(m³) for others; links have about 6 vertices.
+/// # Errors
+/// Parameters of the rule that do not fit; a link that is neither a simple polygon nor null (kind
+/// [`spmesh_core::error::ErrorKind::Audit`]: a counterexample to the theory, or configurations from
+/// elsewhere); a link with more vertices than the rule takes.
 pub fn link_triangulate(
     knots: &Knots,
     configurations: &Configurations,
@@ -76,7 +81,8 @@ fn step(
 
 /// All degrees from 0 to `degree`, in order.
 ///
-/// Errors: a degree that the number of knots does not allow, and those of [`link_triangulate`].
+/// # Errors
+/// A degree that the number of knots does not allow, and those of [`link_triangulate`].
 pub fn generate(
     knots: &Knots,
     start: Configurations,
@@ -93,7 +99,8 @@ pub fn generate(
 
 /// Whether there are enough knots for configurations of a degree: three more.
 ///
-/// Errors: too few.
+/// # Errors
+/// Too few.
 pub fn check_degree(knots: &Knots, degree: usize) -> Result<()> {
     if knots.len() < degree.saturating_add(3) {
         let (found, needed) = (knots.len(), degree.saturating_add(3));

@@ -1,4 +1,5 @@
-//! Exact predicates of knots by id: copies displaced symbolically, ties broken canonically, the faraway point included.
+//! Exact predicates of knots by id: copies displaced symbolically, ties broken canonically, the faraway point
+//! included.
 
 use super::knots::{Knots, opposite};
 use super::lift::Lift;
@@ -56,9 +57,9 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         self.is_beyond([a, b, c], d)
     }
 
-    /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others on which it is
-    /// below if abc is counterclockwise. If they are clockwise, this is above; and one side of a vertical plane if they lie on a
-    /// line. False for four on a line.
+    /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others
+    /// on which it is below if abc is counterclockwise. If they are clockwise, this is above; and one side of
+    /// a vertical plane if they lie on a line. False for four on a line.
     pub(super) fn is_beyond(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
         let ids = [a, b, c, d];
         let sign = match self.lift {
@@ -87,8 +88,8 @@ impl<'a, P: Predicates2> Plane<'a, P> {
 
     /// Whether `d` is in conflict with a triangle, counterclockwise, that may be infinite.
     ///
-    /// The disk of an infinite triangle is the half-plane to the left of its finite edge and the open edge itself, the
-    /// limit of disks: so every knot on the border of the hull is a vertex of it.
+    /// The disk of an infinite triangle is the half-plane to the left of its finite edge and the open edge
+    /// itself, the limit of disks: so every knot on the border of the hull is a vertex of it.
     pub(super) fn is_in_conflict(&mut self, triangle: [u32; 3], d: u32) -> bool {
         match triangle.iter().position(|&v| v == FARAWAY) {
             None => self.is_inside(triangle, d),

@@ -52,7 +52,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
 
     /// The triangles of a link, in `out`; none if it is null.
     ///
-    /// Errors: a link that is neither null nor simple.
+    /// # Errors
+    /// A link that is neither null nor simple.
     pub(super) fn triangulate(&mut self, set: &[u32], link: &[u32]) -> Result<()> {
         self.out.clear();
         if link.len() == 2 {
@@ -81,9 +82,9 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
 
     /// A link through the faraway point: `chain` is what is left of it.
     ///
-    /// The hull of the other knots has a border path from the start to the end of the chain, with the set to the left. Its
-    /// edges make the infinite triangles, whatever the rule is: these are half-planes, which no lift is needed for. Between
-    /// the path and the chain are pockets.
+    /// The hull of the other knots has a border path from the start to the end of the chain, with the set to
+    /// the left. Its edges make the infinite triangles, whatever the rule is: these are half-planes, which no
+    /// lift is needed for. Between the path and the chain are pockets.
     fn unbounded(&mut self, chain: &[u32]) -> Result<()> {
         self.polygon.clear();
         self.polygon.extend_from_slice(chain);
@@ -106,7 +107,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Ok(())
     }
 
-    /// The border of the convex hull of a chain, clockwise from its first to its last vertex, with all knots on it.
+    /// The border of the convex hull of a chain, clockwise from its first to its last vertex, with all knots
+    /// on it.
     fn hull_path(&mut self, chain: &[u32]) -> Result<Vec<u32>> {
         if chain.len() == 2 {
             return Ok(chain.to_vec());
@@ -178,8 +180,9 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Ok(())
     }
 
-    /// Triangulates the link of one of two knots at one place with diagonals from the other (thesis, figure 8.7), whatever
-    /// the rule is; whether that could be done. Delaunay configurations are such by themselves, but for ties.
+    /// Triangulates the link of one of two knots at one place with diagonals from the other (thesis, figure
+    /// 8.7), whatever the rule is; whether that could be done. Delaunay configurations are such by
+    /// themselves, but for ties.
     fn fan_from_copy(&mut self) -> bool {
         let &[v] = &self.set[..] else { return false };
         if self.is_regular || !self.plane.knots.has_copies() {
@@ -241,8 +244,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         })
     }
 
-    /// The assertion of thesis 7.4 on a polygon, or on an open chain. Links of one knot are those of a triangulation, which
-    /// are star-shaped.
+    /// The assertion of thesis 7.4 on a polygon, or on an open chain. Links of one knot are those of a
+    /// triangulation, which are star-shaped.
     fn require_simple(&mut self, is_closed: bool) -> Result<()> {
         if self.set.len() == 1 {
             return Ok(());

@@ -4,8 +4,8 @@ use super::knots::Knots;
 use super::lift::Lift;
 use spmesh_core::error::{Error, Result};
 
-/// What coordinates and values are multiplied by, so that sums of differences of the greatest are finite; exact but for numbers
-/// next to zero.
+/// What coordinates and values are multiplied by, so that sums of differences of the greatest are finite;
+/// exact but for numbers next to zero.
 const SCALE: f64 = 1.0 / (1u64 << 40) as f64;
 /// More than any difference of scaled numbers, and little enough for long sums.
 const WEIGHT_MAX: f64 = f64::MAX * SCALE;
@@ -13,8 +13,8 @@ const WEIGHT_MAX: f64 = f64::MAX * SCALE;
 /// How links are triangulated.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Rule {
-    /// The constrained Delaunay triangulation; with the Delaunay triangulation as the start, this gives exactly the Delaunay
-    /// configurations.
+    /// The constrained Delaunay triangulation; with the Delaunay triangulation as the start, this gives
+    /// exactly the Delaunay configurations.
     Delaunay,
     /// The same for another lift; with [`super::Start::lifted`], projective configurations (thesis 7.3).
     Lifted(Lift),
@@ -28,7 +28,8 @@ pub enum Rule {
     Random(u64),
     /// The least extent of edges across a direction, in degrees counterclockwise from the x axis.
     Aligned(f64),
-    /// Data-dependent: the least sum of differences of values, one per knot, along edges, so that edges follow level lines.
+    /// Data-dependent: the least sum of differences of values, one per knot, along edges, so that edges
+    /// follow level lines.
     Data(Vec<f64>),
     /// The same for a gradient at each knot: the least sum of jumps of slope along edges.
     Gradients(Vec<[f64; 2]>),
@@ -37,7 +38,8 @@ pub enum Rule {
 impl Rule {
     /// Whether the parameters make sense for `knots`.
     ///
-    /// Errors: an angle that is not finite, values that are not as many as knots or not finite.
+    /// # Errors
+    /// An angle that is not finite, values that are not as many as knots or not finite.
     pub fn check(&self, knots: &Knots) -> Result<()> {
         match self {
             Rule::Lifted(lift) => lift.check(knots),
@@ -50,7 +52,8 @@ impl Rule {
         }
     }
 
-    /// What a diagonal costs, for rules that minimise a sum: finite, and so are sums, whatever coordinates and values are.
+    /// What a diagonal costs, for rules that minimise a sum: finite, and so are sums, whatever coordinates
+    /// and values are.
     pub(super) fn weight(&self, knots: &Knots, a: u32, b: u32) -> f64 {
         let (p, q) = (knots.at(a), knots.at(b));
         let less = |from: f64, to: f64| SCALE * to - SCALE * from;

@@ -1,18 +1,19 @@
 //! Whether triangles are a triangulation of the convex hull of all knots.
 //!
-//! They are counterclockwise, every directed edge has its opposite but for one cycle, which is convex and goes around once:
-//! then the triangles cover what is inside the cycle once (winding numbers), and edges meet at knots only.
+//! They are counterclockwise, every directed edge has its opposite but for one cycle, which is convex and
+//! goes around once: then the triangles cover what is inside the cycle once (winding numbers), and edges meet
+//! at knots only.
 
 use super::knots::Knots;
 use super::plane::Plane;
-use crate::predicates::{Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Sign};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::configurations::FARAWAY;
 use std::cmp::Ordering;
 
 /// Checks triangles that come from elsewhere.
 pub(super) fn check(knots: &Knots, triangles: &[[u32; 3]]) -> Result<()> {
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut plane = Plane::new(knots, None, &mut predicates);
     let mut is_vertex = vec![false; knots.len()];
     for (number, &triangle) in triangles.iter().enumerate() {
@@ -63,7 +64,7 @@ pub(super) fn border(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]>> {
     Ok(cycle)
 }
 
-fn check_border(plane: &mut Plane<TotalPredicates>, border: &[[u32; 2]]) -> Result<()> {
+fn check_border(plane: &mut Plane<FiniteFloatPredicates>, border: &[[u32; 2]]) -> Result<()> {
     let mut minima = 0;
     for (edge, next) in border.iter().zip(border.iter().cycle().skip(1)) {
         let ([a, b], [_, c]) = (*edge, *next);

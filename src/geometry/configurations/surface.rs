@@ -1,17 +1,19 @@
-//! Triangulations to start from: a triangulated sphere of the plane and the faraway point, with flips and insertion.
+//! Triangulations to start from: a triangulated sphere of the plane and the faraway point, with flips and
+//! insertion.
 
 use super::knots::Knots;
 use super::lift::Lift;
 use super::plane::Plane;
-use crate::delaunay2::{Kernel, Triangulation};
-use crate::predicates::TotalPredicates;
+use crate::delaunay2::{Kernel, Triangles};
+use crate::predicates::FiniteFloatPredicates;
 use foldhash::HashMap;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::random::Random;
 use spmesh_model::configurations::FARAWAY;
 use spmesh_model::configurations::{Claim, Configurations};
 
-/// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the place.
+/// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the
+/// place.
 pub(super) type Corner = u32;
 
 /// A triangulation of the convex hull of all knots, that every knot is a vertex of.
@@ -24,14 +26,14 @@ pub struct Start {
 }
 
 /// The canonical Delaunay triangulation; of knots at one place only the first is a vertex.
-fn kernel_mesh(knots: &Knots) -> Result<Triangulation> {
-    let mut mesh = Triangulation::default();
+fn kernel_mesh(knots: &Knots) -> Result<Triangles> {
+    let mut mesh = Triangles::default();
     Kernel::new().triangulate(knots.points(), &mut mesh)?;
     if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh) }
 }
 
 /// Its triangles, and after them the infinite ones at the edges of the hull.
-fn triangles_of(mesh: &Triangulation) -> Vec<[u32; 3]> {
+fn triangles_of(mesh: &Triangles) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(mesh.triangles().len() + mesh.hull.len());
     triangles.extend(mesh.triangles().iter().map(|triangle| triangle.vertices));
     let ends = mesh.hull.iter().cycle().skip(1);
@@ -40,12 +42,12 @@ fn triangles_of(mesh: &Triangulation) -> Vec<[u32; 3]> {
 }
 
 /// For each half-edge of [`triangles_of`] that on the other side.
-fn across_of(mesh: &Triangulation) -> Vec<[Corner; 3]> {
+fn across_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
     let (finite, infinite) = (mesh.triangles().len() as u32, mesh.hull.len() as u32);
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
     let mut across = Vec::with_capacity((finite + infinite) as usize);
     across.extend(mesh.triangles().iter().map(|triangle| {
-        [0, 1, 2].map(|i| match triangle.across(i) {
+        [0, 1, 2].map(|i| match triangle.neighbour(i) {
             Some(beyond) => 3 * beyond.triangle + beyond.corner,
             None => 3 * outside[&triangle.vertices[(i + 1) % 3]] + 2,
         })
@@ -65,10 +67,13 @@ pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
     Ok(kernel_mesh(knots)?.hull)
 }
 
-/// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if no knots are at
-/// one place.
+/// The Delaunay triangulation of `knots` as configurations of degree 0, without the detour of a [`Start`] if
+/// no knots are at one place.
 ///
-/// Errors: knots on one line. Cost: little more than the kernel's.
+/// Cost: little more than the kernel's.
+///
+/// # Errors
+/// Knots on one line.
 pub fn delaunay(knots: &Knots) -> Result<Configurations> {
     if knots.has_copies() {
         return Ok(Start::delaunay(knots)?.configurations());
@@ -79,7 +84,8 @@ pub fn delaunay(knots: &Knots) -> Result<Configurations> {
 impl Start {
     /// The canonical Delaunay triangulation; copies of knots are vertices, too.
     ///
-    /// Errors: knots on one line.
+    /// # Errors
+    /// Knots on one line.
     pub fn delaunay(knots: &Knots) -> Result<Start> {
         let mesh = kernel_mesh(knots)?;
         let (triangles, across) = (triangles_of(&mesh), across_of(&mesh));
@@ -91,13 +97,15 @@ impl Start {
         Ok(start)
     }
 
-    /// The triangulation below which no lifted knot lies (a regular triangulation): projective configurations of degree 0.
+    /// The triangulation below which no lifted knot lies (a regular triangulation): projective configurations
+    /// of degree 0.
     ///
-    /// Errors: knots on one line, values that do not fit the knots, a lift that is not strictly convex at some knot.
+    /// # Errors
+    /// Knots on one line, values that do not fit the knots, a lift that is not strictly convex at some knot.
     pub fn lifted(knots: &Knots, lift: &Lift) -> Result<Start> {
         lift.check(knots)?;
         let mut start = Start::delaunay(knots)?;
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, Some(lift), &mut predicates);
         let mut waiting: Vec<Corner> = (0..3 * start.triangles.len() as u32).collect();
         // Each flip lowers the lifted surface, so this ends.
@@ -123,8 +131,9 @@ impl Start {
 
     /// Any triangulation of all knots, counterclockwise.
     ///
-    /// Errors: an unknown knot, a triangle that is flat or clockwise, an edge with two triangles on one side, a border that is
-    /// not that of the convex hull, a knot that is no vertex.
+    /// # Errors
+    /// An unknown knot, a triangle that is flat or clockwise, an edge with two triangles on one side, a
+    /// border that is not that of the convex hull, a knot that is no vertex.
     pub fn of_triangles(knots: &Knots, triangles: &[[u32; 3]]) -> Result<Start> {
         super::start_check::check(knots, triangles)?;
         let border = super::start_check::border(triangles)?;
@@ -134,8 +143,9 @@ impl Start {
         Ok(Start { across: join(&all)?, triangles: all, claim: Claim::Any })
     }
 
-    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for constrained Delaunay
-    /// triangulations of links, and links of knots that are pulled apart are triangulated as in figure 8.7 of the thesis.
+    /// The same triangulation, to be treated as any other: [`super::Rule::Delaunay`] then looks for
+    /// constrained Delaunay triangulations of links, and links of knots that are pulled apart are
+    /// triangulated as in figure 8.7 of the thesis.
     #[must_use]
     pub fn generalised(mut self) -> Start {
         self.claim = Claim::Any;
@@ -148,9 +158,10 @@ impl Start {
         Configurations::of_triangles(self.claim, self.triangles.clone())
     }
 
-    /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number of flips.
+    /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number
+    /// of flips.
     pub fn flip_random(&mut self, knots: &Knots, count: usize, seed: u64) -> usize {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut random = Random::new(seed);
         let (mut flips, corners) = (0, 3 * self.triangles.len() as u64);
@@ -167,10 +178,10 @@ impl Start {
         flips
     }
 
-    /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise from the x axis;
-    /// the number of flips.
+    /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise
+    /// from the x axis; the number of flips.
     pub fn flip_aligned(&mut self, knots: &Knots, degrees: f64) -> usize {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
         let mut flips = 0;
         let mut waiting: Vec<Corner> = (0..3 * self.triangles.len() as u32).rev().collect();
@@ -189,7 +200,8 @@ impl Start {
         flips
     }
 
-    /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are finite.
+    /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are
+    /// finite.
     pub(super) fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
         let all = self.around(corner).corners;
         (!all.contains(&FARAWAY)).then_some(all)
@@ -198,7 +210,8 @@ impl Start {
     /// The two triangles at the edge opposite to a corner, with what is around them.
     pub(super) fn around(&self, corner: Corner) -> Around {
         let beyond = self.across[corner as usize / 3][corner as usize % 3];
-        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the second and third.
+        // Of a triangle, seen from a corner: its vertices, and what is beyond the edges opposite to the
+        // second and third.
         let seen = |from: Corner| {
             let (triangle, place) = (from as usize / 3, from as usize % 3);
             let places = [place, (place + 1) % 3, (place + 2) % 3];
@@ -210,14 +223,14 @@ impl Start {
     }
 
     /// Whether the edge opposite to a corner can be flipped.
-    pub(super) fn can_flip(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+    pub(super) fn can_flip(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         self.quadrilateral(corner)
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
-    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length stay, and no
-    /// triangle becomes flat but those that have such an edge.
-    fn keeps_places(&self, plane: &mut Plane<TotalPredicates>, corner: Corner) -> bool {
+    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length
+    /// stay, and no triangle becomes flat but those that have such an edge.
+    fn keeps_places(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         let knots = plane.knots;
         let Some([v, a, w, b]) = self.quadrilateral(corner).filter(|_| knots.has_copies()) else {
             return true;

@@ -1,7 +1,8 @@
-//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in integers of any size.
+//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in
+//! integers of any size.
 
 use super::knots::Knots;
-use crate::predicates::{Sign, big};
+use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 
 /// A polynomial in e: the coefficients, the constant one first.
@@ -13,7 +14,8 @@ pub(super) fn orient(knots: &Knots, ids: [u32; 3]) -> Sign {
     first_sign(&cross(&minus_each(&a, &c), &minus_each(&b, &c)))
 }
 
-/// In-circle sign of four knots of P(e), the first three counterclockwise; zero if they are on one circle for all e.
+/// In-circle sign of four knots of P(e), the first three counterclockwise; zero if they are on one circle for
+/// all e.
 pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
     let [a, b, c, d] = moved(knots, ids);
     let [a, b, c] = [a, b, c].map(|point| minus_each(&point, &d));
@@ -24,7 +26,7 @@ pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
 
 /// Positions as linear polynomials. The unit of e does not matter, so that it may differ from call to call.
 fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[Polynomial; 2]; N] {
-    let points = big::integers(ids.map(|id| knots.at(id)));
+    let points = exact_integers::integers(ids.map(|id| knots.at(id)));
     std::array::from_fn(|i| {
         let rank = BigInt::from(knots.rank(ids[i]));
         let [x, y] = &points[i];

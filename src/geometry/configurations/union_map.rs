@@ -1,10 +1,11 @@
-//! The union map, which makes faces of k-set polytopes of configurations, and its inverse (thesis, equations 7.3 and 7.4).
+//! The union map, which makes faces of k-set polytopes of configurations, and its inverse (thesis, equations
+//! 7.3 and 7.4).
 
-/// The sets that a configuration makes with `count` knots of its boundary at a time, each sorted, in lexicographic order:
-/// all unions of I with `count` of B.
+/// The sets that a configuration makes with `count` knots of its boundary at a time, each sorted, in
+/// lexicographic order: all unions of I with `count` of B.
 ///
-/// Domain: disjoint sets, `count` from 1 to one less than the size of `boundary`; otherwise there are none. (The thesis has
-/// one less in equation 7.3 than in theorem 7.1.2, which is right.)
+/// Domain: disjoint sets, `count` from 1 to one less than the size of `boundary`; otherwise there are none.
+/// (The thesis has one less in equation 7.3 than in theorem 7.1.2, which is right.)
 #[must_use]
 pub fn union_map(boundary: &[u32], interior: &[u32], count: usize) -> Vec<Vec<u32>> {
     if count == 0 || count >= boundary.len() {
@@ -55,7 +56,8 @@ pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let mut given: Vec<Vec<u32>> = sets.to_vec();
     given.iter_mut().for_each(|set| set.sort_unstable());
     given.sort_unstable();
-    // More sets than were given would be made only if they are not an image; there is no need to make them all.
+    // More sets than were given would be made only if they are not an image; there is no need to make them
+    // all.
     let expected = binomial(source.boundary.len(), source.count)?;
     let is_image =
         expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;

@@ -2,7 +2,7 @@
 
 use super::insertion::{Cavity, Insertion};
 use super::locate::Start;
-use super::sphere::Sphere;
+use super::mesh::Mesh;
 use crate::predicates::{Point2, Predicates2, Sign, WithPredicates2};
 
 /// Triangulates distinct points, all in one arithmetic.
@@ -10,7 +10,7 @@ pub(super) struct Build<'s, 'a> {
     /// The vertices, that at infinity first.
     pub(super) points: &'s [Point2],
     /// Memory for their triangles.
-    pub(super) room: &'s mut [u32],
+    pub(super) memory: &'s mut [u32],
     /// The finite vertices in the order of insertion.
     pub(super) sequence: &'a [u32],
     pub(super) cavity: &'a mut Cavity,
@@ -18,7 +18,7 @@ pub(super) struct Build<'s, 'a> {
 
 impl<'s> WithPredicates2 for Build<'s, '_> {
     /// The triangulation; `None` if all points are on one line.
-    type Output = Option<Sphere<'s>>;
+    type Output = Option<Mesh<'s>>;
 
     fn with(self, predicates: &mut impl Predicates2) -> Self::Output {
         let third = self.first_off_line(predicates)?;
@@ -27,8 +27,8 @@ impl<'s> WithPredicates2 for Build<'s, '_> {
         if predicates.orient2d(p, q, r) == Sign::Negative {
             (a, b) = (b, a);
         }
-        let sphere = Sphere::new(self.points, self.room, [a, b, c]);
-        let mut insertion = Insertion::new(sphere, predicates, self.cavity);
+        let mesh = Mesh::new(self.points, self.memory, [a, b, c]);
+        let mut insertion = Insertion::new(mesh, predicates, self.cavity);
         let mut start = Start { triangle: 0, is_seen: false };
         for place in (2..self.sequence.len()).filter(|&place| place != third) {
             let after = self.sequence.get(place + 1).unwrap_or(&self.sequence[place]);

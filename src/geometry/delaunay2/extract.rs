@@ -1,12 +1,12 @@
-//! From the triangulated sphere to a [`super::Triangulation`], in place: infinite triangles go, and vertices become
+//! From the triangulated sphere to a [`super::Triangles`], in place: infinite triangles go, and vertices become
 //! indices of input points.
 
-use super::sphere::{HalfEdge, Sphere, number_of, previous, triangle_of};
-use super::triangulation::NONE;
+use super::half_edge::{HalfEdge, NONE, number_of, previous, triangle_of};
+use super::mesh::Mesh;
 
 /// Reads the finished sphere.
 pub(super) struct Extraction<'a> {
-    pub(super) sphere: Sphere<'a>,
+    pub(super) mesh: Mesh<'a>,
     /// Input index of each vertex.
     pub(super) indices: &'a [u32],
     /// For each vertex, a triangle at it; overwritten.
@@ -24,9 +24,9 @@ impl Extraction<'_> {
         // Half-edges of the hull, by origin.
         let mut hull: Vec<(u32, HalfEdge)> = hull_sides
             .iter()
-            .map(|&side| (self.sphere.opposite(previous(side)), self.sphere.across(side)))
+            .map(|&side| (self.mesh.opposite(previous(side)), self.mesh.neighbour(side)))
             .collect();
-        hull.iter().for_each(|&(_, inside)| self.sphere.set_across(inside, NONE));
+        hull.iter().for_each(|&(_, inside)| self.mesh.set_neighbour(inside, NONE));
         let count = self.fill_holes(&hull_sides, &mut hull);
         self.rename_vertices(count);
         for &(origin, inside) in &hull {
@@ -45,15 +45,15 @@ impl Extraction<'_> {
 
     /// The outer half-edges of the edges of the hull, counterclockwise.
     fn hull_sides(&self) -> Vec<HalfEdge> {
-        let blank = self.sphere.blank();
-        let mut triangles = Sphere::triangles(self.sphere.len()).filter(|t| !blank.contains(t));
+        let blank = self.mesh.blank();
+        let mut triangles = Mesh::triangles(self.mesh.len()).filter(|t| !blank.contains(t));
         let mut sides = Vec::new();
-        let Some(first) = triangles.find_map(|t| self.sphere.hull_side(t)) else { return sides };
+        let Some(first) = triangles.find_map(|t| self.mesh.hull_side(t)) else { return sides };
         let mut side = first;
         loop {
             sides.push(side);
             // From outside an edge is seen clockwise: the next one is across the edge from its end to infinity.
-            side = previous(self.sphere.across(previous(side)));
+            side = previous(self.mesh.neighbour(previous(side)));
             if side == first {
                 return sides;
             }
@@ -63,13 +63,13 @@ impl Extraction<'_> {
     /// Moves the last finite triangles to the places of infinite and blank ones; the number of finite ones.
     fn fill_holes(&mut self, hull_sides: &[HalfEdge], hull: &mut [(u32, HalfEdge)]) -> usize {
         let infinite = hull_sides.iter().map(|&side| triangle_of(side));
-        let mut holes: Vec<HalfEdge> = infinite.chain(self.sphere.blank()).collect();
+        let mut holes: Vec<HalfEdge> = infinite.chain(self.mesh.blank()).collect();
         holes.sort_unstable();
-        let count = self.sphere.len() - holes.len();
-        let tail = Sphere::triangles(self.sphere.len()).skip(count);
+        let count = self.mesh.len() - holes.len();
+        let tail = Mesh::triangles(self.mesh.len()).skip(count);
         let moved: Vec<HalfEdge> = tail.filter(|t| holes.binary_search(t).is_err()).collect();
         for (&t, &hole) in moved.iter().zip(&holes) {
-            self.sphere.move_triangle(t, hole);
+            self.mesh.move_triangle(t, hole);
         }
         for (_, inside) in hull {
             if let Ok(at) = moved.binary_search(&triangle_of(*inside)) {
@@ -84,10 +84,10 @@ impl Extraction<'_> {
         self.triangle_at.clear();
         self.triangle_at.reserve_exact(self.indices.len());
         self.triangle_at.resize(self.indices.len(), NONE);
-        for t in Sphere::triangles(count) {
-            let vertices = self.sphere.vertices(t);
+        for t in Mesh::triangles(count) {
+            let vertices = self.mesh.vertices(t);
             vertices.iter().for_each(|&v| self.triangle_at[v as usize] = number_of(t));
-            self.sphere.set_vertices(t, vertices.map(|v| self.indices[v as usize]));
+            self.mesh.set_vertices(t, vertices.map(|v| self.indices[v as usize]));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Insertion of points: the triangles in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
 //! 1981).
 
+use super::half_edge::{HalfEdge, next, previous, triangle_of, triangles_of};
 use super::locate::{Start, cross, difference, is_in_conflict, walk, walk_exactly};
-use super::sphere::{HalfEdge, Sphere, next, previous, triangle_of, triangles_of};
+use super::mesh::Mesh;
 use crate::predicates::{INCIRCLE_BOUND, Numbers, Point2, PredicateCounts, Predicates2};
 
 /// With lifts k, l, m of three points around the new one, the rounded in-circle determinant has the sign of the exact
@@ -19,7 +20,7 @@ const ROUNDED: f64 = ERROR * 9_007_199_254_740_992.0;
 
 /// A vertex as the new point sees it.
 #[derive(Debug, Clone, Copy)]
-struct Sight {
+struct TranslatedVertex {
     vertex: u32,
     /// Difference to the new point.
     at: Point2,
@@ -27,27 +28,27 @@ struct Sight {
     lift: f64,
 }
 
-impl Sight {
+impl TranslatedVertex {
     #[inline(always)]
-    fn new(sphere: &Sphere, vertex: u32, from: Point2) -> Sight {
-        let at = difference(sphere.point(vertex), from);
-        Sight { vertex, at, lift: at[0] * at[0] + at[1] * at[1] }
+    fn new(mesh: &Mesh, vertex: u32, from: Point2) -> TranslatedVertex {
+        let at = difference(mesh.point(vertex), from);
+        TranslatedVertex { vertex, at, lift: at[0] * at[0] + at[1] * at[1] }
     }
 }
 
 /// An edge around the part of the cavity that is known: whether the triangle beyond is in conflict will be asked.
 #[derive(Debug, Clone, Copy)]
 struct Pending {
-    beyond: HalfEdge,
+    neighbour: HalfEdge,
     /// The end of the edge, counterclockwise.
-    end: Sight,
+    end: TranslatedVertex,
     /// Cross product of the ends of the edge.
     cross: f64,
 }
 
 /// The triangulation of the points inserted so far, and what inserting needs.
 pub(super) struct Insertion<'s, 'a, P> {
-    sphere: Sphere<'s>,
+    mesh: Mesh<'s>,
     predicates: &'a mut P,
     cavity: &'a mut Cavity,
     /// In-circle tests, and those among them that the filter did not decide.
@@ -65,14 +66,14 @@ pub(super) struct Cavity {
 
 impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     /// Nothing inserted but the corners of the four triangles of `sphere`.
-    pub(super) fn new(sphere: Sphere<'s>, predicates: &'a mut P, cavity: &'a mut Cavity) -> Self {
-        Insertion { sphere, predicates, cavity, tests: 0, unfiltered: 0 }
+    pub(super) fn new(mesh: Mesh<'s>, predicates: &'a mut P, cavity: &'a mut Cavity) -> Self {
+        Insertion { mesh, predicates, cavity, tests: 0, unfiltered: 0 }
     }
 
     /// The triangulation. Adds the decisions made here to the counts of the predicates.
-    pub(super) fn finish(self) -> Sphere<'s> {
+    pub(super) fn finish(self) -> Mesh<'s> {
         self.predicates.counts_mut().filter += self.tests - self.unfiltered;
-        self.sphere
+        self.mesh
     }
 
     /// Inserts vertex `q`, which is no vertex yet; says where to start for a point at `then`.
@@ -81,25 +82,26 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     /// that none is met twice and no marks are needed. Each edge of its border makes a triangle with `q`.
     #[inline(always)]
     pub(super) fn insert(&mut self, q: u32, start: Start, then: Point2) -> Start {
-        let at = self.sphere.point(q);
+        let at = self.mesh.point(q);
         let (mut from, mut edge) = self.open_cavity(q, start, at);
         let mut star = Star::new(q, from, difference(then, at));
         loop {
-            let apex = Sight::new(&self.sphere, self.sphere.opposite(edge.beyond), at);
+            let apex = TranslatedVertex::new(&self.mesh, self.mesh.opposite(edge.neighbour), at);
             let left = cross(from.at, apex.at);
             let right = cross(apex.at, edge.end.at);
             if self.is_in_circle(at, (from, left), apex, (&edge, right)) {
                 let Cavity { pending, slots } = &mut *self.cavity;
-                slots.push(triangle_of(edge.beyond));
+                slots.push(triangle_of(edge.neighbour));
                 pending.push(Pending {
-                    beyond: self.sphere.across(previous(edge.beyond)),
+                    neighbour: self.mesh.neighbour(previous(edge.neighbour)),
                     cross: right,
                     ..edge
                 });
-                edge = Pending { beyond: self.sphere.across(next(edge.beyond)), end: apex, cross: left };
+                edge =
+                    Pending { neighbour: self.mesh.neighbour(next(edge.neighbour)), end: apex, cross: left };
                 continue;
             }
-            star.add(&mut self.sphere, self.cavity.slots[star.len], from, &edge);
+            star.add(&mut self.mesh, self.cavity.slots[star.len], from, &edge);
             from = edge.end;
             match self.cavity.pending.pop() {
                 Some(before) => edge = before,
@@ -108,24 +110,24 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
         }
         // Each edge of the border failed a test, and each triangle of the cavity but the first passed one.
         self.tests += 2 * self.cavity.slots.len() as u64 - 3;
-        star.close(&mut self.sphere)
+        star.close(&mut self.mesh)
     }
 
     /// Makes a triangle in conflict the whole cavity: the start of one of its edges, and that edge. The others wait.
     #[inline(always)]
-    fn open_cavity(&mut self, q: u32, start: Start, at: Point2) -> (Sight, Pending) {
+    fn open_cavity(&mut self, q: u32, start: Start, at: Point2) -> (TranslatedVertex, Pending) {
         let (t, [a, b, c], [bc, ca, ab]) = self.find_conflict(start, at);
         let [first, second] = triangles_of(q);
-        let beyond = [t, t + 1, t + 2].map(|h| self.sphere.across(h));
+        let neighbours = [t, t + 1, t + 2].map(|h| self.mesh.neighbour(h));
         let Cavity { pending, slots } = &mut *self.cavity;
         slots.clear();
         slots.extend([first, second, t]);
         pending.clear();
         pending.extend([
-            Pending { beyond: beyond[1], end: a, cross: ca },
-            Pending { beyond: beyond[0], end: c, cross: bc },
+            Pending { neighbour: neighbours[1], end: a, cross: ca },
+            Pending { neighbour: neighbours[0], end: c, cross: bc },
         ]);
-        (a, Pending { beyond: beyond[2], end: b, cross: ab })
+        (a, Pending { neighbour: neighbours[2], end: b, cross: ab })
     }
 
     /// Whether the new point, at `at`, is in the circle of the triangle beyond an edge, which has the vertex `apex`
@@ -134,44 +136,44 @@ impl<'s, 'a, P: Predicates2> Insertion<'s, 'a, P> {
     fn is_in_circle(
         &mut self,
         at: Point2,
-        (from, left): (Sight, f64),
-        apex: Sight,
+        (from, left): (TranslatedVertex, f64),
+        apex: TranslatedVertex,
         (edge, right): (&Pending, f64),
     ) -> bool {
         let end = edge.end;
         let value = end.lift * left + from.lift * right - apex.lift * edge.cross;
         let error = ERROR * (apex.lift * (from.lift + end.lift) + from.lift * end.lift);
-        if P::NUMBERS != Numbers::Any && value.abs() > error {
+        if P::NUMBERS != Numbers::FiniteFloats && value.abs() > error {
             return value > 0.0;
         }
         self.unfiltered += 1;
         if P::NUMBERS == Numbers::Integers && error < ROUNDED {
             settle(value, apex.at, (from.at, left), (end.at, right), self.predicates.counts_mut())
         } else {
-            is_in_conflict(&self.sphere, triangle_of(edge.beyond), at, self.predicates)
+            is_in_conflict(&self.mesh, triangle_of(edge.neighbour), at, self.predicates)
         }
     }
 
     /// A triangle in conflict with a point, what the point sees of its corners, and the cross product of the ends
     /// of the side opposite to each.
     #[inline(always)]
-    fn find_conflict(&mut self, start: Start, at: Point2) -> (HalfEdge, [Sight; 3], [f64; 3]) {
-        let look = |sphere: &Sphere, t| {
-            let corners = sphere.vertices(t).map(|v| Sight::new(sphere, v, at));
+    fn find_conflict(&mut self, start: Start, at: Point2) -> (HalfEdge, [TranslatedVertex; 3], [f64; 3]) {
+        let look = |mesh: &Mesh, t| {
+            let corners = mesh.vertices(t).map(|v| TranslatedVertex::new(mesh, v, at));
             let side = |i: usize, j: usize| cross(corners[i].at, corners[j].at);
             (t, corners, [side(1, 2), side(2, 0), side(0, 1)])
         };
-        if P::NUMBERS != Numbers::Any {
-            let t = walk(&self.sphere, start, at);
-            let (t, corners, crosses) = look(&self.sphere, t);
+        if P::NUMBERS != Numbers::FiniteFloats {
+            let t = walk(&self.mesh, start, at);
+            let (t, corners, crosses) = look(&self.mesh, t);
             let [k, l, m] = corners.map(|corner| corner.lift);
             let value = k * crosses[0] + l * crosses[1] + m * crosses[2];
             if value > ERROR * (k * (l + m) + l * m) {
                 return (t, corners, crosses);
             }
         }
-        let t = walk_exactly(&self.sphere, start.triangle, at, self.predicates);
-        look(&self.sphere, t)
+        let t = walk_exactly(&self.mesh, start.triangle, at, self.predicates);
+        look(&self.mesh, t)
     }
 }
 
@@ -192,7 +194,7 @@ struct Star {
 impl Star {
     /// No triangle yet; the first edge will begin at `from`.
     #[inline(always)]
-    fn new(q: u32, from: Sight, then: Point2) -> Star {
+    fn new(q: u32, from: TranslatedVertex, then: Point2) -> Star {
         let [first, _] = triangles_of(q);
         let start = Start { triangle: first, is_seen: false };
         Star { q, then, is_left_of_then: cross(from.at, then) >= 0.0, first, last: first, len: 0, start }
@@ -200,10 +202,10 @@ impl Star {
 
     /// Writes the triangle of an edge to `slot`, and links it to the one before.
     #[inline(always)]
-    fn add(&mut self, sphere: &mut Sphere, slot: HalfEdge, from: Sight, edge: &Pending) {
-        sphere.write(slot, [self.q, from.vertex, edge.end.vertex], [edge.beyond, slot, self.last + 1]);
-        sphere.set_across(edge.beyond, slot);
-        sphere.set_across(self.last + 1, slot + 2);
+    fn add(&mut self, mesh: &mut Mesh, slot: HalfEdge, from: TranslatedVertex, edge: &Pending) {
+        mesh.write(slot, [self.q, from.vertex, edge.end.vertex], [edge.neighbour, slot, self.last + 1]);
+        mesh.set_neighbour(edge.neighbour, slot);
+        mesh.set_neighbour(self.last + 1, slot + 2);
         let end_is_left = cross(edge.end.at, self.then) >= 0.0;
         if self.is_left_of_then && !end_is_left {
             self.start = Start { triangle: slot, is_seen: true };
@@ -215,9 +217,9 @@ impl Star {
 
     /// Links the last triangle to the first.
     #[inline(always)]
-    fn close(self, sphere: &mut Sphere) -> Start {
-        sphere.set_across(self.last + 1, self.first + 2);
-        sphere.set_across(self.first + 2, self.last + 1);
+    fn close(self, mesh: &mut Mesh) -> Start {
+        mesh.set_neighbour(self.last + 1, self.first + 2);
+        mesh.set_neighbour(self.first + 2, self.last + 1);
         self.start
     }
 }

@@ -1,26 +1,30 @@
 //! The bulk kernel in 2D: the canonical Delaunay triangulation of an array of points.
 //!
 //! The points are put in order along a Hilbert curve, copied, and inserted one by one, in a few rounds that each go
-//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `sphere` is the
+//! along the curve ([`Rounds`]), so that the next point is near and finds small triangles around it. `mesh` is the
 //! data structure, `locate` the walk to the next point, `insertion` what it changes, `extract` what comes out.
 
 mod build;
 mod distinct;
 mod extract;
+mod half_edge;
 mod insertion;
 mod locate;
-mod sphere;
+mod mesh;
+mod triangles;
 mod triangulation;
 
 pub use distinct::distinct;
-pub use triangulation::{Corner, NONE, Triangle, Triangulation};
+pub use half_edge::NONE;
+pub use triangles::{Corner, Triangle, Triangles};
+pub use triangulation::Triangulation;
 
 use crate::order::{Curve, Rounds, SpatialOrder};
 use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
 use build::Build;
 use extract::Extraction;
 use insertion::Cavity;
-use sphere::INFINITE;
+use mesh::INFINITE;
 use spmesh_core::error::{Error, Result};
 
 /// Greatest number of points: the words of triangles, 16 per point, are numbered in 32 bits.
@@ -48,17 +52,17 @@ impl Kernel {
         Kernel::default()
     }
 
-    /// Triangulates `points` into `triangulation`, whose buffers are reused.
+    /// Triangulates `points` into `triangles`, whose buffers are reused.
     ///
     /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one
-    /// of least index; the others are listed in [`Triangulation::duplicates`]. Degenerate input of every kind is
+    /// of least index; the others are listed in [`Triangles::duplicates`]. Degenerate input of every kind is
     /// fine: cocircular points are triangulated canonically, and collinear points give no triangles.
     ///
     /// Errors: a coordinate that is not finite, too many points; the triangulation is as it was then.
     ///
     /// Cost: O(n) for points that are spread evenly, or clustered evenly; about 40 bytes per point in the kernel and 68 in
-    /// the triangulation.
-    pub fn triangulate(&mut self, points: &[Point2], triangulation: &mut Triangulation) -> Result<()> {
+    /// the triangles.
+    pub fn triangulate(&mut self, points: &[Point2], triangles: &mut Triangles) -> Result<()> {
         if points.len() > MAX_POINTS {
             return Err(Error::usage(format!(
                 "{} points in one piece, the kernel takes at most {MAX_POINTS}",
@@ -71,30 +75,30 @@ impl Kernel {
             return Err(Error::malformed(format!("coordinate is not finite: {:?}", points[bad]))
                 .at(format!("point {bad}")));
         }
-        triangulation.clear();
-        self.take_sorted(points, &extent, &mut triangulation.duplicates);
+        triangles.clear();
+        self.take_sorted(points, &extent, &mut triangles.duplicates);
         self.sequence.clear();
         self.sequence.reserve_exact(self.points.len() - 1);
         self.sequence.extend(Rounds::new(self.points.len() - 1).map(|place| place + 1));
         let build = Build {
             points: &self.points,
-            room: triangulation.memory.room(self.points.len()),
+            memory: triangles.memory.allocate(self.points.len()),
             sequence: &self.sequence,
             cavity: &mut self.cavity,
         };
         match Arithmetic::of(&extent).run(build, &mut self.counts) {
-            Some(sphere) => {
+            Some(mesh) => {
                 let extraction = Extraction {
-                    sphere,
+                    mesh,
                     indices: &self.indices,
                     triangle_at: &mut self.sequence,
-                    hull: &mut triangulation.hull,
-                    triangle_of_vertex: &mut triangulation.triangle_of_vertex,
+                    hull: &mut triangles.hull,
+                    triangle_of_vertex: &mut triangles.triangle_of_vertex,
                 };
                 let count = extraction.run(points.len());
-                triangulation.memory.set_count(count);
+                triangles.memory.set_count(count);
             }
-            None => self.extract_line(points, triangulation),
+            None => self.extract_line(points, triangles),
         }
         Ok(())
     }
@@ -128,16 +132,39 @@ impl Kernel {
     }
 
     /// What comes out if all points are on one line.
-    fn extract_line(&self, points: &[Point2], out: &mut Triangulation) {
+    fn extract_line(&self, points: &[Point2], out: &mut Triangles) {
         out.triangle_of_vertex.resize(points.len(), NONE);
         out.hull.extend(&self.indices[1..]);
         out.hull.sort_unstable_by(|&u, &v| lexicographic(points[u as usize], points[v as usize]));
     }
 }
 
-/// Canonical Delaunay triangulation of `points` with a kernel of its own; see [`Kernel::triangulate`].
+/// Canonical Delaunay triangulation of `points`, whose vertices are indices of `points`.
+///
+/// Equal points are one vertex, the one of least index. Points on one line, or fewer than three different points, have no
+/// triangles. A program that triangulates many sets uses a [`Kernel`], which reuses its buffers.
+///
+/// # Errors
+/// Malformed, if a coordinate is not finite; usage, if there are more than [`MAX_POINTS`] points.
+///
+/// Cost: O(n) for points that are spread evenly. Memory: about 124 bytes per point, 84 of them in the result.
+///
+/// ```
+/// use spmesh_geometry::Location;
+/// use spmesh_geometry::delaunay2::triangulate;
+///
+/// let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+/// let mesh = triangulate(&square)?;
+/// assert_eq!(mesh.simplices().count(), 2);
+/// assert_eq!(mesh.edges().len(), 5);
+/// assert_eq!(mesh.hull().count(), 4);
+/// assert_eq!(mesh.locate([4.0, 4.0]), Location::Vertex(2));
+/// assert_eq!(mesh.locate([1.0, 0.0]), Location::Edge([0, 1]));
+/// assert_eq!(mesh.locate([5.0, 1.0]), Location::Outside);
+/// # Ok::<(), spmesh_core::error::Error>(())
+/// ```
 pub fn triangulate(points: &[Point2]) -> Result<Triangulation> {
-    let mut triangulation = Triangulation::default();
-    Kernel::new().triangulate(points, &mut triangulation)?;
-    Ok(triangulation)
+    let mut triangles = Triangles::default();
+    Kernel::new().triangulate(points, &mut triangles)?;
+    Ok(Triangulation::new(points.to_vec(), triangles))
 }

@@ -1,125 +1,122 @@
-//! What the kernel hands out: flat arrays.
+//! A triangulation that answers questions.
 
-use super::sphere::{HalfEdge, WORDS, corner, number_of};
-use bytemuck::{Pod, Zeroable};
+use super::triangles::{Corner, Triangles};
+use crate::location::Location;
+use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
+use std::ops::Deref;
 
-/// No triangle: beyond an edge of the hull, or at a vertex without triangles.
-pub const NONE: u32 = u32::MAX;
-
-/// A corner of a triangle; it stands for the edge opposite to it, too.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Corner {
-    /// Index of the triangle.
-    pub triangle: u32,
-    /// 0, 1 or 2.
-    pub corner: u32,
-}
-
-/// A triangle with its neighbours: half a cache line.
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-#[repr(C, align(32))]
-pub struct Triangle {
-    /// Vertices, counterclockwise.
-    pub vertices: [u32; 3],
-    spare: u32,
-    /// The half-edges on the other sides of the edges opposite to the vertices.
-    across: [HalfEdge; 3],
-    spare_too: u32,
-}
-
-impl Triangle {
-    /// The triangle across the edge opposite to a corner, as its corner opposite to that edge; `None` beyond the hull.
-    #[inline]
-    #[must_use]
-    pub fn across(&self, side: usize) -> Option<Corner> {
-        let h = self.across[side];
-        (h != NONE).then(|| Corner { triangle: number_of(h), corner: corner(h) as u32 })
-    }
-}
-
-/// A Delaunay triangulation. Vertices are indices into the array of input points.
+/// A Delaunay triangulation with its points. All vertices are indices of the input points.
+///
+/// [`Tetrahedralization`](crate::delaunay3::Tetrahedralization) has the same methods in space. The arrays of the kernel are at
+/// hand too, by way of [`Deref`].
 #[derive(Debug, Default)]
 pub struct Triangulation {
-    pub(super) memory: TriangleMemory,
-    /// For each input point a triangle at it, such that turning counterclockwise from it meets all others before
-    /// the hull; [`NONE`] for duplicates, and for all if there are no triangles.
-    pub triangle_of_vertex: Vec<u32>,
-    /// Vertices of the hull, counterclockwise; all points on its boundary are vertices. If there are no triangles,
-    /// all distinct points, in lexicographic order.
-    pub hull: Vec<u32>,
-    /// Points left out because an equal point of lesser index is there: `[duplicate, vertex]`.
-    pub duplicates: Vec<[u32; 2]>,
+    points: Vec<Point2>,
+    triangles: Triangles,
+}
+
+impl Deref for Triangulation {
+    type Target = Triangles;
+
+    fn deref(&self) -> &Triangles {
+        &self.triangles
+    }
 }
 
 impl Triangulation {
-    /// All triangles, about in the order of a Hilbert curve.
-    #[inline]
+    /// The `triangles` of `points`.
+    pub(super) fn new(points: Vec<Point2>, triangles: Triangles) -> Triangulation {
+        Triangulation { points, triangles }
+    }
+
+    /// The input points, duplicates included.
     #[must_use]
-    pub fn triangles(&self) -> &[Triangle] {
-        &bytemuck::pod_align_to::<u32, Triangle>(&self.memory.words).1[..self.memory.count]
+    pub fn points(&self) -> &[Point2] {
+        &self.points
     }
 
-    /// Corners at vertex `v`, counterclockwise; on the hull from the first edge to the last.
-    pub fn corners_of(&self, v: u32) -> impl Iterator<Item = Corner> + '_ {
-        let first = self.triangle_of_vertex[v as usize];
-        let mut next = first;
-        std::iter::from_fn(move || {
-            let triangle = self.triangles().get(next as usize)?;
-            let corner = triangle.vertices.iter().position(|&w| w == v)?;
-            let at = Corner { triangle: next, corner: corner as u32 };
-            next = triangle.across((corner + 1) % 3).map_or(NONE, |beyond| beyond.triangle);
-            if next == first {
-                next = NONE;
-            }
-            Some(at)
-        })
+    /// The triangles by their vertices, counterclockwise. Their numbers are those of [`Triangulation::neighbours`].
+    pub fn simplices(&self) -> impl ExactSizeIterator<Item = [u32; 3]> + '_ {
+        self.triangles.triangles().iter().map(|triangle| triangle.vertices)
     }
 
-    /// The triangle to the left of the edge from `a` to `b`, as the corner opposite to the edge; `None` if there is
-    /// no such edge or no triangle to its left. Cost: the degree of `a`.
-    #[must_use]
-    pub fn left_of(&self, a: u32, b: u32) -> Option<Corner> {
-        self.corners_of(a).find_map(|Corner { triangle, corner }| {
-            let next = (corner + 1) % 3;
-            (self.triangles()[triangle as usize].vertices[next as usize] == b)
-                .then_some(Corner { triangle, corner: (corner + 2) % 3 })
-        })
-    }
-
-    /// Empties all arrays, keeping their memory.
-    pub(super) fn clear(&mut self) {
-        self.memory.count = 0;
-        self.triangle_of_vertex.clear();
-        self.hull.clear();
-        self.duplicates.clear();
-    }
-}
-
-/// Memory of triangles, where the kernel builds them.
-#[derive(Debug, Default)]
-pub(super) struct TriangleMemory {
-    words: Vec<u32>,
-    /// Number of triangles.
-    count: usize,
-}
-
-impl TriangleMemory {
-    /// Room for the triangles of `vertices` vertices, that at infinity among them, to be written before they are read.
+    /// The triangles across the edges opposite to the three vertices of triangle `number`; `None` at the hull.
     ///
-    /// Fresh memory is zeroed by the system when it is touched, not here.
-    pub(super) fn room(&mut self, vertices: usize) -> &mut [u32] {
-        let words = 2 * vertices * WORDS;
-        // Up to one triangle is lost to alignment.
-        if self.words.len() < words + WORDS {
-            self.words = Vec::new();
-            self.words = vec![0; words + WORDS];
-        }
-        let (_, triangles, _) = bytemuck::pod_align_to_mut::<u32, Triangle>(&mut self.words);
-        &mut bytemuck::cast_slice_mut(triangles)[..words]
+    /// # Panics
+    /// If there is no such triangle.
+    #[must_use]
+    pub fn neighbours(&self, number: u32) -> [Option<u32>; 3] {
+        let triangle = &self.triangles.triangles()[number as usize];
+        [0, 1, 2].map(|side| triangle.neighbour(side).map(|corner| corner.triangle))
     }
 
-    /// Makes the first `count` triangles of the room those of the triangulation.
-    pub(super) fn set_count(&mut self, count: usize) {
-        self.count = count;
+    /// The edges of all triangles, each once with its lesser vertex first, in increasing order.
+    ///
+    /// Cost: a sort.
+    #[must_use]
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+        let mut edges: Vec<[u32; 2]> =
+            self.simplices().flat_map(sides).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// The edges of the hull, counterclockwise; none if there are no triangles.
+    pub fn hull(&self) -> impl Iterator<Item = [u32; 2]> + '_ {
+        let vertices = &self.triangles.hull;
+        let count = if self.triangles.triangles().is_empty() { 0 } else { vertices.len() };
+        (0..count).map(move |i| [vertices[i], vertices[(i + 1) % count]])
+    }
+
+    /// For each point the vertex that stands for it: the equal point of least index.
+    #[must_use]
+    pub fn representatives(&self) -> Vec<u32> {
+        let mut representatives: Vec<u32> = (0..self.points.len() as u32).collect();
+        self.triangles
+            .duplicates
+            .iter()
+            .for_each(|&[point, vertex]| representatives[point as usize] = vertex);
+        representatives
+    }
+
+    /// Where `target` lies: exactly. A target with a coordinate that is not finite is outside.
+    ///
+    /// If there are no triangles, every target that is no vertex is outside.
+    ///
+    /// Cost: a walk of O(sqrt n) triangles for points that are spread evenly.
+    #[must_use]
+    pub fn locate(&self, target: Point2) -> Location {
+        if !target.iter().all(|coordinate| coordinate.is_finite()) {
+            return Location::Outside;
+        }
+        let triangles = self.triangles.triangles();
+        if triangles.is_empty() {
+            return self.locate_on_line(target);
+        }
+        let mut predicates = FiniteFloatPredicates::default();
+        let mut number = 0;
+        // In a Delaunay triangulation this walk meets no triangle twice.
+        loop {
+            let triangle = &triangles[number as usize];
+            let [a, b, c] = triangle.vertices;
+            let signs = [[b, c], [c, a], [a, b]]
+                .map(|[u, v]| predicates.orient2d(self.points[u as usize], self.points[v as usize], target));
+            let Some(side) = signs.iter().position(|&sign| sign == Sign::Negative) else {
+                return Location::in_simplex(number, triangle.vertices, signs);
+            };
+            match triangle.neighbour(side) {
+                Some(Corner { triangle, .. }) => number = triangle,
+                None => return Location::Outside,
+            }
+        }
+    }
+
+    /// Without triangles, the vertices are in lexicographic order.
+    fn locate_on_line(&self, target: Point2) -> Location {
+        let vertices = &self.triangles.hull;
+        let found = vertices.binary_search_by(|&v| lexicographic(self.points[v as usize], target));
+        found.map_or(Location::Outside, |place| Location::Vertex(vertices[place]))
     }
 }

@@ -5,11 +5,10 @@ use super::complex::Complex;
 use super::exact::Exact;
 use super::insertion::{Cavity, Insertion};
 use super::lanes::Lanes;
-use super::stats::{Clock, Stats};
+use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::{Tetrahedron, Vertex};
 use crate::order::Insertions;
 use crate::predicates::{Point3, Sign};
-use std::marker::PhantomData;
 
 /// Tetrahedralizes distinct points, all in one arithmetic.
 pub(super) struct Build<'a> {
@@ -46,7 +45,7 @@ impl Build<'_> {
     ///
     /// Inlined, like all that it calls with lanes, into functions for one kind of processor each.
     #[inline(always)]
-    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact) -> Built {
+    pub(super) fn run<L: Lanes>(self, predicates: &mut dyn Exact, token: L::Token) -> Built {
         let Some(first) = self.first_tetrahedron(predicates) else {
             return Built::Flat(self.vertices, self.tetrahedra);
         };
@@ -56,10 +55,10 @@ impl Build<'_> {
             predicates,
             cavity: self.cavity,
             stats: self.stats,
-            clock: Clock::new(self.is_timed),
+            timer: PhaseTimer::new(self.is_timed),
             infinite_lift: self.infinite_lift,
             unfiltered: 0,
-            lanes: PhantomData,
+            token,
         };
         insertion.stats.created = 5;
         let mut start = 0;

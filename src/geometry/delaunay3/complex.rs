@@ -4,9 +4,10 @@ use super::tetrahedralization::{Tetrahedron, Vertex, WORDS};
 use crate::predicates::Point3;
 use bytemuck::{Zeroable, cast_slice, cast_slice_mut};
 use spmesh_core::prefetch::prefetch;
+use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// First of the words that say what is across.
-const ACROSS: usize = 4;
+const FIRST_NEIGHBOUR: usize = 4;
 
 /// Memory for so many is asked for at first. It costs nothing until it is touched, but to enlarge it would: uniform points
 /// have 6.8, points of a surface up to 9.
@@ -18,10 +19,7 @@ pub(super) const DELETED: u32 = u32::MAX;
 /// A facet of a tetrahedron is the word of the vertex opposite to it; a tetrahedron is the word of its first vertex.
 pub(super) type Facet = u32;
 
-/// The corners of the facet opposite to each corner, so that det(a - q, b - q, c - q) > 0 for q on the inner side.
-pub(super) const CORNERS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
-
-/// For a facet that is entered, and which of its [`CORNERS`] is the first one as seen by who enters: the corners in
+/// For a facet that is entered, and which of its [`TETRAHEDRON_FACETS`] is the first one as seen by who enters: the corners in
 /// that order.
 const ENTERED: [[[usize; 3]; 3]; 4] = entered();
 
@@ -29,7 +27,7 @@ const fn entered() -> [[[usize; 3]; 3]; 4] {
     let mut table = [[[0; 3]; 3]; 4];
     let mut corner = 0;
     while corner < 4 {
-        let [f, g, h] = CORNERS[corner];
+        let [f, g, h] = TETRAHEDRON_FACETS[corner];
         table[corner] = [[f, h, g], [g, f, h], [h, g, f]];
         corner += 1;
     }
@@ -61,14 +59,14 @@ impl Complex {
     /// The first tetrahedron, positively oriented, and the four infinite ones around it.
     pub(super) fn new(vertices: Vec<Vertex>, mut tetrahedra: Vec<Tetrahedron>, first: [u32; 4]) -> Complex {
         let infinite = vertices.len() as u32 - 1;
-        let outer = CORNERS.map(|corners| {
+        let outer = TETRAHEDRON_FACETS.map(|corners| {
             let [a, b, c] = corners.map(|i| first[i]);
             [infinite, a, c, b]
         });
         tetrahedra.clear();
         tetrahedra.reserve_exact(TETRAHEDRA_PER_VERTEX * vertices.len());
-        tetrahedra.push(Tetrahedron { vertices: first, across: [0; 4] });
-        tetrahedra.extend(outer.map(|vertices| Tetrahedron { vertices, across: [0; 4] }));
+        tetrahedra.push(Tetrahedron { vertices: first, neighbours: [0; 4] });
+        tetrahedra.extend(outer.map(|vertices| Tetrahedron { vertices, neighbours: [0; 4] }));
         let mut complex = Complex { vertices, tetrahedra, free: Vec::new() };
         complex.link_all();
         complex
@@ -80,14 +78,14 @@ impl Complex {
             self.words_of_tetrahedra().flat_map(|t| (0..4).map(move |i| t + i)).collect();
         let corners = |facet: Facet| {
             let vertices = self.corners(tetrahedron_of(facet));
-            let mut corners = CORNERS[corner(facet)].map(|i| vertices[i]);
+            let mut corners = TETRAHEDRON_FACETS[corner(facet)].map(|i| vertices[i]);
             corners.sort_unstable();
             corners
         };
         let is_other = |f: Facet, g: Facet| f != g && corners(f) == corners(g);
         let other = |f: Facet| facets.iter().copied().find(|&g| is_other(f, g)).expect("a closed complex");
         let pairs: Vec<[Facet; 2]> = facets.iter().map(|&f| [f, other(f)]).collect();
-        pairs.into_iter().for_each(|[facet, other]| self.set_across(facet, other));
+        pairs.into_iter().for_each(|[facet, other]| self.set_neighbour(facet, other));
     }
 
     #[inline(always)]
@@ -132,32 +130,32 @@ impl Complex {
     /// Has the neighbours of the tetrahedron of a facet brought into the cache.
     #[inline(always)]
     pub(super) fn fetch_neighbours(&self, facet: Facet) {
-        for other in self.tetrahedra[facet as usize / WORDS].across {
+        for other in self.tetrahedra[facet as usize / WORDS].neighbours {
             prefetch(self.words(), other as usize);
         }
     }
 
     /// The facet of the other tetrahedron.
     #[inline(always)]
-    pub(super) fn across(&self, facet: Facet) -> Facet {
-        self.words()[facet as usize + ACROSS]
+    pub(super) fn neighbour(&self, facet: Facet) -> Facet {
+        self.words()[facet as usize + FIRST_NEIGHBOUR]
     }
 
     /// Says which facet of another tetrahedron is across.
     #[inline(always)]
-    pub(super) fn set_across(&mut self, facet: Facet, other: Facet) {
-        self.words_mut()[facet as usize + ACROSS] = other;
+    pub(super) fn set_neighbour(&mut self, facet: Facet, other: Facet) {
+        self.words_mut()[facet as usize + FIRST_NEIGHBOUR] = other;
     }
 
     /// The facets beyond a tetrahedron that is entered through `facet`: across from its corners a, b, c, of which a is
     /// the given vertex, in the order seen by who enters.
     #[inline(always)]
-    pub(super) fn beyond(&self, facet: Facet, a: u32) -> [Facet; 3] {
-        let Tetrahedron { vertices, across } = &self.tetrahedra[facet as usize / WORDS];
+    pub(super) fn neighbours_behind(&self, facet: Facet, a: u32) -> [Facet; 3] {
+        let Tetrahedron { vertices, neighbours } = &self.tetrahedra[facet as usize / WORDS];
         let i = corner(facet);
-        let [_, g, h] = CORNERS[i];
+        let [_, g, h] = TETRAHEDRON_FACETS[i];
         let rotation = usize::from(vertices[g] == a) + 2 * usize::from(vertices[h] == a);
-        ENTERED[i][rotation].map(|corner| across[corner])
+        ENTERED[i][rotation].map(|corner| neighbours[corner])
     }
 
     /// Makes a tetrahedron one that is not there; what was across stays.
@@ -168,7 +166,7 @@ impl Complex {
 
     /// A tetrahedron to be written.
     #[inline(always)]
-    pub(super) fn room(&mut self) -> u32 {
+    pub(super) fn allocate(&mut self) -> u32 {
         if let Some(slot) = self.free.pop() {
             return slot;
         }
@@ -188,8 +186,8 @@ impl Complex {
 
     /// Writes a tetrahedron.
     #[inline(always)]
-    pub(super) fn write(&mut self, t: u32, vertices: [u32; 4], across: [Facet; 4]) {
-        self.tetrahedra[t as usize / WORDS] = Tetrahedron { vertices, across };
+    pub(super) fn write(&mut self, t: u32, vertices: [u32; 4], neighbours: [Facet; 4]) {
+        self.tetrahedra[t as usize / WORDS] = Tetrahedron { vertices, neighbours };
     }
 
     /// The facet of tetrahedron `t` on the hull, if `t` is infinite.

@@ -4,6 +4,7 @@
 //! they can be sorted into the other half, and the first one is free for whoever writes them.
 
 use super::tetrahedralization::{Tetrahedralization, Tetrahedron, Vertex};
+use crate::order::sizes_to_starts;
 
 /// Tetrahedra that come without order among themselves, and greatest number of such groups.
 const GROUP: usize = 4096;
@@ -41,12 +42,12 @@ impl Tetrahedralization {
         let Tetrahedralization { vertices, tetrahedra: mut storage, .. } = self;
         let shift = shift_of_groups(vertices.len(), storage.len());
         let mut counts = vec![0usize; (vertices.len() >> shift) + 1];
-        let room: &mut [[u32; 4]] = bytemuck::cast_slice_mut(&mut storage);
+        let quadruples: &mut [[u32; 4]] = bytemuck::cast_slice_mut(&mut storage);
         let mut kept = 0;
-        for t in 0..room.len() / 2 {
+        for t in 0..quadruples.len() / 2 {
             if keep(t) {
-                let corners = room[2 * t];
-                room[kept] = corners;
+                let corners = quadruples[2 * t];
+                quadruples[kept] = corners;
                 counts[group(corners, shift)] += 1;
                 kept += 1;
             }
@@ -54,11 +55,8 @@ impl Tetrahedralization {
         if counts.len() == 1 {
             return Corners { vertices, storage, start: 0, end: kept };
         }
-        let mut next = 0;
-        for place in &mut counts {
-            next += std::mem::replace(place, next);
-        }
-        let (unordered, ordered) = room.split_at_mut(kept);
+        sizes_to_starts(&mut counts);
+        let (unordered, ordered) = quadruples.split_at_mut(kept);
         for &corners in &*unordered {
             let place = &mut counts[group(corners, shift)];
             ordered[*place] = corners;
@@ -82,8 +80,8 @@ fn group([a, b, c, d]: [u32; 4], shift: u32) -> usize {
 impl Corners {
     /// All of it.
     pub fn parts(&mut self) -> CornerParts<'_> {
-        let room: &mut [[u32; 4]] = bytemuck::cast_slice_mut(&mut self.storage);
-        let (before, rest) = room.split_at_mut(self.start);
+        let quadruples: &mut [[u32; 4]] = bytemuck::cast_slice_mut(&mut self.storage);
+        let (before, rest) = quadruples.split_at_mut(self.start);
         let (tetrahedra, behind) = rest.split_at_mut(self.end - self.start);
         let spare = if before.len() > behind.len() { before } else { behind };
         CornerParts { vertices: &self.vertices, tetrahedra, spare: spare.as_flattened_mut() }

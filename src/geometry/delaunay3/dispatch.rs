@@ -1,24 +1,25 @@
-//! The same insertion in the instructions of the processor at hand.
+//! Runs the same insertion with the instructions of the processor at hand.
 
 use super::build::{Build, Built};
 use super::exact::Exact;
-use super::lanes;
+use super::lanes::Portable;
+#[cfg(target_arch = "x86_64")]
+use {super::avx2::Avx2, crate::processor::Avx2Fma};
 
-/// Runs `build` with the widest lanes there are, unless it wants those that are everywhere.
+/// Runs `build` with the widest vectors of the processor, or with portable code if the build asks for it.
 pub(super) fn run(build: Build, predicates: &mut dyn Exact) -> Built {
     #[cfg(target_arch = "x86_64")]
-    if !build.is_portable
-        && std::arch::is_x86_feature_detected!("avx2")
-        && std::arch::is_x86_feature_detected!("fma")
+    if let Some(token) = Avx2Fma::detect()
+        && !build.is_portable
     {
-        // Safety: the processor has AVX2 and FMA.
-        return unsafe { run_avx2(build, predicates) };
+        // SAFETY: the token proves that the processor has AVX2 and FMA.
+        return unsafe { run_avx2(build, predicates, token) };
     }
-    build.run::<lanes::Portable>(predicates)
+    build.run::<Portable>(predicates, ())
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn run_avx2(build: Build, predicates: &mut dyn Exact) -> Built {
-    build.run::<lanes::avx2::Avx2>(predicates)
+fn run_avx2(build: Build, predicates: &mut dyn Exact, token: Avx2Fma) -> Built {
+    build.run::<Avx2>(predicates, token)
 }

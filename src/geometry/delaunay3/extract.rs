@@ -13,8 +13,8 @@ pub(super) fn extract(complex: &mut Complex) -> usize {
         } else if let Some(side) = complex.hull_facet(t) {
             holes.push(t);
             hull_facets += 1;
-            let inside = complex.across(side);
-            complex.set_across(inside, NONE);
+            let inside = complex.neighbour(side);
+            complex.set_neighbour(inside, NONE);
         }
     }
     holes.iter().for_each(|&t| complex.delete(t));
@@ -33,10 +33,10 @@ fn fill(complex: &mut Complex, holes: &[u32]) {
         while complex.tetrahedra[last].vertices[0] == DELETED {
             last -= 1;
         }
-        let Tetrahedron { vertices, across } = complex.tetrahedra[last];
-        complex.write(hole, vertices, across);
-        for (facet, other) in (hole..).zip(across).filter(|(_, other)| *other != NONE) {
-            complex.set_across(other, facet);
+        let Tetrahedron { vertices, neighbours } = complex.tetrahedra[last];
+        complex.write(hole, vertices, neighbours);
+        for (facet, other) in (hole..).zip(neighbours).filter(|(_, other)| *other != NONE) {
+            complex.set_neighbour(other, facet);
         }
     }
 }

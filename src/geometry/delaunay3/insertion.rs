@@ -1,17 +1,18 @@
 //! Insertion of points: the tetrahedra in conflict with a point give way to a star around it (Bowyer, 1981; Watson,
 //! 1981).
 
-use super::complex::{CORNERS, Complex, DELETED, Facet, tetrahedron_of};
+use super::complex::{Complex, DELETED, Facet, tetrahedron_of};
 use super::exact::Exact;
 use super::lanes::Lanes;
 use super::locate::{is_in_conflict, walk, walk_exactly};
-use super::sight::{InSphere, Sight};
 use super::star::Star;
-use super::stats::{Clock, Stats};
+use super::stats::{PhaseTimer, Stats};
 use super::tetrahedralization::Vertex;
 use super::tie::{EXACT, is_inside};
+use super::translated::{InSphere, TranslatedVertex};
 use crate::predicates::{INSPHERE_SQUARED_BOUND, Point3, TINY};
 use bytemuck::cast;
+use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// A facet around the part of the cavity that is known, with the test of the tetrahedron beyond.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +22,7 @@ struct Pending {
     value: f64,
     /// Numbers of the corners in the star, counterclockwise as the new point sees them.
     corners: [u32; 3],
-    beyond: Facet,
+    neighbour: Facet,
     /// The vertex opposite to `beyond`.
     apex: u32,
 }
@@ -34,29 +35,30 @@ pub(super) struct Cavity {
     pending: Vec<Pending>,
     end: usize,
     /// For each vertex of the star, by number: where the new point sees it, and its lift.
-    sights: Vec<[f64; 4]>,
+    translated: Vec<[f64; 4]>,
 }
 
 impl Cavity {
     /// Forgets tetrahedra of an earlier complex.
     pub(super) fn clear(&mut self) {
-        self.pending.iter_mut().for_each(|facet| facet.beyond = 0);
+        self.pending.iter_mut().for_each(|facet| facet.neighbour = 0);
     }
 }
 
 /// The tetrahedralization of the points inserted so far, and what inserting needs.
-pub(super) struct Insertion<'a, L> {
+pub(super) struct Insertion<'a, L: Lanes> {
     pub(super) complex: Complex,
     pub(super) predicates: &'a mut dyn Exact,
     pub(super) cavity: &'a mut Cavity,
     pub(super) stats: &'a mut Stats,
-    pub(super) clock: Clock,
+    pub(super) timer: PhaseTimer,
     /// The lift of the vertex at infinity: of about the size of others, for the sake of the filter; integer if
     /// coordinates are.
     pub(super) infinite_lift: f64,
     /// In-sphere tests that the filter did not decide.
     pub(super) unfiltered: u64,
-    pub(super) lanes: std::marker::PhantomData<L>,
+    /// Proves that the processor has the instructions of the vectors.
+    pub(super) token: L::Token,
 }
 
 impl<L: Lanes> Insertion<'_, L> {
@@ -79,47 +81,48 @@ impl<L: Lanes> Insertion<'_, L> {
             next += 1;
             // Its neighbours will be wanted if it is taken. (What stands behind the end is of an earlier insertion.)
             let later = &self.cavity.pending[(next + 1).min(self.cavity.pending.len() - 1)];
-            self.complex.fetch_neighbours(later.beyond);
+            self.complex.fetch_neighbours(later.neighbour);
             if facet.value < 0.0 {
-                self.cavity.star.border.push((facet.corners, facet.beyond));
-            } else if self.complex.opposite(facet.beyond) == DELETED {
+                self.cavity.star.border.push((facet.corners, facet.neighbour));
+            } else if self.complex.opposite(facet.neighbour) == DELETED {
                 // Found through another facet meanwhile.
             } else if facet.value > 0.0 || self.decide(at, &facet) {
                 self.take(at, &facet);
             } else {
-                self.cavity.star.border.push((facet.corners, facet.beyond));
+                self.cavity.star.border.push((facet.corners, facet.neighbour));
             }
         }
-        self.clock.lap(&mut self.stats.cavity);
+        self.timer.end_phase(&mut self.stats.cavity);
         self.stats.insphere_tests += next as u64;
         self.stats.created += self.cavity.star.border.len() as u64;
         let start = self.cavity.star.close(&mut self.complex, q);
-        self.clock.lap(&mut self.stats.update);
+        self.timer.end_phase(&mut self.stats.update);
         start
     }
 
     /// Makes a tetrahedron in conflict the whole cavity.
     #[inline(always)]
     fn open_cavity(&mut self, at: Point3, start: u32) {
-        let (t, sights) = self.find_conflict(at, start);
-        self.clock.lap(&mut self.stats.locate);
+        let (t, translated) = self.find_conflict(at, start);
+        self.timer.end_phase(&mut self.stats.locate);
         // So that differences to it vanish.
         let infinite = self.complex.infinite();
         self.complex.vertices[infinite as usize].at = at;
         let corners = self.complex.corners(t);
         self.cavity.star.open(t, corners, &mut self.complex.vertices);
         self.cavity.end = 0;
-        self.make_room();
-        let rows = sights.map(|Sight { at: [x, y, z], lift }| [x, y, z, lift]);
-        self.cavity.sights[..4].copy_from_slice(&rows);
-        let beyond: [Facet; 4] = std::array::from_fn(|side| self.complex.across(t + side as u32));
+        self.reserve();
+        let rows = translated.map(|TranslatedVertex { at: [x, y, z], lift }| [x, y, z, lift]);
+        self.cavity.translated[..4].copy_from_slice(&rows);
+        let neighbours: [Facet; 4] = std::array::from_fn(|side| self.complex.neighbour(t + side as u32));
         self.complex.delete(t);
-        let apexes = beyond.map(|facet| self.complex.opposite(facet));
+        let apexes = neighbours.map(|facet| self.complex.opposite(facet));
         let [d, a, c, b] = rows;
         let [va, vb, vc, _] = self.values(at, [a, b, c], d, [apexes[1], apexes[3], apexes[2]]).array();
         for (side, value) in [f64::NAN, va, vc, vb].into_iter().enumerate() {
-            let corners = CORNERS[side].map(|i| i as u32);
-            self.cavity.pending[side] = Pending { value, corners, beyond: beyond[side], apex: apexes[side] };
+            let corners = TETRAHEDRON_FACETS[side].map(|i| i as u32);
+            self.cavity.pending[side] =
+                Pending { value, corners, neighbour: neighbours[side], apex: apexes[side] };
         }
         self.cavity.end = 4;
     }
@@ -128,25 +131,25 @@ impl<L: Lanes> Insertion<'_, L> {
     #[inline(always)]
     fn take(&mut self, at: Point3, facet: &Pending) {
         let [a, b, c] = facet.corners;
-        let beyond = self.complex.beyond(facet.beyond, self.cavity.star.vertex(a));
-        let apexes = beyond.map(|facet| self.complex.opposite(facet));
-        let t = tetrahedron_of(facet.beyond);
+        let neighbours = self.complex.neighbours_behind(facet.neighbour, self.cavity.star.vertex(a));
+        let apexes = neighbours.map(|facet| self.complex.opposite(facet));
+        let t = tetrahedron_of(facet.neighbour);
         self.complex.delete(t);
         self.cavity.star.slots.push(t);
         let d = self.cavity.star.number(facet.apex, &mut self.complex.vertices);
-        let Sight { at: [x, y, z], lift } = self.sight(facet.apex, at);
+        let TranslatedVertex { at: [x, y, z], lift } = self.translate(facet.apex, at);
         let row = [x, y, z, lift];
-        self.make_room();
-        self.cavity.sights[d as usize] = row;
-        let rows = facet.corners.map(|number| self.cavity.sights[number as usize]);
+        self.reserve();
+        self.cavity.translated[d as usize] = row;
+        let rows = facet.corners.map(|number| self.cavity.translated[number as usize]);
         let values = self.values(at, rows, row, apexes).array();
         let corners = [[d, b, c], [a, d, c], [a, b, d]];
-        let room = &mut self.cavity.pending[self.cavity.end..][..3];
+        let places = &mut self.cavity.pending[self.cavity.end..][..3];
         let mut len = 0;
         for i in 0..3 {
             // What is in the cavity already is overwritten, without a branch.
-            room[len.min(2)] =
-                Pending { value: values[i], corners: corners[i], beyond: beyond[i], apex: apexes[i] };
+            places[len.min(2)] =
+                Pending { value: values[i], corners: corners[i], neighbour: neighbours[i], apex: apexes[i] };
             len += usize::from(apexes[i] != DELETED);
         }
         self.cavity.end += len;
@@ -154,18 +157,18 @@ impl<L: Lanes> Insertion<'_, L> {
 
     /// Room for one more tetrahedron in the cavity.
     #[inline(always)]
-    fn make_room(&mut self) {
-        let Cavity { star, pending, end, sights } = &mut *self.cavity;
-        if sights.len() < star.capacity() || pending.len() < *end + 4 {
-            let blank = Pending { value: 0.0, corners: [0; 3], beyond: 0, apex: 0 };
-            sights.resize(star.capacity(), [0.0; 4]);
+    fn reserve(&mut self) {
+        let Cavity { star, pending, end, translated } = &mut *self.cavity;
+        if translated.len() < star.capacity() || pending.len() < *end + 4 {
+            let blank = Pending { value: 0.0, corners: [0; 3], neighbour: 0, apex: 0 };
+            translated.resize(star.capacity(), [0.0; 4]);
             pending.resize(2 * *end + 64, blank);
         }
     }
 
     #[inline(always)]
-    fn sight(&self, vertex: u32, from: Point3) -> Sight {
-        Sight::new(&self.complex, vertex, from, self.infinite_lift)
+    fn translate(&self, vertex: u32, from: Point3) -> TranslatedVertex {
+        TranslatedVertex::new(&self.complex, vertex, from, self.infinite_lift)
     }
 
     /// The in-sphere tests of the three tetrahedra beyond the facets dbc, adc, abd of a tetrahedron, in this order, given
@@ -178,9 +181,13 @@ impl<L: Lanes> Insertion<'_, L> {
     #[inline(always)]
     fn values(&self, at: Point3, abc: [[f64; 4]; 3], d: [f64; 4], apexes: [u32; 3]) -> L {
         let [a, b, c] = abc;
-        let [px, py, pz, lift] = L::columns([L::new(a), L::new(b), L::new(c)]);
+        let [px, py, pz, lift] =
+            L::columns([L::new(self.token, a), L::new(self.token, b), L::new(self.token, c)]);
         let p = [px, py, pz];
-        let (d, d_lift) = ([L::splat(d[0]), L::splat(d[1]), L::splat(d[2])], L::splat(d[3]));
+        let (d, d_lift) = (
+            [L::splat(self.token, d[0]), L::splat(self.token, d[1]), L::splat(self.token, d[2])],
+            L::splat(self.token, d[3]),
+        );
         let [ex, ey, ez, e_lift] = self.apexes(at, apexes);
         let e = [ex, ey, ez];
         let nm = next(cross(p, next(p)));
@@ -191,25 +198,30 @@ impl<L: Lanes> Insertion<'_, L> {
         let greatest = n_lift.greater(m_lift).greater(d_lift.greater(e_lift));
         let square = greatest * greatest;
         let fifth = square * square * greatest;
-        let bound = fifth.times_plus(L::splat(INSPHERE_SQUARED_BOUND), L::splat(TINY));
+        let bound =
+            fifth.times_plus(L::splat(self.token, INSPHERE_SQUARED_BOUND), L::splat(self.token, TINY));
         value.where_greater(value * value, bound)
     }
 
-    /// The sights of three vertices, column by column; anything for those of tetrahedra that are not there.
+    /// The translations of three vertices, column by column; anything for those of tetrahedra that are not there.
     #[inline(always)]
     fn apexes(&self, at: Point3, apexes: [u32; 3]) -> [L; 4] {
         let infinite = self.complex.infinite();
         let [u, v, w] =
             apexes.map(|apex| cast::<Vertex, [f64; 4]>(self.complex.vertices[apex.min(infinite) as usize]));
-        let [x, y, z, _] = L::columns([L::new(u), L::new(v), L::new(w)]);
-        let (x, y, z) = (x - L::splat(at[0]), y - L::splat(at[1]), z - L::splat(at[2]));
+        let [x, y, z, _] = L::columns([L::new(self.token, u), L::new(self.token, v), L::new(self.token, w)]);
+        let (x, y, z) = (
+            x - L::splat(self.token, at[0]),
+            y - L::splat(self.token, at[1]),
+            z - L::splat(self.token, at[2]),
+        );
         let mut lift = dot([x, y, z], [x, y, z]);
         if apexes.contains(&infinite) {
             let mut lifts = lift.array();
             for (lift, apex) in lifts.iter_mut().zip(apexes) {
                 *lift = if apex == infinite { self.infinite_lift } else { *lift };
             }
-            lift = L::new(lifts);
+            lift = L::new(self.token, lifts);
         }
         [x, y, z, lift]
     }
@@ -218,8 +230,8 @@ impl<L: Lanes> Insertion<'_, L> {
     #[inline(never)]
     fn decide(&mut self, at: Point3, facet: &Pending) -> bool {
         let vertices = facet.corners.map(|number| self.cavity.star.vertex(number));
-        let [a, b, c] = vertices.map(|v| self.sight(v, at));
-        let test = InSphere::new([self.sight(facet.apex, at), a, c, b]);
+        let [a, b, c] = vertices.map(|v| self.translate(v, at));
+        let test = InSphere::new([self.translate(facet.apex, at), a, c, b]);
         if test.is_certain() {
             return test.value > 0.0;
         }
@@ -238,19 +250,19 @@ impl<L: Lanes> Insertion<'_, L> {
                 return is_inside(&test);
             }
         }
-        is_in_conflict(&self.complex, tetrahedron_of(facet.beyond), at, self.predicates)
+        is_in_conflict(&self.complex, tetrahedron_of(facet.neighbour), at, self.predicates)
     }
 
     /// A tetrahedron in conflict with a point, and what the point sees of its corners.
     #[inline(always)]
-    fn find_conflict(&mut self, at: Point3, start: u32) -> (u32, [Sight; 4]) {
+    fn find_conflict(&mut self, at: Point3, start: u32) -> (u32, [TranslatedVertex; 4]) {
         let t = walk(&self.complex, start, at);
-        let test = InSphere::new(self.complex.corners(t).map(|v| self.sight(v, at)));
+        let test = InSphere::new(self.complex.corners(t).map(|v| self.translate(v, at)));
         if test.value > 0.0 && test.is_certain() {
             return (t, test.corners);
         }
         let t = walk_exactly(&self.complex, start, at, self.predicates);
-        (t, self.complex.corners(t).map(|v| self.sight(v, at)))
+        (t, self.complex.corners(t).map(|v| self.translate(v, at)))
     }
 }
 

@@ -1,9 +1,10 @@
 //! Where a new point begins to change the tetrahedralization: a tetrahedron in conflict with it.
 
-use super::complex::{CORNERS, Complex, DELETED, Facet, corner, tetrahedron_of};
+use super::complex::{Complex, DELETED, Facet, corner, tetrahedron_of};
 use super::exact::Exact;
-use super::sight::{difference, volume};
+use super::translated::{difference, volume};
 use crate::predicates::{Point3, Sign};
+use spmesh_model::simplex::TETRAHEDRON_FACETS;
 
 /// Steps after which the exact walk takes over: rounding may lead the other one in circles.
 const STEPS_MAX: usize = 10_000;
@@ -12,14 +13,14 @@ const STEPS_MAX: usize = 10_000;
 #[inline(always)]
 pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
     let infinite = complex.infinite();
-    let t = complex.hull_facet(start).map_or(start, |side| tetrahedron_of(complex.across(side)));
+    let t = complex.hull_facet(start).map_or(start, |side| tetrahedron_of(complex.neighbour(side)));
     let vertices = complex.corners(t);
-    let sights = vertices.map(|v| difference(complex.point(v), q));
+    let at = vertices.map(|v| difference(complex.point(v), q));
     let mut entered: Option<(Facet, u32, [Point3; 3])> = None;
-    for (side, [i, j, k]) in CORNERS.into_iter().enumerate() {
-        if volume(sights[i], sights[j], sights[k]) < 0.0 {
-            let facet = complex.across(t + side as u32);
-            entered = Some((facet, vertices[i], [sights[i], sights[j], sights[k]]));
+    for (side, [i, j, k]) in TETRAHEDRON_FACETS.into_iter().enumerate() {
+        if volume(at[i], at[j], at[k]) < 0.0 {
+            let facet = complex.neighbour(t + side as u32);
+            entered = Some((facet, vertices[i], [at[i], at[j], at[k]]));
             break;
         }
     }
@@ -30,13 +31,13 @@ pub(super) fn walk(complex: &Complex, start: u32, q: Point3) -> u32 {
             break;
         }
         let d = difference(complex.point(apex), q);
-        let beyond = complex.beyond(facet, first);
+        let neighbours = complex.neighbours_behind(facet, first);
         if volume(d, b, c) < 0.0 {
-            (facet, first, a) = (beyond[0], apex, d);
+            (facet, first, a) = (neighbours[0], apex, d);
         } else if volume(a, d, c) < 0.0 {
-            (facet, b) = (beyond[1], d);
+            (facet, b) = (neighbours[1], d);
         } else if volume(a, b, d) < 0.0 {
-            (facet, c) = (beyond[2], d);
+            (facet, c) = (neighbours[2], d);
         } else {
             break;
         }
@@ -52,19 +53,19 @@ pub(super) fn walk_exactly(complex: &Complex, mut t: u32, q: Point3, predicates:
         if is_in_conflict(complex, t, q, predicates) {
             return t;
         }
-        t = tetrahedron_of(complex.across(side));
+        t = tetrahedron_of(complex.neighbour(side));
     }
     loop {
         let vertices = complex.corners(t);
         if vertices.contains(&complex.infinite()) {
             return t;
         }
-        let side = CORNERS.iter().position(|corners| {
+        let side = TETRAHEDRON_FACETS.iter().position(|corners| {
             let [a, b, c] = corners.map(|i| complex.point(vertices[i]));
             predicates.orient3d(q, a, b, c) == Sign::Negative
         });
         match side {
-            Some(side) => t = tetrahedron_of(complex.across(t + side as u32)),
+            Some(side) => t = tetrahedron_of(complex.neighbour(t + side as u32)),
             None => return t,
         }
     }
@@ -86,10 +87,10 @@ pub(super) fn is_in_conflict(complex: &Complex, t: u32, q: Point3, predicates: &
         let [a, b, c, d] = vertices.map(|v| complex.point(v));
         return predicates.insphere_perturbed(a, b, c, d, q) == Sign::Positive;
     };
-    let [a, b, c] = CORNERS[corner(side)].map(|i| complex.point(vertices[i]));
+    let [a, b, c] = TETRAHEDRON_FACETS[corner(side)].map(|i| complex.point(vertices[i]));
     match predicates.orient3d(q, a, b, c) {
         Sign::Positive => true,
         Sign::Negative => false,
-        Sign::Zero => is_in_conflict(complex, tetrahedron_of(complex.across(side)), q, predicates),
+        Sign::Zero => is_in_conflict(complex, tetrahedron_of(complex.neighbour(side)), q, predicates),
     }
 }

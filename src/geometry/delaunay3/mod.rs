@@ -5,6 +5,8 @@
 //! around it. `complex` is the data structure, `locate` the walk to the next point, `insertion` the search of the
 //! cavity, `star` what takes its place, `extract` what comes out.
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod build;
 mod complex;
 mod corners;
@@ -14,13 +16,14 @@ mod extract;
 mod insertion;
 mod lanes;
 mod locate;
-mod sight;
+mod queries;
 mod star;
 mod stats;
 #[cfg(test)]
 mod tests;
 mod tetrahedralization;
 mod tie;
+mod translated;
 
 pub use corners::{CornerParts, Corners};
 pub use stats::Stats;
@@ -62,17 +65,17 @@ impl Kernel {
         Kernel::default()
     }
 
-    /// Tetrahedralizes `points` into `mesh`, whose buffers are used again. Points that are given away are freed as soon as
-    /// they are copied.
+    /// Tetrahedralizes `points` into `mesh`, whose buffers are reused. Owned points are freed as soon as they are copied.
     ///
     /// Domain: finite coordinates, up to [`MAX_POINTS`] points, in any order. Equal points are one vertex, the one of
     /// least index; the others are listed in [`Tetrahedralization::duplicates`]. Degenerate input of every kind is
     /// fine: cospherical points are triangulated canonically, and points in a plane give no tetrahedra.
     ///
-    /// Errors: a coordinate that is not finite, too many points: the mesh is as it was then; too many tetrahedra, which
-    /// not even [`MAX_POINTS`] points have unless they are quite special.
+    /// # Errors
+    /// Malformed, if a coordinate is not finite; usage, if there are too many points: `mesh` is unchanged then. I/O, if there
+    /// are too many tetrahedra, which even [`MAX_POINTS`] points have only in rare configurations.
     ///
-    /// Cost: O(n) for points that are spread evenly in space, about 250 bytes per point.
+    /// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
     pub fn triangulate(&mut self, points: Cow<[Point3]>, mesh: &mut Tetrahedralization) -> Result<()> {
         if points.len() > MAX_POINTS {
             let message =
@@ -151,6 +154,36 @@ impl Kernel {
     pub fn counts(&self) -> &PredicateCounts {
         &self.counts
     }
+}
+
+/// Canonical Delaunay tetrahedralization of `points`.
+///
+/// Equal points are one vertex, the one of least index. Points in one plane, or fewer than four different points, have no
+/// tetrahedra. A program that tetrahedralizes many sets uses a [`Kernel`], which reuses its buffers.
+///
+/// # Errors
+/// As [`Kernel::triangulate`].
+///
+/// Cost: O(n) for points that are spread evenly in space. Memory: about 250 bytes per point.
+///
+/// ```
+/// use spmesh_geometry::Location;
+/// use spmesh_geometry::delaunay3::triangulate;
+///
+/// let points = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0], [0.0, 0.0, 4.0]];
+/// let mesh = triangulate(&points)?;
+/// assert_eq!(mesh.simplices().count(), 1);
+/// assert_eq!(mesh.edges().len(), 6);
+/// assert_eq!(mesh.hull().count(), 4);
+/// assert_eq!(mesh.representatives()[4], 3);
+/// assert_eq!(mesh.locate([1.0, 1.0, 0.0]), Location::Facet([0, 1, 2]));
+/// assert_eq!(mesh.locate([0.5, 0.5, 0.5]), Location::Simplex(0));
+/// # Ok::<(), spmesh_core::error::Error>(())
+/// ```
+pub fn triangulate(points: &[Point3]) -> Result<Tetrahedralization> {
+    let mut mesh = Tetrahedralization::default();
+    Kernel::new().triangulate(Cow::Borrowed(points), &mut mesh)?;
+    Ok(mesh)
 }
 
 impl WithPredicates3 for Build<'_> {

@@ -7,7 +7,7 @@ use super::tetrahedralization::Vertex;
 const STRIDE: usize = 64;
 
 /// No vertex.
-const NOBODY: u32 = u32::MAX;
+const NO_VERTEX: u32 = u32::MAX;
 
 /// What is known of the cavity and its border; its buffers are used again.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub(super) struct Star {
     /// Facets of its border: numbers of their corners, counterclockwise as the new point sees them, and the facet of the
     /// tetrahedron outside.
     pub(super) border: Vec<([u32; 3], Facet)>,
-    /// Vertices of the cavity, and behind them [`NOBODY`].
+    /// Vertices of the cavity, and behind them [`NO_VERTEX`].
     vertices: Vec<u32>,
     count: usize,
     /// For each directed edge of the border the facet of the star to its left.
@@ -29,7 +29,7 @@ impl Default for Star {
         Star {
             slots: Vec::new(),
             border: Vec::new(),
-            vertices: vec![NOBODY; STRIDE],
+            vertices: vec![NO_VERTEX; STRIDE],
             count: 0,
             left: Box::new([0; STRIDE * STRIDE]),
         }
@@ -45,7 +45,7 @@ impl Star {
         self.border.clear();
         self.vertices[..4].copy_from_slice(&corners);
         self.count = 4;
-        self.vertices[4] = NOBODY;
+        self.vertices[4] = NO_VERTEX;
         for (number, vertex) in (0..).zip(corners) {
             vertices[vertex as usize].local = number;
         }
@@ -76,7 +76,7 @@ impl Star {
         if self.count == self.vertices.len() {
             self.grow();
         }
-        self.vertices[self.count] = NOBODY;
+        self.vertices[self.count] = NO_VERTEX;
         entry.local = number as u32;
         number as u32
     }
@@ -84,7 +84,7 @@ impl Star {
     #[cold]
     #[inline(never)]
     fn grow(&mut self) {
-        self.vertices.resize(2 * self.vertices.len(), NOBODY);
+        self.vertices.resize(2 * self.vertices.len(), NO_VERTEX);
     }
 
     /// Writes the star of vertex `q` into the complex; returns one of its tetrahedra.
@@ -92,7 +92,7 @@ impl Star {
     pub(super) fn close(&mut self, complex: &mut Complex, q: u32) -> u32 {
         let wanted = self.border.len();
         while self.slots.len() < wanted {
-            let slot = complex.room();
+            let slot = complex.allocate();
             self.slots.push(slot);
         }
         complex.free.extend(self.slots.drain(wanted..));
@@ -116,9 +116,9 @@ impl Star {
         }
         for (&([a, b, c], outside), &slot) in self.border.iter().zip(&self.slots) {
             let [u, v, w] = [a, b, c].map(|number| self.vertices[number as usize]);
-            let across = [outside, self.left[edge(c, b)], self.left[edge(a, c)], self.left[edge(b, a)]];
-            complex.write(slot, [q, u, v, w], across);
-            complex.set_across(outside, slot);
+            let neighbours = [outside, self.left[edge(c, b)], self.left[edge(a, c)], self.left[edge(b, a)]];
+            complex.write(slot, [q, u, v, w], neighbours);
+            complex.set_neighbour(outside, slot);
         }
     }
 
@@ -130,13 +130,13 @@ impl Star {
         for (&([a, b, c], outside), &slot) in self.border.iter().zip(&self.slots) {
             let [u, v, w] = [a, b, c].map(|number| self.vertices[number as usize]);
             complex.write(slot, [q, u, v, w], [outside, 0, 0, 0]);
-            complex.set_across(outside, slot);
+            complex.set_neighbour(outside, slot);
             edges.extend([(b, c, 1), (c, a, 2), (a, b, 3)].map(|(a, b, i)| ([a.min(b), a.max(b)], slot + i)));
         }
         edges.sort_unstable();
         for pair in edges.chunks_exact(2) {
-            complex.set_across(pair[0].1, pair[1].1);
-            complex.set_across(pair[1].1, pair[0].1);
+            complex.set_neighbour(pair[0].1, pair[1].1);
+            complex.set_neighbour(pair[1].1, pair[0].1);
         }
     }
 }

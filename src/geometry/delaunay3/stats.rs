@@ -26,18 +26,18 @@ pub struct Stats {
 
 /// Splits the time of an insertion in parts, if anyone wants to know: looking at a clock takes its time.
 #[derive(Debug)]
-pub(super) struct Clock {
+pub(super) struct PhaseTimer {
     last: Option<Instant>,
 }
 
-impl Clock {
-    pub(super) fn new(is_wanted: bool) -> Clock {
-        Clock { last: is_wanted.then(Instant::now) }
+impl PhaseTimer {
+    pub(super) fn new(is_wanted: bool) -> PhaseTimer {
+        PhaseTimer { last: is_wanted.then(Instant::now) }
     }
 
     /// Adds the time since the last call to `part`.
     #[inline(always)]
-    pub(super) fn lap(&mut self, part: &mut Duration) {
+    pub(super) fn end_phase(&mut self, part: &mut Duration) {
         if let Some(last) = &mut self.last {
             let now = Instant::now();
             *part += now - *last;

@@ -1,4 +1,5 @@
-//! The lanes that are everywhere against those of the processor at hand, which the integration tests prove right.
+//! The lanes that are everywhere against those of the processor at hand, which the integration tests prove
+//! right.
 
 use super::{Kernel, Point3, Tetrahedralization};
 use std::borrow::Cow;
@@ -30,9 +31,9 @@ fn tetrahedra(kernel: &mut Kernel, points: &[Point3]) -> Vec<[u32; 4]> {
     set
 }
 
-#[test]
-fn lanes_make_no_difference() {
-    let uniform = random(3_000);
+/// Compares sets of `count` random points, and sets that are special.
+fn lanes_agree(count: usize) {
+    let uniform = random(count);
     let map = |change: fn(f64) -> f64| -> Vec<Point3> { uniform.iter().map(|p| p.map(change)).collect() };
     let on_a_sphere = |p: &Point3| {
         let p = p.map(|c| c - 0.5);
@@ -63,4 +64,15 @@ fn lanes_make_no_difference() {
         let (found, expected) = (tetrahedra(&mut portable, points), tetrahedra(&mut widest, points));
         assert!(!found.is_empty() && found == expected, "set {number}");
     }
+}
+
+#[test]
+fn lanes_make_no_difference() {
+    lanes_agree(400);
+}
+
+#[test]
+#[ignore = "long: run with -- --ignored"]
+fn lanes_make_no_difference_with_many_points() {
+    lanes_agree(3_000);
 }

@@ -30,6 +30,7 @@ pub struct Vertex {
 
 impl Vertex {
     /// The input point of this index.
+    #[cfg(feature = "experiments")]
     pub(crate) fn new(at: Point3, index: u32) -> Vertex {
         Vertex { at, index, local: 0 }
     }
@@ -42,7 +43,7 @@ pub struct Tetrahedron {
     /// Indices of its vertices a, b, c, d, such that det(b - a, c - a, d - a) > 0.
     pub vertices: [u32; 4],
     /// Where the facets opposite to the vertices are in the words of their other tetrahedra.
-    pub(super) across: [u32; 4],
+    pub(super) neighbours: [u32; 4],
 }
 
 /// Words of a tetrahedron.
@@ -50,17 +51,18 @@ pub(super) const WORDS: usize = size_of::<Tetrahedron>() / size_of::<u32>();
 
 impl Tetrahedron {
     /// A tetrahedron made elsewhere, with what is across from each corner.
-    pub(crate) fn new(vertices: [u32; 4], across: [Option<Corner>; 4]) -> Tetrahedron {
+    #[cfg(feature = "experiments")]
+    pub(crate) fn new(vertices: [u32; 4], neighbours: [Option<Corner>; 4]) -> Tetrahedron {
         let word = |corner: Corner| corner.tetrahedron * WORDS as u32 + corner.corner;
-        Tetrahedron { vertices, across: across.map(|corner| corner.map_or(NONE, word)) }
+        Tetrahedron { vertices, neighbours: neighbours.map(|corner| corner.map_or(NONE, word)) }
     }
 
     /// The tetrahedron across the facet opposite to a corner, as its corner opposite to that facet; `None` beyond the
     /// hull.
     #[inline]
     #[must_use]
-    pub fn across(&self, side: usize) -> Option<Corner> {
-        let word = self.across[side];
+    pub fn neighbour(&self, side: usize) -> Option<Corner> {
+        let word = self.neighbours[side];
         (word != NONE).then_some(Corner { tetrahedron: word / WORDS as u32, corner: word & 3 })
     }
 }
@@ -80,13 +82,14 @@ pub struct Tetrahedralization {
 
 impl Tetrahedralization {
     /// A tetrahedralization made elsewhere, without stats.
+    #[cfg(feature = "experiments")]
     pub(crate) fn from_parts(
         vertices: Vec<Vertex>,
         duplicates: Vec<[u32; 2]>,
         tetrahedra: Vec<Tetrahedron>,
     ) -> Tetrahedralization {
-        let sides = tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.across);
-        let hull_facets = sides.filter(|&across| across == NONE).count();
+        let sides = tetrahedra.iter().flat_map(|tetrahedron| tetrahedron.neighbours);
+        let hull_facets = sides.filter(|&neighbour| neighbour == NONE).count();
         Tetrahedralization { vertices, tetrahedra, duplicates, hull_facets, stats: Stats::default() }
     }
 

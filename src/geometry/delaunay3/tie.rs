@@ -1,6 +1,6 @@
 //! Ties between points with integer coordinates, from values that were not rounded.
 
-use super::sight::InSphere;
+use super::translated::InSphere;
 use crate::predicates::Point3;
 
 /// If the greatest lift is below this, nothing was rounded: with integers, all that the in-sphere determinant is made of is

@@ -1,24 +1,26 @@
 //! Exact signs and values, to count the errors of rounded arithmetic with.
 
-use super::Stats;
 use super::mesh::{faraway_corner, finite_facet};
 use super::sphere::difference;
+use super::stats::Stats;
 use crate::delaunay3::Vertex;
-use crate::predicates::{Point3, Predicates2, Predicates3, Sign, TotalPredicates, TotalPredicates3};
+use crate::predicates::{
+    FiniteFloatPredicates, FiniteFloatPredicates3, Point3, Predicates2, Predicates3, Sign,
+};
 
 /// Integer differences below this have in-sphere determinants below 2^125.
 const INTEGER_LIMIT: f64 = 8_388_608.0;
 
 /// Exact orientation of a tetrahedron.
 pub(super) fn orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
-    TotalPredicates3::default().orient3d(a, b, c, d)
+    FiniteFloatPredicates3::default().orient3d(a, b, c, d)
 }
 
 /// Whether three points are on a line.
 pub(super) fn are_collinear(a: Point3, b: Point3, c: Point3) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let [a, b, c] = [a, b, c].map(|p| [p[i], p[j]]);
-        TotalPredicates::default().orient2d(a, b, c) == Sign::Zero
+        FiniteFloatPredicates::default().orient2d(a, b, c) == Sign::Zero
     })
 }
 
@@ -33,7 +35,7 @@ pub(super) fn check(vertices: &[Vertex], corners: &[u32; 4], p: Point3, value: f
     } else {
         let [a, b, c, d] = [0, 1, 2, 3].map(point);
         stats.rounded += u64::from(is_rounded([a, b, c, d], p, value));
-        TotalPredicates3::default().insphere(a, b, c, d, p)
+        FiniteFloatPredicates3::default().insphere(a, b, c, d, p)
     };
     if exact == Sign::Zero {
         stats.wrong_zeros += u64::from(value != 0.0);

@@ -31,10 +31,10 @@ pub(super) struct Edges {
 impl Edges {
     /// Empties the table, and makes room for the edges of a surface of `facets` triangles.
     pub(super) fn clear(&mut self, facets: usize) {
-        let room = (4 * facets).next_power_of_two();
-        if self.stamp == u32::MAX || self.slots.len() < room {
+        let slots = (4 * facets).next_power_of_two();
+        if self.stamp == u32::MAX || self.slots.len() < slots {
             self.slots.clear();
-            self.slots.resize(room.max(256), Slot::default());
+            self.slots.resize(slots.max(256), Slot::default());
             self.stamp = 0;
         }
         self.stamp += 1;

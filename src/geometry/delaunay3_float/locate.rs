@@ -1,8 +1,8 @@
 //! Where a new point is: a remembering stochastic walk (Devillers, Pion & Teillaud 2002; thesis 3.4.2).
 
 use super::check::check;
-use super::insertion::Insertion;
 use super::mesh::{corner_of, tetrahedron_of};
+use super::state::State;
 use crate::predicates::Point3;
 
 /// Walks to one point, each from a start of its own.
@@ -42,7 +42,7 @@ enum Step {
     None,
 }
 
-impl Insertion<'_> {
+impl State<'_> {
     /// A tetrahedron whose sphere has `p` inside or on it, or else one that `p` is in; none if rounding led all walks
     /// astray.
     pub(super) fn locate(&mut self, p: Point3) -> Option<u32> {
@@ -53,7 +53,7 @@ impl Insertion<'_> {
                 return Some(t);
             }
             self.stats.restarts += 1;
-            let count = self.mesh.cells.len() as u64;
+            let count = self.mesh.tetrahedra.len() as u64;
             let mut tries = (0..TRIES_MAX).map(|_| (self.random.bits() % count) as u32);
             start = tries.find(|&t| self.mesh.is_finite(t))?;
         }
@@ -67,7 +67,7 @@ impl Insertion<'_> {
             return Some(t);
         }
         let mut from = NOWHERE;
-        for _ in 0..self.patience.limit(self.mesh.cells.len()) {
+        for _ in 0..self.patience.limit(self.mesh.tetrahedra.len()) {
             self.patience.spend(1);
             let mut step = self.step((t, here, from), p, from_spheres);
             if matches!(step, Step::None) && from_spheres {
@@ -93,13 +93,13 @@ impl Insertion<'_> {
             t = self.mesh.beside_faraway(t);
         }
         let mut from = NOWHERE;
-        for _ in 0..self.patience.limit(self.mesh.cells.len()) {
+        for _ in 0..self.patience.limit(self.mesh.tetrahedra.len()) {
             self.patience.spend(1);
             let Some(side) = self.sides(from).find(|&side| self.mesh.is_beyond(t, side, p)) else {
                 return Some(t);
             };
-            let beyond = self.mesh.across(t, side);
-            (t, from) = (tetrahedron_of(beyond), corner_of(beyond));
+            let neighbour = self.mesh.neighbour(t, side);
+            (t, from) = (tetrahedron_of(neighbour), corner_of(neighbour));
             if !self.mesh.is_finite(t) {
                 return Some(t);
             }
@@ -121,14 +121,14 @@ impl Insertion<'_> {
             if !from_spheres && !self.is_beyond(t, side, p) {
                 continue;
             }
-            let beyond = self.mesh.across(t, side);
-            let there = self.test(tetrahedron_of(beyond), p);
+            let neighbour = self.mesh.neighbour(t, side);
+            let there = self.test(tetrahedron_of(neighbour), p);
             if there.is_conflict() {
-                return Step::Conflict(tetrahedron_of(beyond));
+                return Step::Conflict(tetrahedron_of(neighbour));
             }
             let is_infinite = there.volume == 0.0;
             if !is_infinite && (!from_spheres || self.is_nearer(here, there)) {
-                return Step::Into(tetrahedron_of(beyond), corner_of(beyond), there);
+                return Step::Into(tetrahedron_of(neighbour), corner_of(neighbour), there);
             }
         }
         Step::None
@@ -163,7 +163,7 @@ impl Insertion<'_> {
         let (sphere, origin) = self.mesh.sphere(t);
         let value = sphere.value(origin, p);
         if self.options.check_signs {
-            let corners = &self.mesh.cells[t as usize].vertices;
+            let corners = &self.mesh.tetrahedra[t as usize].vertices;
             check(self.mesh.vertices, corners, p, value, &mut self.stats);
         }
         Tested { value, volume: sphere.volume }

@@ -1,6 +1,6 @@
 //! The order in which points are inserted (thesis 3.4.1): levels of common low bits, and a curve within each level.
 
-use super::Options;
+use super::options::Options;
 use crate::delaunay3::Vertex;
 use crate::order::{Insertions, SpatialOrder, Suffixes};
 use crate::predicates::{Extent, Point3};

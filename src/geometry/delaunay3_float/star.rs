@@ -1,8 +1,8 @@
 //! How the tetrahedra around a new point are linked.
 
-use super::cavity::Wall;
 use super::edges::{Edges, Shared};
 use super::mesh::{FARAWAY, corner_of, facet, tetrahedron_of};
+use super::wall::Wall;
 
 /// The star of one new point at a time: a tetrahedron on each wall of its cavity.
 #[derive(Debug)]

@@ -14,7 +14,7 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
     for (place, &number) in (0u32..).zip(&order) {
         places[number as usize] = place;
     }
-    let mut cells = Cells4::with_room(unordered.len(), unordered.numbers());
+    let mut cells = Cells4::with_capacity(unordered.len(), unordered.numbers());
     let mut neighbours = Vec::new();
     for (place, &number) in order.iter().enumerate() {
         if let Some(&later) = order.get(place + AHEAD) {
@@ -31,8 +31,9 @@ pub(super) fn canonical(unordered: &Cells4) -> Cells4 {
 
 /// The numbers of the cells in order.
 fn order(cells: &Cells4) -> Vec<u32> {
-    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices have room if they
-    // have 21 bits, otherwise two of 31, and what the last bit would tell is left to the cell.
+    // The kind and the first vertices decide mostly: no cell has to be looked at for these. Three vertices
+    // have room if they have 21 bits, otherwise two of 31, and what the last bit would tell is left to the
+    // cell.
     let greatest = cells.iter().filter_map(|cell| cell.vertices.last().copied()).max().unwrap_or_default();
     let is_narrow = greatest < 1 << 21;
     let key = |number: u32| {

@@ -38,8 +38,9 @@ fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
 
 /// The sphere through the origin and four vectors: (n, m) such that n . x + m |x|^2 is zero on it.
 ///
-/// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a point is
-/// the in-sphere determinant but for its sign: a polynomial of degree 6 in the coordinates (thesis 3.6.2).
+/// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a
+/// point is the in-sphere determinant but for its sign: a polynomial of degree 6 in the coordinates (thesis
+/// 3.6.2).
 #[inline(always)]
 pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
     let [a, b, c, d] = vectors;
@@ -79,8 +80,8 @@ fn pairs<T: Number>(p: &[T; 5], q: &[T; 5]) -> [T; 10] {
     ]
 }
 
-/// Laplace's expansion of a determinant of four rows along two of them, for columns i, j, k, l, whose pairs have the
-/// numbers ij, ik, il, jk, jl, kl. Exchanging the pairs of rows does not change it.
+/// Laplace's expansion of a determinant of four rows along two of them, for columns i, j, k, l, whose pairs
+/// have the numbers ij, ik, il, jk, jl, kl. Exchanging the pairs of rows does not change it.
 #[inline(always)]
 fn expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usize; 6]) -> T {
     (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij])) - (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))

@@ -16,10 +16,10 @@ const NONE: u32 = u32::MAX;
 
 /// The cells of the diagram, in canonical order.
 ///
-/// The triangulation is one of the diagram of the points as they are (a limit of diagrams of perturbed points), so each
-/// cell is a union of its simplices, and two simplices at a facet are in one cell exactly if the vertex of one is on
-/// the sphere of the other. A facet of the diagram on the hull is the union of those facets of simplices of one cell
-/// that are in one hyperplane (thesis 4.3.6).
+/// The triangulation is one of the diagram of the points as they are (a limit of diagrams of perturbed
+/// points), so each cell is a union of its simplices, and two simplices at a facet are in one cell exactly if
+/// the vertex of one is on the sphere of the other. A facet of the diagram on the hull is the union of those
+/// facets of simplices of one cell that are in one hyperplane (thesis 4.3.6).
 pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> Cells4 {
     let classes = classes(&complex);
     let members = |classes: &[u32]| (classes[classes.len() - 1] - classes[0]).into();
@@ -37,8 +37,9 @@ pub(super) fn cells<C: Coefficient>(complex: Complex<C>, stats: &mut Stats) -> C
 struct Classes {
     /// The class of each simplex.
     of: Vec<u32>,
-    /// The simplices of each class, one class after the other, finite ones first: each as the facet that it was met at,
-    /// whose opposite vertex may be new to the class; the first as the facet opposite to a vertex that is finite.
+    /// The simplices of each class, one class after the other, finite ones first: each as the facet that it
+    /// was met at, whose opposite vertex may be new to the class; the first as the facet opposite to a vertex
+    /// that is finite.
     members: Vec<Facet>,
     /// Where each class begins among the members, and where the last ends.
     starts: Vec<u32>,
@@ -72,8 +73,8 @@ impl Classes {
         self.starts.len() - 1
     }
 
-    /// Makes a class of all simplices around a seed whose vertices are on its sphere, or hyperplane, and which are
-    /// `allowed`.
+    /// Makes a class of all simplices around a seed whose vertices are on its sphere, or hyperplane, and
+    /// which are `allowed`.
     #[inline(always)]
     fn flood<C: Coefficient>(
         &mut self,
@@ -133,7 +134,7 @@ fn gathered(simplices: &[Simplex], order: &[u32], classes: &Classes) -> Cells4 {
     let (mut vertices, mut neighbours) = (Vec::new(), Vec::new());
     let mut listed = Marks::new(order.len());
     let mut met = Marks::new(classes.len());
-    let mut cells = Cells4::with_room(classes.len(), 2 * FACETS * classes.members.len());
+    let mut cells = Cells4::with_capacity(classes.len(), 2 * FACETS * classes.members.len());
     for class in 0..classes.len() {
         vertices.clear();
         neighbours.clear();

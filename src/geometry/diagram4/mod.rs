@@ -1,14 +1,16 @@
 //! Exact Delaunay diagrams in four dimensions (thesis 3.6 and 4).
 //!
-//! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of all points on
-//! it. Where many points are cospherical, as those of a grid, it is small and unique, where a triangulation is large and
-//! arbitrary. Cells beyond the hull have the faraway point as a vertex, and correspond to the facets of cells on the hull.
+//! The Delaunay diagram has a cell for each empty sphere through points that span space: the convex hull of
+//! all points on it. Where many points are cospherical, as those of a grid, it is small and unique, where a
+//! triangulation is large and arbitrary. Cells beyond the hull have the faraway point as a vertex, and
+//! correspond to the facets of cells on the hull.
 //!
-//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates, `merge` makes
-//! cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
+//! `sites` makes points ready, `determinant`, `exact` and `side` are the geometry. `simplices` triangulates,
+//! `merge` makes cells of what is cospherical; `direct` is the way of the thesis, which does both at once.
 
 mod canonical;
 mod determinant;
+#[cfg(feature = "experiments")]
 mod direct;
 mod exact;
 mod merge;
@@ -22,20 +24,8 @@ use sites::Sites;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_model::cells4::{Cells4, Point4};
+use spmesh_model::diagram4::Diagram4;
 use std::time::{Duration, Instant};
-
-/// A Delaunay diagram.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Diagram {
-    /// The distinct points, in lexicographic order; each is a vertex.
-    pub points: Vec<Point4>,
-    /// Values of the points, if they have any.
-    pub values: Option<Vec<f64>>,
-    /// Points of the input that are equal to an earlier one.
-    pub merged: u64,
-    /// Finite cells by their vertices, then infinite ones by theirs.
-    pub cells: Cells4,
-}
 
 /// What a run did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -63,27 +53,30 @@ pub enum Route {
     #[default]
     Simplices,
     /// Cells as points come, in integers (thesis 3.6.4): slower, for comparison.
+    #[cfg(feature = "experiments")]
     Direct,
 }
 
 /// The Delaunay diagram of points in any order, which depends on the set of points only.
 ///
-/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs are exact for
-/// all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any size where rounded values do
-/// not tell.
+/// Domain: finite coordinates. Of equal points one is a vertex, with the value of the first of them. Signs
+/// are exact for all f64: integers that differ by at most 1,180,000 take 128 bits, others integers of any
+/// size where rounded values do not tell.
 ///
-/// Errors: a coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
+/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if
+/// coordinates are integers that differ by at most 26, otherwise 88.
 ///
-/// Cost: proportional to the number of simplices of a triangulation of the cells: 64 bytes each if coordinates are
-/// integers that differ by at most 26, otherwise 88.
-pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+/// # Errors
+/// A coordinate that is not finite, too many points; all points in a hyperplane, with the dimension found.
+pub fn diagram(points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     diagram_by(Route::default(), points, values)
 }
 
 /// [`diagram`] by a route of choice.
 ///
-/// Errors: as `diagram`.
-pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram, Stats)> {
+/// # Errors
+/// As `diagram`.
+pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -> Result<(Diagram4, Stats)> {
     check(&points)?;
     let mut stats = Stats::default();
     let started = Instant::now();
@@ -98,10 +91,11 @@ pub fn diagram_by(route: Route, points: Vec<Point4>, values: Option<Vec<f64>>) -
                 through_simplices::<f64>(&sites, &mut stats)?
             }
         }
+        #[cfg(feature = "experiments")]
         Route::Direct => direct::cells(&sites, &mut stats)?,
     };
     stats.order += sorting;
-    Ok((Diagram { points: sites.points, values, merged, cells }, stats))
+    Ok((Diagram4 { points: sites.points, values, merged, cells }, stats))
 }
 
 fn through_simplices<C: simplices::Coefficient>(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {

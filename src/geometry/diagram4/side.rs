@@ -48,7 +48,8 @@ const INTEGER_MAX: f64 = 67_108_864.0;
 
 /// The sign of det(b - a, c - a, d - a, e - a), exact for all finite coordinates.
 ///
-/// Cost: some ten nanoseconds where rounded values tell; a few times that for integers below 2^26; else microseconds.
+/// Cost: some ten nanoseconds where rounded values tell; a few times that for integers below 2^26; else
+/// microseconds.
 #[must_use]
 pub fn orient4d([a, b, c, d, e]: [Point4; 5]) -> Sign {
     let from = |p: Point4| -> Point4 { std::array::from_fn(|axis| p[axis] - a[axis]) };

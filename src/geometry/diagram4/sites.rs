@@ -1,7 +1,7 @@
 //! Points made ready: distinct, in order, and small numbers about the centre of their box.
 
 use super::exact::{DOUBLE_MAX, Exactness, INT128_MAX, SMALL_MAX};
-use crate::predicates::big::integers_of;
+use crate::predicates::exact_integers::integers_of;
 use crate::predicates::{Extent, lexicographic};
 use num_bigint::BigInt;
 use spmesh_model::cells4::Point4;
@@ -54,7 +54,8 @@ impl Sites {
         integers_of(&self.points)
     }
 
-    /// A point near the origin: exact small integers, or rounded numbers between -1 and 1 that differ by at most 1.
+    /// A point near the origin: exact small integers, or rounded numbers between -1 and 1 that differ by at
+    /// most 1.
     pub(super) fn near(&self, number: u32) -> Point4 {
         let point = self.points[number as usize];
         std::array::from_fn(|axis| point[axis] * self.unit - self.centre[axis])
@@ -63,7 +64,8 @@ impl Sites {
 
 /// The power of two that makes the greatest difference a number from 1/2 to 1.
 fn unit_for(extent: &Extent<4>) -> f64 {
-    // The halves of the box do not overflow; a box of subnormal size is enlarged as much as a power of two can.
+    // The halves of the box do not overflow; a box of subnormal size is enlarged as much as a power of two
+    // can.
     let half = (0..4).map(|axis| extent.upper[axis] * 0.5 - extent.lower[axis] * 0.5).fold(0.0, f64::max);
     let exponent = (half.to_bits() >> 52) as i32 - 1023;
     match (-exponent - 2).min(1023) {
@@ -73,8 +75,8 @@ fn unit_for(extent: &Extent<4>) -> f64 {
     }
 }
 
-/// Sorts points lexicographically and takes out those that are equal to another; says how many these are. The values of
-/// the points, if there are any, go along: of equal points that of the first counts.
+/// Sorts points lexicographically and takes out those that are equal to another; says how many these are. The
+/// values of the points, if there are any, go along: of equal points that of the first counts.
 pub(super) fn distinct(
     points: Vec<Point4>,
     values: Option<Vec<f64>>,

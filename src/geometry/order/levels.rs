@@ -1,10 +1,9 @@
 //! Levels of points by their lowest bits.
 
+use crate::predicates::exact_integers::decompose;
+
 /// The highest level.
 pub const BIT_LEVEL_MAX: u32 = 8;
-
-/// Bits of the significand of an `f64` below the highest.
-const FRACTION_BITS: u32 = f64::MANTISSA_DIGITS - 1;
 
 /// Which lowest bits make a point belong to a level.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -56,15 +55,11 @@ impl<const D: usize> BitLevels<D> {
     }
 }
 
-/// Significand and exponent: the magnitude of `number` is their `m * 2^e`.
+/// Significand and exponent: the magnitude of `number` is `m * 2^e`.
 #[inline]
 fn parts(number: f64) -> (u64, i32) {
-    let bits = number.to_bits();
-    let (exponent, fraction) = ((bits >> FRACTION_BITS & 0x7ff) as i32, bits & ((1 << FRACTION_BITS) - 1));
-    match exponent {
-        0 => (fraction, -1074),
-        _ => (fraction | 1 << FRACTION_BITS, exponent - 1075),
-    }
+    let (significand, exponent) = decompose(number);
+    (significand.unsigned_abs(), exponent)
 }
 
 /// Logarithm of the greatest power of two of which all coordinates are multiples, if those have at most 53 bits.

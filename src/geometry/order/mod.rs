@@ -4,6 +4,7 @@
 //! a [`Sequence`] of their places in that order.
 
 mod cells;
+mod counting;
 mod curve;
 mod hilbert;
 mod levels;
@@ -11,6 +12,7 @@ mod radix;
 mod rounds;
 mod sequence;
 
+pub use counting::sizes_to_starts;
 pub use curve::Curve;
 pub use levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
 pub use rounds::Rounds;

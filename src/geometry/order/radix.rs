@@ -1,5 +1,7 @@
 //! Radix sort of keys with an index, packed in one word.
 
+use super::counting::sizes_to_starts;
+
 const DIGIT_BITS_MAX: u32 = 11;
 const DIGITS_MAX: u32 = u32::BITS.div_ceil(DIGIT_BITS_MAX);
 
@@ -56,10 +58,7 @@ impl RadixSort {
         }
         self.scratch.resize(self.items.len(), Keyed::default());
         for (number, places) in (0..digits).zip(&mut places) {
-            let mut next = 0;
-            for place in &mut places[..1 << width] {
-                next += std::mem::replace(place, next);
-            }
+            sizes_to_starts(&mut places[..1 << width]);
             for &item in &self.items {
                 let place = &mut places[digit(item, number)];
                 self.scratch[*place as usize] = item;

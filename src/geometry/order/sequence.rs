@@ -1,5 +1,6 @@
 //! In which sequence points along a curve are inserted.
 
+use super::counting::sizes_to_starts;
 use super::levels::{BIT_LEVEL_MAX, BitLevels, Suffixes};
 use super::rounds::Rounds;
 use std::ops::Range;
@@ -46,10 +47,7 @@ impl Sequence {
         let ranks: Vec<u8> = points.iter().map(rank).collect();
         let mut places = [0usize; BIT_LEVEL_MAX as usize + 1];
         ranks.iter().for_each(|&rank| places[usize::from(rank)] += 1);
-        let mut next = 0;
-        for place in &mut places {
-            next += std::mem::replace(place, next);
-        }
+        sizes_to_starts(&mut places);
         let mut stored = vec![0; points.len()];
         for number in self.of(points.len()) {
             let place = &mut places[usize::from(ranks[number as usize])];

@@ -111,7 +111,7 @@ impl ExpansionPredicates {
 }
 
 impl Predicates2 for ExpansionPredicates {
-    const NUMBERS: Numbers = Numbers::Floats;
+    const NUMBERS: Numbers = Numbers::BoundedFloats;
 
     #[inline(always)]
     fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
@@ -153,11 +153,11 @@ impl Predicates2 for ExpansionPredicates {
 /// at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
 /// [`ExpansionPredicates`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
-pub struct TotalPredicates {
+pub struct FiniteFloatPredicates {
     counts: PredicateCounts,
 }
 
-impl TotalPredicates {
+impl FiniteFloatPredicates {
     const LEAST_DIFFERENCE: f64 = f64::from_bits((1023 - 200) << 52);
     const GREATEST_DIFFERENCE: f64 = f64::from_bits((1023 + 240) << 52);
 
@@ -168,8 +168,8 @@ impl TotalPredicates {
     }
 }
 
-impl Predicates2 for TotalPredicates {
-    const NUMBERS: Numbers = Numbers::Any;
+impl Predicates2 for FiniteFloatPredicates {
+    const NUMBERS: Numbers = Numbers::FiniteFloats;
 
     fn orient2d(&mut self, a: Point2, b: Point2, c: Point2) -> Sign {
         let differences = [difference(a, c), difference(b, c)];

@@ -1,44 +1,8 @@
-//! Predicates in arbitrary precision: finite `f64` are dyadic rationals, so scaled by one power of two they are
-//! integers. Right for every finite input; a call costs microseconds.
+//! Predicates in arbitrary precision, for every finite input. A call costs microseconds.
 
+use super::exact_integers::integers;
 use super::{Point2, Point3, Sign};
 use num_bigint::BigInt;
-
-/// Significand and exponent: `value == significand * 2^exponent`.
-fn decompose(value: f64) -> (i64, i32) {
-    debug_assert!(value.is_finite());
-    let bits = value.to_bits();
-    let biased = ((bits >> 52) & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (significand, exponent) =
-        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-    (if value.is_sign_negative() { -significand } else { significand }, exponent)
-}
-
-/// The points times the least power of two that makes all coordinates integers of the same unit.
-pub(crate) fn integers<const N: usize, const D: usize>(points: [[f64; D]; N]) -> [[BigInt; D]; N] {
-    let unit = unit(&points);
-    points.map(|point| scaled(point, unit))
-}
-
-/// The same for any number of points.
-pub(crate) fn integers_of<const D: usize>(points: &[[f64; D]]) -> Vec<[BigInt; D]> {
-    let unit = unit(points);
-    points.iter().map(|&point| scaled(point, unit)).collect()
-}
-
-/// The least exponent.
-fn unit<const D: usize>(points: &[[f64; D]]) -> i32 {
-    let parts = points.iter().flatten().map(|&coordinate| decompose(coordinate));
-    parts.filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0)
-}
-
-fn scaled<const D: usize>(point: [f64; D], unit: i32) -> [BigInt; D] {
-    point.map(decompose).map(|(significand, exponent)| match significand {
-        0 => BigInt::from(0),
-        _ => BigInt::from(significand) << (exponent - unit) as usize,
-    })
-}
 
 fn difference<const D: usize>(p: &[BigInt; D], q: &[BigInt; D]) -> [BigInt; D] {
     std::array::from_fn(|axis| &p[axis] - &q[axis])

@@ -2,14 +2,15 @@
 //!
 //! The sign is never wrong; only the price differs. [`Arithmetic::of`] looks once at the coordinates of a chunk
 //! and picks the cheapest arithmetic that is exact for all of them; [`Arithmetic::run`] then runs an algorithm
-//! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`TotalPredicates`]. In space,
-//! [`Arithmetic3`] and [`TotalPredicates3`] do the same. Where a size is wanted and not a sign, [`area()`] is accurate.
+//! monomorphised for it. A caller who has no chunk, or a handful of calls, uses [`FiniteFloatPredicates`]. In space,
+//! [`Arithmetic3`] and [`FiniteFloatPredicates3`] do the same. Where a size is wanted and not a sign, [`area()`] is accurate.
 
 mod adaptive;
 mod area;
-pub(crate) mod big;
+mod big;
 pub mod circle;
 mod counts;
+pub mod exact_integers;
 mod extent;
 mod integer;
 mod perturbation;
@@ -17,7 +18,7 @@ pub(crate) mod spatial;
 pub mod sphere;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
-pub use adaptive::{ExpansionPredicates, TotalPredicates};
+pub use adaptive::{ExpansionPredicates, FiniteFloatPredicates};
 pub use area::area;
 pub use area::exact_area;
 pub use counts::PredicateCounts;
@@ -26,8 +27,8 @@ pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredica
 pub use perturbation::lexicographic;
 pub(crate) use spatial::filter::{INSPHERE_SQUARED_BOUND, TINY, insphere_is_certain};
 pub use spatial::{
-    Arithmetic3, ExpansionPredicates3, IntegerPredicates3, Predicates3, SmallIntegerPredicates3,
-    TotalPredicates3, Width3, WithPredicates3,
+    Arithmetic3, ExpansionPredicates3, FiniteFloatPredicates3, IntegerPredicates3, Predicates3,
+    SmallIntegerPredicates3, Width3, WithPredicates3,
 };
 
 pub use spmesh_model::points::{Point2, Point3};
@@ -58,15 +59,15 @@ impl Sign {
     }
 }
 
-/// What the coordinates are that an arithmetic is for.
+/// The coordinates that an arithmetic is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Numbers {
-    /// Integers with differences that some integers of fixed width are enough for.
+    /// Integers whose differences fit into integers of a fixed width.
     Integers,
-    /// Numbers whose products of four (five in space) neither over- nor underflow.
-    Floats,
-    /// Finite numbers.
-    Any,
+    /// Finite numbers whose products of four factors (in space: five) neither overflow nor underflow.
+    BoundedFloats,
+    /// All finite numbers.
+    FiniteFloats,
 }
 
 /// The predicates of 2D Delaunay triangulation in one arithmetic. Implementations count their decisions.
@@ -128,8 +129,8 @@ pub enum Arithmetic {
     IntegerPair,
     /// Floating point in the range where expansions neither over- nor underflow.
     Expansion,
-    /// Any finite floating point.
-    Total,
+    /// All finite floating-point numbers.
+    FiniteFloat,
 }
 
 impl Arithmetic {
@@ -150,7 +151,7 @@ impl Arithmetic {
         } else if ExpansionPredicates::covers(extent) {
             Arithmetic::Expansion
         } else {
-            Arithmetic::Total
+            Arithmetic::FiniteFloat
         }
     }
 
@@ -171,7 +172,7 @@ impl Arithmetic {
             Arithmetic::Integer128 => counted(algorithm, IntegerPredicates::<Int128>::default(), counts),
             Arithmetic::IntegerPair => counted(algorithm, IntegerPredicates::<IntPair>::default(), counts),
             Arithmetic::Expansion => counted(algorithm, ExpansionPredicates::default(), counts),
-            Arithmetic::Total => counted(algorithm, TotalPredicates::default(), counts),
+            Arithmetic::FiniteFloat => counted(algorithm, FiniteFloatPredicates::default(), counts),
         }
     }
 }

@@ -21,7 +21,8 @@ impl Faces {
     pub fn of_cell(cells: &Cells4, number: usize) -> Faces {
         let cell = cells.get(number);
         let facet = |&beyond: &u32| {
-            // An infinite cell has just the facet; vertices of other cells beyond count if they are in this one.
+            // An infinite cell has just the facet; vertices of other cells beyond count if they are in this
+            // one.
             let other = cells.get(beyond as usize);
             if other.is_infinite { other.vertices.to_vec() } else { common(cell.vertices, other.vertices) }
         };
@@ -40,9 +41,9 @@ impl Faces {
 
     /// A face of one dimension less with its own faces, which are those that it shares with its siblings.
     ///
-    /// What two faces of dimension d share is a face of both, of dimension d - 1 or less. All vertices are on a sphere, so
-    /// that no three are on a line (thesis, lemma 3.6.2): three span two dimensions, and d are enough to tell that the
-    /// dimension is d - 1, for d up to 3.
+    /// What two faces of dimension d share is a face of both, of dimension d - 1 or less. All vertices are on
+    /// a sphere, so that no three are on a line (thesis, lemma 3.6.2): three span two dimensions, and d are
+    /// enough to tell that the dimension is d - 1, for d up to 3.
     #[must_use]
     pub fn face(&self, number: usize) -> Faces {
         let (dimension, vertices) = (self.dimension - 1, self.lower[number].clone());
@@ -55,7 +56,8 @@ impl Faces {
         Faces { dimension, vertices, lower }
     }
 
-    /// Four vertices of a facet of a cell that span its hyperplane, and a vertex of the cell that is not in it.
+    /// Four vertices of a facet of a cell that span its hyperplane, and a vertex of the cell that is not in
+    /// it.
     pub(super) fn frame(&self, number: usize) -> Option<([u32; 4], u32)> {
         let facet = &self.lower[number];
         let apex = *self.vertices.iter().find(|vertex| facet.binary_search(vertex).is_err())?;
@@ -115,7 +117,8 @@ mod tests {
         let square = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
         let triangle = [[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]];
         let product = square.iter().flat_map(|&[x, y]| triangle.map(|[z, t]| [x, y, z, t]));
-        // Ridges: a triangle per corner of the square, a square per corner of the triangle, products of edges.
+        // Ridges: a triangle per corner of the square, a square per corner of the triangle, products of
+        // edges.
         assert_eq!(count(product.collect()), [7, 4 + 3 + 12, 24]);
     }
 }

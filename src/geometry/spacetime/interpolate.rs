@@ -3,17 +3,18 @@
 use super::NO_VALUES;
 use super::locate::Locator;
 use super::subdivide::{Subdivision, subdivide_one};
-use crate::diagram4::Diagram;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// Interpolates the values of a diagram.
 ///
-/// The function is linear on simplices that are cells, and on those of [`super::Rule::Barycentric`] in others. So it is
-/// continuous, has the values of the points exactly, and is what the values come from if that is linear, but for rounding.
+/// The function is linear on simplices that are cells, and on those of [`super::Rule::Barycentric`] in
+/// others. So it is continuous, has the values of the points exactly, and is what the values come from if
+/// that is linear, but for rounding.
 #[derive(Debug)]
 pub struct Interpolator<'a> {
-    diagram: &'a Diagram,
+    diagram: &'a Diagram4,
     values: &'a [f64],
     locator: Locator<'a>,
     /// The cell of the last site, and its simplices.
@@ -25,23 +26,23 @@ impl<'a> Interpolator<'a> {
     ///
     /// # Errors
     /// Usage, if the points have no values.
-    pub fn new(diagram: &'a Diagram) -> Result<Self> {
+    pub fn new(diagram: &'a Diagram4) -> Result<Self> {
         let Some(values) = diagram.values.as_deref() else {
             return Err(Error::usage(NO_VALUES));
         };
         Ok(Interpolator { diagram, values, locator: Locator::new(diagram), last: None })
     }
 
-    /// The value at a site: `None` outside of the convex hull of the points, NaN where it depends on a value that is not
-    /// known.
+    /// The value at a site: `None` outside of the convex hull of the points, NaN where it depends on a value
+    /// that is not known.
     ///
     /// Domain: finite coordinates.
     ///
+    /// Cost: the walk from the last site, and some 30 nanoseconds per simplex of the cell; sites that are
+    /// near each other should come together.
+    ///
     /// # Errors
     /// Usage, if a cell has too many vertices.
-    ///
-    /// Cost: the walk from the last site, and some 30 nanoseconds per simplex of the cell; sites that are near each other
-    /// should come together.
     pub fn value(&mut self, site: Point4) -> Result<Option<f64>> {
         let site = site.map(|x| x + 0.0);
         let order = |point: &Point4| point.partial_cmp(&site).unwrap_or(std::cmp::Ordering::Less);
@@ -72,7 +73,8 @@ fn value_in(pieces: &Subdivision, site: Point4) -> f64 {
     let (_, simplex, weights) = best;
     let value = |corner: usize| pieces.values.as_ref().map_or(f64::NAN, |v| v[simplex[corner] as usize]);
     let heaviest = (0..5).max_by(|&i, &j| weights[i].total_cmp(&weights[j])).unwrap_or(0);
-    // Differences, so that a constant is reproduced; and no value counts that has no weight, as it may be unknown.
+    // Differences, so that a constant is reproduced; and no value counts that has no weight, as it may be
+    // unknown.
     let others = (0..5).filter(|&corner| corner != heaviest && weights[corner] != 0.0);
     let base = value(heaviest);
     base + others.map(|corner| weights[corner] * (value(corner) - base)).sum::<f64>()

@@ -1,8 +1,9 @@
 //! The cell that a site is in.
 
 use super::faces::Faces;
-use crate::diagram4::{Diagram, orient4d};
+use crate::diagram4::orient4d;
 use spmesh_model::cells4::{Cells4, Point4};
+use spmesh_model::diagram4::Diagram4;
 
 /// Finds cells by walking from the one that was found last.
 #[derive(Debug)]
@@ -17,15 +18,17 @@ pub struct Locator<'a> {
 impl<'a> Locator<'a> {
     /// Starts at the first cell.
     #[must_use]
-    pub fn new(diagram: &'a Diagram) -> Self {
+    pub fn new(diagram: &'a Diagram4) -> Self {
         Locator { points: &diagram.points, cells: &diagram.cells, current: 0, visited: 0 }
     }
 
-    /// The number of a finite cell that has the site in it or on its border; `None` outside of the convex hull.
+    /// The number of a finite cell that has the site in it or on its border; `None` outside of the convex
+    /// hull.
     ///
-    /// Domain: finite coordinates. The signs are exact, so the walk is sure to end: beyond a facet the site has less power
-    /// with respect to the sphere of the next cell, as the points where the powers are equal are the hyperplane of the
-    /// facet. So no cell is visited twice, and sites on the border of the hull are inside.
+    /// Domain: finite coordinates. The signs are exact, so the walk is sure to end: beyond a facet the site
+    /// has less power with respect to the sphere of the next cell, as the points where the powers are equal
+    /// are the hyperplane of the facet. So no cell is visited twice, and sites on the border of the hull are
+    /// inside.
     ///
     /// Cost: some microseconds per cell on the way.
     pub fn locate(&mut self, site: Point4) -> Option<usize> {

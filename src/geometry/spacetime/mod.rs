@@ -1,8 +1,10 @@
-//! What a Delaunay diagram of space and time is for: simplices, values between the points, and what there is at a time.
+//! What a Delaunay diagram of space and time is for: simplices, values between the points, and what there is
+//! at a time.
 //!
-//! Everything rests on one subdivision of cells into simplices that is the same from both sides of a face, because it
-//! depends on the vertices of the face only (`subdivide`). A function that is linear on the simplices is then continuous
-//! (`interpolate`), and what a hyperplane of constant time cuts from them fits together (`slice`, `isosurface`).
+//! Everything rests on one subdivision of cells into simplices that is the same from both sides of a face,
+//! because it depends on the vertices of the face only (`subdivide`). A function that is linear on the
+//! simplices is then continuous (`interpolate`), and what a hyperplane of constant time cuts from them fits
+//! together (`slice`, `isosurface`).
 
 mod faces;
 mod interpolate;

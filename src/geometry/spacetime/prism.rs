@@ -26,9 +26,9 @@ impl Cuts {
     }
 }
 
-/// Simplices of the product of two simplices, whose vertices are pairs of theirs: one for each way to go from the
-/// first pair to the last, a step in one of the lists at a time. With lists in increasing order, both sides of a face
-/// that is a product of parts of the lists have the same simplices there.
+/// Simplices of the product of two simplices, whose vertices are pairs of theirs: one for each way to go from
+/// the first pair to the last, a step in one of the lists at a time. With lists in increasing order, both
+/// sides of a face that is a product of parts of the lists have the same simplices there.
 pub(super) fn staircases(
     below: &[u32],
     above: &[u32],

@@ -2,11 +2,11 @@
 
 use super::prism::{Cuts, between, staircases};
 use super::subdivide::{Rule, Subdivision, subdivide};
-use crate::diagram4::Diagram;
-use crate::predicates::{Predicates3, Sign, TotalPredicates3};
+use crate::predicates::{FiniteFloatPredicates3, Predicates3, Sign};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// The tetrahedra that a time cuts out of a diagram.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,16 +25,16 @@ pub struct Slice {
 
 /// Cuts a diagram at a time.
 ///
-/// Cells that are no simplices are subdivided around barycentres, as for values between points. A vertex exactly at the
-/// time counts as later, that is, the slice is the limit of those before; at the first time of all points it is that of
-/// those after. What collapses in the limit is left out, and the pieces that remain fit together. The result has no
-/// tetrahedra where the points span no volume at that time.
+/// Cells that are no simplices are subdivided around barycentres, as for values between points. A vertex
+/// exactly at the time counts as later, that is, the slice is the limit of those before; at the first time of
+/// all points it is that of those after. What collapses in the limit is left out, and the pieces that remain
+/// fit together. The result has no tetrahedra where the points span no volume at that time.
+///
+/// Cost: as [`subdivide`] for the cells that the time passes, and half a microsecond per tetrahedron.
 ///
 /// # Errors
 /// Usage, if the time is not that of any point or between two.
-///
-/// Cost: as [`subdivide`] for the cells that the time passes, and half a microsecond per tetrahedron.
-pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
+pub fn slice(diagram: &Diagram4, time: f64) -> Result<Slice> {
     let first = first_time(&diagram.points, time)?;
     let is_above = |point: &Point4| if time == first { point[3] > time } else { point[3] >= time };
     let (points, values) = (&diagram.points, diagram.values.as_deref());
@@ -46,7 +46,7 @@ pub fn slice(diagram: &Diagram, time: f64) -> Result<Slice> {
     let parts = subdivide(points, values, &diagram.cells, Rule::Barycentric, is_cut)?;
     let slice = Slice { time, values: values.map(|_| Vec::new()), flat: parts.flat, ..Slice::default() };
     let mut cutter =
-        Cutter { parts: &parts, cuts: Cuts::new(), slice, predicates: TotalPredicates3::default() };
+        Cutter { parts: &parts, cuts: Cuts::new(), slice, predicates: FiniteFloatPredicates3::default() };
     for simplex in &parts.simplices {
         let mut simplex = *simplex;
         simplex.sort_unstable();
@@ -74,7 +74,7 @@ struct Cutter<'a> {
     parts: &'a Subdivision,
     cuts: Cuts,
     slice: Slice,
-    predicates: TotalPredicates3,
+    predicates: FiniteFloatPredicates3,
 }
 
 impl Cutter<'_> {

@@ -11,13 +11,14 @@ use spmesh_model::cells4::{Cells4, Point4};
 /// How what is no simplex becomes simplices. Both depend on the vertices of a face only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
-    /// Each face is the cone from its lexicographically greatest vertex to those of its faces that do not have it: the
-    /// vertex is *pulled*. No points are added.
+    /// Each face is the cone from its lexicographically greatest vertex to those of its faces that do not
+    /// have it: the vertex is *pulled*. No points are added.
     Pulled,
-    /// Each face that is no simplex is the cone from its barycentre, the mean of its vertices, to all of its faces. The
-    /// value there is the mean of the values. Unlike the barycentric subdivision proper this leaves simplices as they
-    /// are, so that it has fewer of them (192 instead of 384 for a cube of four dimensions); a simplex has no face that
-    /// is none, so both sides of a face agree. It favours no direction, as pulling does.
+    /// Each face that is no simplex is the cone from its barycentre, the mean of its vertices, to all of its
+    /// faces. The value there is the mean of the values. Unlike the barycentric subdivision proper this
+    /// leaves simplices as they are, so that it has fewer of them (192 instead of 384 for a cube of four
+    /// dimensions); a simplex has no face that is none, so both sides of a face agree. It favours no
+    /// direction, as pulling does.
     Barycentric,
 }
 
@@ -30,20 +31,21 @@ pub struct Subdivision {
     pub values: Option<Vec<f64>>,
     /// Numbers of points (a, b, c, d, e) with det(b - a, c - a, d - a, e - a) > 0.
     pub simplices: Vec<[u32; 5]>,
-    /// Simplices that were left out because they are flat, by rounding of barycentres. Without rounding there are none:
-    /// means of 2, 4, 8 and 16 integers of moderate size are exact.
+    /// Simplices that were left out because they are flat, by rounding of barycentres. Without rounding there
+    /// are none: means of 2, 4, 8 and 16 integers of moderate size are exact.
     pub flat: u64,
 }
 
 /// Subdivides the finite cells that `is_wanted` picks by their vertices.
 ///
-/// Domain: the cells of a Delaunay diagram of the points. Coordinates of barycentres are rounded; where that turns a very
-/// thin simplex over, it is written positive all the same, and overlaps its neighbours by the rounding.
+/// Domain: the cells of a Delaunay diagram of the points. Coordinates of barycentres are rounded; where that
+/// turns a very thin simplex over, it is written positive all the same, and overlaps its neighbours by the
+/// rounding.
+///
+/// Cost: some microseconds for a cell of 16 vertices, a quarter of a microsecond per simplex.
 ///
 /// # Errors
 /// Usage, if there are too many points or simplices to number them in 32 bits.
-///
-/// Cost: some microseconds for a cell of 16 vertices, a quarter of a microsecond per simplex.
 pub fn subdivide(
     points: &[Point4],
     values: Option<&[f64]>,
@@ -149,7 +151,8 @@ impl Work {
     }
 }
 
-/// The mean of numbers, in the order of the vertices so that it is the same in every cell; exact if all are equal.
+/// The mean of numbers, in the order of the vertices so that it is the same in every cell; exact if all are
+/// equal.
 fn mean(vertices: &[u32], number: impl Fn(u32) -> f64) -> f64 {
     let first = number(vertices[0]);
     // Halves, so that no difference of finite numbers overflows.

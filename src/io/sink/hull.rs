@@ -7,10 +7,15 @@ use foldhash::{HashMap, HashMapExt};
 use super::EventSink;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
+use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};
 
-/// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside.
-const FACETS: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside. The facet opposite to corner 1
+/// begins with its last corner: the bytes of the files depend on where a facet begins.
+const FACETS: [[usize; 3]; 4] = {
+    let [first, [a, b, c], third, fourth] = TETRAHEDRON_FACETS;
+    [first, [c, a, b], third, fourth]
+};
 
 /// A facet that was met once: counterclockwise seen from outside of its tetrahedron.
 type Facet = [(u64, Point); 3];

@@ -6,12 +6,12 @@ use super::twin_configurations::numbers;
 use super::write_error;
 use spmesh_core::error::Result;
 use spmesh_model::functions::Function;
-use spmesh_stream::kind_parts;
+use spmesh_stream::function_kind_parts;
 
 /// A line `function` for each, and a line `term` for each of its B-splines.
 pub(super) fn functions(output: &mut impl Write, functions: &[Function]) -> Result<()> {
     for function in functions {
-        let (name, knots) = kind_parts(&function.kind);
+        let (name, knots) = function_kind_parts(&function.kind);
         numbers(output, &format!("function {name}"), knots)?;
         for ([p, q], factor) in &function.terms {
             let [p, q] = [*p, *q].map(|knot| u64::from(knot) + 1);

@@ -6,11 +6,11 @@ use std::io::{BufReader, Seek};
 use super::las_header::{LasHeader, Laszip};
 use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
 use super::laz_codec::{Codec, Decompressor, decompression};
-use super::ordered::Ordered;
 use super::origin::FileView;
 use super::panic_guard::guarded;
 use super::records::RecordReader;
 use spmesh_core::error::{Error, Result};
+use spmesh_core::parallel::OrderedPool;
 
 /// Bytes of records that chunks under way decompress to, per thread, and in all.
 const AHEAD_LEN_PER_THREAD: u64 = 2 << 20;
@@ -65,10 +65,9 @@ pub(super) struct LazRecords {
     codec: Codec,
     threads: usize,
     chunks: std::iter::Peekable<std::vec::IntoIter<Chunk>>,
-    decoders: Option<Ordered<Job, Result<Job>>>,
-    /// Jobs that are done, for their buffers, and bytes of those under way.
+    decoders: Option<OrderedPool<Job, Result<Job>>>,
+    /// Jobs that are done, for their buffers.
     spare: Vec<Job>,
-    ahead_len: u64,
     streamed: Option<Streamed>,
     /// Records given out or to decoders so far.
     done: u64,
@@ -91,7 +90,7 @@ impl LazRecords {
         };
         let chunks = chunks.into_iter().peekable();
         let (decoders, spare) = (None, Vec::new());
-        Ok(LazRecords { file, codec, threads, chunks, decoders, spare, ahead_len: 0, streamed, done: 0 })
+        Ok(LazRecords { file, codec, threads, chunks, decoders, spare, streamed, done: 0 })
     }
 
     /// Whether the next chunk must be decompressed as it is read; `None` at the end.
@@ -121,19 +120,20 @@ impl LazRecords {
 
     /// Gives jobs to the decoders until enough are under way.
     fn decode_ahead(&mut self) -> Result<()> {
-        let ahead_max = (AHEAD_LEN_PER_THREAD * self.threads as u64).min(AHEAD_LEN_MAX);
-        while self.ahead_len < ahead_max {
+        while !self.decoders.as_ref().is_some_and(OrderedPool::is_full) {
             let Some(job) = self.next_job()? else { break };
-            self.ahead_len += job.len(self.codec.record_len as u64);
+            let len = job.len(self.codec.record_len as u64);
             let decoders = match &mut self.decoders {
                 Some(decoders) => decoders,
                 None => {
                     let (file, codec) = (self.file.clone(), self.codec.clone());
                     let decode = move |mut job: Job| job.run(&file, &codec).map(|()| job);
-                    self.decoders.insert(Ordered::start(self.threads, decode)?)
+                    let ahead_max = (AHEAD_LEN_PER_THREAD * self.threads as u64).min(AHEAD_LEN_MAX);
+                    let pool = OrderedPool::start("decoder", self.threads, ahead_max, decode)?;
+                    self.decoders.insert(pool)
                 }
             };
-            decoders.give(job);
+            decoders.give(job, len);
         }
         Ok(())
     }
@@ -152,9 +152,8 @@ impl RecordReader for LazRecords {
                 self.streamed = None;
             }
             self.decode_ahead()?;
-            if let Some(decoded) = self.decoders.as_mut().and_then(Ordered::take) {
+            if let Some(decoded) = self.decoders.as_mut().and_then(OrderedPool::take) {
                 let mut job = decoded?;
-                self.ahead_len -= job.len(self.codec.record_len as u64);
                 std::mem::swap(records, &mut job.records);
                 self.spare.push(job);
                 return Ok(());

@@ -18,7 +18,6 @@ mod mesh_events;
 mod numbers;
 mod obj;
 mod opened;
-mod ordered;
 mod origin;
 pub mod panic_guard;
 mod patches;
@@ -78,6 +77,7 @@ pub use values::{Values, read_values};
 pub use words::{finite, for_each_line};
 
 use spmesh_core::error::Result;
+use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
@@ -113,8 +113,7 @@ pub struct SourceOptions {
 
 impl SourceOptions {
     fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-        self.threads.unwrap_or_else(cores).get()
+        self.threads.unwrap_or_else(available_threads).get()
     }
 }
 

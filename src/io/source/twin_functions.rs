@@ -4,7 +4,7 @@ use super::statements::{expect_no_field, next_field, parse_decimal, unexpected};
 use super::twin_configurations::parse_knot;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::functions::{Function, FunctionKind};
-use spmesh_stream::{Event, Totals, kind_of, kind_of_name};
+use spmesh_stream::{Event, Totals, function_kind, function_kind_of_name};
 
 /// One line, parsed. Knots are counted from 0 here.
 pub(super) enum FunctionLine {
@@ -40,9 +40,9 @@ pub(super) fn parse<'a>(
 fn parse_kind<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<FunctionKind> {
     let name = next_field(fields)?;
     let expected = || unexpected(name, "edge, vertex, tent, crease or face");
-    let (code, count) = kind_of_name(name).ok_or_else(expected)?;
+    let (code, count) = function_kind_of_name(name).ok_or_else(expected)?;
     let knots = (0..count).map(|_| parse_knot(next_field(fields)?)).collect::<Result<Vec<u32>>>()?;
-    kind_of(code, &knots).ok_or_else(expected)
+    function_kind(code, &knots).ok_or_else(expected)
 }
 
 impl FunctionGroup {

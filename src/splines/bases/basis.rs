@@ -1,15 +1,15 @@
-//! Bases of splines: what is alive at a point, with values and derivatives.
+//! A basis of splines: the functions alive at a point, with values and derivatives.
 
 mod bends;
 
-use super::approach::Approach;
+use super::directional_limit::DirectionalLimit;
 use super::domain::Domain;
 use super::elements::{Elements, Share};
 use super::factors::Factors;
 use super::function_sets::FunctionSets;
 use super::jet::Jet;
+use super::linear_simplex::{self, Found, Line, LinearSimplex};
 use super::simplex;
-use super::tent::{self, Found, Line, Tent};
 use super::tree::Tree;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::prefetch::prefetch;
@@ -17,13 +17,13 @@ use spmesh_geometry::predicates::{Point2, area};
 
 /// Functions of one degree over configurations of knots.
 ///
-/// A function is a sum of B-splines with factors, and a B-spline is what configurations collect around a set of k knots, its
-/// *interior set*. On lines through knots, where functions or derivatives may jump, they have the values that they have next
-/// to the line on the side of the middle of the domain: sides are told by exact predicates, so that values at knots, on
-/// lines and on the border are right.
+/// A function is a sum of B-splines with factors. A B-spline belongs to a set of k knots, its *interior set*,
+/// and consists of the simplex splines of the configurations around that set. On lines through knots
+/// functions or derivatives may jump: there they take the limit from the side of the middle of the domain.
+/// Exact predicates decide sides, so that values at knots, on lines and on the border are correct.
 ///
-/// Cost: one way down a tree and a few elements for each point; for degree 2, about four elements and seven functions are
-/// not zero.
+/// Cost: one descent of a tree and a few elements for each point; for degree 2, about four elements and seven
+/// functions are nonzero.
 #[derive(Debug, Clone)]
 pub struct Basis {
     pub(super) degree: usize,
@@ -33,7 +33,7 @@ pub struct Basis {
     pub(super) supports: Vec<[Point2; 2]>,
     pub(super) elements: Elements,
     /// Closed forms of the elements, where there are any.
-    pub(super) tents: Vec<Tent>,
+    pub(super) linear_simplices: Vec<LinearSimplex>,
     pub(super) factors: Factors,
     pub(super) domain: Domain,
     pub(super) tree: Tree,
@@ -66,21 +66,24 @@ impl Basis {
         self.degree
     }
 
-    /// The interior sets of the B-splines whose sum a function is, each with a factor; for degree 0, the triangle.
+    /// The interior sets of the B-splines whose sum a function is, each with a factor; for degree 0, the
+    /// triangle.
     ///
-    /// Panics if there is no such function, as everything that takes its number.
+    /// # Panics
+    /// If there is no such function; so do all methods that take the number of a function.
     pub fn terms(&self, function: usize) -> impl Iterator<Item = (&[u32], f64)> {
         self.sets.terms(function)
     }
 
-    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets by their
-    /// factors; for degree 0, that of the triangle.
+    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets
+    /// by their factors; for degree 0, that of the triangle.
     #[must_use]
     pub fn greville(&self, function: usize) -> Point2 {
         self.greville[function]
     }
 
-    /// The least box that contains the support of a function, from lower left to upper right: nothing for one that is zero.
+    /// The least box that contains the support of a function, from lower left to upper right: `None` for a
+    /// function that is zero.
     #[must_use]
     pub fn support(&self, function: usize) -> Option<[Point2; 2]> {
         let [lower, upper] = self.supports[function];
@@ -90,30 +93,33 @@ impl Basis {
     /// Bytes held, without knots, sets and Greville sites.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let tents = std::mem::size_of_val(&self.tents[..]) + std::mem::size_of_val(&self.factors.all[..]);
-        tents + self.tree.bytes() + self.elements.bytes()
+        let linear_simplices =
+            std::mem::size_of_val(&self.linear_simplices[..]) + std::mem::size_of_val(&self.factors.all[..]);
+        linear_simplices + self.tree.bytes() + self.elements.bytes()
     }
 
-    /// Whether a point is in the domain: the convex, closed region where functions sum to one, and reproduce polynomials of
-    /// their degree k. It is where every closed half-plane has k knots, copies counted; for degree 0 as for degree 1, that
-    /// is the convex hull.
+    /// Whether a point is in the domain: the convex, closed region where functions sum to one, and reproduce
+    /// polynomials of their degree k. It is where every closed half-plane has k knots, copies counted; for
+    /// degree 0 as for degree 1, that is the convex hull.
     ///
-    /// (A domain that is a segment or a point only, without an inside, is not one where functions sum to one.)
+    /// (A domain that is a segment or a point only, without an inside, is not one where functions sum to
+    /// one.)
     #[must_use]
     pub fn is_in_domain(&self, x: Point2) -> bool {
         let is_right = |&line: &u32| super::domain::is_right_or_on(self.domain.lines[line as usize], x);
         self.tree.lines(x).is_some_and(|lines| lines.iter().all(is_right))
     }
 
-    /// From where functions look at a point.
+    /// The directional limit that functions take at a point.
     #[must_use]
-    pub fn approach(&self, x: Point2) -> Approach {
-        self.domain.approach(x)
+    pub fn limit_at(&self, x: Point2) -> DirectionalLimit {
+        self.domain.limit_at(x)
     }
 
     /// The functions alive at a point, with their values, in order of their numbers.
     ///
-    /// Alive are all whose elements have the point inside, as it is approached: a value may still be zero.
+    /// A function is alive if one of its elements contains the directional limit; its value may still be
+    /// zero.
     pub fn at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, f64)] {
         scratch.values.clear();
         let elements = self.tree.elements(x);
@@ -125,8 +131,8 @@ impl Basis {
         &scratch.values
     }
 
-    /// The functions alive at a point, with values and derivatives, in order of their numbers: limits from the middle of the
-    /// domain, where there is a jump.
+    /// The functions alive at a point, with values and derivatives, in order of their numbers: limits from
+    /// the middle of the domain, where there is a jump.
     ///
     /// These are the functions of [`Basis::at`].
     pub fn jets_at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, Jet)] {
@@ -151,7 +157,9 @@ impl Basis {
         jets.fold(Jet::default(), |sum, &(function, jet)| sum + jet * coefficients[function as usize])
     }
 
-    /// Errors: not one finite coefficient for each function.
+    ///
+    /// # Errors
+    /// Not one finite coefficient for each function.
     pub(super) fn check_coefficients(&self, coefficients: &[f64]) -> Result<()> {
         if coefficients.len() != self.len() {
             let what = format!(
@@ -167,24 +175,24 @@ impl Basis {
         }
     }
 
-    /// Has closed forms brought into the cache: points may come in any order.
+    /// Prefetches the closed form of an element, because points may come in any order.
     #[inline(always)]
     fn prefetch(&self, element: usize) {
-        prefetch(&self.tents, element);
+        prefetch(&self.linear_simplices, element);
         if let Some(&start) = self.factors.offsets.get(element) {
             prefetch(&self.factors.all, start as usize);
             prefetch(&self.factors.all, start as usize + 2);
         }
     }
 
-    /// What an element adds to values at a point.
+    /// Adds the values of an element at a point.
     #[inline]
     fn add_values(&self, element: usize, x: Point2, scratch: &mut Scratch) {
         let values = &mut scratch.values;
         self.for_each_share(element, x, &mut scratch.knots, |function, value| add(values, function, value));
     }
 
-    /// What an element adds to a spline at a point.
+    /// The part of an element in the value of a spline at a point.
     pub(super) fn value_of_element(
         &self,
         element: usize,
@@ -208,9 +216,9 @@ impl Basis {
         knots: &mut Vec<Point2>,
         mut take: impl FnMut(u32, f64),
     ) {
-        if let Some(tent) = self.tents.get(element) {
-            let offset = tent.offset(x);
-            let found = match tent.find(offset) {
+        if let Some(linear_simplex) = self.linear_simplices.get(element) {
+            let offset = linear_simplex.offset(x);
+            let found = match linear_simplex.find(offset) {
                 Found::Outside => return,
                 Found::Unclear(height) => {
                     if !self.is_inside(element, x) {
@@ -220,11 +228,11 @@ impl Basis {
                 }
                 Found::Inside(height) => height,
             };
-            if tent.is_exact_enough {
+            if linear_simplex.is_exact_enough {
                 let factors = self.factors.of_element(element);
-                return factors
-                    .iter()
-                    .for_each(|(function, line)| take(*function, tent::value(line, offset) * found));
+                return factors.iter().for_each(|(function, line)| {
+                    take(*function, linear_simplex::value(line, offset) * found)
+                });
             }
         }
         self.for_each_careful_share(element, x, knots, take);
@@ -246,15 +254,16 @@ impl Basis {
     }
 
     fn add_jets(&self, element: usize, x: Point2, scratch: &mut Scratch) {
-        if let Some(tent) = self.tents.get(element) {
-            let offset = tent.offset(x);
-            let found = tent.find(offset);
+        if let Some(linear_simplex) = self.linear_simplices.get(element) {
+            let offset = linear_simplex.offset(x);
+            let found = linear_simplex.find(offset);
             if found == Found::Outside {
                 return;
             }
-            let is_clear = tent.is_exact_enough && matches!(found, Found::Inside(_));
-            if let Some(piece) = tent.piece(offset).filter(|_| is_clear) {
-                let linear = |line: &Line| Jet::linear(tent::value(line, offset), [line[1], line[2]]);
+            let is_clear = linear_simplex.is_exact_enough && matches!(found, Found::Inside(_));
+            if let Some(piece) = linear_simplex.piece(offset).filter(|_| is_clear) {
+                let linear =
+                    |line: &Line| Jet::linear(linear_simplex::value(line, offset), [line[1], line[2]]);
                 let jet = linear(&piece);
                 for (function, line) in self.factors.of_element(element) {
                     add(&mut scratch.jets, *function, linear(line).product(jet));
@@ -277,14 +286,14 @@ impl Basis {
         knots: &mut Vec<Point2>,
     ) -> Option<Jet> {
         self.take_knots(element, knots);
-        simplex::evaluate(&self.approach(x), knots, has_derivatives)
+        simplex::evaluate(&self.limit_at(x), knots, has_derivatives)
     }
 
     #[cold]
     fn is_inside(&self, element: usize, x: Point2) -> bool {
         let mut knots = Vec::new();
         self.take_knots(element, &mut knots);
-        tent::is_inside(&self.approach(x), &knots)
+        linear_simplex::is_inside(&self.limit_at(x), &knots)
     }
 
     fn take_knots(&self, element: usize, knots: &mut Vec<Point2>) {
@@ -298,7 +307,7 @@ impl Basis {
     }
 }
 
-/// Adds to what is there for a function.
+/// Adds to the entry of a function.
 #[inline(always)]
 fn add<T: std::ops::AddAssign>(all: &mut Vec<(u32, T)>, function: u32, value: T) {
     match all.iter_mut().find(|(other, _)| *other == function) {

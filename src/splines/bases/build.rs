@@ -1,12 +1,12 @@
-//! From configurations to bases.
+//! Builds bases from configurations.
 
 use super::basis::Basis;
 use super::domain::Domain;
 use super::elements::{Elements, hull_area, hull_edges};
 use super::factors::Factors;
 use super::function_sets::FunctionSets;
+use super::linear_simplex::LinearSimplex;
 use super::simplex::MAX_DEGREE;
-use super::tent::Tent;
 use super::tree::{Hull, Tree};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, Configurations, FARAWAY, Knots};
@@ -14,17 +14,19 @@ use spmesh_geometry::predicates::{ExpansionPredicates, Extent, Point2};
 use spmesh_model::functions::Function;
 
 impl Basis {
-    /// The B-splines of degree k that the links of configurations of degree k - 1 make, in the order of links, without those
-    /// that are zero everywhere.
+    /// The B-splines of degree k that the links of configurations of degree k - 1 make, in the order of
+    /// links, without those that are zero everywhere.
     ///
-    /// They sum to one, and reproduce polynomials of degree k by polar forms, where every closed half-plane has k knots.
+    /// They sum to one, and reproduce polynomials of degree k by polar forms, where every closed half-plane
+    /// has k knots.
     ///
     /// Domain: the configurations are of these knots.
     ///
-    /// Errors: knots with coordinates so great or small that areas are no numbers, too great a degree, configurations that
-    /// leave no links, or of which nothing is not zero.
-    ///
     /// Source: Neamtu 2004; thesis 8.1.
+    ///
+    /// # Errors
+    /// Usage, for knots whose coordinates make areas overflow or underflow, too great a degree,
+    /// configurations that leave no links, or of which nothing is not zero.
     pub fn new(knots: &Knots, configurations: &Configurations) -> Result<Basis> {
         check(knots, configurations)?;
         let links = configurations::links(knots, configurations)?;
@@ -38,10 +40,12 @@ impl Basis {
         Basis::without_zeros(knots, configurations, sets, elements)
     }
 
-    /// Functions that are sums of B-splines of degree 2, as [`configurations::special::Special::functions`] collects them, in their
-    /// order; `configurations` are those of degree 1.
+    /// Functions that are sums of B-splines of degree 2, as [`configurations::special::Special::functions`]
+    /// collects them, in their order; `configurations` are those of degree 1.
     ///
-    /// Errors: those of [`Basis::new`]; configurations of another degree; a set without a link; a factor that is not finite.
+    /// # Errors
+    /// Those of [`Basis::new`]; configurations of another degree; a set without a link; a factor that is not
+    /// finite.
     pub fn of_functions(
         knots: &Knots,
         configurations: &Configurations,
@@ -75,9 +79,11 @@ impl Basis {
         Basis::of_elements(knots, configurations, sets, elements)
     }
 
-    /// Functions of degree 0: one on a triangle each, and zero elsewhere; in the order of configurations, without flat ones.
+    /// Functions of degree 0: one on a triangle each, and zero elsewhere; in the order of configurations,
+    /// without flat ones.
     ///
-    /// Errors: those of [`Basis::new`]; configurations of another degree.
+    /// # Errors
+    /// Those of [`Basis::new`]; configurations of another degree.
     pub fn of_triangles(knots: &Knots, configurations: &Configurations) -> Result<Basis> {
         if configurations.degree() != 0 {
             let what =
@@ -126,24 +132,35 @@ impl Basis {
         let hulls: Vec<Hull> = (0..elements.len()).map(|at| hull(&elements, at, &points)).collect();
         let extent = Extent::of(&points);
         let tree = Tree::new(&hulls, &domain, extent.lower, extent.upper);
-        let (mut tents, mut sizes) = (Vec::new(), Vec::new());
+        let (mut linear_simplices, mut sizes) = (Vec::new(), Vec::new());
         if elements.size <= 4 {
             for (at, hull) in hulls.iter().enumerate() {
                 let knots: Vec<Point2> = elements.knots(at).iter().map(|&id| points[id as usize]).collect();
                 sizes.push(hull_area(&hull.edges));
-                tents.push(Tent::new(&knots, &hull.edges, sizes[at]));
+                linear_simplices.push(LinearSimplex::new(&knots, &hull.edges, sizes[at]));
             }
         }
-        let factors = Factors::of(&elements, &tents, &sizes, &points);
+        let factors = Factors::of(&elements, &linear_simplices, &sizes, &points);
         let greville = (0..sets.len()).map(|function| sets.greville(function, &points)).collect();
         let supports = supports(&elements, &hulls, sets.len());
         let degree =
             if sets.size == 3 && configurations.degree() == 0 { 0 } else { configurations.degree() + 1 };
-        Ok(Basis { degree, points, sets, greville, supports, elements, tents, factors, domain, tree })
+        Ok(Basis {
+            degree,
+            points,
+            sets,
+            greville,
+            supports,
+            elements,
+            linear_simplices,
+            factors,
+            domain,
+            tree,
+        })
     }
 }
 
-/// What is asked of all knots and configurations.
+/// Checks the limits that all bases have.
 fn check(knots: &Knots, configurations: &Configurations) -> Result<()> {
     if !ExpansionPredicates::covers(&Extent::of(knots.points())) {
         let what =

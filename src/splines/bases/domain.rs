@@ -1,32 +1,34 @@
 //! Where all functions sum to one.
 //!
-//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every closed half-plane
-//! has k knots at least: the *domain*. (Simplex splines of configurations of degree k need k + 1 knots; functions of degree
-//! 0 need what those of degree 1 do, the convex hull.)
+//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every
+//! closed half-plane has k knots at least: the *domain*. (Simplex splines of configurations of degree k need
+//! k + 1 knots; functions of degree 0 need what those of degree 1 do, the convex hull.)
 //!
-//! *Why they do.* Take a polynomial with the polar form P. The sum of P(J) times the B-spline of J, over all links, is
-//! configuration by configuration that of P(I, x) N(x | B, I) over those of degree k - 1, as in the thesis (6.2.2). This is
-//! what the links of degree k - 1 give with the polar form P(., x), but for the infinite configurations (p, q, I): these
-//! add terms that vanish unless x is in the hull of I, p and q, to the left of the line from p to q. No point of the domain
-//! is strictly left of a line with less than k knots to its left. So all degrees down to 0 give the same, and degree 0 is a
-//! triangulation.
+//! *Why they do.* Take a polynomial with the polar form P. The sum of P(J) times the B-spline of J, over all
+//! links, is configuration by configuration that of P(I, x) N(x | B, I) over those of degree k - 1, as in the
+//! thesis (6.2.2). This is what the links of degree k - 1 give with the polar form P(., x), but for the
+//! infinite configurations (p, q, I): these add terms that vanish unless x is in the hull of I, p and q, to
+//! the left of the line from p to q. No point of the domain is strictly left of a line with less than k knots
+//! to its left. So all degrees down to 0 give the same, and degree 0 is a triangulation.
 //!
-//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of degree k - 1. If
-//! x is left of such a line, then the parallel to it through x has only knots to its left, and on it, that are left of the
-//! line: less than k. For the converse, let n(t) be the unit vector in the direction t, s(t) the k-th greatest of the scalar
-//! products of n(t) with knots, and g(t) the product of n(t) with x less s(t), so that x is in the domain if g is nowhere
-//! positive. While the k-th knot is the same one, g'' + g is zero. Where it changes from p to q, both are on a line with the
-//! normal n(t). Either this is an infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is
-//! the lesser one of the products of p and q nearby, and the slope of g increases. Now let g be positive somewhere, but not
-//! at any infinite configuration. Then g'' + g is not negative on the interval around where g is positive, so its length is
-//! pi at least (Sturm); it is more, because a single knot cannot be the k-th in a half circle of directions unless all are
-//! on one line. So g is positive in two opposite directions: less than k knots are on either side of the line through x, on
-//! it included, and there are at most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line,
-//! are limits of knots that are moved.
+//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of
+//! degree k - 1. If x is left of such a line, then the parallel to it through x has only knots to its left,
+//! and on it, that are left of the line: less than k. For the converse, let n(t) be the unit vector in the
+//! direction t, s(t) the k-th greatest of the scalar products of n(t) with knots, and g(t) the product of
+//! n(t) with x less s(t), so that x is in the domain if g is nowhere positive. While the k-th knot is the
+//! same one, g'' + g is zero. Where it changes from p to q, both are on a line with the normal n(t). Either
+//! this is an infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is the
+//! lesser one of the products of p and q nearby, and the slope of g increases. Now let g be positive
+//! somewhere, but not at any infinite configuration. Then g'' + g is not negative on the interval around
+//! where g is positive, so its length is pi at least (Sturm); it is more, because a single knot cannot be the
+//! k-th in a half circle of directions unless all are on one line. So g is positive in two opposite
+//! directions: less than k knots are on either side of the line through x, on it included, and there are at
+//! most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line, are limits of
+//! knots that are moved.
 
-use super::approach::Approach;
+use super::directional_limit::DirectionalLimit;
 use spmesh_geometry::configurations::{Configurations, Knots};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// Closed half-planes to the right of directed lines, in common.
 #[derive(Debug, Clone)]
@@ -61,12 +63,12 @@ impl Domain {
 
     /// The approach from inside.
     #[inline(always)]
-    pub(super) fn approach(&self, x: Point2) -> Approach {
-        Approach::new(x, self.inner)
+    pub(super) fn limit_at(&self, x: Point2) -> DirectionalLimit {
+        DirectionalLimit::new(x, self.inner)
     }
 
     fn has_inside(&self, x: Point2) -> bool {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         self.lines.iter().all(|&[p, q]| predicates.orient2d(p, q, x) == Sign::Negative)
     }
 
@@ -95,7 +97,7 @@ impl Domain {
 
 /// Whether x is not to the left of a line.
 pub(super) fn is_right_or_on([p, q]: [Point2; 2], x: Point2) -> bool {
-    TotalPredicates::default().orient2d(p, q, x) != Sign::Positive
+    FiniteFloatPredicates::default().orient2d(p, q, x) != Sign::Positive
 }
 
 /// What of a convex polygon is to the right of a line.

@@ -1,15 +1,17 @@
-//! From configurations to elements: simplex splines of one degree less, each with a linear factor for some functions.
+//! From configurations to elements: simplex splines of one degree less, each with a linear factor for some
+//! functions.
 //!
-//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J (thesis,
-//! equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each, and its M is the same in
-//! all of them. So it is evaluated once, as an *element*, and its three edges make the linear factors. Where knots are at
-//! one place, edges of one element cancel, and elements of different knots are the same function: they are merged.
+//! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J
+//! (thesis, equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each,
+//! and its M is the same in all of them. So it is evaluated once, as an *element*, and its three edges make
+//! the linear factors. Where knots are at one place, edges of one element cancel, and elements of different
+//! knots are the same function: they are merged.
 
 use foldhash::HashMap;
 use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::order::{Curve, SpatialOrder};
-use spmesh_geometry::predicates::{Extent, Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The share of a function in an element: `factor * area(x, a, b)`, for an edge ab.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,9 +32,9 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    /// Elements of all finite configurations. `functions_of` names the functions, with their factors, that the set of a
-    /// configuration, of which it gets the number, and of one of its corners belongs to. What is zero everywhere is left
-    /// out.
+    /// Elements of all finite configurations. `functions_of` names the functions, with their factors, that
+    /// the set of a configuration, of which it gets the number, and of one of its corners belongs to. What is
+    /// zero everywhere is left out.
     pub(super) fn of_configurations(
         knots: &Knots,
         configurations: &Configurations,
@@ -82,7 +84,7 @@ impl Elements {
     }
 }
 
-/// Elements while they are found.
+/// Elements while configurations are read.
 struct Gathered<'a> {
     knots: &'a Knots,
     size: usize,
@@ -150,7 +152,7 @@ fn middle(knots: &Knots, all: &[u32]) -> Point2 {
     [0, 1].map(|axis| all.iter().map(|&id| knots.at(id)[axis] / all.len() as f64).sum())
 }
 
-/// Sorts shares by element, function and edge, sums those of one edge, and drops what is zero.
+/// Sorts shares by element, function and edge, sums those of one edge, and drops zeros.
 fn cancel(shares: &mut Vec<(u32, Share)>) {
     for (_, share) in shares.iter_mut() {
         if share.edge[0] > share.edge[1] {
@@ -174,14 +176,14 @@ fn cancel(shares: &mut Vec<(u32, Share)>) {
 fn is_flat(knots: &Knots, all: &[u32]) -> bool {
     let first = knots.at(all[0]);
     let Some(second) = all.iter().map(|&id| knots.at(id)).find(|&other| other != first) else { return true };
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     all.iter().all(|&id| predicates.orient2d(first, second, knots.at(id)) == Sign::Zero)
 }
 
-/// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots that are not all on
-/// one line.
+/// The edges of the strict convex hull, from corner to corner, with the hull on their left. Domain: knots
+/// that are not all on one line.
 pub(super) fn hull_edges(points: &[Point2]) -> Vec<[Point2; 2]> {
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut edges: Vec<[Point2; 2]> = Vec::with_capacity(points.len());
     for (&p, &q) in points.iter().flat_map(|p| points.iter().map(move |q| (p, q))) {
         let mut is_outside = |r: Point2| match predicates.orient2d(p, q, r) {

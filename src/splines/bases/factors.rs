@@ -1,10 +1,10 @@
 //! Linear factors of closed forms.
 
 use super::elements::Elements;
-use super::tent::{Line, Tent, line_of, scaled};
+use super::linear_simplex::{Line, LinearSimplex, line_of, scaled};
 use spmesh_geometry::predicates::Point2;
 
-/// Linear factors of functions in elements, as functions of the offset from the origin of the tent.
+/// Linear factors of functions in elements, as functions of the offset from the origin of the closed form.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Factors {
     pub(super) offsets: Vec<u32>,
@@ -12,15 +12,20 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// Those of elements that have tents, over supports of given sizes.
-    pub(super) fn of(elements: &Elements, tents: &[Tent], sizes: &[f64], points: &[Point2]) -> Factors {
+    /// Those of elements that have closed forms, over supports of given sizes.
+    pub(super) fn of(
+        elements: &Elements,
+        linear_simplices: &[LinearSimplex],
+        sizes: &[f64],
+        points: &[Point2],
+    ) -> Factors {
         let mut factors = Factors { offsets: vec![0], all: Vec::new() };
-        for (at, (tent, size)) in tents.iter().zip(sizes).enumerate() {
+        for (at, (linear_simplex, size)) in linear_simplices.iter().zip(sizes).enumerate() {
             for shares in elements.shares(at).chunk_by(|a, b| a.function == b.function) {
                 let mut sum = [0.0; 3];
                 for share in shares {
                     let edge = share.edge.map(|id| points[id as usize]);
-                    let line = scaled(line_of(edge, tent.origin), share.factor / size);
+                    let line = scaled(line_of(edge, linear_simplex.origin), share.factor / size);
                     sum = [0, 1, 2].map(|place| sum[place] + line[place]);
                 }
                 factors.all.push((shares[0].function, sum));

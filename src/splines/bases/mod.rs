@@ -1,27 +1,36 @@
-//! Bivariate splines over configurations (thesis 6.2 and chapter 8).
+//! Bases of bivariate splines over configurations (thesis 6.2 and chapter 8).
 //!
-//! [`simplex_spline`] evaluates single simplex splines of any degree, [`Basis`] all functions at a point that
-//! [`spmesh_geometry::configurations`] makes of configurations: B-splines from links, and sums of them for sharp features and box splines.
+//! [`simplex_spline`] evaluates one simplex spline of any degree. [`Basis`] evaluates all functions at a
+//! point: B-splines, which come from links of configurations, and the sums of B-splines that
+//! [`spmesh_geometry::configurations::special`] collects for sharp features and box splines.
 //!
-//! `approach` has the sides of lines that points lie on, `simplex` the recurrence, `tent` closed forms of degrees 0 and 1, and
-//! `factors` what they are multiplied by; `elements` is the way from configurations to simplex
-//! splines, `build` that to bases; `domain` knows where functions sum to one, and `tree` finds what is alive.
+//! | file | what it does |
+//! |---|---|
+//! | `directional_limit` | decides the side of a line for points on the line |
+//! | `simplex` | evaluates simplex splines by the recurrence |
+//! | `linear_simplex` | closed forms of simplex splines of degrees 0 and 1 |
+//! | `factors` | the linear factors of closed forms |
+//! | `elements` | turns configurations into simplex splines with shares of functions |
+//! | `build` | builds a basis from elements |
+//! | `domain` | the region where functions sum to one |
+//! | `tree` | finds the elements near a point |
+//! | `raster` | evaluates splines row by row |
 
-mod approach;
 mod basis;
 mod build;
+mod directional_limit;
 mod domain;
 mod elements;
 mod factors;
 mod function_sets;
 mod jet;
+mod linear_simplex;
 mod raster;
 mod simplex;
-mod tent;
 mod tree;
 
-pub use approach::Approach;
 pub use basis::{Basis, Scratch};
+pub use directional_limit::DirectionalLimit;
 pub use jet::Jet;
 pub use raster::{Raster, Row};
 pub use simplex::{MAX_DEGREE, simplex_spline, simplex_spline_jet};

@@ -1,12 +1,13 @@
 //! Splines on the points of a raster, row by row.
 //!
-//! On a row y = const an element is the least of a few linear functions of x, times another one: its share of the spline,
-//! for which the coefficients of all its functions are summed beforehand. So a row costs a few divisions for each element
-//! that it crosses, which give the columns that are certainly inside, and a pixel an evaluation of plain linear functions,
-//! in a loop without branches. Columns too near to an edge are evaluated like single points.
+//! On a row y = const an element is the least of a few linear functions of x, times another one: its share of
+//! the spline, for which the coefficients of all its functions are summed beforehand. So a row costs a few
+//! divisions for each element that it crosses, which give the columns that are certainly inside, and a pixel
+//! an evaluation of plain linear functions, in a loop without branches. Columns too near to an edge are
+//! evaluated like single points.
 
 use super::basis::{Basis, Scratch};
-use super::tent::{Line, Tent, lesser, scaled, value};
+use super::linear_simplex::{Line, LinearSimplex, lesser, scaled, value};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::ops::Range;
@@ -38,7 +39,9 @@ pub struct Row<'a> {
 }
 
 impl Raster {
-    /// Errors: numbers that are not finite, and steps that do not separate rows or columns.
+    ///
+    /// # Errors
+    /// Numbers that are not finite, and steps that do not separate rows or columns.
     fn check(&self) -> Result<()> {
         let last = [0, 1].map(|axis| {
             let count = [self.columns, self.rows][axis];
@@ -69,7 +72,7 @@ impl Raster {
     /// The columns from an abscissa to another, and one more on either side.
     fn columns_around(&self, [from, to]: [f64; 2]) -> Range<usize> {
         let place = |x: f64| (x - self.origin[0]) / self.step[0];
-        // Conversions saturate, and take what is not a number for zero.
+        // Conversions saturate, and turn NaN into zero.
         let first = (place(from).ceil() as usize).saturating_sub(1).min(self.columns);
         let end = if place(to) < -1.0 {
             0
@@ -96,10 +99,11 @@ impl Basis {
     ///
     /// Values are those of [`Basis::at`] but for rounding; outside of the domain too.
     ///
-    /// Errors: a number of coefficients that is not that of functions, a coefficient that is not finite, numbers of the
-    /// raster that make no sense; those of `visit`.
-    ///
     /// Cost: for each row, all elements that it crosses; for each pixel, about six of them for degree 2.
+    ///
+    /// # Errors
+    /// A number of coefficients that is not that of functions, a coefficient that is not finite, numbers of
+    /// the raster out of range; those of `visit`.
     pub fn raster(
         &self,
         coefficients: &[f64],
@@ -150,7 +154,7 @@ struct Sweep<'a> {
     basis: &'a Basis,
     raster: &'a Raster,
     coefficients: &'a [f64],
-    /// The share of each element with a tent in the spline, as a factor of it.
+    /// The share of each element with a closed form in the spline, as a factor of it.
     factors: Vec<Line>,
     /// Elements in the order in which rows meet them.
     order: Vec<u32>,
@@ -165,7 +169,8 @@ struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     fn new(basis: &'a Basis, coefficients: &'a [f64], raster: &'a Raster) -> Sweep<'a> {
-        let factors = (0..basis.tents().len()).map(|at| basis.factor_of_spline(at, coefficients)).collect();
+        let factors =
+            (0..basis.linear_simplices().len()).map(|at| basis.factor_of_spline(at, coefficients)).collect();
         let mut order: Vec<u32> = (0..basis.element_count() as u32).collect();
         let start = |&at: &u32| {
             let [lower, upper] = basis.rows_of(at as usize);
@@ -208,11 +213,16 @@ impl<'a> Sweep<'a> {
 
     /// Adds an element to the row.
     fn add(&mut self, element: usize, y: f64) {
-        let Some(tent) = self.basis.tents().get(element).filter(|tent| tent.is_exact_enough) else {
+        let Some(linear_simplex) = self
+            .basis
+            .linear_simplices()
+            .get(element)
+            .filter(|linear_simplex| linear_simplex.is_exact_enough)
+        else {
             let columns = self.raster.columns_around(self.basis.columns_of(element));
             return self.add_points(element, columns, y);
         };
-        let [around, inside] = tent.intervals(y - tent.origin[1]);
+        let [around, inside] = linear_simplex.intervals(y - linear_simplex.origin[1]);
         let around = self.raster.columns_around(around);
         let inside = self.raster.columns_inside(inside);
         if inside.is_empty() {
@@ -220,7 +230,13 @@ impl<'a> Sweep<'a> {
         }
         self.add_points(element, around.start..inside.start, y);
         self.add_points(element, inside.end..around.end, y);
-        add_inside(tent, self.factors[element], y, &self.abscissae[inside.clone()], &mut self.values[inside]);
+        add_inside(
+            linear_simplex,
+            self.factors[element],
+            y,
+            &self.abscissae[inside.clone()],
+            &mut self.values[inside],
+        );
     }
 
     fn add_points(&mut self, element: usize, columns: Range<usize>, y: f64) {
@@ -232,13 +248,13 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// Adds a tent times a linear function where it is not zero.
-fn add_inside(tent: &Tent, factor: Line, y: f64, abscissae: &[f64], values: &mut [f64]) {
-    let up = y - tent.origin[1];
+/// Adds a closed form times a linear function where it is not zero.
+fn add_inside(linear_simplex: &LinearSimplex, factor: Line, y: f64, abscissae: &[f64], values: &mut [f64]) {
+    let up = y - linear_simplex.origin[1];
     let along = |line: Line| [value(&line, [0.0, up]), line[1]];
-    let lines = tent.lines_of_values().map(along);
+    let lines = linear_simplex.lines_of_values().map(along);
     let factor = along(factor);
-    let origin = tent.origin[0];
+    let origin = linear_simplex.origin[0];
     for (x, sum) in abscissae.iter().zip(values) {
         let right = x - origin;
         let [a, b, c, d] = lines.map(|[constant, slope]| constant + slope * right);
@@ -247,9 +263,9 @@ fn add_inside(tent: &Tent, factor: Line, y: f64, abscissae: &[f64], values: &mut
     }
 }
 
-impl Tent {
-    /// The abscissae outside of which a row is not in the support, and those where it certainly is; `up` is the ordinate of
-    /// the row from the origin.
+impl LinearSimplex {
+    /// The abscissae outside of which a row is not in the support, and those where it certainly is; `up` is
+    /// the ordinate of the row from the origin.
     fn intervals(&self, up: f64) -> [[f64; 2]; 2] {
         let (mut around, mut inside) = (self.range(), self.range());
         for line in self.edges() {
@@ -266,8 +282,8 @@ impl Basis {
         self.elements.len()
     }
 
-    pub(super) fn tents(&self) -> &[Tent] {
-        &self.tents
+    pub(super) fn linear_simplices(&self) -> &[LinearSimplex] {
+        &self.linear_simplices
     }
 
     pub(super) fn domain_lines(&self) -> &[[Point2; 2]] {
@@ -290,7 +306,7 @@ impl Basis {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], c| [least.min(c), greatest.max(c)])
     }
 
-    /// The factor of an element with a tent in a spline.
+    /// The factor of an element with a closed form in a spline.
     pub(super) fn factor_of_spline(&self, element: usize, coefficients: &[f64]) -> Line {
         let factors = self.factors.of_element(element);
         factors.iter().fold([0.0; 3], |sum, (function, line)| {

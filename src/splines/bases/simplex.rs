@@ -1,14 +1,14 @@
 //! Simplex splines by the recurrence of Micchelli (thesis 6.2.1).
 //!
-//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor in the
-//! recurrence: the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's geometric definition
-//! has integral one, and the base case that it prints lacks the area.)
+//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor
+//! in the recurrence: the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's
+//! geometric definition has integral one, and the base case that it prints lacks the area.)
 //!
-//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x: all terms are
-//! then positive, nothing cancels, and with areas that are accurate (`area`) so is the value, however flat sets of knots
-//! are.
+//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x:
+//! all terms are then positive, nothing cancels, and with areas that are accurate (`area`) so is the value,
+//! however flat sets of knots are.
 
-use super::approach::Approach;
+use super::directional_limit::DirectionalLimit;
 use super::jet::Jet;
 use foldhash::{HashMap, HashMapExt};
 use spmesh_geometry::predicates::{Point2, Sign, area};
@@ -21,36 +21,38 @@ const REMEMBERED: u32 = 6;
 
 /// The simplex spline of degree `knots.len() - 3` at a point.
 ///
-/// Units: one over those of an area. Knots may be repeated; if all lie on one line, as any two do, the function is zero.
+/// Units: one over those of an area. Knots may be repeated; if all lie on one line, as any two do, the
+/// function is zero.
 ///
-/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about 1e-14 times the
-/// degree.
+/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about
+/// 1e-14 times the degree.
 ///
 /// Cost: O(3^k) areas for degrees k up to 2, then at most one evaluation for each subset of the knots.
 ///
 /// Source: Micchelli, "A constructive approach to Kergin interpolation in R^k", 1980; thesis, equation 6.3.
 #[must_use]
-pub fn simplex_spline(at: &Approach, knots: &[Point2]) -> f64 {
+pub fn simplex_spline(at: &DirectionalLimit, knots: &[Point2]) -> f64 {
     Evaluation::new(at, knots, false).of_all().map_or(0.0, |jet| jet.value)
 }
 
-/// The simplex spline of degree `knots.len() - 3` with its derivatives at a point: limits where there is a jump.
+/// The simplex spline of degree `knots.len() - 3` with its derivatives at a point: limits where there is a
+/// jump.
 ///
-/// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v M(x | X \ v)`,
-/// if the `mu_v v` sum to y and the `mu_v` to zero.
+/// Domain and cost: those of [`simplex_spline`]. The derivative in a direction y is k times the sum of `mu_v
+/// M(x | X \ v)`, if the `mu_v v` sum to y and the `mu_v` to zero.
 #[must_use]
-pub fn simplex_spline_jet(at: &Approach, knots: &[Point2]) -> Jet {
+pub fn simplex_spline_jet(at: &DirectionalLimit, knots: &[Point2]) -> Jet {
     Evaluation::new(at, knots, true).of_all().unwrap_or_default()
 }
 
 /// The same, or nothing if the point, as it is approached, is not in the convex hull of the knots.
-pub(super) fn evaluate(at: &Approach, knots: &[Point2], has_derivatives: bool) -> Option<Jet> {
+pub(super) fn evaluate(at: &DirectionalLimit, knots: &[Point2], has_derivatives: bool) -> Option<Jet> {
     Evaluation::new(at, knots, has_derivatives).of_all()
 }
 
 /// Subsets of one set of knots, as bits, at one point.
 struct Evaluation<'a> {
-    at: &'a Approach,
+    at: &'a DirectionalLimit,
     knots: &'a [Point2],
     /// For each knot, to which others it has a line with the point on its left.
     left: [u32; 32],
@@ -59,7 +61,7 @@ struct Evaluation<'a> {
 }
 
 impl<'a> Evaluation<'a> {
-    fn new(at: &'a Approach, knots: &'a [Point2], has_derivatives: bool) -> Evaluation<'a> {
+    fn new(at: &'a DirectionalLimit, knots: &'a [Point2], has_derivatives: bool) -> Evaluation<'a> {
         debug_assert!(knots.len() <= MAX_DEGREE + 3);
         let mut left = [0; 32];
         for i in 0..knots.len() {
@@ -133,7 +135,8 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-/// What one knot of the triple adds: the recurrence, and its derivatives, in which shares are not differentiated.
+/// What one knot of the triple adds: the recurrence, and its derivatives, in which shares are not
+/// differentiated.
 fn term(degree: f64, share: f64, slope: [f64; 2], part: Jet) -> Jet {
     let second = |i: usize, j: usize| 0.5 * (slope[i] * part.gradient[j] + slope[j] * part.gradient[i]);
     Jet {

@@ -1,11 +1,11 @@
-//! Which elements may be alive at a point, and which lines of the domain a point may be beyond: a tree of boxes.
+//! A tree of boxes that finds the elements near a point, and the lines of the domain near it.
 //!
-//! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not length of lists;
-//! leaves list all elements whose hulls meet their cell. A search is one way down, from the node that a grid over the box
-//! names: where knots are spread evenly, that is near to the leaves.
+//! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not
+//! length of lists; leaves list all elements whose hulls meet their cell. A search descends from the node
+//! that a grid over the box names; where knots are evenly spread, that node is near the leaves.
 
 use super::domain::{Domain, is_right_or_on};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
 /// Cells with so few elements are not halved.
 const FEW: usize = 6;
@@ -35,7 +35,8 @@ pub(super) struct Hull {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// Where the cell is cut, the first child below, as bits; of a leaf, start and end of its list of elements.
+    /// Where the cell is cut, the first child below, as bits; of a leaf, start and end of its list of
+    /// elements.
     data: u64,
     axis: u32,
     /// The first of two children, or the number of the leaf.
@@ -57,7 +58,7 @@ impl Node {
     }
 }
 
-/// What a leaf lists but for elements.
+/// The lines of a leaf, and whether it is outside of the domain.
 #[derive(Debug, Clone, Copy, Default)]
 struct Leaf {
     lines: [u32; 2],
@@ -98,8 +99,8 @@ struct Halves {
     elements: [Vec<u32>; 2],
 }
 
-/// What a tree is made over.
-struct Ground<'a> {
+/// The hulls and the domain that a tree is built for.
+struct TreeInput<'a> {
     hulls: &'a [Hull],
     domain: &'a Domain,
 }
@@ -112,7 +113,7 @@ impl Tree {
         let (elements, lines) = ((0..hulls.len() as u32).collect(), (0..domain.lines.len() as u32).collect());
         let mut root = Cell { node: 0, lower, upper, elements, lines, is_outside: domain.is_empty };
         root.keep_lines(domain);
-        tree.grow(&Ground { hulls, domain }, root, ENTRIES_MAX * (hulls.len() + FEW), 0);
+        tree.grow(&TreeInput { hulls, domain }, root, ENTRIES_MAX * (hulls.len() + FEW), 0);
         tree.set_grid();
         tree
     }
@@ -189,12 +190,12 @@ impl Tree {
         lists + std::mem::size_of_val(&self.nodes[..]) + std::mem::size_of_val(&self.leaves[..])
     }
 
-    /// Makes nodes for a cell, whose leaves shall not have more entries than `room` together.
-    fn grow(&mut self, ground: &Ground, cell: Cell, room: usize, level: usize) {
-        let halves = if level < LEVELS_MAX { cell.halves(ground.hulls) } else { None };
+    /// Builds the nodes of a cell; the lists of its leaves have at most `entries_max` entries in total.
+    fn grow(&mut self, input: &TreeInput, cell: Cell, entries_max: usize, level: usize) {
+        let halves = if level < LEVELS_MAX { cell.halves(input.hulls) } else { None };
         let Some(Halves { axis, cut, elements }) = halves else { return self.close(cell) };
         let counts = [elements[0].len(), elements[1].len()];
-        if counts[0] + counts[1] > room {
+        if counts[0] + counts[1] > entries_max {
             return self.close(cell);
         }
         let next = self.nodes.len();
@@ -213,9 +214,9 @@ impl Tree {
         let parts: Vec<Cell> = parts.collect();
         drop(cell);
         for mut part in parts {
-            part.keep_lines(ground.domain);
-            let share = room as f64 * part.elements.len() as f64 / (counts[0] + counts[1]) as f64;
-            self.grow(ground, part, share as usize, level + 1);
+            part.keep_lines(input.domain);
+            let share = entries_max as f64 * part.elements.len() as f64 / (counts[0] + counts[1]) as f64;
+            self.grow(input, part, share as usize, level + 1);
         }
     }
 
@@ -239,7 +240,7 @@ impl Cell {
         }
         let corners = self.corners();
         let is_beyond = |&[p, q]: &[Point2; 2]| {
-            let mut predicates = TotalPredicates::default();
+            let mut predicates = FiniteFloatPredicates::default();
             corners.iter().all(|&corner| predicates.orient2d(p, q, corner) == Sign::Positive)
         };
         self.lines.retain(|&line| {
@@ -293,7 +294,7 @@ impl Cell {
         let mut elements = [Vec::new(), Vec::new()];
         for &at in &self.elements {
             let hull = &hulls[at as usize];
-            // What meets the cell and is on one side of the cut meets that half, and no other.
+            // An element that meets the cell on one side of the cut meets only that half.
             match hull.side(axis, cut) {
                 Some(half) => elements[half].push(at),
                 None => {

@@ -1,16 +1,16 @@
 //! A pass over observations in blocks of a fixed size, several at a time.
 //!
-//! Blocks are cut by the numbers of observations, whatever batches their source hands out, and what is made of blocks comes
-//! back in their order. So no result depends on the number of threads.
+//! Blocks are cut by the numbers of observations, independently of the batches of the source, and results of
+//! blocks return in order. So no result depends on the number of threads.
 
 use super::observations::{Observation, Observations};
 use spmesh_core::error::Result;
+use spmesh_core::parallel;
 use std::num::NonZeroUsize;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Observations in a block.
-pub(super) const BLOCK: usize = 1 << 13;
-/// Blocks per thread that are read before they are worked on: memory of a pass is that many.
+const BLOCK: usize = 1 << 13;
+/// Blocks per thread that are read ahead, which bounds the memory of a pass.
 const BLOCKS_PER_THREAD: usize = 4;
 
 /// Consecutive observations.
@@ -28,10 +28,11 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Reads all observations; `map` makes something of each block, in any thread, and `take` gets what was made of some
-/// consecutive blocks, in order.
+/// Reads all observations. `map` processes each block in any thread; `take` receives the results of
+/// consecutive blocks in order.
 ///
-/// Errors: those of the source, of `map` and of `take`; observations that are none.
+/// # Errors
+/// Those of the source, of `map` and of `take`; malformed, if an observation is invalid.
 pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     observations: &O,
     threads: NonZeroUsize,
@@ -49,11 +50,11 @@ pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
             .zip(buffer[..whole].chunks(BLOCK))
             .map(|(first, observations)| Block { first, observations })
             .collect();
-        let made = in_parallel(threads, blocks.len(), |at| {
-            blocks[at].numbered().try_for_each(|(index, observation)| observation.check(index))?;
-            map(blocks[at])
+        let made = parallel::map(threads, blocks, |block| {
+            block.numbered().try_for_each(|(index, observation)| observation.check(index))?;
+            map(block)
         });
-        take(made.into_iter().collect::<Result<Vec<T>>>()?)?;
+        take(made?)?;
         if is_last {
             return Ok(());
         }
@@ -62,7 +63,7 @@ pub(super) fn for_each_round<O: Observations + ?Sized, T: Send>(
     }
 }
 
-/// Appends until there are `enough`; whether that was all.
+/// Appends until there are `enough`; returns whether the source has ended.
 fn fill<T>(
     buffer: &mut Vec<T>,
     enough: usize,
@@ -76,42 +77,6 @@ fn fill<T>(
         }
     }
     Ok(false)
-}
-
-/// What `make` gives for the numbers below `count`, in order.
-pub(super) fn in_parallel<T: Send>(
-    threads: NonZeroUsize,
-    count: usize,
-    make: impl Fn(usize) -> T + Sync,
-) -> Vec<T> {
-    let threads = threads.get().min(count);
-    if threads <= 1 {
-        return (0..count).map(make).collect();
-    }
-    let next = AtomicUsize::new(0);
-    let worker = || {
-        let mut made = Vec::new();
-        loop {
-            let at = next.fetch_add(1, Ordering::Relaxed);
-            if at >= count {
-                return made;
-            }
-            made.push((at, make(at)));
-        }
-    };
-    let mut all: Vec<(usize, T)> = std::thread::scope(|scope| {
-        let others: Vec<_> = (1..threads).map(|_| scope.spawn(worker)).collect();
-        let mut all = worker();
-        for other in others {
-            match other.join() {
-                Ok(made) => all.extend(made),
-                Err(panic) => std::panic::resume_unwind(panic),
-            }
-        }
-        all
-    });
-    all.sort_unstable_by_key(|&(at, _)| at);
-    all.into_iter().map(|(_, made)| made).collect()
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! The thin-plate energy of splines: the integral of f_xx^2 + 2 f_xy^2 + f_yy^2 over the domain.
 //!
-//! Second derivatives count where they exist. Functions may have edges, along creases, linear elements and collinear knots, and
-//! on the borders between grids: folding them costs nothing, which is what creases are for. (So it is along any edge between two
-//! knots that are pulled apart: one that cuts off a corner of the border lets the corner fold, and then planes are not all that
-//! has no energy.)
+//! Second derivatives count where they exist. Functions may have edges along creases, linear elements and
+//! collinear knots, and on the borders between grids: folds there have no energy, which is the purpose of
+//! creases. (The same holds along any edge between two knots that are pulled apart: an edge that cuts off a
+//! corner of the border lets the corner fold, and then functions other than planes have zero energy.)
 //!
-//! For degree 2 the matrix is exact but for rounding, and for triangles that are almost flat: second derivatives are constants on
-//! triangles (`spline::basis::bends`), and what any two triangles have in common is a polygon with an area. For other degrees it is
-//! a quadrature on parts of the triangles of a Delaunay triangulation of the knots, which is not exact, as functions have other
-//! borders than these.
+//! For degree 2 the matrix is exact but for rounding, and for triangles that are almost flat: second
+//! derivatives are constants on triangles (`spline::basis::bends`), and what any two triangles have in common
+//! is a polygon with an area. For other degrees it is a quadrature on parts of the triangles of a Delaunay
+//! triangulation of the knots, which is not exact, as functions have other borders than these.
 
 use super::overlaps::{self, Rectangle};
 use super::polygon::{self, Clipper, Polygon};
@@ -19,12 +19,14 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2;
 use spmesh_geometry::predicates::Point2;
 
-/// Triangles whose area is a lesser part of the square of their longest side are left out. Three knots in line, but for rounding
-/// errors, make second derivatives so great on so little an area that nothing is known of their energy; it is that of a fold.
+/// Triangles whose area is a lesser part of the square of their longest side are left out. Three knots in
+/// line, but for rounding errors, make second derivatives so great on so little an area that nothing is known
+/// of their energy; it is that of a fold.
 const AREA_MIN: f64 = 1e-6;
 /// Each triangle of knots is divided into the square of this number of triangles for quadrature.
 const DIVISIONS: usize = 4;
-/// A rule of degree 4 on triangles: barycentric coordinate of two of three points, and weight (Dunavant 1985).
+/// A rule of degree 4 on triangles: barycentric coordinate of two of three points, and weight (Dunavant
+/// 1985).
 const RULE: [(f64, f64); 2] = [
     (0.445_948_490_915_964_9, 0.223_381_589_678_011_47),
     (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
@@ -34,9 +36,10 @@ const RULE: [(f64, f64); 2] = [
 ///
 /// Units: those of c squared over an area.
 ///
-/// Errors: a degree without second derivatives; a domain without an area.
-///
 /// Cost: for degree 2, about 100 polygons per function.
+///
+/// # Errors
+/// A degree without second derivatives; a domain without an area.
 pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
     if basis.degree() < 2 {
         let what = format!("splines of degree {} cannot be smoothed: degree 2 can", basis.degree());

@@ -1,8 +1,8 @@
-//! Triangulated points: which triangle a place is in, and values between points.
+//! Triangulated points: location, and linear interpolation.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, area};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
 /// The Delaunay triangulation of points.
 #[derive(Debug)]
@@ -14,7 +14,8 @@ pub struct Mesh {
 impl Mesh {
     /// Of points that are not all on one line; of those at one place the first counts.
     ///
-    /// Errors: coordinates that are not finite; no triangle.
+    /// # Errors
+    /// Coordinates that are not finite; no triangle.
     pub fn of(points: Vec<Point2>) -> Result<Mesh> {
         let triangulation = delaunay2::triangulate(&points)?;
         if triangulation.triangles().is_empty() {
@@ -49,7 +50,7 @@ impl Mesh {
         self.vertices(triangle).map(|vertex| self.points[vertex as usize])
     }
 
-    /// The edges of a triangle that nothing is beyond.
+    /// The edges of a triangle on the border.
     pub(super) fn border_edges(&self, triangle: u32) -> impl Iterator<Item = [Point2; 2]> {
         let corners = self.corners(triangle);
         self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))
@@ -62,16 +63,16 @@ impl Mesh {
 
     fn sides(&self, triangle: u32, is_inner: bool) -> impl Iterator<Item = [usize; 2]> {
         let triangle = &self.triangulation.triangles()[triangle as usize];
-        let is_wanted = move |side: &usize| triangle.across(*side).is_some() == is_inner;
+        let is_wanted = move |side: &usize| triangle.neighbour(*side).is_some() == is_inner;
         (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
     }
 
     /// A triangle that contains x, if any does: the walk starts at `near`, which becomes the triangle.
     ///
-    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to a triangle whose circle
-    /// has less power at x (Edelsbrunner 1990).
+    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to
+    /// a triangle whose circle has less power at x (Edelsbrunner 1990).
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
-        let mut predicates = TotalPredicates::default();
+        let mut predicates = FiniteFloatPredicates::default();
         loop {
             let triangle = &self.triangulation.triangles()[*near as usize];
             let beyond = (0..3).find(|&side| {
@@ -80,16 +81,17 @@ impl Mesh {
                 predicates.orient2d(a, b, x) == Sign::Negative
             });
             match beyond {
-                Some(side) => *near = triangle.across(side)?.triangle,
+                Some(side) => *near = triangle.neighbour(side)?.triangle,
                 None => return Some(*near),
             }
         }
     }
 
-    /// The value at x of the function that is linear on triangles and has these values at points; nothing outside of the hull.
+    /// The value at x of the function that is linear on triangles and has these values at points; nothing
+    /// outside of the hull.
     ///
-    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if there are fewer values than
-    /// points, or no such triangle.
+    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if
+    /// there are fewer values than points, or no such triangle.
     #[must_use]
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;

@@ -1,52 +1,60 @@
-//! Fitting of splines to observations.
+//! Fits of splines to observations.
 //!
-//! [`interpolate`] passes through values at Greville sites; everything else is least squares of scattered
-//! [`Observations`], which are read as often as needed and never held: [`Normal`] equations have the size of the basis.
-//! [`Equations`] solves them, smoothed by an energy ([`bending`]) that is that of a thin plate for the most part; `choice` finds out
-//! how much.
+//! [`interpolate`] passes through values at Greville sites. All other fits are least squares of scattered
+//! [`Observations`], which are read as often as needed and never held: [`NormalEquations`] have the size of
+//! the basis. [`Equations`] solves them, smoothed by an energy ([`bending`]), mostly that of a thin plate.
+//! [`generalised_cross_validation`] and [`Folds`] choose how much to smooth. [`robust()`] reduces the weight
+//! of gross errors, and [`refine()`] also finds the knots.
 //!
-//! [`robust()`] weighs observations by their residuals, so that gross errors do not count, and [`refine()`] finds the knots, too.
-//!
-//! `observations` and `elevations` are what is fitted, `blocks` reads it in parallel, `rows` and `symmetric` are matrices, `factor` is
-//! where they are factored, `trend` is what needs no solution, `energy` and `control` are what smooths, with `polygon` and `overlaps`;
-//! `spread` has medians, `mesh` and `cover` are knots with what is over them, `places` says where knots go, and `survey` what asks
-//! for them.
+//! | files | what they hold |
+//! |---|---|
+//! | `observations`, `blocks` | the data, and parallel passes over them |
+//! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
+//! | `trend` | the linear part of a fit, which is solved on its own |
+//! | `energy`, `overlaps`, `polygon`, `control_energy` | what smooths: the thin plate and the control mesh |
+//! | `cross_validation` | the choice of the smoothing parameter |
+//! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
+//! | `interpolation` | interpolation at Greville sites |
+//! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
+//! | `goal`, `knot_placement`, `triangle_residuals`, `refine` | the search for knots |
 
 mod blocks;
-mod choice;
-mod control;
-mod cover;
+mod cholesky;
+mod control_energy;
+mod cross_validation;
 mod energy;
-mod factor;
+mod goal;
+mod interpolation;
+mod knot_placement;
 mod mesh;
-mod normal;
+mod normal_equations;
 mod observations;
 mod overlaps;
-mod places;
 mod polygon;
+mod quantile_sketch;
 mod refine;
 mod residuals;
 mod robust;
 mod rows;
-mod sites;
 mod solve;
-mod spread;
-mod survey;
+mod spline_space;
 mod symmetric;
 mod trend;
+mod triangle_residuals;
 
-pub use choice::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
-pub use control::{bending, control_bending};
-pub use cover::Cover;
+pub use control_energy::{bending, control_bending};
+pub use cross_validation::{Choice, Folds, Trial, degrees_of_freedom, generalised_cross_validation};
 pub use energy::thin_plate;
+pub use goal::{Goal, Round};
+pub use interpolation::{Interpolation, interpolate};
+pub use knot_placement::{KNOTS_MIN, grid_knots};
 pub use mesh::Mesh;
-pub use normal::Normal;
+pub use normal_equations::NormalEquations;
 pub use observations::{Observation, ObservationReader, Observations};
-pub use places::{KNOTS_MIN, even_places};
-pub use refine::{Goal, Refined, Round, refine};
+pub use quantile_sketch::QuantileSketch;
+pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust, robust_from};
-pub use sites::{Interpolation, interpolate};
 pub use solve::{Equations, Undetermined, least_squares};
-pub use spread::Spread;
+pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;

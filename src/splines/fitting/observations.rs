@@ -3,6 +3,9 @@
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
+/// Observations that a list hands out at a time.
+const BATCH: usize = 1 << 13;
+
 /// A value at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
@@ -21,7 +24,7 @@ impl Observation {
         Observation { point, value, weight: 1.0 }
     }
 
-    /// Refuses what is no observation; `index` is its number.
+    /// Refuses invalid observations; `index` is the number of this one.
     pub(super) fn check(&self, index: u64) -> Result<()> {
         let refuse = |what: String| Err(Error::malformed(what).at(format!("observation {index}")));
         if !self.point.iter().all(|coordinate| coordinate.is_finite()) {
@@ -67,14 +70,14 @@ impl Observations for Vec<Observation> {
     }
 }
 
-/// What is left of a list.
+/// The unread rest of a list.
 struct Listed<'a> {
     rest: &'a [Observation],
 }
 
 impl ObservationReader for Listed<'_> {
     fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
-        let (next, rest) = self.rest.split_at(self.rest.len().min(super::blocks::BLOCK));
+        let (next, rest) = self.rest.split_at(self.rest.len().min(BATCH));
         observations.extend_from_slice(next);
         self.rest = rest;
         Ok(())

@@ -4,7 +4,7 @@ use spmesh_geometry::predicates::Point2;
 
 /// Up to this number of boxes, each is compared with each.
 const FEW: usize = 16;
-/// Halves that keep more than this part of the boxes are of no use.
+/// A cut is rejected if a half keeps more than this part of the boxes.
 const SHARE_MAX: f64 = 0.8;
 
 /// A box from lower left to upper right.
@@ -12,8 +12,8 @@ pub(super) type Rectangle = [Point2; 2];
 
 /// Calls `visit` once for each pair of different boxes that have a point in common, the lesser number first.
 ///
-/// The plane is halved at medians, again and again; a pair is that of the part that the lower left corner of what both have in
-/// common is in. Cost: O(n log n), and that of pairs.
+/// The plane is halved at medians recursively. A pair is reported by the part that contains the lower left
+/// corner of the common box. Cost: O(n log n), and that of pairs.
 pub(super) fn for_each_pair(boxes: &[Rectangle], visit: &mut impl FnMut(u32, u32)) {
     let all: Vec<u32> = (0..boxes.len() as u32).collect();
     Search { boxes, visit }.search(all, [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);

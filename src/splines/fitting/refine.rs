@@ -1,113 +1,68 @@
-//! Knots where they are needed: fits that add knots until residuals are small enough.
+//! The search for knots: fits that add knots until residuals are small enough.
 //!
-//! The knots begin as a coarse grid over the box of the data. Each round fits a spline, and looks for the greatest residual in
-//! each triangle of knots (`survey`). Where it is above the tolerance, a new knot about halfway between the place and the middle
-//! of the triangle: near to where it is needed, and away from knots and edges. Next to the border it is the middle of the border's
-//! edge instead (`places`).
+//! The knots begin as a coarse grid over the box of the data. Each round fits a spline, and looks for the
+//! greatest residual in each triangle of knots (`triangle_residuals`). Where it is above the tolerance, a new
+//! knot is placed about halfway between the residual and the middle of the triangle: close to the residual,
+//! and away from knots and edges. Next to the border, the knot is the middle of the border edge instead
+//! (`knot_placement`).
 
-use super::control::bending;
-use super::cover::Cover;
-use super::normal::Normal;
+use super::control_energy::bending;
+use super::goal::{Goal, Round};
+use super::knot_placement::{bounds, break_border_chords, first_grid};
+use super::normal_equations::NormalEquations;
 use super::observations::Observations;
-use super::places::{KNOTS_MIN, bounds, first_places, settled};
-use super::robust::{Loss, ROUNDS_FEW, Rounds};
+use super::robust::{ROUNDS_FEW, Rounds};
 use super::solve::Equations;
-use super::survey::Survey;
-use spmesh_core::error::{Error, Result};
+use super::spline_space::SplineSpace;
+use super::triangle_residuals::TriangleResiduals;
+use spmesh_core::error::Result;
 use std::num::NonZeroUsize;
-
-/// When to stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Goal {
-    /// Greatest magnitude of residuals that is good enough. Units: those of values.
-    pub tolerance: f64,
-    /// Most places of knots: copies on the border do not count.
-    pub max_knots: usize,
-    /// The factor of the energy, in units of [`Normal::halving`]: not zero, so that gaps in the data are bridged.
-    pub smoothing: f64,
-    /// What residuals cost, if not their squares.
-    pub loss: Option<Loss>,
-}
-
-impl Goal {
-    /// A goal with as much smoothing as observations can bear.
-    #[must_use]
-    pub fn new(tolerance: f64, max_knots: usize) -> Goal {
-        Goal { tolerance, max_knots, smoothing: 1.0, loss: None }
-    }
-
-    fn check(&self) -> Result<()> {
-        if self.tolerance.is_nan() || self.tolerance <= 0.0 {
-            return Err(Error::usage(format!("tolerance {}: expected a number above zero", self.tolerance)));
-        }
-        if self.max_knots < KNOTS_MIN {
-            return Err(Error::usage(format!("{} knots: {KNOTS_MIN} are needed at least", self.max_knots)));
-        }
-        if !(self.smoothing > 0.0 && self.smoothing.is_finite()) {
-            let what = format!("smoothing {}: expected a finite number above zero", self.smoothing);
-            return Err(Error::usage(what));
-        }
-        Ok(())
-    }
-}
-
-/// One round in numbers.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Round {
-    /// Places of knots.
-    pub knots: usize,
-    /// Functions.
-    pub functions: usize,
-    /// Greatest magnitude of residuals.
-    pub greatest: f64,
-    /// Root of the mean square of residuals.
-    pub root_mean_square: f64,
-    /// Number of residuals above the tolerance, but for rejected observations.
-    pub above: u64,
-}
 
 /// A spline with knots of its own.
 #[derive(Debug)]
 pub struct Refined {
     /// Knots and functions.
-    pub cover: Cover,
+    pub space: SplineSpace,
     /// Coefficients.
     pub coefficients: Vec<f64>,
     /// All rounds; the last one is that of the result.
     pub rounds: Vec<Round>,
-    /// Whether all residuals are within the tolerance, but for rejected observations. If not, knots were used up, or there were too
-    /// few observations to add more.
+    /// Whether all residuals are within the tolerance, but for rejected observations. If not, knots were used
+    /// up, or there were too few observations to add more.
     pub is_reached: bool,
 }
 
 /// Fits a spline with as many knots as a goal takes.
 ///
-/// Errors: goals that make no sense; observations in no area; those of [`Normal::of`] and [`Equations::solve`].
+/// Cost: two passes over the observations for each round, of which there are about ten; with a loss, ten
+/// times as many.
 ///
-/// Cost: two passes over the observations for each round, of which there are about ten; with a loss, ten times as many.
+/// # Errors
+/// Goals out of range; observations without an area; those of [`NormalEquations::of`] and
+/// [`Equations::solve`].
 pub fn refine<O: Observations + ?Sized>(
     observations: &O,
     goal: &Goal,
     threads: NonZeroUsize,
 ) -> Result<Refined> {
     goal.check()?;
-    let first = first_places(bounds(observations)?);
-    let middles = settled(&first, Vec::new(), goal.max_knots - first.len())?;
+    let first = first_grid(bounds(observations)?);
+    let middles = break_border_chords(&first, Vec::new(), goal.max_knots - first.len())?;
     let mut places = [first, middles].concat();
     let mut rounds = Vec::new();
     loop {
-        let cover = Cover::of(places)?;
-        let Solution { coefficients, limit } = Solution::of(&cover, observations, goal, threads)?;
-        let survey = Survey::of(&cover, &coefficients, limit, observations, goal, threads)?;
-        rounds.push(survey.round);
-        let is_reached = survey.round.above == 0;
-        let wanted = if is_reached { Vec::new() } else { survey.knots(&cover.mesh, goal) };
-        let room = goal.max_knots.saturating_sub(cover.mesh.points().len());
-        let added = settled(cover.mesh.points(), wanted, room)?;
+        let space = SplineSpace::of(places)?;
+        let Solution { coefficients, limit } = Solution::of(&space, observations, goal, threads)?;
+        let by_triangle = TriangleResiduals::of(&space, &coefficients, limit, observations, goal, threads)?;
+        rounds.push(by_triangle.round);
+        let is_reached = by_triangle.round.above == 0;
+        let wanted = if is_reached { Vec::new() } else { by_triangle.knots(&space.mesh, goal) };
+        let added_max = goal.max_knots.saturating_sub(space.mesh.points().len());
+        let added = break_border_chords(space.mesh.points(), wanted, added_max)?;
         if added.is_empty() {
-            return Ok(Refined { cover, coefficients, rounds, is_reached });
+            return Ok(Refined { space, coefficients, rounds, is_reached });
         }
-        places = cover.mesh.points().to_vec();
+        places = space.mesh.points().to_vec();
         places.extend(added);
     }
 }
@@ -121,15 +76,15 @@ struct Solution {
 
 impl Solution {
     fn of<O: Observations + ?Sized>(
-        cover: &Cover,
+        space: &SplineSpace,
         observations: &O,
         goal: &Goal,
         threads: NonZeroUsize,
     ) -> Result<Solution> {
-        let normal = Normal::of(&cover.basis, observations, threads)?;
-        let energy = bending(&cover.basis)?;
-        let (basis, energy) = (&cover.basis, Some(&energy));
-        let lambda = goal.smoothing * normal.halving(basis);
+        let normal = NormalEquations::of(&space.basis, observations, threads)?;
+        let energy = bending(&space.basis)?;
+        let (basis, energy) = (&space.basis, Some(&energy));
+        let lambda = goal.smoothing * normal.default_lambda(basis);
         let Some(loss) = goal.loss else {
             let coefficients = Equations::new(basis, &normal, energy)?.solve(lambda)?;
             return Ok(Solution { coefficients, limit: f64::INFINITY });

@@ -1,4 +1,4 @@
-//! What a spline leaves of observations.
+//! Residuals of observations.
 
 use super::blocks::{self, Block};
 use super::observations::Observations;
@@ -43,7 +43,8 @@ pub(super) fn value(coefficients: &[f64], alive: &[(u32, f64)]) -> f64 {
 
 /// Calls `visit` with all residuals in the domain, in order; the number of observations outside.
 ///
-/// Errors: those of the source; another number of coefficients than functions.
+/// # Errors
+/// Those of the source; another number of coefficients than functions.
 pub fn for_each_residual<O: Observations + ?Sized>(
     basis: &Basis,
     coefficients: &[f64],
@@ -77,7 +78,8 @@ pub fn for_each_residual<O: Observations + ?Sized>(
 
 /// Residuals in numbers: one pass.
 ///
-/// Errors: those of [`for_each_residual`].
+/// # Errors
+/// Those of [`for_each_residual`].
 pub fn summarise<O: Observations + ?Sized>(
     basis: &Basis,
     coefficients: &[f64],

@@ -1,10 +1,10 @@
-//! Fits that gross errors do not pull: least squares with weights that depend on residuals, again and again.
+//! Robust fits: iteratively reweighted least squares, so that gross errors count little or not at all.
 
-use super::normal::{Normal, Parts, Weighed};
+use super::normal_equations::{NormalEquations, Parts, Weighed};
 use super::observations::Observations;
+use super::quantile_sketch::QuantileSketch;
 use super::residuals::{self, Residual};
 use super::solve::Equations;
-use super::spread::Spread;
 use super::symmetric::Symmetric;
 use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
@@ -12,7 +12,8 @@ use std::num::NonZeroUsize;
 
 /// Where Huber's loss becomes linear, in standard deviations: 95 % efficient for normal errors.
 const HUBER: f64 = 1.345;
-/// Where Tukey's loss becomes constant: 95 % efficient, too. Observations beyond are *rejected*, for either loss.
+/// Where Tukey's loss becomes constant: 95 % efficient, too. Observations beyond are *rejected*, for either
+/// loss.
 const TUKEY: f64 = 4.685;
 /// Standard deviations in a median of magnitudes, for normal errors.
 const DEVIATIONS: f64 = 1.482_602_218_505_602;
@@ -22,15 +23,18 @@ const SCALE_MIN: f64 = 1e-12;
 const CHANGE_MAX: f64 = 1e-2;
 /// Rounds for one loss, at most...
 const ROUNDS_MAX: usize = 50;
-/// ...and where knots are added after it: coefficients may still change, but gross errors can be told from others.
+/// ...and where knots are added after it: coefficients may still change, but gross errors can be told from
+/// others.
 pub(super) const ROUNDS_FEW: usize = 6;
 
-/// What residuals cost.
+/// The loss function of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loss {
-    /// Squares near zero, then linear: convex, so that there is one best fit, which gross errors still pull a little.
+    /// Squares near zero, then linear: convex, so that there is one best fit, which gross errors still pull a
+    /// little.
     Huber,
-    /// Tukey's biweight: constant from 4.685 scales on, so that gross errors do not count at all. Huber's fit is the start.
+    /// Tukey's biweight: constant from 4.685 scales on, so that gross errors do not count at all. Huber's fit
+    /// is the start.
     Tukey,
 }
 
@@ -51,20 +55,22 @@ impl Loss {
 pub struct RobustFit {
     /// Coefficients of the spline.
     pub coefficients: Vec<f64>,
-    /// Standard deviation of an observation of weight one, from the median of the magnitudes of all residuals.
+    /// Standard deviation of an observation of weight one, from the median of the magnitudes of all
+    /// residuals.
     pub scale: f64,
     /// Passes over the observations, that of the normal equations included.
     pub passes: usize,
-    /// Whether coefficients did not change any more.
+    /// Whether coefficients settled.
     pub has_converged: bool,
 }
 
 /// Fits with a loss; `energy` is multiplied by `lambda`.
 ///
-/// Errors: those of [`Normal::of`] and [`Equations::solve`]; in particular, functions all of whose observations are rejected are
-/// not determined if nothing is smoothed.
-///
 /// Cost: a pass and a factorisation per round, about 10 rounds for a loss. Source: Holland and Welsch 1977.
+///
+/// # Errors
+/// Those of [`NormalEquations::of`] and [`Equations::solve`]; in particular, functions all of whose
+/// observations are rejected are not determined if nothing is smoothed.
 pub fn robust<O: Observations + ?Sized>(
     basis: &Basis,
     observations: &O,
@@ -73,15 +79,16 @@ pub fn robust<O: Observations + ?Sized>(
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<RobustFit> {
-    let plain = Normal::of(basis, observations, threads)?;
+    let plain = NormalEquations::of(basis, observations, threads)?;
     robust_from(&plain, basis, observations, loss, energy, lambda, threads)
 }
 
 /// The same from the normal equations of all observations, where they are known: a pass less.
 ///
-/// Errors: those of [`robust()`].
+/// # Errors
+/// Those of [`robust()`].
 pub fn robust_from<O: Observations + ?Sized>(
-    plain: &Normal,
+    plain: &NormalEquations,
     basis: &Basis,
     observations: &O,
     loss: Loss,
@@ -99,10 +106,11 @@ impl RobustFit {
         TUKEY * self.scale
     }
 
-    /// Calls `visit` with all rejected observations, in order: those whose residual, multiplied by the root of the weight, is
-    /// greater than 4.685 scales. One pass; the number of rejected ones.
+    /// Calls `visit` with all rejected observations, in order: those whose residual, multiplied by the root
+    /// of the weight, is greater than 4.685 scales. One pass; the number of rejected ones.
     ///
-    /// Errors: those of [`residuals::for_each_residual`].
+    /// # Errors
+    /// Those of [`residuals::for_each_residual`].
     pub fn rejected<O: Observations + ?Sized>(
         &self,
         basis: &Basis,
@@ -121,7 +129,7 @@ impl RobustFit {
     }
 }
 
-/// What all rounds have in common.
+/// The inputs that all rounds share.
 pub(super) struct Rounds<'a, O: ?Sized> {
     pub(super) basis: &'a Basis,
     pub(super) observations: &'a O,
@@ -135,8 +143,9 @@ pub(super) struct Rounds<'a, O: ?Sized> {
 impl<O: Observations + ?Sized> Rounds<'_, O> {
     /// Fits with a loss, from the normal equations of all observations.
     ///
-    /// Errors: those of [`robust()`].
-    pub(super) fn fit(&self, loss: Loss, plain: &Normal) -> Result<RobustFit> {
+    /// # Errors
+    /// Those of [`robust()`].
+    pub(super) fn fit(&self, loss: Loss, plain: &NormalEquations) -> Result<RobustFit> {
         let coefficients = self.solve(plain)?;
         let scale_min = (SCALE_MIN * (plain.square / plain.weight).sqrt()).max(f64::MIN_POSITIVE);
         let scale = self.scale(&coefficients, scale_min)?;
@@ -148,7 +157,8 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(found)
     }
 
-    /// Rounds with one loss. A round weighs with the scale that the round before has seen, and measures the next one.
+    /// Rounds with one loss. A round weighs with the scale that the round before has seen, and measures the
+    /// next one.
     fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
         fit.has_converged = false;
         for _ in 0..self.most {
@@ -171,8 +181,8 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
     }
 
     /// The equations with weights of residuals, and the scale of these.
-    fn weighted(&self, fit: &RobustFit, loss: Loss) -> Result<(Normal, f64)> {
-        let mut spread = Spread::default();
+    fn weighted(&self, fit: &RobustFit, loss: Loss) -> Result<(NormalEquations, f64)> {
+        let mut sketch = QuantileSketch::default();
         let parts = Parts::of(
             self.basis,
             self.observations,
@@ -185,27 +195,27 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
                 let weight = observation.weight * loss.factor(residual.abs() / fit.scale);
                 Weighed { weight, residual: (observation.weight > 0.0).then_some(residual) }
             },
-            |residual| spread.add(residual),
+            |residual| sketch.add(residual),
         )?;
-        Ok((parts.sum(|_| true), scale_of(&spread)?))
+        Ok((parts.sum(|_| true), scale_of(&sketch)?))
     }
 
     fn scale(&self, coefficients: &[f64], scale_min: f64) -> Result<f64> {
-        let mut spread = Spread::default();
+        let mut sketch = QuantileSketch::default();
         residuals::for_each_residual(self.basis, coefficients, self.observations, self.threads, |found| {
             if found.weight > 0.0 {
-                spread.add(found.residual * found.weight.sqrt());
+                sketch.add(found.residual * found.weight.sqrt());
             }
         })?;
-        Ok(scale_of(&spread)?.max(scale_min))
+        Ok(scale_of(&sketch)?.max(scale_min))
     }
 
-    fn solve(&self, normal: &Normal) -> Result<Vec<f64>> {
+    fn solve(&self, normal: &NormalEquations) -> Result<Vec<f64>> {
         Equations::new(self.basis, normal, self.energy)?.solve(self.lambda)
     }
 }
 
-fn scale_of(spread: &Spread) -> Result<f64> {
-    let median = spread.median().ok_or_else(|| Error::usage("no observations: nothing can be fitted"))?;
+fn scale_of(sketch: &QuantileSketch) -> Result<f64> {
+    let median = sketch.median().ok_or_else(|| Error::usage("no observations: nothing can be fitted"))?;
     Ok(DEVIATIONS * median)
 }

@@ -26,7 +26,8 @@ impl Rows {
 
     /// Adds `factor` times the values in `entries`, which are in order of columns, to a row.
     ///
-    /// A row has few columns, which neighbours in the list of entries have next to each other: a walk finds them.
+    /// A row has few columns, which neighbours in the list of entries have next to each other: a walk finds
+    /// them.
     #[inline]
     pub(super) fn add(&mut self, row: usize, part: usize, factor: f64, entries: &[(u32, f64)]) {
         let Row { columns, values } = &mut self.rows[row];

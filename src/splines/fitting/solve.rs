@@ -1,8 +1,8 @@
-//! Coefficients from normal equations, smoothed or not.
+//! Coefficients from normal equations, with or without smoothing.
 
-use super::control::bending;
-use super::factor::{Elimination, Factor};
-use super::normal::Normal;
+use super::cholesky::{Elimination, Factor};
+use super::control_energy::bending;
+use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
 use super::trend::trend;
@@ -18,19 +18,19 @@ pub struct Undetermined {
     pub function: usize,
     /// Its Greville site.
     pub site: Point2,
-    /// How much equations change, relative to their diagonal, along the direction that it is not determined in: about 1e-13, or
-    /// zero without any observation.
+    /// How much equations change, relative to their diagonal, along the direction that it is not determined
+    /// in: about 1e-13, or zero without any observation.
     pub curvature: f64,
 }
 
 /// A penalised least squares problem: (A'WA + lambda E) c = A'Wz for all `lambda`.
 ///
-/// E is the thin-plate energy, or whatever is given in its place. With the weights one over variances and `lambda` one, c'Ec is
-/// taken for a priori knowledge; a greater `lambda` makes smoother splines, up to the plane of least squares.
+/// E is the thin-plate energy or another energy. If weights are one over variances and `lambda` is one, c'Ec
+/// acts as prior knowledge; a greater `lambda` makes smoother splines, up to the plane of least squares.
 #[derive(Debug)]
 pub struct Equations<'a> {
     basis: &'a Basis,
-    normal: &'a Normal,
+    normal: &'a NormalEquations,
     energy: Option<&'a Symmetric>,
     elimination: Elimination,
     /// Coefficients of the linear function that is nearest to the observations.
@@ -42,8 +42,13 @@ pub struct Equations<'a> {
 impl<'a> Equations<'a> {
     /// The problem of a basis; `energy` may be missing for a `lambda` of zero.
     ///
-    /// Errors: no observation in the domain; matrices of another basis; not enough memory.
-    pub fn new(basis: &'a Basis, normal: &'a Normal, energy: Option<&'a Symmetric>) -> Result<Equations<'a>> {
+    /// # Errors
+    /// No observation in the domain; matrices of another basis; not enough memory.
+    pub fn new(
+        basis: &'a Basis,
+        normal: &'a NormalEquations,
+        energy: Option<&'a Symmetric>,
+    ) -> Result<Equations<'a>> {
         let found = normal.matrix.len();
         if found != basis.len() || energy.is_some_and(|energy| energy.len() != found) {
             return Err(Error::usage(format!(
@@ -64,14 +69,15 @@ impl<'a> Equations<'a> {
 
     /// The normal equations.
     #[must_use]
-    pub fn normal(&self) -> &Normal {
+    pub fn normal(&self) -> &NormalEquations {
         self.normal
     }
 
     /// The coefficients for a `lambda`.
     ///
-    /// Errors: functions that are not determined, with their number and the place of the first; a `lambda` that is negative, or
-    /// not finite, or not zero without an energy.
+    /// # Errors
+    /// Functions that are not determined, with their number and the place of the first; a `lambda` that is
+    /// negative, or not finite, or not zero without an energy.
     pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
         self.with_factor(lambda, |factor| {
             self.check(factor, lambda)?;
@@ -83,15 +89,18 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// All functions that are not determined, in order; several that depend on each other have all but one listed.
+    /// All functions that are not determined, in order; several that depend on each other have all but one
+    /// listed.
     ///
-    /// Errors: a `lambda` as in [`Equations::solve`].
+    /// # Errors
+    /// A `lambda` as in [`Equations::solve`].
     pub fn undetermined(&self, lambda: f64) -> Result<Vec<Undetermined>> {
         self.with_factor(lambda, |factor| Ok(self.named(factor)))
     }
 
-    /// A `lambda` that makes observations and energy count alike, for the median of functions: a unit without dimensions for all
-    /// others. It is zero without an energy. (Traces would be those of the few functions with knots near lines, which are stiff.)
+    /// A `lambda` that makes observations and energy count alike, for the median of functions: a unit without
+    /// dimensions for all others. It is zero without an energy. (Traces would be those of the few functions
+    /// with knots near lines, which are stiff.)
     #[must_use]
     pub fn unit(&self) -> f64 {
         let Some(energy) = self.energy else { return 0.0 };
@@ -166,14 +175,15 @@ impl<'a> Equations<'a> {
 
 /// Coefficients of the spline that is nearest to observations, for a given `lambda`: one pass.
 ///
-/// Errors: those of [`Normal::of`], [`bending`] and [`Equations::solve`].
+/// # Errors
+/// Those of [`NormalEquations::of`], [`bending`] and [`Equations::solve`].
 pub fn least_squares<O: Observations + ?Sized>(
     basis: &Basis,
     observations: &O,
     lambda: f64,
     threads: NonZeroUsize,
 ) -> Result<Vec<f64>> {
-    let normal = Normal::of(basis, observations, threads)?;
+    let normal = NormalEquations::of(basis, observations, threads)?;
     let energy = if lambda > 0.0 { Some(bending(basis)?) } else { None };
     Equations::new(basis, &normal, energy.as_ref())?.solve(lambda)
 }

@@ -1,16 +1,19 @@
 //! The linear function that is nearest to observations.
 //!
-//! Linear functions do not bend, so that the smoothest splines are near to one, and a great `lambda` times the rounding errors of
-//! its bend would be more than all observations say. So it is found by itself, and equations are solved for the rest.
+//! Linear functions do not bend, so that the smoothest splines are near to one. A great `lambda` times the
+//! rounding errors of its bending would outweigh all observations. So the linear part is computed on its own,
+//! and the equations are solved for the rest.
 
-use super::normal::Normal;
+use super::normal_equations::NormalEquations;
 use crate::bases::Basis;
 
-/// Directions whose part of a diagonal is less than this are left out: observations on a line have no slope across it.
+/// Directions whose part of a diagonal is less than this are left out: observations on a line have no slope
+/// across it.
 const PIVOT_MIN: f64 = 1e-9;
 
-/// Coefficients of the linear function that is nearest to the observations: linear themselves, by Greville sites.
-pub(super) fn trend(basis: &Basis, normal: &Normal) -> Vec<f64> {
+/// Coefficients of the linear function that is nearest to the observations: linear themselves, by Greville
+/// sites.
+pub(super) fn trend(basis: &Basis, normal: &NormalEquations) -> Vec<f64> {
     let columns = linear_functions(basis);
     let products: Vec<Vec<f64>> = columns.iter().map(|column| normal.matrix.times(column)).collect();
     let mut rows = [[0.0; 4]; 3];

@@ -17,12 +17,11 @@ pub(super) struct Waiting {
 }
 
 impl<W: Write> StreamWriter<W> {
-    /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. Blocks come out cut
-    /// as lengths have it, whatever the cuts of `block`.
+    /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. Blocks
+    /// are cut by their length, independently of the cuts of `block`.
     ///
     /// # Errors
-    /// If degrees, interior sets or boundaries do not follow each other, or name knots that there are not; or if writing
-    /// fails.
+    /// Malformed, if degrees, interior sets or boundaries are out of order or name unknown knots; I/O.
     pub fn configurations(&mut self, block: &ConfigurationBlock) -> Result<()> {
         self.flush_points()?;
         self.configuration_rules.block(block, self.totals.points)?;
@@ -43,19 +42,19 @@ impl<W: Write> StreamWriter<W> {
         while let (false, Some(Waiting { block, .. })) = (rest.is_empty(), &mut self.waiting) {
             let is_open = block.last_interior() == Some(interior);
             let words = block.words() + if is_open { 0 } else { interior.len() + 1 };
-            let room = WORDS.saturating_sub(words) / 3;
-            if room == 0 {
+            let capacity = WORDS.saturating_sub(words) / 3;
+            if capacity == 0 {
                 self.flush_configurations()?;
                 continue;
             }
-            let (now, later) = rest.split_at(room.min(rest.len()));
+            let (now, later) = rest.split_at(capacity.min(rest.len()));
             block.push(interior, now);
             rest = later;
         }
         Ok(())
     }
 
-    /// Writes what waits, and keeps the degree open.
+    /// Writes the buffered configurations, and keeps the degree open.
     pub(super) fn flush_configurations(&mut self) -> Result<()> {
         let Some(waiting) = &mut self.waiting else { return Ok(()) };
         if waiting.block.is_empty() && !waiting.is_news {

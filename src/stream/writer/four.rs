@@ -1,4 +1,4 @@
-//! Writes what is of four dimensions.
+//! Writes four-dimensional points, cells and simplices.
 
 use std::io::Write;
 
@@ -9,12 +9,12 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::{Cell4, Point4};
 
 impl<W: Write> StreamWriter<W> {
-    /// Appends points of four dimensions, with a value for each if the header says that points have one. Every NaN says
-    /// that a value is not known.
+    /// Appends points of four dimensions, with a value for each if the header says that points have one.
+    /// Every NaN says that a value is not known.
     ///
     /// # Errors
-    /// If a number is not finite, the points of a stream of cells are not sorted, there is not one value for each
-    /// point, or writing fails.
+    /// If a number is not finite, the points of a stream of cells are not sorted, there is not one value for
+    /// each point, or writing fails.
     pub fn points4(&mut self, points: &[Point4], values: Option<&[f64]>) -> Result<()> {
         let value_count = self.header.has_elevation.then_some(points.len());
         if values.map(<[f64]>::len) != value_count {
@@ -27,7 +27,7 @@ impl<W: Write> StreamWriter<W> {
         self.start_records(Tag::Points4)?;
         for (number, &point) in points.iter().enumerate() {
             self.rules4.point(point)?;
-            self.make_room(self.header.point_len())?;
+            self.flush_if_full(self.header.point_len())?;
             point.iter().for_each(|x| self.points.extend_from_slice(&x.to_le_bytes()));
             if let Some(values) = values {
                 let value = values[number];
@@ -42,7 +42,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends a cell; all points must have been written before. Neighbours may be cells that are still to come.
+    /// Appends a cell; all points must have been written before. Neighbours may be cells that are still to
+    /// come.
     ///
     /// # Errors
     /// If its lists are not increasing, too short, or name points that there are not; or if writing fails.
@@ -52,14 +53,14 @@ impl<W: Write> StreamWriter<W> {
         let mark = if cell.is_infinite { INFINITE } else { 0 };
         let counts = [cell.vertices.len() as u32 | mark, cell.neighbours.len() as u32];
         for word in counts.iter().chain(cell.vertices).chain(cell.neighbours) {
-            self.make_room(4)?;
+            self.flush_if_full(4)?;
             self.points.extend_from_slice(&word.to_le_bytes());
         }
         Ok(())
     }
 
-    /// Appends simplices (a, b, c, d, e) with det(b - a, c - a, d - a, e - a) > 0, as numbers of points, which must all
-    /// have been written before.
+    /// Appends simplices (a, b, c, d, e) with det(b - a, c - a, d - a, e - a) > 0, as numbers of points,
+    /// which must all have been written before.
     ///
     /// # Errors
     /// If a simplex has a vertex twice or one that is no point, or writing fails.
@@ -67,7 +68,7 @@ impl<W: Write> StreamWriter<W> {
         self.start_records(Tag::Simplices4)?;
         self.rules4.simplices(simplices, &mut self.totals)?;
         for simplex in simplices {
-            self.make_room(20)?;
+            self.flush_if_full(20)?;
             simplex.iter().for_each(|vertex| self.points.extend_from_slice(&vertex.to_le_bytes()));
         }
         Ok(())
@@ -82,8 +83,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes the block if it has no room for a record of `len` bytes.
-    fn make_room(&mut self, len: usize) -> Result<()> {
+    /// Writes the block if a record of `len` bytes does not fit.
+    fn flush_if_full(&mut self, len: usize) -> Result<()> {
         if self.points.len() + len > POINTS_PAYLOAD { self.flush_points() } else { Ok(()) }
     }
 }

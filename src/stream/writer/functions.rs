@@ -11,8 +11,8 @@ impl<W: Write> StreamWriter<W> {
     /// Appends functions as sums of B-splines; all configurations must have been written before.
     ///
     /// # Errors
-    /// If functions do not follow each other, name knots that there are not, have no terms, or too many for a block; or if
-    /// writing fails.
+    /// If functions do not follow each other, name knots that there are not, have no terms, or too many for a
+    /// block; or if writing fails.
     pub fn functions(&mut self, functions: &[Function]) -> Result<()> {
         self.flush_points()?;
         self.flush_configurations()?;

@@ -2,7 +2,7 @@
 
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Configurations, Knots};
-use spmesh_geometry::predicates::{Predicates2, Sign, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use spmesh_model::functions::{Function, FunctionKind};
 
 /// Counts of one degree.
@@ -18,7 +18,8 @@ pub struct DegreeCounts {
     pub infinite: u64,
     /// Interior sets.
     pub interiors: u64,
-    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come from.
+    /// Links of sets of one knot more that are bounded polygons: those that B-splines of the next degree come
+    /// from.
     pub links: u64,
     /// Links that are null.
     pub null_links: u64,
@@ -42,7 +43,7 @@ impl DegreeCounts {
             ..DegreeCounts::default()
         };
         if knots.has_copies() {
-            let mut predicates = TotalPredicates::default();
+            let mut predicates = FiniteFloatPredicates::default();
             let mut is_flat = |boundary: [u32; 3]| {
                 let [a, b, c] = boundary.map(|id| knots.at(id));
                 predicates.orient2d(a, b, c) == Sign::Zero

@@ -1,8 +1,8 @@
 //! `configgen`: knots in, configurations of all degrees up to one out.
 //!
-//! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of them, `start` makes
-//! of both what [`spmesh_geometry::configurations`] needs, `purpose` that what special configurations need; `parts` reads these from
-//! text, and `mesh` writes centroid triangulations.
+//! `sites` reads knots and, where there is one, the triangulation over them; `options` says what is made of
+//! them, `start` makes of both what [`spmesh_geometry::configurations`] needs, `purpose` that what special
+//! configurations need; `parts` reads these from text, and `mesh` writes centroid triangulations.
 
 mod counts;
 mod mesh;
@@ -38,8 +38,9 @@ pub struct Made {
     pub frame: Frame,
     /// Configurations of the degrees from 0 on.
     pub degrees: Vec<Configurations>,
-    /// The functions that quadratic splines are made of, as sums of B-splines; none if all B-splines of links are: without a
-    /// purpose and without copies that were added, and without degree 1, whose links they come from.
+    /// The functions that quadratic splines are made of, as sums of B-splines; none if all B-splines of links
+    /// are: without a purpose and without copies that were added, and without degree 1, whose links they come
+    /// from.
     pub functions: Vec<Function>,
     /// What was done on the way.
     pub report: Report,
@@ -67,8 +68,8 @@ pub struct Report {
 /// Makes the configurations of knots, up to the degree that is wanted.
 ///
 /// # Errors
-/// Usage, if there are too few knots for the degree, all on one line, or options do not fit them or each other; as
-/// [`configurations::generate`].
+/// Usage, if there are too few knots for the degree, all on one line, or options do not fit them or each
+/// other; as [`configurations::generate`].
 pub fn make(sites: Sites, options: &Options) -> Result<Made> {
     let name = sites.name.clone();
     make_unnamed(sites, options).map_err(|e| e.of_input(name))
@@ -124,7 +125,8 @@ impl Made {
         header
     }
 
-    /// The centroid triangulation of the highest two degrees; without flat triangles, where knots are repeated.
+    /// The centroid triangulation of the highest two degrees; without flat triangles, where knots are
+    /// repeated.
     ///
     /// # Errors
     /// As [`CentroidMesh::of`].

@@ -10,8 +10,8 @@ use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 /// Writes a centroid triangulation, with the mean of elevations where knots have some.
 ///
-/// Knots on an integer grid have centroids on a grid that is finer by the order, so these are exact, unless they do not fit
-/// 32 bits; otherwise centroids are rounded.
+/// Knots on an integer grid have centroids on a grid that is finer by the order, so these are exact, unless
+/// they do not fit 32 bits; otherwise centroids are rounded.
 ///
 /// # Errors
 /// If writing fails.
@@ -72,8 +72,8 @@ fn stored(knots: &Knots, frame: &Frame, id: u32) -> Point {
     [x, y, frame.elevations.as_ref().map_or(0.0, |elevations| elevations[id as usize])]
 }
 
-/// Where sums of as many knots as `order` are counted from, so that they fit 32 bits: the origin of the knots, or else
-/// their least coordinates.
+/// Where sums of as many knots as `order` are counted from, so that they fit 32 bits: the origin of the
+/// knots, or else their least coordinates.
 fn origin(knots: &Knots, frame: &Frame, order: usize) -> Option<Point> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for id in 0..knots.len() as u32 {

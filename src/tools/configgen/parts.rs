@@ -8,7 +8,8 @@ use spmesh_io::source::{finite, for_each_line, quote};
 
 /// Reads features: lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and ids of knots.
 ///
-/// A line of corners has any number of them, every other line is a polyline. Blank lines and comments do not count.
+/// A line of corners has any number of them, every other line is a polyline. Blank lines and comments do not
+/// count.
 ///
 /// # Errors
 /// If reading fails, a line has another word first or something else than ids behind it, or there is no line.
@@ -34,8 +35,8 @@ pub fn read_features(input: impl Read) -> Result<Features> {
     if count == 0 { Err(Error::malformed("found no feature")) } else { Ok(features) }
 }
 
-/// Reads grids: lines of eight numbers, x and y of the first knot, the step along rows, the step along columns, and how many
-/// cells a row and a column have. Blank lines and comments do not count.
+/// Reads grids: lines of eight numbers, x and y of the first knot, the step along rows, the step along
+/// columns, and how many cells a row and a column have. Blank lines and comments do not count.
 ///
 /// # Errors
 /// If reading fails, a line has something else, or there is no line.

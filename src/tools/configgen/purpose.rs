@@ -115,7 +115,8 @@ impl Sites {
         self
     }
 
-    /// With coordinates that halves of sums can be stored in: a grid becomes twice as fine, if it then fits 32 bits.
+    /// With coordinates that halves of sums can be stored in: a grid becomes twice as fine, if it then fits
+    /// 32 bits.
     fn with_room_for_middles(mut self) -> Sites {
         let Coordinates::I32 { scale, offset } = self.frame.coordinates else { return self };
         let numbers = self.points.as_flattened().iter().chain(self.frame.elevations.iter().flatten());

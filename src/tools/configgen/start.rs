@@ -84,7 +84,8 @@ pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
     Ok(Setup { knots, frame, beginning, rule, report })
 }
 
-/// For each knot that was added the two that it is between: twice the first one at its place, if it is a copy.
+/// For each knot that was added the two that it is between: twice the first one at its place, if it is a
+/// copy.
 fn added(knots: &Knots, given: usize, special: Option<&Special>) -> Vec<[u32; 2]> {
     if knots.len() == given {
         return Vec::new();
@@ -207,7 +208,8 @@ impl Rules<'_> {
         }
     }
 
-    /// Weights in squares of stored units. What all have in common does not matter, so elevations stay without offset.
+    /// Weights in squares of stored units. What all have in common does not matter, so elevations stay
+    /// without offset.
     fn weights(&self) -> Result<Vec<f64>> {
         let mut weights = self.numbers()?;
         if let Coordinates::I32 { scale, .. } = self.frame.coordinates {

@@ -59,8 +59,8 @@ impl Figures {
         self.cells() + self.facets + self.vertex_references
     }
 
-    /// Bytes of the cells: two lists each, of 32-bit numbers behind their length. This is the size of the output in
-    /// table 3.4 of the thesis.
+    /// Bytes of the cells: two lists each, of 32-bit numbers behind their length. This is the size of the
+    /// output in table 3.4 of the thesis.
     #[must_use]
     pub fn cell_bytes(&self) -> u64 {
         4 * (2 * self.cells() + self.vertex_references + 2 * self.facets)

@@ -24,8 +24,8 @@ pub enum Form {
     Obj,
 }
 
-/// Writes sites with their values as lines of x, y, z, t and value, separated by tabs, below a line of names. What is
-/// outside of the hull or not known is `nan`.
+/// Writes sites with their values as lines of x, y, z, t and value, separated by tabs, below a line of names.
+/// What is outside of the hull or not known is `nan`.
 ///
 /// # Errors
 /// If writing fails.
@@ -44,7 +44,8 @@ pub fn write_values(sites: &[Point4], values: &[Option<f64>], output: &mut impl 
     write().map_err(|e| Error::io("writing", e))
 }
 
-/// Writes a slice as VTU, with its values, or as Medit's text without them. Returns what the user should know.
+/// Writes a slice as VTU, with its values, or as Medit's text without them. Returns what the user should
+/// know.
 ///
 /// # Errors
 /// Usage, if the format is another one; I/O.

@@ -15,8 +15,9 @@ pub use write::{write_diagram, write_simplices};
 use std::time::{Duration, Instant};
 
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::diagram4::{Diagram, Route, Stats, diagram_by};
-use spmesh_io::source::points4::Points4;
+use spmesh_geometry::diagram4::{Route, Stats, diagram_by};
+use spmesh_io::source::points4::Selected4;
+use spmesh_model::diagram4::Diagram4;
 
 /// What is made of points.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -49,9 +50,9 @@ pub struct Report {
 /// Makes the diagram of points, of which a product is wanted.
 ///
 /// # Errors
-/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed, if a value
-/// is infinite.
-pub fn make(points: Points4, product: &Product, options: &Options) -> Result<(Diagram, Report)> {
+/// As [`diagram_by`] and [`Product::check`]; usage, if a coordinate is no multiple of the quantum; malformed,
+/// if a value is infinite.
+pub fn make(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Report)> {
     let name = points.name.clone();
     let started = Instant::now();
     let mut report = Report { points: points.points.len() as u64, ..Report::default() };
@@ -63,8 +64,8 @@ pub fn make(points: Points4, product: &Product, options: &Options) -> Result<(Di
     Ok((diagram, report))
 }
 
-fn diagram_of(points: Points4, product: &Product, options: &Options) -> Result<(Diagram, Stats)> {
-    let Points4 { mut points, values, .. } = points;
+fn diagram_of(points: Selected4, product: &Product, options: &Options) -> Result<(Diagram4, Stats)> {
+    let Selected4 { mut points, values, .. } = points;
     // Known before the work, rather than when it is to be written.
     let infinite = values.iter().flatten().position(|value| value.is_infinite());
     if let Some(number) = infinite {

@@ -4,11 +4,11 @@ use std::io::Write;
 
 use super::{Form, write_diagram, write_simplices, write_slice, write_surface, write_values};
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::diagram4::Diagram;
 use spmesh_geometry::spacetime::{
     Interpolator, NO_VALUES, Rule, Slice, first_time, isosurface, slice, subdivide,
 };
 use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
 
 /// What is made of a diagram.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,8 @@ impl Product {
     /// Whether it can be made of these points: known before the work, rather than after it.
     ///
     /// # Errors
-    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all points.
+    /// Usage, if values are needed and the points have none, or a slice is at a time before or after all
+    /// points.
     pub fn check(&self, points: &[Point4], has_values: bool) -> Result<()> {
         if matches!(self, Product::Values(_) | Product::Isosurface { .. }) && !has_values {
             return Err(Error::usage(NO_VALUES));
@@ -69,9 +70,9 @@ impl Product {
     /// Makes it of a diagram and writes it. Returns what the user should know.
     ///
     /// # Errors
-    /// Usage, if values are needed and the points have none, the slice is at a time before or after all points, or the
-    /// form does not hold it; I/O. What is written is then not whole.
-    pub fn write(&self, diagram: &Diagram, output: &mut impl Write) -> Result<Vec<String>> {
+    /// Usage, if values are needed and the points have none, the slice is at a time before or after all
+    /// points, or the form does not hold it; I/O. What is written is then not whole.
+    pub fn write(&self, diagram: &Diagram4, output: &mut impl Write) -> Result<Vec<String>> {
         match self {
             Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),
             Product::Simplices(rule) => {
@@ -105,7 +106,7 @@ impl Product {
     }
 }
 
-fn interpolate(diagram: &Diagram, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
+fn interpolate(diagram: &Diagram4, sites: &[Point4]) -> Result<Vec<Option<f64>>> {
     let mut interpolator = Interpolator::new(diagram)?;
     sites.iter().map(|&site| interpolator.value(site)).collect()
 }

@@ -18,12 +18,12 @@ pub struct Quantum(f64);
 impl Quantum {
     /// Puts in the place of each coordinate which multiple of the quantum it is.
     ///
-    /// Multiples of a number like 0.1 are rounded in f64, so that points of a grid are not exactly cospherical; whole
-    /// numbers are.
+    /// Multiples of a number like 0.1 are rounded in f64, so that points of a grid are not exactly
+    /// cospherical; whole numbers are.
     ///
     /// # Errors
-    /// Usage, at the first coordinate that is no multiple, but for a millionth of the quantum, or so large that f64 does
-    /// not tell.
+    /// Usage, at the first coordinate that is no multiple, but for a millionth of the quantum, or so large
+    /// that f64 does not tell.
     pub fn make_whole(self, points: &mut [Point4]) -> Result<()> {
         for point in points {
             *point = self.whole(*point).map_err(|error| error.at(format!("point {point:?}")))?;

@@ -3,16 +3,16 @@
 use std::io::Write;
 
 use spmesh_core::error::Result;
-use spmesh_geometry::diagram4::Diagram;
 use spmesh_geometry::spacetime::Subdivision;
+use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
 /// Writes the diagram as a stream of cells.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_diagram(diagram: &Diagram, output: impl Write) -> Result<()> {
-    let Diagram { points, values, merged, cells } = diagram;
+pub fn write_diagram(diagram: &Diagram4, output: impl Write) -> Result<()> {
+    let Diagram4 { points, values, merged, cells } = diagram;
     let count = points.len() as u64 + merged;
     let mut writer = StreamWriter::new(output, header(Kind::Cells4, values.is_some(), count))?;
     writer.points4(points, values.as_deref())?;
@@ -20,7 +20,8 @@ pub fn write_diagram(diagram: &Diagram, output: impl Write) -> Result<()> {
     writer.end(count, *merged).map(drop)
 }
 
-/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come `merged`.
+/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come
+/// `merged`.
 ///
 /// # Errors
 /// If a value is infinite, or writing fails.

@@ -9,7 +9,6 @@
 //!
 //! How many points wait in memory and how many on disk does not show in the result. Counters are 64 bits wide.
 
-mod ahead;
 mod budget;
 mod buffer;
 pub mod cell_grid;
@@ -18,6 +17,7 @@ mod emit;
 mod locate;
 mod pages;
 mod plan;
+mod read_ahead;
 mod spill;
 mod spool;
 mod stats;

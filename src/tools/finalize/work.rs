@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::time::Instant;
 
-use super::ahead::read_ahead;
 use super::plan::Plan;
+use super::read_ahead::read_ahead;
 use super::spool::{Spool, SpoolPlan, Tee};
 use super::survey::Survey;
 use super::{Observer, Options, Order, Pass, Passes, Stats};

@@ -11,26 +11,26 @@
 //! * A node whose children are done triangulates the union of their residuals; simplices in the holes behind
 //!   the walls are dropped; the rest is tested against the node's box. At the root all are final.
 //!
-//! `ARCHITECTURE.md` says why this is right. Data flow one way: [`intake`] reads points and holds them until their
+//! `ARCHITECTURE.md` says why this is right. Data flow one way: [`reader`] reads points and holds them until their
 //! cell is done, [`schedule`] says which node can be triangulated, [`node`] does that and cuts [`patches`], and
-//! [`sequencer`] writes them in order. [`crew`] is the same on several threads. [`merge`] joins what partial runs have left,
+//! [`sequencer`] writes them in order. [`coordinator`] is the same on several threads. [`merge`] joins what partial runs have left,
 //! each of which is a [`tile`]. All of it is for D dimensions; what differs between them is behind [`bulk`]: [`plane`] and
 //! [`space`].
 
-mod arrivals;
 mod border;
 mod boxes;
 mod bulk;
-mod crew;
+mod cell_buffer;
+mod coordinator;
 mod disks;
 mod duplicates;
-mod intake;
 mod merge;
 mod node;
 mod partial;
 mod patches;
 mod plan;
 mod plane;
+mod reader;
 mod residual;
 mod run;
 mod sample;

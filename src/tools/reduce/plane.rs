@@ -4,7 +4,7 @@ use super::bulk::{Bulk, Facet};
 use super::disks::Disks;
 use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangulation};
+use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangles};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
@@ -14,7 +14,7 @@ use spmesh_stream::{Coordinates, Kind};
 #[derive(Default)]
 pub(super) struct Plane {
     kernel: Kernel,
-    triangulation: Triangulation,
+    triangulation: Triangles,
 }
 
 impl Bulk<2> for Plane {
@@ -51,7 +51,7 @@ impl Bulk<2> for Plane {
 
     #[inline]
     fn across(&self, edge: Facet) -> Option<Facet> {
-        let beyond = self.triangulation.triangles()[edge.simplex as usize].across(edge.corner as usize);
+        let beyond = self.triangulation.triangles()[edge.simplex as usize].neighbour(edge.corner as usize);
         beyond.map(facet)
     }
 
@@ -60,7 +60,7 @@ impl Bulk<2> for Plane {
     }
 
     fn hull_facets(&self) -> impl Iterator<Item = Facet> {
-        let Triangulation { hull, triangle_of_vertex, .. } = &self.triangulation;
+        let Triangles { hull, triangle_of_vertex, .. } = &self.triangulation;
         hull.iter().filter_map(|&v| {
             // The first triangle at a vertex of the hull is the one at the edge of the hull that leaves it.
             let simplex = triangle_of_vertex[v as usize];

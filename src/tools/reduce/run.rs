@@ -4,13 +4,13 @@ use std::io::{Read, Write};
 
 use super::boxes::Boxes;
 use super::bulk::Bulk;
-use super::crew;
+use super::coordinator;
 use super::duplicates::Duplicates;
-use super::intake::{Arrival, Ended, Intake};
 use super::node::Rules;
 use super::partial::Part;
 use super::plan::Plan;
 use super::plane::Plane;
+use super::reader::{Arrival, Ended, Intake};
 use super::residual::{Residual, union};
 use super::schedule::Schedule;
 use super::sequencer::Sequencer;
@@ -117,7 +117,7 @@ where
     if options.threads <= 1 {
         run.alone::<B, R, W>(intake, sequencer, progress)
     } else {
-        crew::run::<B, R, W, D>(run, intake, sequencer, options.threads, progress)
+        coordinator::run::<B, R, W, D>(run, intake, sequencer, options.threads, progress)
     }
 }
 

@@ -8,13 +8,12 @@ use super::walls::WallIndex;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::prefetch::prefetch;
 use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization};
+use spmesh_geometry::order::sizes_to_starts;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::sphere::SphereBounds;
 use spmesh_model::bounds::Region;
+use spmesh_model::simplex::TETRAHEDRON_FACETS_FROM_INSIDE;
 use spmesh_stream::{Coordinates, Kind};
-
-/// The corners of the facet opposite to each corner of a tetrahedron, counterclockwise as seen from that corner.
-const FACETS: [[usize; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
 
 /// How many tetrahedra ahead of the one that is looked at are fetched.
 const AHEAD: usize = 12;
@@ -44,10 +43,7 @@ impl Space {
         // For each vertex, where tetrahedra of which it is the last go.
         let mut places = vec![0u32; self.mesh.vertices().len()];
         tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
-        let mut next = 0;
-        for place in &mut places {
-            next += std::mem::replace(place, next);
-        }
+        sizes_to_starts(&mut places);
         self.sequence.resize(tetrahedra.len(), 0);
         for (t, tetrahedron) in (0..).zip(tetrahedra) {
             let place = &mut places[last(tetrahedron.vertices)];
@@ -59,7 +55,7 @@ impl Space {
     fn find_hull(&mut self) {
         self.hull.clear();
         for (simplex, tetrahedron) in (0..).zip(self.mesh.tetrahedra()) {
-            let open = (0..4).filter(|&corner| tetrahedron.across(corner as usize).is_none());
+            let open = (0..4).filter(|&corner| tetrahedron.neighbour(corner as usize).is_none());
             self.hull.extend(open.map(|corner| Facet { simplex, corner }));
         }
     }
@@ -106,7 +102,7 @@ impl Bulk<3> for Space {
 
     #[inline]
     fn across(&self, Facet { simplex, corner }: Facet) -> Option<Facet> {
-        let beyond = self.mesh.tetrahedra()[simplex as usize].across(corner as usize);
+        let beyond = self.mesh.tetrahedra()[simplex as usize].neighbour(corner as usize);
         beyond.map(|Corner { tetrahedron: simplex, corner }| Facet { simplex, corner })
     }
 
@@ -129,7 +125,7 @@ impl Bulk<3> for Space {
         let mut count = 0;
         for simplex in 0..self.len() as u32 {
             let vertices = self.corners(simplex);
-            for (corner, facet) in (0..).zip(FACETS) {
+            for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
                 if index.contains(facet.map(|i| vertices[i])) {
                     count += 1;
                     found(Facet { simplex, corner });
@@ -146,7 +142,7 @@ impl Bulk<3> for Space {
 
     fn wall(&self, Facet { simplex, corner }: Facet) -> [u32; 3] {
         let vertices = self.corners(simplex);
-        FACETS[corner as usize].map(|i| vertices[i])
+        TETRAHEDRON_FACETS_FROM_INSIDE[corner as usize].map(|i| vertices[i])
     }
 
     fn balls(coordinates: &Coordinates, region: Region<3>) -> Balls {

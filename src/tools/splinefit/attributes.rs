@@ -1,14 +1,14 @@
-//! What can be asked of a spline at a point: its value, and what follows from its derivatives.
+//! Attributes of a spline at a point: its value, and quantities that follow from its derivatives.
 
 use spmesh_io::raster::{aspect, slope};
 use spmesh_splines::bases::Jet;
 
-/// What is asked.
+/// An attribute of a spline at a point.
 ///
-/// Where a spline is level, it has neither an aspect nor curvatures along and across its slope: these are not numbers there.
+/// Where a spline is level, aspect and both curvatures are NaN.
 ///
-/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans, 1972, and Shary, 1995,
-/// have too): normal curvatures, positive where the surface is convex upwards.
+/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans,
+/// 1972, and Shary, 1995, have too): normal curvatures, positive where the surface is convex upwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attribute {
     /// The value itself. Units: those of elevations.
@@ -17,17 +17,18 @@ pub enum Attribute {
     Slope,
     /// The direction of steepest descent, in degrees clockwise from north, from 0 to 360.
     Aspect,
-    /// Curvature of the section along the steepest descent: where it is positive, what flows gets faster. Units: 1 over those of
-    /// coordinates.
+    /// Curvature of the section along the steepest descent: where it is positive, flow accelerates.
+    /// Units: 1 over those of coordinates.
     ProfileCurvature,
-    /// Curvature of the section across the steepest descent: where it is positive, what flows diverges. Units: the same.
+    /// Curvature of the section across the steepest descent: where it is positive, flow diverges.
+    /// Units: the same.
     TangentialCurvature,
     /// Both derivatives, by x and by y.
     Gradient,
 }
 
 impl Attribute {
-    /// What tables call its columns.
+    /// The names of its columns in tables.
     #[must_use]
     pub fn columns(self) -> &'static [&'static str] {
         match self {
@@ -57,7 +58,7 @@ impl Attribute {
             Attribute::Gradient => p,
             Attribute::Slope => slope(jet.gradient),
             Attribute::Aspect => aspect(jet.gradient),
-            // Not a number where the square is zero.
+            // NaN where the square is zero.
             Attribute::ProfileCurvature => {
                 -(p * p * r + 2.0 * p * q * s + q * q * t) / (square * (1.0 + square).powf(1.5))
             }

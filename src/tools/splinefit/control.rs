@@ -11,8 +11,8 @@ use spmesh_stream::{Coordinates, Crs, Header, Kind, write_triangles};
 
 /// The control mesh of a spline, in world coordinates.
 ///
-/// It is the Delaunay triangulation of Greville sites, where the thesis has the triangulation of centroids: these are the same
-/// vertices, and functions that were collected have no other.
+/// It is the Delaunay triangulation of Greville sites, where the thesis has the triangulation of centroids:
+/// these are the same vertices, and collected functions have no other vertices.
 #[derive(Debug)]
 pub struct ControlMesh {
     /// For each function its Greville site and its coefficient.

@@ -15,7 +15,8 @@ pub struct Elevations<'a> {
 impl<'a> Elevations<'a> {
     /// Observations of an input in two dimensions.
     ///
-    /// Errors: points without an elevation.
+    /// # Errors
+    /// Points without an elevation.
     pub fn of(input: &'a Input) -> Result<Elevations<'a>> {
         let description = input.description();
         if !description.has_elevation {
@@ -25,9 +26,10 @@ impl<'a> Elevations<'a> {
         Ok(Elevations { input })
     }
 
-    /// A pass that outlives this.
+    /// A pass that does not borrow this value.
     ///
-    /// Errors: those of [`Input::read`].
+    /// # Errors
+    /// Those of [`Input::read`].
     pub fn into_reader(self) -> Result<Box<dyn ObservationReader + 'a>> {
         let coordinates = self.input.description().coordinates;
         Ok(Box::new(OfInput { reader: self.input.read()?, coordinates, batch: Vec::new() }))

@@ -2,26 +2,26 @@
 
 use std::io::Write;
 
-use super::choose::{Chosen, Problem, choose};
 use super::frame::Frame;
 use super::layout::{Layout, Spline};
 use super::options::Options;
-use super::points::{InFrame, Points};
+use super::points::{Points, PointsInFrame};
+use super::smoothing_choice::{Problem, SmoothingChoice, choose_smoothing};
 use super::statistics::Statistics;
-use super::{given, lists, sharp};
+use super::{breaklines, given_knots, residual_lists};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::Opened;
 use spmesh_splines::fitting::{
-    self, Cover, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round,
+    self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round, SplineSpace,
 };
 
 /// Without a tolerance, this part of the range of elevations is one.
 const TOLERANCE_PART: f64 = 0.0025;
 /// Residuals below this part of the greatest elevation are rounding errors.
 const ROUNDING: f64 = 1e-9;
-/// Without a number of knots, there are at most so many...
+/// The default maximum of knots...
 const KNOTS_MAX: usize = 20_000;
-/// ...and one for so many points: two or three functions belong to a knot.
+/// ...but at most one for this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
 
 /// A spline that was fitted.
@@ -29,7 +29,7 @@ const POINTS_PER_KNOT: u64 = 4;
 pub struct Fitted {
     /// The spline.
     pub spline: Spline,
-    /// What was done on the way.
+    /// A report of the fit.
     pub report: Report,
     robust: Option<RobustFit>,
 }
@@ -41,18 +41,19 @@ pub struct Report {
     pub points: u64,
     /// The search for knots, if they were not given.
     pub search: Option<Search>,
-    /// How much was smoothed, and why; nothing if values were interpolated.
-    pub chosen: Option<Chosen>,
-    /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients settled.
+    /// The smoothing and the reason for it; `None` if values were interpolated.
+    pub chosen: Option<SmoothingChoice>,
+    /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients
+    /// settled.
     pub scale: Option<(f64, bool)>,
-    /// What is left of points.
+    /// Residuals of the points.
     pub residuals: Statistics,
 }
 
 /// A search for knots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// What it was to reach.
+    /// The goal of the search.
     pub goal: Goal,
     /// Its rounds.
     pub rounds: Vec<Round>,
@@ -62,11 +63,11 @@ pub struct Search {
 
 /// Fits a spline to points. `done` is told how many points were read since the start, in all passes together.
 ///
-/// Without knots, it looks for them; with points for knots, functions are quadratic, and the border is pulled apart, so that the
-/// domain is the convex hull.
+/// Without knots, the fit searches for them. With points as knots, functions are quadratic and the border is
+/// pulled apart, so that the domain is the convex hull.
 ///
 /// # Errors
-/// Usage, if options do not go together, or points do not determine the spline; those of reading.
+/// Usage, if options exclude each other, or points do not determine the spline; those of reading.
 pub fn fit(
     points: &Points,
     knots: Option<(Opened, String)>,
@@ -79,7 +80,9 @@ pub fn fit(
         return Err(Error::usage(what));
     }
     let (mut layout, found) = match knots {
-        Some((source, name)) => (given::layout(source, &name, options.degree, &options.polylines)?, None),
+        Some((source, name)) => {
+            (given_knots::layout(source, &name, options.degree, &options.polylines)?, None)
+        }
         None if options.step.is_some() => (even(points, options, done)?, None),
         None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
@@ -103,18 +106,18 @@ pub fn fit(
 }
 
 impl Fitted {
-    /// Writes the points that were rejected, as lines of x, y, elevation and residual; their number, which is zero if the fit is
-    /// not robust.
+    /// Writes the points that were rejected, as lines of x, y, elevation and residual; their number, which is
+    /// zero if the fit is not robust.
     ///
     /// # Errors
     /// If points cannot be read, or the list cannot be written.
     pub fn write_rejected(&self, points: &Points, options: &Options, output: &mut impl Write) -> Result<u64> {
         let Some(robust) = &self.robust else { return Ok(0) };
-        lists::write_rejected(robust, &self.spline, points, options.threads, output)
+        residual_lists::write_rejected(robust, &self.spline, points, options.threads, output)
     }
 }
 
-/// Knots where they are needed.
+/// A search for knots.
 fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
     check_degree(options)?;
     let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
@@ -133,11 +136,11 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     let all = points.in_frame(&frame, done);
     let refined = fitting::refine(&all, &goal, options.threads).map_err(|e| e.of_input(points.name()))?;
     let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
-    let cover = match options.polylines.is_empty() {
-        true => refined.cover,
-        false => sharp::cover(refined.cover.mesh.points(), &options.polylines)?,
+    let space = match options.polylines.is_empty() {
+        true => refined.space,
+        false => breaklines::space(refined.space.mesh.points(), &options.polylines)?,
     };
-    Ok((Layout::of_cover(cover, frame), search))
+    Ok((Layout::of_space(space, frame), search))
 }
 
 /// Knots on a grid.
@@ -146,12 +149,12 @@ fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout
     let frame = Frame::world(points.crs().clone());
     let all = points.in_frame(&frame, done);
     let side = options.step.unwrap_or_default();
-    let places = fitting::even_places(&all, side).map_err(|error| error.of_input(points.name()))?;
-    let cover = match options.polylines.is_empty() {
-        true => Cover::of(places)?,
-        false => sharp::cover(&places, &options.polylines)?,
+    let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
+    let space = match options.polylines.is_empty() {
+        true => SplineSpace::of(places)?,
+        false => breaklines::space(&places, &options.polylines)?,
     };
-    Ok(Layout::of_cover(cover, frame))
+    Ok(Layout::of_space(space, frame))
 }
 
 fn check_degree(options: &Options) -> Result<()> {
@@ -166,11 +169,11 @@ fn check_degree(options: &Options) -> Result<()> {
 /// Coefficients of least squares, smoothed or weighed.
 fn approximate(
     layout: &Layout,
-    all: &InFrame,
+    all: &PointsInFrame,
     options: &Options,
     are_given: bool,
-) -> Result<(Vec<f64>, Chosen, Option<RobustFit>)> {
-    let problem = choose(layout, all, options, are_given)?;
+) -> Result<(Vec<f64>, SmoothingChoice, Option<RobustFit>)> {
+    let problem = choose_smoothing(layout, all, options, are_given)?;
     let Some(loss) = options.loss else {
         return Ok((problem.solve(&layout.basis)?, problem.chosen, None));
     };
@@ -181,7 +184,7 @@ fn approximate(
 }
 
 /// Coefficients of the spline that has at Greville sites the values of the triangulated points.
-fn interpolate(layout: &Layout, all: &InFrame) -> Result<Vec<f64>> {
+fn interpolate(layout: &Layout, all: &PointsInFrame) -> Result<Vec<f64>> {
     let (mut reader, mut held) = (all.read()?, Vec::new());
     let mut known = None;
     while known != Some(held.len()) {

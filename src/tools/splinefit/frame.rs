@@ -1,4 +1,4 @@
-//! The coordinates that knots are stored in, and those of the world.
+//! The coordinate frame of knots: stored coordinates and world coordinates.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
@@ -6,7 +6,8 @@ use spmesh_io::source::crs_name;
 use spmesh_splines::bases::Jet;
 use spmesh_stream::{Coordinates, Crs};
 
-/// What stored knots mean. A step along x is as long as one along y, so that directions and shapes are those of the world.
+/// The coordinate frame of knots. Steps along x and y are equal, so that directions and shapes are those of
+/// the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// How knots are stored.
@@ -22,8 +23,8 @@ impl Frame {
         Frame { coordinates: Coordinates::F64, crs }
     }
 
-    /// A frame of stored coordinates if their steps are equal, and of the world otherwise; and what makes points of the one those
-    /// of the other.
+    /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise, with the
+    /// map from stored points to points of the frame.
     pub(super) fn of(coordinates: Coordinates, crs: Crs) -> (Frame, impl Fn(Point2) -> Point2) {
         let is_even = match coordinates {
             Coordinates::F64 => true,
@@ -72,7 +73,7 @@ impl Frame {
         }
     }
 
-    /// Takes the system of the points, if that of the knots is not known.
+    /// Adopts the reference system of the points if that of the knots is unknown.
     ///
     /// # Errors
     /// Usage, if both are known and are not the same.

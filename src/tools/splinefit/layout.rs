@@ -1,4 +1,4 @@
-//! What splines are made over: knots, configurations, functions, and the basis of them. Read from streams, and written.
+//! Knots, configurations, functions and their basis, with the coordinate frame; reads and writes streams.
 
 use std::io::Write;
 use std::path::Path;
@@ -9,15 +9,15 @@ use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_io::source::{EventSource, Opened, SourceOptions, name_of, open_knots};
 use spmesh_model::functions::Function;
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::Cover;
+use spmesh_splines::fitting::SplineSpace;
 use spmesh_stream::{
     Collector, ConfigurationSet, Content, Header, Kind, configurations_header, write_content,
 };
 
-/// Functions, and what they are made of.
+/// Functions with their knots and configurations, in a coordinate frame.
 #[derive(Debug)]
 pub struct Layout {
-    /// What coordinates of knots mean.
+    /// The coordinate frame of the knots.
     pub frame: Frame,
     /// The knots, stored.
     pub knots: Knots,
@@ -39,14 +39,14 @@ pub struct Spline {
 }
 
 impl Layout {
-    /// Of a cover, whose knots are in a frame.
-    pub(super) fn of_cover(cover: Cover, frame: Frame) -> Layout {
-        let Cover { knots, configurations, functions, basis, .. } = cover;
+    /// From a spline space whose knots are in a frame.
+    pub(super) fn of_space(space: SplineSpace, frame: Frame) -> Layout {
+        let SplineSpace { knots, configurations, functions, basis, .. } = space;
         Layout { frame, knots, configurations, functions, basis }
     }
 
-    /// Of a set of knots. Of several degrees it takes that for splines of degree `degree`; without one, that of the functions
-    /// listed, or else the highest.
+    /// Of a set of knots. Of several degrees it takes that for splines of degree `degree`; without one, that
+    /// of the functions listed, or else the highest.
     ///
     /// # Errors
     /// Usage, if the degree is not there; those of [`Basis`].

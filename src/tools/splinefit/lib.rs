@@ -1,40 +1,47 @@
-//! `splinefit`: points in, splines out; splines in, values out.
+//! The engine of `splinefit`: fits splines to points in files, and evaluates splines.
 //!
-//! `frame` says what coordinates mean, `layout` what splines are made over, with streams of both. `points` are observations of
-//! their elevations, `given` knots of files, `sharp` breaklines among them, `options` what is wanted; `choose` finds how much is
-//! smoothed, `fit` the coefficients, `statistics` and `lists` what is left of points. `attributes` are what can be asked of a
-//! spline, `values` answers at sites, `raster` in cells. `summary` says what functions are like, `smoothness` where they are less
-//! smooth than others, and `control` has control meshes.
+//! | files | what they do |
+//! |---|---|
+//! | `options`, `fit` | a fit from points and knots to coefficients, and its report |
+//! | `points`, `elevations` | points of files as observations, in world or knot coordinates |
+//! | `given_knots`, `breaklines`, `distinct_points` | knots from files, and features between them |
+//! | `smoothing_choice` | the choice of the smoothing parameter |
+//! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis, read and written |
+//! | `statistics`, `residual_lists` | residuals, as numbers and as lists |
+//! | `attributes`, `values`, `raster` | values and derivatives, at sites and in cells |
+//! | `summary`, `smoothness` | the domain, condition and smoothness of functions |
+//! | `control` | control meshes |
 
 mod attributes;
-mod choose;
+mod breaklines;
 mod control;
+mod distinct_points;
 mod elevations;
 mod fit;
 mod frame;
-mod given;
+mod given_knots;
 mod layout;
-mod lists;
 mod options;
 mod points;
 mod raster;
-mod sharp;
+mod residual_lists;
+mod smoothing_choice;
 mod smoothness;
 mod statistics;
 mod summary;
 mod values;
 
 pub use attributes::Attribute;
-pub use choose::Chosen;
 pub use control::ControlMesh;
 pub use elevations::Elevations;
 pub use fit::{Fitted, Report, Search, fit};
 pub use frame::Frame;
 pub use layout::{Layout, Spline};
-pub use lists::write_residuals;
 pub use options::{Options, Smoothing};
-pub use points::{InFrame, Points};
+pub use points::{Points, PointsInFrame};
 pub use raster::{write_raster, write_table};
+pub use residual_lists::write_residuals;
+pub use smoothing_choice::SmoothingChoice;
 pub use smoothness::{Candidate, Smoothness};
 pub use statistics::{PERCENTILES, Statistics};
 pub use summary::{Condition, Summary};

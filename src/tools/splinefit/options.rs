@@ -19,7 +19,8 @@ pub struct Options {
     pub tolerance: Option<f64>,
     /// Most places of knots, where knots are not given.
     pub max_knots: Option<usize>,
-    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of the world.
+    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of
+    /// the world.
     pub step: Option<f64>,
     /// Along which splines are not smooth, where knots come without configurations.
     pub polylines: Vec<Polyline>,
@@ -55,7 +56,7 @@ pub enum Smoothing {
     Lambda(f64),
     /// By generalised cross-validation.
     Generalised,
-    /// By cross-validation with so many folds.
+    /// By cross-validation with this number of folds.
     Folds(usize),
 }
 
@@ -69,7 +70,7 @@ impl FromStr for Smoothing {
         match text.split_once(':') {
             Some(("cv", folds)) => match folds.parse() {
                 Ok(folds) if folds >= 2 => Ok(Smoothing::Folds(folds)),
-                _ => Err(format!("{folds:?} folds: expected a whole number above one")),
+                _ => Err(format!("{folds:?} folds: expected an integer above one")),
             },
             _ if text == "cv" => Ok(Smoothing::Folds(FOLDS)),
             _ if text == "gcv" => Ok(Smoothing::Generalised),

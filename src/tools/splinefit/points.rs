@@ -11,7 +11,8 @@ use spmesh_io::source::{Input, SourceOptions};
 use spmesh_splines::fitting::{Observation, ObservationReader, Observations};
 use spmesh_stream::Crs;
 
-/// Up to this number, points that are read again and again are held: 32 bytes each. Most sources take longer to decode...
+/// Up to this number, points that are read again and again are held: 32 bytes each. Most sources take longer
+/// to decode...
 const HELD_OFTEN: usize = 1 << 23;
 /// ...but a few passes more do not matter, so that memory does not depend on the number of points.
 const HELD_SELDOM: usize = 1 << 20;
@@ -34,9 +35,11 @@ pub struct Points {
 }
 
 impl Points {
-    /// Opens files and reads them once; `weights` are those of points, in their order; `often` tells whether many passes will follow.
+    /// Opens files and reads them once; `weights` are those of points, in their order; `often` tells whether
+    /// many passes will follow.
     ///
-    /// Memory: 32 bytes per point up to 8 million points if so, and up to one million otherwise; more are read again for each pass.
+    /// Memory: 32 bytes per point up to 8 million points if so, and up to one million otherwise; more are
+    /// read again for each pass.
     ///
     /// # Errors
     /// As [`Input::open`]; no elevation; another number of weights.
@@ -83,13 +86,13 @@ impl Points {
         }
     }
 
-    /// What messages call the input.
+    /// The name of the input in messages.
     #[must_use]
     pub fn name(&self) -> String {
         self.input.name()
     }
 
-    /// What the user should know of the files.
+    /// Notices about the files for the user.
     #[must_use]
     pub fn notices(&self) -> &[String] {
         self.input.notices()
@@ -107,7 +110,8 @@ impl Points {
         self.count
     }
 
-    /// An elevation that most are above, and one that most are below: of a sample, so that a few gross errors change little.
+    /// An elevation that most points are above, and one that most are below, from a sample: a few gross
+    /// errors change little.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let ends = [OUTSIDE, 1.0 - OUTSIDE];
@@ -116,8 +120,8 @@ impl Points {
     }
 
     /// The points in a frame; `done` is told how many were read in all passes together.
-    pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> InFrame<'a> {
-        InFrame { points: self, frame, read: Cell::new(0), done }
+    pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> PointsInFrame<'a> {
+        PointsInFrame { points: self, frame, read: Cell::new(0), done }
     }
 
     /// A pass in world coordinates.
@@ -131,7 +135,7 @@ impl Points {
     }
 }
 
-/// Every so many elevations, of any number of them.
+/// A sample of elevations at a regular stride, which doubles when the sample is full.
 #[derive(Default)]
 struct Sample {
     taken: Vec<f64>,
@@ -188,7 +192,7 @@ impl ObservationReader for Weighed<'_> {
         let first = observations.len();
         self.reader.append(observations)?;
         if let Some(weights) = self.weights {
-            // If there are too few, the rest has none, which is refused at the end.
+            // If there are too few, the rest keeps weight one; `check_weights` refuses the input at the end.
             let own = weights.iter().skip(self.next);
             observations[first..].iter_mut().zip(own).for_each(|(one, &weight)| one.weight = weight);
         }
@@ -199,27 +203,27 @@ impl ObservationReader for Weighed<'_> {
 
 /// Points in the frame of knots.
 #[derive(Clone)]
-pub struct InFrame<'a> {
+pub struct PointsInFrame<'a> {
     points: &'a Points,
     frame: &'a Frame,
     read: Cell<u64>,
     done: &'a dyn Fn(u64),
 }
 
-impl Observations for InFrame<'_> {
+impl Observations for PointsInFrame<'_> {
     fn read(&self) -> Result<Box<dyn ObservationReader + '_>> {
         Ok(Box::new(Moved { all: self, reader: self.points.read_world()? }))
     }
 }
 
 struct Moved<'a> {
-    all: &'a InFrame<'a>,
+    all: &'a PointsInFrame<'a>,
     reader: Box<dyn ObservationReader + 'a>,
 }
 
 impl ObservationReader for Moved<'_> {
     fn append(&mut self, observations: &mut Vec<Observation>) -> Result<()> {
-        let InFrame { frame, read, done, .. } = self.all;
+        let PointsInFrame { frame, read, done, .. } = self.all;
         let first = observations.len();
         self.reader.append(observations)?;
         observations[first..].iter_mut().for_each(|one| one.point = frame.to_stored(one.point));
@@ -229,7 +233,7 @@ impl ObservationReader for Moved<'_> {
     }
 }
 
-/// World coordinates, elevations and weights of points by increasing numbers.
+/// World coordinates and elevations of points, by increasing numbers.
 pub(super) struct Cursor<'a> {
     reader: Box<dyn ObservationReader + 'a>,
     batch: Vec<Observation>,

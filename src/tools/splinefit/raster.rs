@@ -7,15 +7,17 @@ use super::attributes::Attribute;
 use super::layout::Spline;
 use super::values::{line, write_error};
 use spmesh_core::error::{Error, Result};
+use spmesh_core::parallel;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
 use spmesh_splines::bases::{Raster, Scratch};
 
-/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all elements.
+/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all
+/// elements.
 const ROWS_PER_THREAD: usize = 64;
 
 impl Spline {
-    /// What the domain covers, in world coordinates.
+    /// The box of the domain, in world coordinates.
     ///
     /// # Errors
     /// A domain without an area.
@@ -24,8 +26,8 @@ impl Spline {
     }
 }
 
-/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data. The number of cells
-/// without data.
+/// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data.
+/// The number of cells without data.
 ///
 /// # Errors
 /// Usage, if there is more than one number per cell; if writing fails.
@@ -63,7 +65,7 @@ pub fn write_raster<W: Write + Seek>(
     Ok(unknown)
 }
 
-/// Writes a line for each cell in the domain: its centre, and what is asked; row by row from the top.
+/// Writes a line for each cell in the domain: its centre and the attribute; row by row from the top.
 ///
 /// # Errors
 /// If writing fails.
@@ -119,18 +121,12 @@ impl Bands<'_> {
         self.values.resize(count * columns, f64::NAN);
         let mut all = std::mem::take(&mut self.values);
         let share = count.div_ceil(self.threads.get());
-        let parts = all.chunks_mut(share * columns).zip((first..).step_by(share));
-        let outcome = std::thread::scope(|scope| {
-            let this = &*self;
-            let workers: Vec<_> =
-                parts.map(|(part, first)| scope.spawn(move || this.evaluate_part(first, part))).collect();
-            workers.into_iter().try_for_each(|worker| match worker.join() {
-                Ok(outcome) => outcome,
-                Err(panic) => std::panic::resume_unwind(panic),
-            })
+        let parts = all.chunks_mut(share * columns).enumerate();
+        let outcome = parallel::map(self.threads, parts, |(number, part)| {
+            self.evaluate_part(first + number * share, part)
         });
         self.values = all;
-        outcome
+        outcome.map(drop)
     }
 
     /// Rows from a number on.

@@ -1,16 +1,17 @@
 //! Where splines are less smooth than their degree allows.
 //!
-//! A function of degree k is a sum of simplex splines of k + 3 knots each. One of these has k + 1 - m continuous derivatives across
-//! a line that m of its knots are on: k - 1 across most lines, less where knots are repeated or on a line with others. What is
-//! left of that in a sum may be smoother, as box splines and tents of knots that are pulled apart are; so the segments between such
-//! knots are *candidates*, and for degree 2 each is looked at: derivatives next to it on both sides are compared.
+//! A function of degree k is a sum of simplex splines of k + 3 knots each. One of these has k + 1 - m
+//! continuous derivatives across a line that m of its knots are on: k - 1 across most lines, less where knots
+//! are repeated or on a line with others. A sum may be smoother, as box splines are, and tents of knots that
+//! are pulled apart. So the segments between such knots are *candidates*; for degree 2, derivatives on both
+//! sides of each candidate are compared.
 //!
 //! Source: Micchelli 1979; thesis 6.1.
 
 use super::layout::Layout;
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Rule};
-use spmesh_geometry::predicates::{Point2, Predicates2, Sign, TotalPredicates, lexicographic};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use spmesh_splines::bases::{Jet, Scratch};
 
 /// Parts of a segment at which derivatives are compared: no simple ones, at which other lines may cross.
@@ -62,7 +63,7 @@ impl Smoothness {
 fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
     let knots = &layout.knots;
     let next = configurations::link_triangulate(knots, &layout.configurations, &Rule::Delaunay)?;
-    let (mut found, mut predicates) = (Vec::new(), TotalPredicates::default());
+    let (mut found, mut predicates) = (Vec::new(), FiniteFloatPredicates::default());
     for (boundary, interior) in next.iter() {
         let [a, b, c] = boundary.map(|id| knots.at(id));
         // Those without area count for nothing.
@@ -110,8 +111,8 @@ fn is_inside(layout: &Layout, candidate: &Candidate) -> bool {
 
 /// Whether values or gradients of a function change across a segment.
 ///
-/// Functions are polynomials of degree 2 next to it, so that their gradients are linear, and limits are those of the line through
-/// two places, unless another knot line is between.
+/// Functions are polynomials of degree 2 next to it, so that their gradients are linear, and limits are those
+/// of the line through two places, unless another knot line is between.
 fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bool {
     let basis = &layout.basis;
     let [p, q] = candidate.ends;

@@ -1,16 +1,16 @@
-//! Residuals of a spline in numbers.
+//! Statistics of residuals.
 
 use super::layout::Spline;
 use super::points::Points;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
-use spmesh_splines::fitting::{self, Spread};
+use spmesh_splines::fitting::{self, QuantileSketch};
 use std::num::NonZeroUsize;
 
-/// Parts of all magnitudes that percentiles are told of.
+/// The parts for which percentiles are reported.
 pub const PERCENTILES: [f64; 5] = [0.5, 0.75, 0.9, 0.95, 0.99];
 
-/// What a spline leaves of points: elevations less values, those outside of the domain not counted.
+/// Statistics of residuals (elevations less values) of the points in the domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     /// Number of points in the domain.
@@ -41,7 +41,7 @@ impl Statistics {
         done: &dyn Fn(u64),
     ) -> Result<Statistics> {
         let frame = &spline.layout.frame;
-        let (mut count, mut sum, mut square, mut spread) = (0u64, 0.0, 0.0, Spread::default());
+        let (mut count, mut sum, mut square, mut sketch) = (0u64, 0.0, 0.0, QuantileSketch::default());
         let (mut greatest, mut worst) = (0f64, None);
         let all = points.in_frame(frame, done);
         let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
@@ -49,7 +49,7 @@ impl Statistics {
             count += 1;
             sum += found.residual;
             square += found.residual * found.residual;
-            spread.add(found.residual);
+            sketch.add(found.residual);
             if worst.is_none() || found.residual.abs() > greatest {
                 (greatest, worst) = (found.residual.abs(), Some(frame.to_world(found.point)));
             }
@@ -63,7 +63,7 @@ impl Statistics {
             greatest,
             worst,
             // A class may end above the greatest magnitude.
-            percentiles: PERCENTILES.map(|part| spread.quantile(part).unwrap_or(0.0).min(greatest)),
+            percentiles: PERCENTILES.map(|part| sketch.quantile(part).unwrap_or(0.0).min(greatest)),
         })
     }
 }

@@ -1,4 +1,4 @@
-//! What a layout is like: its domain, how well it interpolates, how smooth it is.
+//! A summary of a layout: domain, condition and smoothness.
 
 use super::layout::Layout;
 use super::smoothness::Smoothness;

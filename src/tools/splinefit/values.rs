@@ -1,4 +1,4 @@
-//! Splines at sites: lines of x, y and what is asked.
+//! Splines at sites: lines of x, y and an attribute.
 
 use std::io::Write;
 
@@ -9,8 +9,8 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::Input;
 use spmesh_splines::bases::{Jet, Scratch};
 
-/// Writes a line for each site, in their order; `nan` outside of the domain, where a spline is not extrapolated. How many sites
-/// there are, and how many of them are outside.
+/// Writes a line for each site, in their order; `nan` outside of the domain, where a spline is not
+/// extrapolated. Returns the number of sites, and the number of sites outside.
 ///
 /// # Errors
 /// If sites cannot be read, or lines cannot be written.

@@ -1,12 +1,12 @@
 //! The alpha complex: which simplices have an empty circumscribed sphere that is small enough.
 //!
-//! A simplex of the triangulation belongs to the complex of radius R if a sphere of radius R or less passes through all
-//! its vertices and has no point inside. Let its least circumscribed sphere be the one with the centre in the flat that
-//! it spans. If no point lies inside of that one (a Gabriel simplex), it decides; otherwise the smallest of the others
-//! is that of a simplex with one vertex more, and the simplex belongs to the complex if one of those does. A
-//! tetrahedron has one sphere only. For a simplex of the triangulation the vertices next to it tell whether its
-//! least sphere is empty. Points on a sphere are not inside of it, and a radius of R itself is small enough; both are
-//! decided exactly, for R as it was written.
+//! A simplex of the triangulation belongs to the complex of radius R if a sphere of radius R or less passes
+//! through all its vertices and has no point inside. Let its least circumscribed sphere be the one with the
+//! centre in the flat that it spans. If no point lies inside of that one (a Gabriel simplex), it decides;
+//! otherwise the smallest of the others is that of a simplex with one vertex more, and the simplex belongs to
+//! the complex if one of those does. A tetrahedron has one sphere only. For a simplex of the triangulation
+//! the vertices next to it tell whether its least sphere is empty. Points on a sphere are not inside of it,
+//! and a radius of R itself is small enough; both are decided exactly, for R as it was written.
 //!
 //! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994.
 
@@ -88,7 +88,7 @@ impl<'m> AlphaComplex<'m> {
         if !triangle_fits([a, b, c], &self.radius) {
             return false;
         }
-        let beyond = tetrahedron.across(side);
+        let beyond = tetrahedron.neighbour(side);
         let other = beyond.map(|corner| {
             self.mesh.tetrahedra()[corner.tetrahedron as usize].vertices[corner.corner as usize]
         });

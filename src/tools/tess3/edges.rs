@@ -25,9 +25,9 @@ pub(super) struct Ring {
 
 /// Calls `visit` for each edge of the mesh.
 ///
-/// An edge is found in each of its tetrahedra, and taken in the one of lowest number. The search for a lower one goes
-/// around in both directions in turn, so that all searches around one edge, of k tetrahedra, take O(k log k) steps
-/// together, however they are numbered.
+/// An edge is found in each of its tetrahedra, and taken in the one of lowest number. The search for a lower
+/// one goes around in both directions in turn, so that all searches around one edge, of k tetrahedra, take
+/// O(k log k) steps together, however they are numbered.
 pub(super) fn for_each_edge<E>(
     mesh: &Tetrahedralization,
     mut visit: impl FnMut(&Ring) -> Result<(), E>,
@@ -44,8 +44,8 @@ pub(super) fn for_each_edge<E>(
 }
 
 impl Ring {
-    /// Walks around an edge of tetrahedron `start`; whether no tetrahedron around it has a lower number. If there is one
-    /// the ring is left incomplete.
+    /// Walks around an edge of tetrahedron `start`; whether no tetrahedron around it has a lower number. If
+    /// there is one the ring is left incomplete.
     fn fill(
         &mut self,
         tetrahedra: &[Tetrahedron],
@@ -106,7 +106,7 @@ impl Walker {
         if self.is_done {
             return None;
         }
-        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].across(self.exit)
+        let Some(Corner { tetrahedron, corner }) = tetrahedra[self.tetrahedron as usize].neighbour(self.exit)
         else {
             self.is_done = true;
             return None;

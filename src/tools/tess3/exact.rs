@@ -1,11 +1,12 @@
-//! Signs of polynomials in coordinates that are never wrong: a formula is written once, and evaluated in numbers that know
-//! how far off they may be; if that leaves the sign open, in integers of any length.
+//! Signs of polynomials in coordinates that are never wrong: a formula is written once, and evaluated in
+//! numbers that know how far off they may be; if that leaves the sign open, in integers of any length.
 
 use std::ops::{Add, Mul, Sub};
 
 use num_bigint::BigInt;
 
 use super::radius::Radius;
+use spmesh_geometry::predicates::exact_integers::integers_and_unit;
 use spmesh_geometry::predicates::{Point3, Sign};
 
 /// What a formula is evaluated in.
@@ -17,8 +18,8 @@ impl Number for BigInt {}
 /// A vector of any numbers.
 pub(super) type Vector<T> = [T; 3];
 
-/// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of its
-/// numerator and the square of its denominator. All terms have the same degree in the unit of length.
+/// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of
+/// its numerator and the square of its denominator. All terms have the same degree in the unit of length.
 pub(super) trait Polynomial<const N: usize> {
     /// Its value.
     fn value<T: Number>(points: [Vector<T>; N], radius: &[T; 2]) -> T;
@@ -30,7 +31,7 @@ pub(super) fn sign<P: Polynomial<N>, const N: usize>(points: [Point3; N], radius
     if value.value.abs() > value.error {
         return Sign::of(value.value);
     }
-    let (points, unit) = integers(points);
+    let (points, unit) = integers_and_unit(points);
     Sign::of(P::value(points, &radius.squares_in(unit)))
 }
 
@@ -50,8 +51,8 @@ impl Approximate {
         Approximate { value, error: 0.0 }
     }
 
-    /// A result rounded by half a unit in the last place, or within the least numbers, of operands whose errors may add
-    /// up to `error`.
+    /// A result rounded by half a unit in the last place, or within the least numbers, of operands whose
+    /// errors may add up to `error`.
     fn rounded(value: f64, error: f64) -> Self {
         Approximate { value, error: (error + value.abs() * f64::EPSILON + f64::MIN_POSITIVE) * OF_BOUNDS }
     }
@@ -87,30 +88,8 @@ impl Mul for Approximate {
     }
 }
 
-/// The points in units of 2^unit, in which all their coordinates are whole, and that exponent.
-pub(super) fn integers<const N: usize>(points: [Point3; N]) -> ([Vector<BigInt>; N], i32) {
-    let parts = points.map(|point| point.map(decompose));
-    let unit = parts.iter().flatten().filter(|part| part.0 != 0).map(|part| part.1).min().unwrap_or(0);
-    let whole = |(significand, exponent): (i64, i32)| match significand {
-        0 => BigInt::from(0),
-        _ => BigInt::from(significand) << (exponent - unit) as usize,
-    };
-    (parts.map(|point| point.map(whole)), unit)
-}
-
-/// Significand and exponent: `value == significand * 2^exponent`.
-fn decompose(value: f64) -> (i64, i32) {
-    debug_assert!(value.is_finite());
-    let bits = value.to_bits();
-    let biased = (bits >> 52 & 0x7ff) as i32;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    let (significand, exponent) =
-        if biased == 0 { (fraction, -1074) } else { (fraction | 1 << 52, biased - 1075) };
-    (if value.is_sign_negative() { -significand } else { significand }, exponent)
-}
-
-/// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and twice the
-/// exponent of two that it is to be multiplied with.
+/// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and
+/// twice the exponent of two that it is to be multiplied with.
 pub(super) fn root_of_quotient(dividend: &BigInt, divisor: &BigInt) -> (f64, i32) {
     const DIGITS: i64 = 64;
     let surplus = dividend.bits() as i64 - divisor.bits() as i64 - DIGITS;

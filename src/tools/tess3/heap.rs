@@ -12,8 +12,8 @@ thread_local! {
 
 /// The system's allocator, with counts per thread. A program that wants them has it as its global allocator.
 ///
-/// Among files that are worked on at the same time only the heap of each thread tells which one took how much: the
-/// system knows of the whole process.
+/// Among files that are worked on at the same time only the heap of each thread tells which one took how
+/// much: the system knows of the whole process.
 #[derive(Debug)]
 pub struct CountingHeap;
 
@@ -52,7 +52,8 @@ unsafe impl GlobalAlloc for CountingHeap {
     }
 }
 
-/// Does `work`, and says how many bytes more this thread held at a time than before; `None` without [`CountingHeap`].
+/// Does `work`, and says how many bytes more this thread held at a time than before; `None` without
+/// [`CountingHeap`].
 pub fn peak_during<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
     let (before, outer) = (LIVE.get(), PEAK.get());
     PEAK.set(before);

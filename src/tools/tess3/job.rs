@@ -15,14 +15,15 @@ use spmesh_io::source::structure::{Models, Selected, Structure};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter};
 
-/// Triangulates the selected models of a structure one by one, and writes to what `open` gives: a mesh for each model,
-/// whose place in the file and number `open` is told, or one table for all of them.
+/// Triangulates the selected models of a structure one by one, and writes to what `open` gives: a mesh for
+/// each model, whose place in the file and number `open` is told, or one table for all of them.
 ///
-/// Memory: beside the structure and the kernel, 8 bytes per point for a mesh; for a table some 200, and the names.
+/// Memory: beside the structure and the kernel, 8 bytes per point for a mesh; for a table some 200, and the
+/// names.
 ///
 /// # Errors
-/// Usage, if the structure does not have what is selected, or nothing is left of it; otherwise if writing fails, or
-/// `open` does.
+/// Usage, if the structure does not have what is selected, or nothing is left of it; otherwise if writing
+/// fails, or `open` does.
 pub fn run(
     structure: Structure,
     options: &Options,

@@ -1,7 +1,8 @@
-//! `tess3`: the Delaunay tetrahedralization of the atoms of molecules and of other points in memory (thesis 3.4), as a
-//! mesh stream or as tables, of one file or of very many.
+//! `tess3`: the Delaunay tetrahedralization of the atoms of molecules and of other points in memory (thesis
+//! 3.4), as a mesh stream or as tables, of one file or of very many.
 //!
-//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files, beside each other.
+//! [`run`] turns one structure into one output; [`sweep::sweep`] does so for a list of files, beside each
+//! other.
 
 mod alpha;
 mod choice;
@@ -21,7 +22,7 @@ mod tables;
 pub use alpha::AlphaComplex;
 pub use job::{ModelName, run};
 pub use mesh::write_mesh;
-pub use method::{Arithmetic, Method};
+pub use method::{Arithmetic, Method, NO_EXPERIMENTS};
 pub use radius::Radius;
 pub use spheres::{Measure, measure};
 
@@ -71,7 +72,8 @@ pub struct Report {
     pub created: u64,
     /// In-sphere tests of the search for cavities.
     pub in_sphere_tests: u64,
-    /// Most bytes that the kernel and its result held at a time, the points of the input included; 0 if not known.
+    /// Most bytes that the kernel and its result held at a time, the points of the input included; 0 if not
+    /// known.
     pub kernel_bytes: u64,
     /// Decisions of the predicates, if they are exact.
     pub predicates: PredicateCounts,
@@ -91,8 +93,8 @@ impl Report {
 /// What rounding did to a triangulation in floating-point arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rounding {
-    /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known only if
-    /// signs are checked.
+    /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known
+    /// only if signs are checked.
     pub wrong_signs: u64,
     /// In-sphere tests whose exact value is zero, and the computed one is not.
     pub wrong_zeros: u64,
@@ -121,8 +123,8 @@ pub struct Times {
     pub triangulate: Duration,
     /// Of that, ordering the points.
     pub order: Duration,
-    /// Of that, if it was to be measured, the walks to the points; the search of cavities, with the predicates; and
-    /// putting new tetrahedra in their place.
+    /// Of that, if it was to be measured, the walks to the points; the search of cavities, with the
+    /// predicates; and putting new tetrahedra in their place.
     pub locate: Duration,
     /// See `locate`.
     pub predicates: Duration,

@@ -6,8 +6,8 @@ use spmesh_core::error::Result;
 use spmesh_geometry::delaunay3::{CornerParts, Corners, Vertex};
 use spmesh_stream::{Patch, StreamWriter};
 
-/// Tetrahedra per patch. With four vertices of its own each, a tetrahedron takes at most 4 * (4 + 24 + 4) bytes, so a
-/// patch stays below the maximum of a block.
+/// Tetrahedra per patch. With four vertices of its own each, a tetrahedron takes at most 4 * (4 + 24 + 4)
+/// bytes, so a patch stays below the maximum of a block.
 const PATCH_TETRAHEDRA: usize = 8000;
 
 /// Vertices without tetrahedra per patch, by the same reckoning.
@@ -16,12 +16,13 @@ const PATCH_VERTICES: usize = 32_000;
 /// Id of a vertex that no patch has so far.
 const NONE: u32 = u32::MAX;
 
-/// Marks what stands in place of the id of a vertex while it is imported into a patch: its number there. Ids are
-/// less: they are words of eight per tetrahedron to the kernel.
+/// Marks what stands in place of the id of a vertex while it is imported into a patch: its number there. Ids
+/// are less: they are words of eight per tetrahedron to the kernel.
 const IMPORTED: u32 = 1 << 31;
 
-/// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A vertex comes with
-/// its first patch, and is finalized by its last. `label` is told the index of a vertex among the points of the input.
+/// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A
+/// vertex comes with its first patch, and is finalized by its last. `label` is told the index of a vertex
+/// among the points of the input.
 ///
 /// Memory: 8 bytes per vertex, which are those that the mesh has to spare, and a patch.
 ///

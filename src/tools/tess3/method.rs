@@ -1,15 +1,25 @@
 //! How points are triangulated: by the exact kernel, or as the program of the thesis did.
 
 use std::borrow::Cow;
+#[cfg(feature = "experiments")]
 use std::time::Duration;
 
+use super::Report;
+#[cfg(feature = "experiments")]
+use super::Rounding;
 use super::heap::peak_during;
-use super::{Report, Rounding};
+#[cfg(not(feature = "experiments"))]
+use spmesh_core::error::Error;
 use spmesh_core::error::Result;
 use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
+#[cfg(feature = "experiments")]
 use spmesh_geometry::delaunay3_float;
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::predicates::Point3;
+
+/// What a build says that lacks the feature `experiments`.
+pub const NO_EXPERIMENTS: &str = "this build has no experiments: --arithmetic, --order, --sequence, --bit-levels, --seed, \
+    --check-signs and --timed need a build with `cargo build --release --features experiments`";
 
 /// Which arithmetic decides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -17,7 +27,7 @@ pub enum Arithmetic {
     /// Signs are never wrong.
     #[default]
     Exact,
-    /// That of `f64`, with errors where rounding matters.
+    /// That of `f64`, with errors where rounding matters. Only builds with the feature `experiments` have it.
     Float {
         /// Whether signs are compared with the exact ones.
         check_signs: bool,
@@ -45,7 +55,7 @@ impl Method {
     /// Triangulates, and says in `report` what that took.
     ///
     /// # Errors
-    /// Those of the kernels.
+    /// Those of the kernels; usage, if a build without experiments is asked for floating-point arithmetic.
     pub(super) fn triangulate(
         &self,
         points: Cow<[Point3]>,
@@ -83,6 +93,12 @@ impl Method {
         Ok(mesh)
     }
 
+    #[cfg(not(feature = "experiments"))]
+    fn in_floating_point(&self, _: &[Point3], _: bool, _: &mut Report) -> Result<Tetrahedralization> {
+        Err(Error::usage(NO_EXPERIMENTS))
+    }
+
+    #[cfg(feature = "experiments")]
     fn in_floating_point(
         &self,
         points: &[Point3],

@@ -7,10 +7,11 @@
 use num_bigint::BigInt;
 
 use super::exact::{
-    Approximate, Number, Polynomial, Vector, cross, difference, dot, integers, root_of_quotient, sign,
-    square, sum, times,
+    Approximate, Number, Polynomial, Vector, cross, difference, dot, root_of_quotient, sign, square, sum,
+    times,
 };
 use super::radius::Radius;
+use spmesh_geometry::predicates::exact_integers::integers_and_unit;
 use spmesh_geometry::predicates::{Point3, Sign};
 
 /// n and D of a tetrahedron.
@@ -126,7 +127,7 @@ pub fn measure(points: [Point3; 4]) -> Measure {
 
 #[cold]
 fn measure_exactly(points: [Point3; 4]) -> Measure {
-    let (points, unit) = integers(points);
+    let (points, unit) = integers_and_unit(points);
     let (n, determinant) = sphere(&points);
     let square_of_determinant = &determinant * &determinant;
     if square_of_determinant == BigInt::from(0) {

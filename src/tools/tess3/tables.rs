@@ -1,7 +1,7 @@
 //! Tables of tetrahedra and of contacts: lines of columns separated by tabs, below a line with their names.
 //!
-//! Rows do not depend on how the triangulation was made: atoms are in the order of the input within a row, and so are
-//! the rows.
+//! Rows do not depend on how the triangulation was made: atoms are in the order of the input within a row,
+//! and so are the rows.
 
 use std::io::Write;
 

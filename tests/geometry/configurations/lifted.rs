@@ -15,8 +15,8 @@ fn side([a, b, c, d]: [Point; 4]) -> i128 {
         + p[2] * (q[0] * r[1] - q[1] * r[0])
 }
 
-/// All boundary-interior configurations of degree k (thesis 7.1): planes through three points with k points on one side.
-/// Seen from that side, the triple is clockwise. Those whose side is below come first.
+/// All boundary-interior configurations of degree k (thesis 7.1): planes through three points with k points
+/// on one side. Seen from that side, the triple is clockwise. Those whose side is below come first.
 fn by_definition(points: &[Point], k: usize) -> (Vec<Configuration>, usize) {
     let count = points.len() as u32;
     let at = |id: u32| points[id as usize];

@@ -13,7 +13,8 @@ const SPLITS: [ZpSplit; 4] = [
     ZpSplit { is_falling: true, is_upright: true },
 ];
 
-/// A box spline of integral one, by its recurrence (de Boor and Höllig, 1982), from the coordinates in the first two directions.
+/// A box spline of integral one, by its recurrence (de Boor and Höllig, 1982), from the coordinates in the
+/// first two directions.
 fn box_spline(x: [f64; 2], directions: &[[f64; 2]]) -> f64 {
     let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
     let pairs = (0..directions.len()).flat_map(|i| (0..i).map(move |j| (j, i)));

@@ -286,7 +286,8 @@ fn constrained_triangulations_are_delaunay_elsewhere() {
     let delaunay = configurations::delaunay(&plain).expect("triangles");
     let is_old = |triangle: &[u32; 3]| delaunay.iter().any(|(other, _)| other == *triangle);
     let new: Vec<[u32; 3]> = start.iter().map(|(triangle, _)| triangle).filter(|t| !is_old(t)).collect();
-    // What is new is all around the segment: each new triangle has a vertex on each of its sides, or is at it.
+    // What is new is all around the segment: each new triangle has a vertex on each of its sides, or is at
+    // it.
     let (p, q) = (points[4], points[5]);
     let sides = |t: &[u32; 3]| t.map(|v| area(p, q, special.knots.at(v)));
     assert!(!new.is_empty() && new.len() < start.len() / 2, "{} of {}", new.len(), start.len());

@@ -6,7 +6,8 @@ pub fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }
 
-/// Simplex spline by the recurrence of Micchelli, at a point in general position; from the triple of largest area.
+/// Simplex spline by the recurrence of Micchelli, at a point in general position; from the triple of largest
+/// area.
 pub fn simplex_spline(x: [f64; 2], knots: &[[f64; 2]]) -> f64 {
     let count = knots.len();
     let mut best = (0.0, [0, 0, 0]);

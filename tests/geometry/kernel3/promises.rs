@@ -11,8 +11,9 @@ pub fn prove(points: &[Point], mesh: &Tetrahedralization) -> Result<(), String> 
         .tetrahedra()
         .iter()
         .map(|tetrahedron| {
-            let across =
-                |side| Some(tetrahedron.across(side)?).map(|c| (c.tetrahedron as usize, c.corner as usize));
+            let across = |side| {
+                Some(tetrahedron.neighbour(side)?).map(|c| (c.tetrahedron as usize, c.corner as usize))
+            };
             (tetrahedron.vertices.map(|v| v as usize), [0, 1, 2, 3].map(across))
         })
         .collect();

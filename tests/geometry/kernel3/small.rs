@@ -167,7 +167,10 @@ fn a_kernel_is_clean_after_an_error_and_after_larger_input() {
         kernel.triangulate(Cow::Borrowed(&points), &mut mesh).expect("finite points");
         let fresh = proved(&mut Kernel::new(), &points);
         let corners = |mesh: &Tetrahedralization| -> Vec<_> {
-            mesh.tetrahedra().iter().map(|t| (t.vertices, [0, 1, 2, 3].map(|side| t.across(side)))).collect()
+            mesh.tetrahedra()
+                .iter()
+                .map(|t| (t.vertices, [0, 1, 2, 3].map(|side| t.neighbour(side))))
+                .collect()
         };
         assert_eq!(corners(&mesh), corners(&fresh));
         assert_eq!((mesh.hull_facets, &mesh.duplicates), (fresh.hull_facets, &fresh.duplicates));

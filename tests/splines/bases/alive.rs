@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 /// The value of the B-spline of a set of knots, and whether x is in the support of one of its terms.
 fn b_spline(case: &Case, link: configurations::Link<'_>, x: [f64; 2]) -> (f64, bool) {
-    let at = case.basis.approach(x);
+    let at = case.basis.limit_at(x);
     let (mut sum, mut is_alive) = (0.0, false);
     for [a, b] in link.edges().filter(|edge| !edge.contains(&FARAWAY)) {
         let knots: Vec<[f64; 2]> = link.set.iter().chain(&[a, b]).map(|&id| case.knots.at(id)).collect();

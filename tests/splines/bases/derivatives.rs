@@ -17,7 +17,8 @@ fn scale(jets: &[Jet]) -> f64 {
     jets.iter().map(of).fold(1.0, f64::max)
 }
 
-/// Compares the jet at a point with differences over steps along both axes; nothing if a line through knots is between.
+/// Compares the jet at a point with differences over steps along both axes; nothing if a line through knots
+/// is between.
 fn compare(case: &Case, function: u32, x: [f64; 2]) -> Option<()> {
     let here = jet(&case.basis, function, x);
     let beside = |axis: usize, sign: f64| {

@@ -13,7 +13,8 @@ fn depth(x: [i64; 2], knots: &[[i64; 2]]) -> usize {
     let here = knots.iter().filter(|&&knot| knot == x).count();
     let around = knots.iter().filter(|&&knot| knot != x);
     let least = around.clone().map(|&knot| {
-        // A line through the knot, turned by very little: what is on it ahead goes to one side, what is behind to the other.
+        // A line through the knot, turned by very little: what is on it ahead goes to one side, what is
+        // behind to the other.
         let count = |test: &dyn Fn(i64, i64) -> bool| {
             around.clone().filter(|&&p| test(cross(x, knot, p), dot(x, knot, p))).count()
         };

@@ -3,8 +3,8 @@
 use super::sets::{Case, cases, distorted};
 use spmesh_splines::bases::Scratch;
 
-/// The polar form of x^i y^j for as many points as are given: the mean of all products of i abscissae and j ordinates of
-/// different points.
+/// The polar form of x^i y^j for as many points as are given: the mean of all products of i abscissae and j
+/// ordinates of different points.
 fn polar(points: &[[f64; 2]], i: usize, j: usize) -> f64 {
     // The sums of products of the first points, by numbers of factors.
     let mut sums = vec![vec![0.0; j + 1]; i + 1];

@@ -65,8 +65,8 @@ impl Case {
     }
 }
 
-/// A square with knots on its sides and inside, as multiples of 2^-12, so that many lines through knots have middles that
-/// are numbers.
+/// A square with knots on its sides and inside, as multiples of 2^-12, so that many lines through knots have
+/// middles that are numbers.
 pub fn square(seed: u64, inside: usize) -> Vec<[f64; 2]> {
     let mut random = Random::new(seed);
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];

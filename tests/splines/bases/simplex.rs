@@ -4,10 +4,10 @@ use super::rational;
 use num_traits::Zero;
 use spmesh_geometry::predicates::area;
 use spmesh_reference::sets::Random;
-use spmesh_splines::bases::{Approach, Jet, simplex_spline, simplex_spline_jet};
+use spmesh_splines::bases::{DirectionalLimit, Jet, simplex_spline, simplex_spline_jet};
 
-fn at(x: [f64; 2]) -> Approach {
-    Approach::new(x, [0.123, 0.456])
+fn at(x: [f64; 2]) -> DirectionalLimit {
+    DirectionalLimit::new(x, [0.123, 0.456])
 }
 
 /// Whether an integer point is on no line through two knots.
@@ -95,13 +95,13 @@ fn on_a_line_through_knots_one_side_counts() {
     let [a, b, c, d] = [[0.0, 0.0], [4.0, 0.0], [2.0, 3.0], [1.0, -1.0]];
     let (upper, lower) = (1.0 / 6.0, 1.0 / 2.0);
     for (from, expected) in [([2.0, 9.0], [upper, 0.0]), ([3.0, -1e-9], [0.0, lower])] {
-        let at = Approach::new([1.5, 0.0], from);
+        let at = DirectionalLimit::new([1.5, 0.0], from);
         assert_eq!([simplex_spline(&at, &[a, b, c]), simplex_spline(&at, &[b, d, a])], expected);
         // Towards its jet from a side, the spline of degree 1 has no jump, and its gradient has one.
         let all = [a, b, c, d];
         let jet = simplex_spline_jet(&at, &all);
         let near = [0, 1].map(|axis| at.x()[axis] + 1e-6 * (from[axis] - at.x()[axis]));
-        let slope = (simplex_spline(&Approach::new(near, from), &all) - jet.value) / 1e-6;
+        let slope = (simplex_spline(&DirectionalLimit::new(near, from), &all) - jet.value) / 1e-6;
         let expected: f64 = (0..2).map(|axis| jet.gradient[axis] * (from[axis] - at.x()[axis])).sum();
         assert!((slope - expected).abs() < 1e-8, "{slope} {expected}");
     }
@@ -117,7 +117,7 @@ fn sums_over_a_fan_of_triangles_count_every_point_once() {
         let from = [random.integer(-4, 4) as f64, random.integer(-4, 4) as f64];
         let tip = around[random.integer(0, 5) as usize];
         for x in [[0.0, 0.0], tip.map(|c| 0.5 * c)] {
-            let at = Approach::new(x, from);
+            let at = DirectionalLimit::new(x, from);
             let count = (0..6)
                 .filter(|&i| simplex_spline(&at, &[[0.0, 0.0], around[i], around[(i + 1) % 6]]) > 0.0)
                 .count();
@@ -126,7 +126,8 @@ fn sums_over_a_fan_of_triangles_count_every_point_once() {
     }
 }
 
-/// The integral over a convex polygon of a function that is a polynomial of degree 3 at most on either side of each line.
+/// The integral over a convex polygon of a function that is a polynomial of degree 3 at most on either side
+/// of each line.
 fn integral(polygon: Vec<[f64; 2]>, lines: &[[[f64; 2]; 2]], f: &dyn Fn([f64; 2]) -> f64) -> f64 {
     if polygon.len() < 3 {
         return 0.0;

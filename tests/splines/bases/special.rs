@@ -31,8 +31,8 @@ fn values(basis: &Basis, x: [f64; 2]) -> Vec<f64> {
     values
 }
 
-/// The Zwart-Powell box spline is the square convolved with its directions (1, 1) and (1, -1), s and t along them: the area
-/// of the part of the unit square of (s, t) from which x is reached.
+/// The Zwart-Powell box spline is the square convolved with its directions (1, 1) and (1, -1), s and t along
+/// them: the area of the part of the unit square of (s, t) from which x is reached.
 fn zwart_powell([x, y]: [f64; 2]) -> f64 {
     let mut polygon = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     // Half-planes a s + b t <= c.
@@ -171,7 +171,8 @@ fn functions_of_features_sum_to_one_and_reproduce_linear_functions() {
         assert!(built.collected.is_in_domain(x));
         let all = values(&built.collected, x);
         assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-13, "{x:?}");
-        // Tents of linear elements are shared by their ends, so that only functions along these lose reproduction.
+        // Tents of linear elements are shared by their ends, so that only functions along these lose
+        // reproduction.
         let is_linear = |kind| matches!(kind, FunctionKind::Vertex(11 | 12));
         if built.functions.iter().zip(&all).any(|(function, &value)| is_linear(function.kind) && value != 0.0)
         {

@@ -13,7 +13,7 @@ pub const ONE: NonZeroUsize = NonZeroUsize::MIN;
 /// Quadratic functions over points, with the border of their hull pulled apart: the domain is the whole hull.
 pub fn pulled_apart(points: &[[f64; 2]]) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
-    let hull = delaunay2::triangulate(points).expect("a triangulation").hull;
+    let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
     let special = features(&knots, &Features { corners: hull, ..Features::default() }).expect("features");
     let all = special.generate(&Rule::Delaunay, 1).expect("configurations");
     let links = configurations::links(&special.knots, &all[1]).expect("links");
@@ -31,8 +31,8 @@ pub fn cubic(points: &[[f64; 2]]) -> Basis {
 
 /// Knots of a square grid over the unit square, those inside moved by up to a part of a cell.
 ///
-/// Those next to corners are moved towards them first: an edge that cuts off a corner would join two knots that are pulled apart,
-/// along which splines may be folded.
+/// Those next to corners are moved towards them first: an edge that cuts off a corner would join two knots
+/// that are pulled apart, along which splines may be folded.
 pub fn grid(cells: usize, moved: f64) -> Vec<[f64; 2]> {
     let mut random = Random::new(11);
     let at = |i: usize| i as f64 / cells as f64;

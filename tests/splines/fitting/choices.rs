@@ -2,7 +2,9 @@
 
 use super::bases::{ONE, dense, grid, pulled_apart, scattered, solve_dense, value};
 use spmesh_reference::sets::Random;
-use spmesh_splines::fitting::{self, Equations, Folds, Normal, Observation, least_squares, thin_plate};
+use spmesh_splines::fitting::{
+    self, Equations, Folds, NormalEquations, Observation, least_squares, thin_plate,
+};
 
 /// A function with noise of the given size.
 fn noisy(count: usize, noise: f64) -> Vec<Observation> {
@@ -22,8 +24,10 @@ fn degrees_of_freedom_are_the_trace() {
     let all = noisy(900, 0.1);
     for (cells, is_exact) in [(3, true), (10, false)] {
         let basis = pulled_apart(&grid(cells, 0.2));
-        let (normal, energy) =
-            (Normal::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
+        let (normal, energy) = (
+            NormalEquations::of(&basis, &all, ONE).expect("equations"),
+            thin_plate(&basis).expect("an energy"),
+        );
         let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
         let lambda = 0.01 * equations.unit();
         let rows = dense(&basis, all.iter().map(|one| one.point));
@@ -57,7 +61,7 @@ fn both_ways_choose_nearly_the_best() {
     let basis = pulled_apart(&grid(8, 0.2));
     let all = noisy(1_200, 0.3);
     let (normal, energy) =
-        (Normal::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
+        (NormalEquations::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     let at = |lambda: f64| distance(&basis, &equations.solve(lambda).expect("coefficients"));
     let best = (-40..20).map(|tenth| at(equations.unit() * 10f64.powf(f64::from(tenth) / 5.0)));

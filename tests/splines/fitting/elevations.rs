@@ -3,7 +3,7 @@
 use super::bases::{ONE, deviation, pulled_apart};
 use spmesh_io::source::{Input, SourceOptions};
 use spmesh_splinefit::Elevations;
-use spmesh_splines::fitting::{Normal, least_squares};
+use spmesh_splines::fitting::{NormalEquations, least_squares};
 use std::fmt::Write;
 
 fn f([x, y]: [f64; 2]) -> f64 {
@@ -31,7 +31,8 @@ fn points_of_files_are_read_as_often_as_needed() {
     let basis = pulled_apart(&super::bases::grid(3, 0.2));
     let coefficients = least_squares(&basis, &observations, 0.0, ONE).expect("coefficients");
     assert!(deviation(&basis, &coefficients, 21, f) < 1e-9);
-    let [first, second] = [(); 2].map(|()| Normal::of(&basis, &observations, ONE).expect("equations"));
+    let [first, second] =
+        [(); 2].map(|()| NormalEquations::of(&basis, &observations, ONE).expect("equations"));
     assert_eq!(first.count, 400);
     assert_eq!(first, second);
 }

@@ -54,7 +54,8 @@ fn energies_of_quadratic_polynomials_are_exact() {
 
 #[test]
 fn energies_of_splines_are_those_of_many_points() {
-    // Knots on lines, and knots far from lines: where they are nearly on one, second derivatives are great on narrow triangles.
+    // Knots on lines, and knots far from lines: where they are nearly on one, second derivatives are great on
+    // narrow triangles.
     for (basis, tolerance) in [
         (pulled_apart(&grid(4, 0.0)), 0.01),
         (pulled_apart(&sunflower(20)), 0.01),
@@ -72,7 +73,8 @@ fn energies_of_splines_are_those_of_many_points() {
 
 #[test]
 fn only_the_domain_counts() {
-    // Without copies of knots the domain is smaller than the hull; outside of it, splines of polynomials are none.
+    // Without copies of knots the domain is smaller than the hull; outside of it, splines of polynomials are
+    // none.
     let knots = Knots::new(grid(6, 0.2)).expect("finite points");
     let start = configurations::delaunay(&knots).expect("triangles");
     let degree_1 = configurations::link_triangulate(&knots, &start, &Rule::Delaunay).expect("links");

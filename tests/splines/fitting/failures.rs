@@ -5,8 +5,8 @@ use spmesh_geometry::configurations::special::{Features, features};
 use spmesh_geometry::configurations::{self, Knots};
 use spmesh_splines::bases::Basis;
 use spmesh_splines::fitting::{
-    Equations, Interpolation, Loss, Mesh, Normal, Observation, for_each_residual, interpolate, least_squares,
-    robust, thin_plate,
+    Equations, Interpolation, Loss, Mesh, NormalEquations, Observation, for_each_residual, interpolate,
+    least_squares, robust, thin_plate,
 };
 
 fn message<T>(result: spmesh_core::error::Result<T>) -> String {
@@ -21,7 +21,7 @@ fn functions_without_observations_are_named() {
     let basis = pulled_apart(&grid(6, 0.2));
     let mut all = scattered(4_000, 5, |[x, y]| x + y);
     all.retain(|one| one.point[0] < 0.5);
-    let normal = Normal::of(&basis, &all, ONE).expect("equations");
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
     let equations = Equations::new(&basis, &normal, None).expect("equations");
     let found = equations.undetermined(0.0).expect("functions");
     assert!(!found.is_empty() && found.windows(2).all(|pair| pair[0].function < pair[1].function));
@@ -61,7 +61,7 @@ fn observations_elsewhere_are_counted() {
     let basis = pulled_apart(&grid(3, 0.2));
     let mut all = scattered(500, 5, |[x, y]| x - y);
     all.iter_mut().take(100).for_each(|one| one.point[0] += 2.0);
-    let normal = Normal::of(&basis, &all, ONE).expect("equations");
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
     assert_eq!((normal.count, normal.outside), (400, 100));
     all.iter_mut().for_each(|one| one.point[1] += 7.0);
     let said = message(least_squares(&basis, &all, 0.0, ONE));
@@ -87,7 +87,7 @@ fn numbers_that_are_none_are_refused() {
         let said = message(least_squares(&basis, &all, 0.0, ONE));
         assert!(said.contains("observation 63") && said.contains(part), "{said}");
     }
-    let normal = Normal::of(&basis, &good, ONE).expect("equations");
+    let normal = NormalEquations::of(&basis, &good, ONE).expect("equations");
     let energy = thin_plate(&basis).expect("an energy");
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     assert!(message(equations.solve(-1.0)).contains("lambda -1"));
@@ -100,7 +100,7 @@ fn numbers_that_are_none_are_refused() {
 fn what_does_not_fit_together_is_refused() {
     let (basis, other) = (pulled_apart(&grid(2, 0.2)), pulled_apart(&grid(3, 0.2)));
     let all = scattered(100, 5, |[x, y]| x - y);
-    let normal = Normal::of(&basis, &all, ONE).expect("equations");
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
     assert!(message(Equations::new(&other, &normal, None)).contains("other functions"));
     assert!(message(for_each_residual(&basis, &[1.0], &all, ONE, |_| ())).contains("1 coefficients"));
     let interpolation = Interpolation::new(&basis).expect("sites");

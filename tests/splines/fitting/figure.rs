@@ -29,7 +29,7 @@ fn errors(basis: &Basis, side: f64, f: fn([f64; 2]) -> f64) -> (f64, f64) {
 /// Functions over configurations of knots whose border is pulled apart.
 fn collected(points: &[[f64; 2]], configurations: impl Fn(&Knots) -> Configurations) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
-    let hull = delaunay2::triangulate(points).expect("a triangulation").hull;
+    let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
     let special = features(&knots, &Features { corners: hull, ..Features::default() }).expect("features");
     let made = configurations(&special.knots);
     let links = configurations::links(&special.knots, &made).expect("links");
@@ -46,8 +46,8 @@ fn the_row_of_delaunay_configurations_is_reproduced() {
     let (greatest, mean) = errors(&basis, 1.0, exponential);
     assert!((4.05e-3..4.07e-3).contains(&greatest), "{greatest}");
     assert!((5.4e-4..6.3e-4).contains(&mean), "{mean}");
-    // Ties are broken the same way in all cells, which makes the start that of the row of box splines, with its 2.20e-3 here; other
-    // ways to break them give up to 2.32e-3.
+    // Ties are broken the same way in all cells, which makes the start that of the row of box splines, with
+    // its 2.20e-3 here; other ways to break them give up to 2.32e-3.
     let (greatest, _) = errors(&basis, 1.0, wave);
     assert!((2.195e-3..2.325e-3).contains(&greatest), "{greatest}");
 }

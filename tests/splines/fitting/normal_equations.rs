@@ -2,7 +2,9 @@
 
 use super::bases::{ONE, dense, deviation, grid, pulled_apart, scattered, solve_dense};
 use spmesh_splines::bases::Basis;
-use spmesh_splines::fitting::{Equations, Normal, Observation, for_each_residual, least_squares, summarise};
+use spmesh_splines::fitting::{
+    Equations, NormalEquations, Observation, for_each_residual, least_squares, summarise,
+};
 use std::num::NonZeroUsize;
 
 fn weighted(count: usize) -> Vec<Observation> {
@@ -30,7 +32,7 @@ fn sums_are_those_of_dense_matrices() {
     let basis = pulled_apart(&grid(3, 0.2));
     let all = weighted(700);
     let (matrix, right, square) = by_hand(&basis, &all);
-    let normal = Normal::of(&basis, &all, ONE).expect("equations");
+    let normal = NormalEquations::of(&basis, &all, ONE).expect("equations");
     for i in 0..basis.len() {
         for (j, expected) in matrix[i].iter().enumerate() {
             assert!((normal.matrix.at(i, j) - expected).abs() < 1e-11, "{i} {j}");
@@ -55,8 +57,9 @@ fn sums_are_those_of_dense_matrices() {
 fn results_do_not_depend_on_threads() {
     let basis = pulled_apart(&grid(6, 0.2));
     let all = weighted(150_000);
-    let of =
-        |threads| Normal::of(&basis, &all, NonZeroUsize::new(threads).expect("threads")).expect("equations");
+    let of = |threads| {
+        NormalEquations::of(&basis, &all, NonZeroUsize::new(threads).expect("threads")).expect("equations")
+    };
     let one = of(1);
     for threads in [2, 3, 5] {
         let more = of(threads);

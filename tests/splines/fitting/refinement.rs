@@ -22,8 +22,8 @@ fn ridges_take_fewer_knots_than_uniform_ones() {
     let goal = Goal::new(0.01, 1_000);
     let refined = refine(&all, &goal, ONE).expect("a spline");
     assert!(refined.is_reached, "{:?}", refined.rounds);
-    let knots = refined.cover.mesh.points().len();
-    let summary = summarise(&refined.cover.basis, &refined.coefficients, &all, ONE).expect("residuals");
+    let knots = refined.space.mesh.points().len();
+    let summary = summarise(&refined.space.basis, &refined.coefficients, &all, ONE).expect("residuals");
     let last = refined.rounds.last().expect("a round");
     assert_eq!(summary.outside, 0, "the box of the data is the domain");
     assert_eq!(summary.worst.expect("residuals").residual.abs(), last.greatest);
@@ -78,7 +78,7 @@ fn areas_without_observations_get_no_knots() {
     // At the edge of the gap, few observations may be in a triangle.
     assert!(refined.rounds.last().expect("a round").above < 10, "{:?}", refined.rounds);
     let is_in_gap = |[x, y]: [f64; 2]| x < 0.85 && y > 0.7;
-    let sites = (0..refined.cover.basis.len()).map(|function| refined.cover.basis.greville(function));
+    let sites = (0..refined.space.basis.len()).map(|function| refined.space.basis.greville(function));
     assert!(sites.filter(|&site| is_in_gap(site)).count() < 60);
 }
 

@@ -1,7 +1,7 @@
 //! Smoothing: between a plane and least squares.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered, solve_dense};
-use spmesh_splines::fitting::{Equations, Normal, Observation, least_squares, thin_plate};
+use spmesh_splines::fitting::{Equations, NormalEquations, Observation, least_squares, thin_plate};
 
 fn f([x, y]: [f64; 2]) -> f64 {
     (7.0 * x).sin() * (5.0 * y).cos() + 2.0 * x
@@ -21,7 +21,7 @@ fn a_great_lambda_leaves_the_plane_of_least_squares() {
     let all = scattered(2_000, 3, f);
     let plane = plane(&all);
     let (normal, energy) =
-        (Normal::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
+        (NormalEquations::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     let distance = |lambda: f64| {
         let coefficients = equations.solve(lambda * equations.unit()).expect("coefficients");
@@ -38,7 +38,7 @@ fn more_smoothing_means_less_energy_and_greater_residuals() {
     let basis = pulled_apart(&grid(6, 0.2));
     let all = scattered(1_000, 4, f);
     let (normal, energy) =
-        (Normal::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
+        (NormalEquations::of(&basis, &all, ONE).expect("equations"), thin_plate(&basis).expect("an energy"));
     let equations = Equations::new(&basis, &normal, Some(&energy)).expect("equations");
     let mut before = (f64::INFINITY, 0.0);
     for exponent in -8..4 {

@@ -46,7 +46,8 @@ impl Places {
         is_tent.then_some(FunctionKind::Tent([p.min(q), p.max(q)]))
     }
 
-    /// Whether the edges of a link go back and forth between places, such as those of copies: its B-spline is zero then.
+    /// Whether the edges of a link go back and forth between places, such as those of copies: its B-spline is
+    /// zero then.
     fn encloses_nothing(&self, link: &Link) -> bool {
         let at_places =
             link.edges().map(|edge| edge.map(|id| (id != FARAWAY).then(|| self.firsts[id as usize])));

@@ -1,13 +1,15 @@
 //! Configurations whose B-splines sum to box splines, the ZP elements, inside of grids (thesis 8.2).
 //!
-//! Each cell of a grid is split along a diagonal, always the same. The link of a knot amid four cells is then a hexagon; of
-//! this, its two neighbours along the diagonals are cut as ears, and the diamond of the other four is split (figure 8.3).
-//! Links of diagonals are null then, and the ZP element of a face is half the sum of the B-splines of its four sides
-//! (theorem 8.2.4; the printed factor 1/4! is that of another normalisation), for either diagonal and either split.
+//! Each cell of a grid is split along a diagonal, always the same. The link of a knot amid four cells is then
+//! a hexagon; of this, its two neighbours along the diagonals are cut as ears, and the diamond of the other
+//! four is split (figure 8.3). Links of diagonals are null then, and the ZP element of a face is half the sum
+//! of the B-splines of its four sides (theorem 8.2.4; the printed factor 1/4! is that of another
+//! normalisation), for either diagonal and either split.
 //!
-//! What the grid does not determine, links of knots on the border of a grid and all that is between grids (8.2.5), is left
-//! to constrained Delaunay triangulation and the rule. A face has a box spline if all its corners are amid cells. The thesis
-//! drops all B-splines between such knots; here the half that no box spline takes remains a function, so that all sum to one.
+//! What the grid does not determine, links of knots on the border of a grid and all that is between grids
+//! (8.2.5), is left to constrained Delaunay triangulation and the rule. A face has a box spline if all its
+//! corners are amid cells. The thesis drops all B-splines between such knots; here the half that no box
+//! spline takes remains a function, so that all sum to one.
 
 use super::Special;
 use super::basis::Collection;
@@ -16,7 +18,7 @@ use super::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::{MAX_POINTS, distinct};
-use crate::predicates::{Point2, Predicates2, Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 use foldhash::{HashMap, HashSet};
 use spmesh_core::error::{Error, Result};
 
@@ -31,7 +33,8 @@ pub struct ZpSplit {
 
 /// A grid of parallelograms: knots at `origin + i steps[0] + j steps[1]`.
 ///
-/// Coordinates are rounded. Steps that make them exact keep lines straight, and knots of patches that meet at one place.
+/// Coordinates are rounded. Steps that make them exact keep lines straight, and knots of patches that meet at
+/// one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// The first knot.
@@ -45,9 +48,12 @@ pub struct Patch {
 /// A cell by its corners, counterclockwise from the lower left, in the coordinates of its grid.
 type Cell = [u32; 4];
 
-/// ZP configurations where `knots` have integer coordinates: cells are unit squares all of whose corners are knots.
+/// ZP configurations where `knots` have integer coordinates: cells are unit squares all of whose corners are
+/// knots.
 ///
-/// Errors: knots without such a square; knots of which several cells contain others still make a triangulation, but no cell.
+/// # Errors
+/// Knots without such a square; knots of which several cells contain others still make a triangulation, but
+/// no cell.
 pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
     let places = distinct(knots.points());
     let repeated: HashSet<u32> =
@@ -70,12 +76,15 @@ pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
     of_cells(knots.clone(), &[cells], split)
 }
 
-/// Grids, each with ZP configurations inside, that are stitched by a constrained Delaunay triangulation (thesis 8.2.5).
+/// Grids, each with ZP configurations inside, that are stitched by a constrained Delaunay triangulation
+/// (thesis 8.2.5).
 ///
-/// `more` are knots between the grids. Knots of the patches come first, row by row; where patches touch, those at one place
-/// are one. Cells with knots on their sides, where patches meet in T-junctions, or inside are no cells.
+/// `more` are knots between the grids. Knots of the patches come first, row by row; where patches touch,
+/// those at one place are one. Cells with knots on their sides, where patches meet in T-junctions, or inside
+/// are no cells.
 ///
-/// Errors: numbers that are not finite, steps that are not counterclockwise, too many knots, grid lines that cross.
+/// # Errors
+/// Numbers that are not finite, steps that are not counterclockwise, too many knots, grid lines that cross.
 pub fn patches(patches: &[Patch], more: &[Point2], split: ZpSplit) -> Result<Special> {
     let mut merged = Merged::default();
     let mut grids: Vec<Vec<Cell>> = Vec::new();
@@ -97,7 +106,7 @@ impl Patch {
         if !self.steps.iter().chain([&self.origin]).flatten().all(|number| number.is_finite()) {
             return Err(Error::malformed(format!("a number is not finite in {self:?}")));
         }
-        if TotalPredicates::default().orient2d([0.0; 2], [a, b], [c, d]) != Sign::Positive {
+        if FiniteFloatPredicates::default().orient2d([0.0; 2], [a, b], [c, d]) != Sign::Positive {
             let what = "the second step is not counterclockwise of the first: exchange them";
             return Err(Error::usage(what));
         }
@@ -151,7 +160,7 @@ impl Merged {
 
 /// Cells of grids in one triangulation.
 fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special> {
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, Start::delaunay(&knots)?, &mut predicates);
     let sides = |cell: &Cell| [0, 1, 2, 3].map(|i| [cell[i], cell[(i + 1) % 4]]);
     for (number, grid) in grids.iter().enumerate() {

@@ -1,13 +1,14 @@
 //! Segments that a triangulation must have as edges: a constrained Delaunay triangulation, by flips.
 //!
-//! Edges that cross a segment are flipped until none is left (Sloan, "A fast algorithm for generating constrained Delaunay
-//! triangulations", Computers & Structures 47, 1993), then what is new is made Delaunay again as far as segments allow.
+//! Edges that cross a segment are flipped until none is left (Sloan, "A fast algorithm for generating
+//! constrained Delaunay triangulations", Computers & Structures 47, 1993), then what is new is made Delaunay
+//! again as far as segments allow.
 
 use crate::configurations::knots::Knots;
 use crate::configurations::plane::Plane;
 use crate::configurations::surface::{Around, Corner, Start};
 use crate::delaunay2::distinct;
-use crate::predicates::{Sign, TotalPredicates};
+use crate::predicates::{FiniteFloatPredicates, Sign};
 use foldhash::{HashSet, HashSetExt};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::FARAWAY;
@@ -16,21 +17,22 @@ use std::collections::VecDeque;
 /// A triangulation with edges that stay.
 pub(super) struct Constrained<'a> {
     start: Start,
-    plane: Plane<'a, TotalPredicates>,
+    plane: Plane<'a, FiniteFloatPredicates>,
     /// A corner at each knot.
     corner_at: Vec<Corner>,
     /// Edges that stay, the lesser end first.
     fixed: HashSet<[u32; 2]>,
 }
 
-/// Where a segment leads first: the next knot on it, and the edges that it crosses before, the right end first.
+/// Where a segment leads first: the next knot on it, and the edges that it crosses before, the right end
+/// first.
 struct Passage {
     to: u32,
     crossed: Vec<[u32; 2]>,
 }
 
 impl<'a> Constrained<'a> {
-    pub(super) fn new(knots: &'a Knots, start: Start, predicates: &'a mut TotalPredicates) -> Self {
+    pub(super) fn new(knots: &'a Knots, start: Start, predicates: &'a mut FiniteFloatPredicates) -> Self {
         let plane = Plane::new(knots, None, predicates);
         let mut all = Constrained { start, plane, corner_at: vec![0; knots.len()], fixed: HashSet::new() };
         (0..all.start.triangles.len() as u32).for_each(|triangle| all.note(triangle));
@@ -42,11 +44,14 @@ impl<'a> Constrained<'a> {
         self.start.generalised()
     }
 
-    /// Makes the segment between two knots an edge that stays; the knots on the way from `a` to `b`, both included: where
-    /// others lie on the segment, it is several edges.
+    /// Makes the segment between two knots an edge that stays; the knots on the way from `a` to `b`, both
+    /// included: where others lie on the segment, it is several edges.
     ///
-    /// Errors: a segment that crosses another. Cost: the square of the number of edges it crosses, which is small for all
-    /// segments that one has in mind.
+    /// Cost: the square of the number of edges it crosses, which is small for all segments that one has in
+    /// mind.
+    ///
+    /// # Errors
+    /// A segment that crosses another.
     pub(super) fn fix(&mut self, a: u32, b: u32) -> Result<Vec<u32>> {
         let mut path = vec![a];
         let mut from = a;
@@ -66,8 +71,8 @@ impl<'a> Constrained<'a> {
         Ok(path)
     }
 
-    /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment goes through.
-    /// Of knots at one place it names the first: others may be copies that nobody knows of.
+    /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment
+    /// goes through. Of knots at one place it names the first: others may be copies that nobody knows of.
     #[cold]
     fn crossing(&self, ends: [u32; 2], edge: [u32; 2]) -> Error {
         let firsts = distinct(self.plane.knots.points());
@@ -85,16 +90,19 @@ impl<'a> Constrained<'a> {
         self.fixed.contains(&[a.min(b), a.max(b)])
     }
 
-    /// The third knot of the triangle to the left of an edge; `None` if there is no such edge, or nothing to the left.
+    /// The third knot of the triangle to the left of an edge; `None` if there is no such edge, or nothing to
+    /// the left.
     pub(super) fn apex(&self, a: u32, b: u32) -> Option<u32> {
         let corner = self.corner(a, b)? as usize;
         let apex = self.start.triangles[corner / 3][corner % 3];
         (apex != FARAWAY).then_some(apex)
     }
 
-    /// Puts a knot that is no vertex yet on an edge, or next to it; the two knots opposite to the edge, left and right.
+    /// Puts a knot that is no vertex yet on an edge, or next to it; the two knots opposite to the edge, left
+    /// and right.
     ///
-    /// Errors: no such edge; an edge on the border; a knot that is too far from the edge.
+    /// # Errors
+    /// No such edge; an edge on the border; a knot that is too far from the edge.
     pub(super) fn split(&mut self, [a, b]: [u32; 2], middle: u32) -> Result<[u32; 2]> {
         let corner = self.corner(a, b).ok_or_else(|| stuck([a, b]))?;
         let Some([v, _, w, _]) = self.start.quadrilateral(corner) else {
@@ -188,7 +196,8 @@ impl<'a> Constrained<'a> {
     fn clear(&mut self, [a, b]: [u32; 2], crossed: Vec<[u32; 2]>) -> Result<Vec<[u32; 2]>> {
         let mut fresh = Vec::new();
         let count = crossed.len();
-        // Each round of the queue flips an edge at least, and each pair of crossing edges is made once at most.
+        // Each round of the queue flips an edge at least, and each pair of crossing edges is made once at
+        // most.
         let mut left = count.saturating_mul(count).saturating_mul(count).saturating_add(8);
         let mut waiting: VecDeque<[u32; 2]> = crossed.into();
         while let Some([p, q]) = waiting.pop_front() {

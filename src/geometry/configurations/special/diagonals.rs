@@ -39,7 +39,8 @@ impl Diagonals {
 impl<P: Predicates2> Triangulator<'_, P> {
     /// Triangulates the polygon, and has the given diagonals among its edges.
     ///
-    /// Errors: what is no diagonal of it, or crosses another.
+    /// # Errors
+    /// What is no diagonal of it, or crosses another.
     pub(in crate::configurations) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
         let mut pieces = vec![self.polygon.clone()];
         for [p, q] in diagonals {

@@ -7,7 +7,7 @@ use super::diagonals::Diagonals;
 use crate::configurations::knots::Knots;
 use crate::configurations::surface::Start;
 use crate::delaunay2::distinct;
-use crate::predicates::TotalPredicates;
+use crate::predicates::FiniteFloatPredicates;
 use spmesh_core::error::{Error, Result};
 
 /// A polyline of knots along which splines have a crease.
@@ -15,8 +15,8 @@ use spmesh_core::error::{Error, Result};
 pub struct Crease {
     /// Ids of knots along it, two at least.
     pub knots: Vec<u32>,
-    /// Whether the crease is sharp up to its ends, which are pulled apart like all its knots, and can be interpolated at;
-    /// otherwise each edge has a further knot in its middle, and no knot is pulled apart.
+    /// Whether the crease is sharp up to its ends, which are pulled apart like all its knots, and can be
+    /// interpolated at; otherwise each edge has a further knot in its middle, and no knot is pulled apart.
     pub has_sharp_ends: bool,
 }
 
@@ -27,26 +27,29 @@ pub struct Features {
     pub corners: Vec<u32>,
     /// Creases (scenario 2).
     pub creases: Vec<Crease>,
-    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. One that ends where it starts
-    /// and has no knot inside makes a triangle, if it has three edges, or a polygon of them.
+    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. One that ends
+    /// where it starts and has no knot inside makes a triangle, if it has three edges, or a polygon of them.
     pub lines: Vec<Vec<u32>>,
 }
 
 /// Configurations for features: their knots are pulled apart, and their segments are edges.
 ///
-/// All functions sum to one, so that one of them alone cannot be sharp: of a crease with smooth ends, the B-splines of the
-/// knot between and the knots opposite to the edge are sharp, too, and the sum of all three is smooth. (The thesis has one.)
+/// All functions sum to one, so that one of them alone cannot be sharp: of a crease with smooth ends, the
+/// B-splines of the knot between and the knots opposite to the edge are sharp, too, and the sum of all three
+/// is smooth. (The thesis has one.)
 ///
-/// Copies come after the knots given, and after them one knot for each edge of creases with smooth ends, in their order: the
-/// middle of the edge as near as numbers allow. Its link has the edge itself as a diagonal.
+/// Copies come after the knots given, and after them one knot for each edge of creases with smooth ends, in
+/// their order: the middle of the edge as near as numbers allow. Its link has the edge itself as a diagonal.
 ///
-/// Errors, with the polyline and the segment: unknown knots; polylines of fewer than two knots; segments that cross, that
-/// have other knots on them, or no length; creases with smooth ends at knots that are pulled apart, or on the border.
+/// # Errors
+/// Unknown knots; polylines of fewer than two knots; segments that cross, that have other knots on them, or
+/// no length; creases with smooth ends at knots that are pulled apart, or on the border. The error names the
+/// polyline and the segment.
 pub fn features(knots: &Knots, features: &Features) -> Result<Special> {
     features.check(knots)?;
     let apart = knots.pull_apart(&features.sharp_knots())?;
     let firsts = distinct(apart.points());
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&apart, Start::delaunay(&apart)?, &mut predicates);
     fix_copies(&mut mesh, &firsts)?;
     for (what, polyline) in features.polylines() {
@@ -146,7 +149,7 @@ fn smooth_creases(
     });
     let first_middle = apart.len() as u32;
     let knots = Knots::new(points)?;
-    let mut predicates = TotalPredicates::default();
+    let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, start, &mut predicates);
     let mut rows = Vec::new();
     for (middle, &(at, edge)) in (first_middle..).zip(&edges) {

@@ -1,9 +1,9 @@
 //! Special configurations of degree 1, for quadratic splines of a purpose (thesis, chapter 8).
 //!
-//! Each is knots, a triangulation of them, and diagonals that links of some knots must have: a [`Special`]. [`zp`] and
-//! [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2), [`features()`] makes corners and creases sharp,
-//! and linear elements linear (8.3.1). The B-splines of degree 2 that belong together, on account of knots at one place for
-//! instance, are summed: [`Special::functions`] says how.
+//! Each is knots, a triangulation of them, and diagonals that links of some knots must have: a [`Special`].
+//! [`zp`] and [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2), [`features()`] makes corners
+//! and creases sharp, and linear elements linear (8.3.1). The B-splines of degree 2 that belong together, on
+//! account of knots at one place for instance, are summed: [`Special::functions`] says how.
 
 mod basis;
 mod boxes;
@@ -35,9 +35,11 @@ pub struct Special {
     collection: Collection,
 }
 
-/// The functions that quadratic splines are made of, if nothing is special but knots at one place: as [`Special::functions`].
+/// The functions that quadratic splines are made of, if nothing is special but knots at one place: as
+/// [`Special::functions`].
 ///
-/// Errors: links of another size.
+/// # Errors
+/// Links of another size.
 pub fn functions(knots: &Knots, links: &Links) -> Result<Vec<Function>> {
     Collection::default().functions(knots, links)
 }
@@ -45,7 +47,8 @@ pub fn functions(knots: &Knots, links: &Links) -> Result<Vec<Function>> {
 impl Special {
     /// All degrees from 0 to `degree`, in order: `rule` triangulates what is not determined.
     ///
-    /// Errors: those of [`super::generate`].
+    /// # Errors
+    /// Those of [`super::generate`].
     pub fn generate(&self, rule: &Rule, degree: usize) -> Result<Vec<Configurations>> {
         super::check_degree(&self.knots, degree)?;
         let mut all = vec![self.start.configurations()];
@@ -59,10 +62,12 @@ impl Special {
 
     /// The functions that quadratic splines are made of, as sums of B-splines; `links` are those of degree 1.
     ///
-    /// Each B-spline has shares of one altogether: so the functions sum to one where the B-splines do. Those of null links
-    /// are zero, and left out; of a link through the faraway point, the finite edges make the B-spline.
+    /// Each B-spline has shares of one altogether: so the functions sum to one where the B-splines do. Those
+    /// of null links are zero, and left out; of a link through the faraway point, the finite edges make the
+    /// B-spline.
     ///
-    /// Errors: links of another size.
+    /// # Errors
+    /// Links of another size.
     pub fn functions(&self, links: &Links) -> Result<Vec<Function>> {
         self.collection.functions(&self.knots, links)
     }

@@ -12,8 +12,8 @@ pub(super) struct Facet {
     pub(super) cell: u32,
 }
 
-/// Least number of vertices of a ridge: three or more points of a face, being cospherical, span two dimensions (thesis,
-/// lemma 3.6.2). The faraway point is one like others here.
+/// Least number of vertices of a ridge: three or more points of a face, being cospherical, span two
+/// dimensions (thesis, lemma 3.6.2). The faraway point is one like others here.
 const RIDGE_MIN: usize = 3;
 
 /// Numbers that two increasing lists have in common.

@@ -1,10 +1,10 @@
 //! The way of the thesis (3.6.4): cells of any number of vertices, made as points come.
 //!
-//! Each cell has its vertices, its neighbours, and the tuple of its sphere in integers. A new point is inside of the sphere
-//! of red cells, on that of green ones, outside of those of blue ones. Red cells vanish; green cells get the point as a
-//! vertex; each facet between a red and a blue cell makes a cell with the point, whose sphere is a combination of the two
-//! (eq. 3.1), divided by what its components have in common. Euclid's algorithm finds that divisor: theorem 3.6.1 gives it
-//! only where nothing is cospherical.
+//! Each cell has its vertices, its neighbours, and the tuple of its sphere in integers. A new point is inside
+//! of the sphere of red cells, on that of green ones, outside of those of blue ones. Red cells vanish; green
+//! cells get the point as a vertex; each facet between a red and a blue cell makes a cell with the point,
+//! whose sphere is a combination of the two (eq. 3.1), divided by what its components have in common.
+//! Euclid's algorithm finds that divisor: theorem 3.6.1 gives it only where nothing is cospherical.
 //!
 //! A check of the other way, with which it shares little: no perturbation, no simplices, no rounded numbers.
 
@@ -25,13 +25,14 @@ use tuple::{Integer, Tuple};
 
 /// Greatest difference of integer coordinates with which all combinations fit into 128 bits.
 ///
-/// Values are at most 60 E^6, components of tuples at most 260 E^6, so combinations are at most 2 * 60 * 260 E^12, which is
-/// below 2^127 for E up to 670. Steps of the walk are shorter.
+/// Values are at most 60 E^6, components of tuples at most 260 E^6, so combinations are at most 2 * 60 * 260
+/// E^12, which is below 2^127 for E up to 670. Steps of the walk are shorter.
 const INT128_MAX: f64 = 670.0;
 
 /// The diagram of sites.
 ///
-/// Errors: all points are in a hyperplane.
+/// # Errors
+/// All points are in a hyperplane.
 pub(super) fn cells(sites: &Sites, stats: &mut Stats) -> Result<Cells4> {
     let started = Instant::now();
     let order = insertions(sites)?;
@@ -170,7 +171,8 @@ impl<T: Integer> Direct<T> {
         (red, others)
     }
 
-    /// The colour of a cell. On the hyperplane of an infinite cell, the finite neighbour decides (thesis 4.4).
+    /// The colour of a cell. On the hyperplane of an infinite cell, the finite neighbour decides (thesis
+    /// 4.4).
     fn see(&self, q: u32, cell: u32) -> Seen<T> {
         let value = self.cell(cell).sphere.value(&self.points[q as usize]);
         let colour = if value.is_negative() {

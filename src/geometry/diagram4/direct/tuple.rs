@@ -8,8 +8,8 @@ pub(super) trait Integer: Number + num_integer::Integer + Signed {}
 
 impl<T: Number + num_integer::Integer + Signed> Integer for T {}
 
-/// The integers (n, m, s): the value of a point x is n . x + m |x|^2 + s, negative inside of a sphere, or beyond a
-/// hyperplane of the hull, whose m is 0. They have no divisor in common.
+/// The integers (n, m, s): the value of a point x is n . x + m |x|^2 + s, negative inside of a sphere, or
+/// beyond a hyperplane of the hull, whose m is 0. They have no divisor in common.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tuple<T> {
     n: [T; 4],

@@ -8,8 +8,8 @@ const AHEAD: usize = 3;
 
 /// Simplices in conflict with a point, and the border around them.
 ///
-/// Which of its neighbours a simplex in conflict is the first to meet, and which are in conflict, no processor predicts:
-/// so both lists are written to each time, and it is only counted if that was meant.
+/// Which of its neighbours a simplex in conflict is the first to meet, and which are in conflict, no
+/// processor predicts: so both lists are written to each time, and it is only counted if that was meant.
 #[derive(Debug, Default)]
 pub(super) struct Cavity {
     dead: Vec<u32>,

@@ -39,8 +39,8 @@ pub(super) const NOBODY: Facet = 0;
 /// Most simplices: facets are numbered in 31 bits.
 pub(super) const SIMPLICES_MAX: usize = 1 << 28;
 
-/// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of the hull.
-///
+/// Positive: det(b - a, c - a, d - a, e - a) > 0; the faraway point stands for any point beyond the facet of
+/// the hull.
 #[derive(Debug, Clone, Copy, Default)]
 pub(in crate::diagram4) struct Simplex {
     pub(in crate::diagram4) vertices: [u32; FACETS],
@@ -48,8 +48,9 @@ pub(in crate::diagram4) struct Simplex {
     pub(in crate::diagram4) beyond: [Facet; FACETS],
 }
 
-/// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside of a sphere, or beyond a hyperplane of the
-/// hull. m is positive for a sphere, 0 for a hyperplane, and negative for what is no simplex any more.
+/// The vector (n, m, s) whose product with (x, |x|^2, 1) is negative inside of a sphere, or beyond a
+/// hyperplane of the hull. m is positive for a sphere, 0 for a hyperplane, and negative for what is no
+/// simplex any more.
 pub(in crate::diagram4) type Sphere<C> = [C; 6];
 
 /// Rounding errors of values, if coordinates differ by at most 1.
@@ -144,7 +145,8 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         value.abs() > self.rounding || (self.rounding == 0.0 && !self.is_infinite(simplex))
     }
 
-    /// Beyond a facet of the hull the sign of the hyperplane decides, on it the neighbour's sphere (thesis 4.4).
+    /// Beyond a facet of the hull the sign of the hyperplane decides, on it the neighbour's sphere (thesis
+    /// 4.4).
     #[inline(never)]
     pub(super) fn decide(&self, simplex: usize, q: u32, p: &Lifted) -> bool {
         match self.sign(simplex, q) {
@@ -194,8 +196,8 @@ impl<'a, C: Coefficient> Complex<'a, C> {
         }
     }
 
-    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; which vertex it is of each,
-    /// `sides` say.
+    /// The spheres of simplices that all have a vertex at `o`, or hyperplanes of infinite ones; which vertex
+    /// it is of each, `sides` say.
     #[inline(always)]
     pub(super) fn spheres_of(
         &self,

@@ -1,14 +1,15 @@
 //! Five points that are not in a hyperplane.
 
 use crate::diagram4::sites::Sites;
-use crate::predicates::big::integers;
+use crate::predicates::exact_integers::integers;
 use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
 /// Moves the first five points that span space to the front, others stay in their order.
 ///
-/// Errors: there are none; the message has the dimension of the points.
+/// # Errors
+/// There are none; the message has the dimension of the points.
 pub(super) fn to_front(sites: &Sites, order: &mut [u32]) -> Result<()> {
     let Some(&first) = order.first() else {
         return Err(Error::usage("no points, where a diagram in 4 dimensions needs at least 5"));
@@ -47,8 +48,8 @@ struct Row {
     axis: usize,
 }
 
-/// The vector from the origin to the point without its parts along the basis, times some integer, unless nothing is left
-/// (Gauss's elimination without division).
+/// The vector from the origin to the point without its parts along the basis, times some integer, unless
+/// nothing is left (Gauss's elimination without division).
 fn reduced(origin: Point4, point: Point4, basis: &[Row]) -> Option<Row> {
     // All in one unit: that of the points, for each alone, will do, as rows may be scaled.
     let [o, p] = integers([origin, point]);

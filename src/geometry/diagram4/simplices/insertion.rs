@@ -36,14 +36,14 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         if orientation(exactness, [a, b, c, d], e) == Ordering::Less {
             vertices.swap(0, 1);
         }
-        // Number 1, and number i + 2 beyond its facet i, in which the faraway point takes the place of vertex i; the other
-        // vertices keep their places.
+        // Number 1, and number i + 2 beyond its facet i, in which the faraway point takes the place of vertex
+        // i; the other vertices keep their places.
         let mut all = vec![(vertices, std::array::from_fn(|side| facet(side + 2, side)))];
         for side in 0..FACETS {
             let mut vertices = vertices;
             vertices[side] = INFINITE;
-            // Opposite to the faraway point is the finite one; opposite to vertex k is the one without k, where vertex i is
-            // in its own place.
+            // Opposite to the faraway point is the finite one; opposite to vertex k is the one without k,
+            // where vertex i is in its own place.
             let mut beyond: [Facet; FACETS] =
                 std::array::from_fn(|other| facet(if other == side { 1 } else { other + 2 }, side));
             // Another point in the place of a vertex, on the other side of the facet, would be negative.
@@ -64,7 +64,8 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
 
     /// Inserts all other points, with the widest instructions there are.
     ///
-    /// Errors: too many simplices.
+    /// # Errors
+    /// Too many simplices.
     pub(super) fn run(&mut self) -> Result<()> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -122,7 +123,8 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
         Ok(())
     }
 
-    /// Makes a simplex of each facet of the border and the new point, in places that are free, and links them.
+    /// Makes a simplex of each facet of the border and the new point, in places that are free, and links
+    /// them.
     #[inline(always)]
     fn make_star(&mut self, q: u32) {
         let o = self.complex.near[q as usize];

@@ -37,8 +37,9 @@ impl Links {
 
     /// Links a simplex of the star with those at its triangles that came before it, if they have come.
     ///
-    /// `side` is that of the facet opposite to the centre. What has no neighbour yet leads to [`NOBODY`], whose own links
-    /// are written but mean nothing: that saves asking which of the two came first, a coin toss for the processor.
+    /// `side` is that of the facet opposite to the centre. What has no neighbour yet leads to [`NOBODY`],
+    /// whose own links are written but mean nothing: that saves asking which of the two came first, a coin
+    /// toss for the processor.
     #[inline(always)]
     pub(super) fn link(
         &mut self,
@@ -67,8 +68,8 @@ impl Links {
             let [a, b, c] = slot.triangle;
             let difference = (a ^ x) | (b ^ y) | (c ^ z);
             const { assert!(NOBODY == 0) };
-            // The product is zero if the slot is free or has the triangle. Two questions would be two branches, and one of
-            // them a coin toss.
+            // The product is zero if the slot is free or has the triangle. Two questions would be two
+            // branches, and one of them a coin toss.
             if u64::from(difference) * u64::from(slot.facet) == 0 {
                 let there = slot.facet;
                 *slot = Slot { triangle, facet };

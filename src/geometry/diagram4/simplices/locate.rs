@@ -13,9 +13,9 @@ const TIE: f64 = 1e-9;
 impl<C: Coefficient> Complex<'_, C> {
     /// A simplex in conflict with vertex `q` at `p`.
     ///
-    /// Where two spheres meet, the powers of a point with respect to them are equal on the hyperplane of the facet
-    /// between, and less on the side of the own simplex: so the walk goes to the lesser power (thesis 3.6.4). Equal spheres
-    /// say nothing, and the hyperplane has to be asked.
+    /// Where two spheres meet, the powers of a point with respect to them are equal on the hyperplane of the
+    /// facet between, and less on the side of the own simplex: so the walk goes to the lesser power (thesis
+    /// 3.6.4). Equal spheres say nothing, and the hyperplane has to be asked.
     #[inline(always)]
     pub(super) fn locate(&self, q: u32, p: &Lifted, start: usize) -> usize {
         let mut at = self.neighbour_inside(start).unwrap_or(start);

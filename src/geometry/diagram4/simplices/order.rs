@@ -9,10 +9,11 @@ use spmesh_core::error::Result;
 
 /// The sites in the order of their insertion, five that span space first.
 ///
-/// Of a full grid, one pass along the curve creates four times as many simplices as rounds of sublattices do, rounds of
-/// points taken at random twice as many, and lexicographic order twenty times as many.
+/// Of a full grid, one pass along the curve creates four times as many simplices as rounds of sublattices do,
+/// rounds of points taken at random twice as many, and lexicographic order twenty times as many.
 ///
-/// Errors: there are none.
+/// # Errors
+/// There are none.
 pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
     let extent = Extent::of(&sites.points);
     let curve: Vec<u32> = SpatialOrder::default().sort(&sites.points, &extent, Curve::Hilbert).collect();
@@ -27,7 +28,8 @@ pub(in crate::diagram4) fn insertions(sites: &Sites) -> Result<Vec<u32>> {
 
 /// Whether at least half of the integer points of the box are there.
 ///
-/// If fewer are, sublattices still save simplices, but not time: there are more rounds then than of one point in three.
+/// If fewer are, sublattices still save simplices, but not time: there are more rounds then than of one point
+/// in three.
 fn is_grid(sites: &Sites, extent: &Extent<4>) -> bool {
     let box_points: f64 = (0..4).map(|axis| extent.upper[axis] - extent.lower[axis] + 1.0).product();
     sites.exactness != Exactness::Big && sites.points.len() as f64 >= 0.5 * box_points
@@ -40,10 +42,10 @@ fn rounds(curve: &[u32]) -> impl Iterator<Item = u32> {
 
 /// Integer points by the sublattice that they are of, those of the least dense one first.
 ///
-/// Every second point of Z^4 is of D4, whose cells have eight vertices; in the centre of each is one of the other points of
-/// Z^4, or of two more classes like it. Such a point makes 16 simplices, where one in a triangulation of random points makes
-/// about 130. Every second point of D4 in turn is of an image of Z^4 turned and enlarged by the root of two, so that all
-/// begins anew.
+/// Every second point of Z^4 is of D4, whose cells have eight vertices; in the centre of each is one of the
+/// other points of Z^4, or of two more classes like it. Such a point makes 16 simplices, where one in a
+/// triangulation of random points makes about 130. Every second point of D4 in turn is of an image of Z^4
+/// turned and enlarged by the root of two, so that all begins anew.
 ///
 /// Of a sample whether an integer is even is as good as random, and so are the rounds.
 fn by_sublattices(sites: &Sites, extent: &Extent<4>, curve: &[u32]) -> Vec<u32> {
@@ -73,7 +75,8 @@ const FEW: usize = 4;
 /// Levels of integers of up to 21 bits.
 const LEVELS: usize = 4 * 21 + 1;
 
-/// The number of the last lattice of the sequence Z^4, D4, Z^4 turned, D4 turned, 2 Z^4, ... that a point is of.
+/// The number of the last lattice of the sequence Z^4, D4, Z^4 turned, D4 turned, 2 Z^4, ... that a point is
+/// of.
 fn level(mut point: [u64; 4]) -> u32 {
     let mut level = 0;
     while point != [0; 4] {

@@ -67,7 +67,7 @@ pub(crate) const TINY: f64 = f64::from_bits((1023 - 1000) << 52);
 /// Whether a computed det(p, q, r) of rounded differences has the sign of the exact one, given the product of the
 /// computed squares of their lengths. The squares are multiplied one by one, or one is taken to the third power.
 ///
-/// Domain: numbers that are not [`super::Numbers::Any`]; any if the product is a third power of the greatest square.
+/// Domain: numbers that are not [`super::Numbers::FiniteFloats`]; any if the product is a third power of the greatest square.
 #[inline(always)]
 pub(crate) fn orient3d_is_certain(value: f64, squares: f64) -> bool {
     value * value > ORIENT3D_SQUARED_BOUND * squares + TINY

@@ -69,7 +69,7 @@ impl ExpansionPredicates3 {
 }
 
 impl Predicates3 for ExpansionPredicates3 {
-    const NUMBERS: Numbers = Numbers::Floats;
+    const NUMBERS: Numbers = Numbers::BoundedFloats;
 
     #[inline(always)]
     fn orient3d(&mut self, a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
@@ -109,7 +109,7 @@ impl Predicates3 for ExpansionPredicates3 {
 /// The filters are those in terms of lengths, which hold for all of them. Expansions are used in the domain of
 /// [`ExpansionPredicates3`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
-pub struct TotalPredicates3 {
+pub struct FiniteFloatPredicates3 {
     counts: PredicateCounts,
 }
 
@@ -117,8 +117,8 @@ fn greatest_lift(differences: &[Point3]) -> f64 {
     differences.iter().fold(0.0, |greatest, &difference| lift(difference).max(greatest))
 }
 
-impl Predicates3 for TotalPredicates3 {
-    const NUMBERS: Numbers = Numbers::Any;
+impl Predicates3 for FiniteFloatPredicates3 {
+    const NUMBERS: Numbers = Numbers::FiniteFloats;
 
     fn orient3d(&mut self, a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
         let differences = differences_from(a, [b, c, d]);

@@ -7,7 +7,7 @@ pub(crate) mod filter;
 mod float;
 mod integer;
 
-pub use float::{ExpansionPredicates3, TotalPredicates3};
+pub use float::{ExpansionPredicates3, FiniteFloatPredicates3};
 pub use integer::{IntegerPredicates3, SmallIntegerPredicates3, Width3};
 
 use super::{Extent, Int64, Int128, Numbers, Point3, PredicateCounts, Sign, perturbation};
@@ -69,8 +69,8 @@ pub enum Arithmetic3 {
     Integer128,
     /// Wider integers, and floating point in the range where expansions neither over- nor underflow.
     Expansion,
-    /// Any finite floating point.
-    Total,
+    /// All finite floating-point numbers.
+    FiniteFloat,
 }
 
 impl Arithmetic3 {
@@ -89,7 +89,7 @@ impl Arithmetic3 {
         } else if ExpansionPredicates3::covers(extent) {
             Arithmetic3::Expansion
         } else {
-            Arithmetic3::Total
+            Arithmetic3::FiniteFloat
         }
     }
 
@@ -109,7 +109,7 @@ impl Arithmetic3 {
             Arithmetic3::Integer64 => counted(algorithm, IntegerPredicates3::<Int64>::default(), counts),
             Arithmetic3::Integer128 => counted(algorithm, IntegerPredicates3::<Int128>::default(), counts),
             Arithmetic3::Expansion => counted(algorithm, ExpansionPredicates3::default(), counts),
-            Arithmetic3::Total => counted(algorithm, TotalPredicates3::default(), counts),
+            Arithmetic3::FiniteFloat => counted(algorithm, FiniteFloatPredicates3::default(), counts),
         }
     }
 }

@@ -189,7 +189,7 @@ impl Tiles<'_> {
                 Some(overviews) => overviews.add(name, &values)?,
                 None => None,
             };
-            if let Some(done) = self.compressor.push(name, values)? {
+            if let Some(done) = self.compressor.push(name, values) {
                 self.store(done)?;
             }
         }
@@ -211,7 +211,7 @@ impl Tiles<'_> {
 
     /// Waits for all tiles that are on their way.
     fn store_all(&mut self) -> Result<()> {
-        while let Some(done) = self.compressor.next()? {
+        while let Some(done) = self.compressor.next() {
             self.store(done)?;
         }
         Ok(())

@@ -30,10 +30,10 @@ use super::origin::{Origin, name_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Points of four dimensions, in the order of the input: in that of volume files, where x changes fastest, if they are
-/// sites of a grid. Equal points of a text stay as they are.
+/// The points that a request selects, in the order of the input. Sites of a grid come in the order of volume files, where
+/// x changes fastest. Equal points of a text are kept.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Points4 {
+pub struct Selected4 {
     /// The points, finite; none is -0.
     pub points: Vec<Point4>,
     /// A value for each point, if the input has values.
@@ -102,7 +102,7 @@ pub struct Selection {
 /// # Errors
 /// If the input cannot be read, is malformed (with the position), or of no known format; if what is asked for does not
 /// go with it, or would be more than [`spmesh_core::limits`] allows.
-pub fn read_points4(request: &Request) -> Result<Points4> {
+pub fn read_points4(request: &Request) -> Result<Selected4> {
     let mut warnings = Vec::new();
     let (supply, name) = match &request.from {
         From4::Grid(lens) => {
@@ -127,7 +127,7 @@ pub fn read_points4(request: &Request) -> Result<Points4> {
     read(supply, request, name, warnings)
 }
 
-fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<String>) -> Result<Points4> {
+fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<String>) -> Result<Selected4> {
     if request.spacing == Spacing::World {
         supply.place_in_world().map_err(|e| e.of_input(&name))?;
     }
@@ -136,7 +136,7 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
         points.warnings.push(ROUNDED.to_string());
     }
     points.warnings.splice(0..0, warnings);
-    Ok(Points4 { name, ..points })
+    Ok(Selected4 { name, ..points })
 }
 
 const ROUNDED: &str = "coordinates in world units are rounded: sites that are cospherical in the grid may be so no \

@@ -2,7 +2,7 @@
 
 use super::sample::choose;
 use super::scan::Supply;
-use super::{Points4, Selection, Share, too_many};
+use super::{Selected4, Selection, Share, too_many};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_model::cells4::Point4;
@@ -11,14 +11,14 @@ use spmesh_model::cells4::Point4;
 ///
 /// # Errors
 /// As [`Supply::scan`]; usage, if the selection does not go with the input or leaves too much of it.
-pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Points4> {
+pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Selected4> {
     check(supply, selection)?;
     match (supply, selection.share) {
         (Supply::Grid(lattice), Some(share)) if selection.condition.is_none() => {
             let sites = lattice.sites();
             let chosen = choose(sites, share.of(sites)?, selection.seed)?;
             let points = chosen.into_iter().map(|number| lattice.site(number)).collect();
-            Ok(Points4 { points, values: None, name: String::new(), sites, warnings: Vec::new() })
+            Ok(Selected4 { points, values: None, name: String::new(), sites, warnings: Vec::new() })
         }
         (_, Some(share)) => select_at_random(supply, selection, share),
         (_, None) => Ok(Intake::of(supply, selection, |_| true)?.finish(selection)),
@@ -44,7 +44,7 @@ fn check(supply: &Supply, selection: &Selection) -> Result<()> {
 const REMEDY: &str = "choose some of them with --where, --sample or --count";
 
 /// Two passes: how many points are wanted has to be known before some of them are chosen.
-fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Result<Points4> {
+fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Result<Selected4> {
     let mut wanted = 0;
     supply.scan(&mut |point, value| {
         wanted += u64::from(is_wanted(selection, &point, value));
@@ -105,7 +105,7 @@ impl Intake {
         Ok(())
     }
 
-    fn finish(self, selection: &Selection) -> Points4 {
+    fn finish(self, selection: &Selection) -> Selected4 {
         let Intake { points, values, sites, wanted, missing } = self;
         let mut warnings = Vec::new();
         if missing > 0 && !selection.keep_nan {
@@ -115,6 +115,6 @@ impl Intake {
             let why = if wanted == 0 { "none fulfils what is asked for" } else { "too few are chosen" };
             warnings.push(format!("no point is left of {sites}: {why}"));
         }
-        Points4 { points, values, name: String::new(), sites, warnings }
+        Selected4 { points, values, name: String::new(), sites, warnings }
     }
 }

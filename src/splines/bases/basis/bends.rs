@@ -1,13 +1,14 @@
 //! Where second derivatives of quadratic functions are constant.
 //!
-//! An element of degree 1 is linear on triangles: its four knots are the corners of a quadrilateral, whose diagonals cross, or one
-//! is in the triangle of the others; to that point, the *apex*, each edge of the hull makes a triangle (`tent`). Functions are
-//! products with linear factors, so that their second derivatives there are constant. Those of a function are the sums over all
-//! of its elements, almost everywhere: where it has an edge, along collinear knots, there are none.
+//! An element of degree 1 is linear on triangles: its four knots are the corners of a quadrilateral, whose
+//! diagonals cross, or one is in the triangle of the others; to that point, the *apex*, each edge of the hull
+//! makes a triangle (`linear_simplex`). Functions are products with linear factors, so that their second
+//! derivatives there are constant. Those of a function are the sums over all of its elements, almost
+//! everywhere: where it has an edge, along collinear knots, there are none.
 
 use super::Basis;
 use crate::bases::elements::{Share, hull_edges};
-use crate::bases::tent::slope;
+use crate::bases::linear_simplex::slope;
 use spmesh_geometry::predicates::{Point2, area};
 
 /// Second derivatives of some functions, as far as they come from one element, on a triangle.

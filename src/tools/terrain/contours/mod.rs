@@ -26,7 +26,7 @@ use open_lines::{Contour, OpenLines};
 use places::{Elevations, Plane, Vertex};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CONTOURS_PER_TRIANGLE_MAX;
-use spmesh_geometry::predicates::TotalPredicates;
+use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 
 /// The lines to make.
@@ -141,7 +141,7 @@ struct Tracer {
     plane: Plane,
     to_world: Elevations,
     long_edges: LongEdges,
-    predicates: TotalPredicates,
+    predicates: FiniteFloatPredicates,
     lines: OpenLines,
     killed: u64,
     elevations: Option<[f64; 2]>,
@@ -154,7 +154,7 @@ impl Tracer {
             plane: Plane::new(&header.coordinates),
             to_world: Elevations::new(&header.coordinates),
             long_edges: LongEdges::new(options.kill, &header.coordinates),
-            predicates: TotalPredicates::default(),
+            predicates: FiniteFloatPredicates::default(),
             lines: OpenLines::new(options.points.map_or(usize::MAX, |points| points.max(2))),
             killed: 0,
             elevations: None,

@@ -10,7 +10,7 @@ use super::tile::overlap;
 use super::tile_cache::{TileCache, TilePlace};
 use crate::surface::{LongEdges, is_counterclockwise};
 use spmesh_core::error::Result;
-use spmesh_geometry::predicates::{Point2, TotalPredicates};
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
@@ -25,7 +25,7 @@ pub(super) struct Rasterizer {
     attribute: Attribute,
     long_edges: LongEdges,
     pub(super) cache: TileCache,
-    pub(super) predicates: TotalPredicates,
+    pub(super) predicates: FiniteFloatPredicates,
     /// Number of triangles left out because of a long edge.
     pub(super) killed: u64,
     /// The spans of a triangle in one row of tiles; a field so that the allocation is reused.
@@ -43,7 +43,7 @@ impl Rasterizer {
             attribute: options.attribute,
             long_edges: LongEdges::new(options.kill, coordinates),
             cache: TileCache::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
-            predicates: TotalPredicates::default(),
+            predicates: FiniteFloatPredicates::default(),
             killed: 0,
             spans: Vec::with_capacity(TILE),
         })

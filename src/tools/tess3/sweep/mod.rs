@@ -1,18 +1,19 @@
-//! Many files, several at a time: each becomes an output of its own, and a line of the summary. A file that cannot be
-//! triangulated is a line, too, and does not keep the others from being done.
+//! Many files, several at a time: each becomes an output of its own, and a line of the summary. A file that
+//! cannot be triangulated is a line, too, and does not keep the others from being done.
 
-mod crew;
 mod file;
 mod names;
 mod summary;
 
 use std::collections::HashSet;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use super::{Options, Stats};
-use file::{End, Job};
+use file::Job;
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::parallel;
 use spmesh_io::source::structure::Format;
 use summary::{Done, Summary};
 
@@ -68,8 +69,8 @@ pub enum News<'n> {
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// If the folder or the summary cannot be written, or is none. With `strict`, the error of the first file that fails.
-/// Otherwise failures are counted.
+/// If the folder or the summary cannot be written, or is none. With `strict`, the error of the first file
+/// that fails. Otherwise failures are counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
     fs::create_dir_all(folder)
@@ -86,9 +87,11 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
     });
     let jobs = jobs(files, &done);
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    let work = |job: &Job<'_>| file::run(job, sweep);
-    let is_last = |end: &End| sweep.strict && end.result.is_err();
-    crew::run(sweep.threads, &jobs, work, is_last, |job, end| {
+    let work = |job: &Job<'_>| match file::run(job, sweep) {
+        end if sweep.strict && end.result.is_err() => ControlFlow::Break(end),
+        end => ControlFlow::Continue(end),
+    };
+    parallel::for_each_result(sweep.threads, &jobs, work, |job, end| {
         summary.add(end.lines(job.file, &sweep.options_text))?;
         match end.result {
             Ok(written) => {

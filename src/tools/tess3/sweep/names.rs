@@ -8,11 +8,12 @@ use std::path::{Component, Path, PathBuf};
 const FORMATS: [&str; 12] =
     ["pdb", "ent", "cif", "mmcif", "xyz", "txt", "csv", "dat", "asc", "spm", "ply", "obj"];
 
-/// The name of the output of each input, without its ending: relative to the folder of outputs, and none of `taken`.
+/// The name of the output of each input, without its ending: relative to the folder of outputs, and none of
+/// `taken`.
 ///
-/// It is the base name without the ending of a format; if several inputs would get the same, with the ending; if that is
-/// the same too, with as many of the folders above as tell them apart. Names that differ in the case of letters only
-/// count as the same, because to some file systems they are.
+/// It is the base name without the ending of a format; if several inputs would get the same, with the ending;
+/// if that is the same too, with as many of the folders above as tell them apart. Names that differ in the
+/// case of letters only count as the same, because to some file systems they are.
 pub(super) fn stems(inputs: &[&Path], taken: &HashSet<PathBuf>) -> Vec<PathBuf> {
     let taken: HashSet<OsString> = taken.iter().map(|path| folded(path)).collect();
     let levels_max: Vec<usize> = inputs.iter().map(|input| parts(input).len()).collect();

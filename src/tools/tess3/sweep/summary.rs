@@ -88,8 +88,8 @@ pub(super) struct DoneFile {
 }
 
 impl Done {
-    /// Reads the summary of an earlier run; nothing is done if there is none. A last line that is not complete does
-    /// not count.
+    /// Reads the summary of an earlier run; nothing is done if there is none. A last line that is not
+    /// complete does not count.
     ///
     /// # Errors
     /// If the file cannot be read, or is no such summary.

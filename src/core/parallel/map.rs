@@ -1,0 +1,145 @@
+//! Results of items in their order, all in memory.
+
+use std::iter::Enumerate;
+use std::num::NonZeroUsize;
+use std::sync::{Mutex, PoisonError};
+
+use super::threads::{Stop, join};
+use crate::error::Result;
+
+/// The results of `work` for all items, in the order of the items. Threads take the items one by one; the calling thread
+/// is one of `threads`, and the only one if the system refuses others.
+///
+/// Cost: starts `threads - 1` threads per call; a lock per item. Items are therefore large pieces of work.
+///
+/// Memory: all results.
+///
+/// # Errors
+/// The error of the first item that has one, in the order of the items, whatever the number of threads.
+///
+/// # Panics
+/// If `work` panics.
+pub fn map<I, R: Send>(
+    threads: NonZeroUsize,
+    items: I,
+    work: impl Fn(I::Item) -> Result<R> + Sync,
+) -> Result<Vec<R>>
+where
+    I: IntoIterator<IntoIter: ExactSizeIterator + Send>,
+    I::Item: Send,
+{
+    let items = items.into_iter();
+    let threads = threads.get().min(items.len());
+    if threads <= 1 {
+        return items.map(work).collect();
+    }
+    let shared = Shared { items: Mutex::new(items.enumerate()), stop: Stop::default() };
+    let run = || shared.run(&work);
+    let mut done = std::thread::scope(|scope| {
+        let start = |_| std::thread::Builder::new().spawn_scoped(scope, run).ok();
+        let others: Vec<_> = (1..threads).map_while(start).collect();
+        let mut done = run();
+        others.into_iter().for_each(|other| done.extend(join(other)));
+        done
+    });
+    done.sort_unstable_by_key(|&(at, _)| at);
+    done.into_iter().map(|(_, result)| result).collect()
+}
+
+/// Items that no thread has taken yet.
+struct Shared<I> {
+    items: Mutex<Enumerate<I>>,
+    stop: Stop,
+}
+
+impl<I: Iterator> Shared<I> {
+    /// Takes items until none is left or one failed. All items before one that failed have been taken by then, and are
+    /// finished, so that the first error does not depend on the threads.
+    fn run<R>(&self, work: impl Fn(I::Item) -> Result<R>) -> Vec<(usize, Result<R>)> {
+        let mut done = Vec::new();
+        while let Some((at, item)) = self.next() {
+            let result = self.stop.guard(|| work(item));
+            if result.is_err() {
+                self.stop.set();
+            }
+            done.push((at, result));
+        }
+        done
+    }
+
+    fn next(&self) -> Option<(usize, I::Item)> {
+        if self.stop.is_set() {
+            return None;
+        }
+        self.items.lock().unwrap_or_else(PoisonError::into_inner).next()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    const THREADS: [usize; 3] = [1, 2, 5];
+
+    fn threads(count: usize) -> NonZeroUsize {
+        NonZeroUsize::new(count).unwrap()
+    }
+
+    #[test]
+    fn results_have_the_order_of_the_items() {
+        for count in THREADS {
+            for len in [0, 1, 100u64] {
+                // Early items take longest.
+                let work = |item: u64| {
+                    Ok((0..(len - item) * 1000).fold(item, |a, i| std::hint::black_box(a ^ i ^ i)))
+                };
+                let results = map(threads(count), (0..len).collect::<Vec<_>>(), work).unwrap();
+                assert_eq!(results, (0..len).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn items_may_be_changed_in_place() {
+        for count in THREADS {
+            let mut items = [1, 2, 3, 4];
+            let add = |item: &mut i32| {
+                *item += 1;
+                Ok(())
+            };
+            map(threads(count), &mut items, add).unwrap();
+            assert_eq!(items, [2, 3, 4, 5]);
+        }
+    }
+
+    #[test]
+    fn the_first_error_counts_and_ends_the_work() {
+        for count in THREADS {
+            let begun = AtomicUsize::new(0);
+            let work = |item: usize| {
+                begun.fetch_add(1, Ordering::Relaxed);
+                if item % 10 == 7 { Err(Error::usage(format!("item {item}"))) } else { Ok(()) }
+            };
+            let error = map(threads(count), 0..10_000, work).unwrap_err();
+            assert_eq!(error.to_string(), "item 7");
+            if count == 1 {
+                assert_eq!(begun.into_inner(), 8);
+            }
+        }
+    }
+
+    #[test]
+    fn a_panic_resumes_with_its_payload() {
+        for count in THREADS {
+            let work = |item: usize| {
+                assert!(item != 3, "of the test");
+                Ok(())
+            };
+            let panic = catch_unwind(AssertUnwindSafe(|| map(threads(count), 0..8, work))).unwrap_err();
+            assert_eq!(panic.downcast_ref(), Some(&"of the test"));
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Simplices by the numbers of their corners.
+
+/// The corners of the facets of a tetrahedron; entry `i` is the facet opposite to corner `i`.
+///
+/// If the tetrahedron abcd is positively oriented, det(b - a, c - a, d - a) > 0, each facet is clockwise as seen from its
+/// opposite corner and counterclockwise as seen from outside: for facet pqr and a point o on the inner side,
+/// det(p - o, q - o, r - o) > 0.
+pub const TETRAHEDRON_FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+
+/// [`TETRAHEDRON_FACETS`] as seen from the opposite corner, if the tetrahedron is positively oriented: counterclockwise.
+pub const TETRAHEDRON_FACETS_FROM_INSIDE: [[usize; 3]; 4] = reversed(TETRAHEDRON_FACETS);
+
+const fn reversed(mut facets: [[usize; 3]; 4]) -> [[usize; 3]; 4] {
+    let mut side = 0;
+    while side < facets.len() {
+        let [a, b, c] = facets[side];
+        facets[side] = [a, c, b];
+        side += 1;
+    }
+    facets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn facets_face_outwards() {
+        let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+        for (opposite, facet) in TETRAHEDRON_FACETS.into_iter().enumerate() {
+            let [p, q, r] = facet.map(|corner| [0, 1, 2].map(|i| corners[corner][i] - corners[opposite][i]));
+            let minor = |i: usize, j: usize| q[i] * r[j] - q[j] * r[i];
+            assert_eq!(p[0] * minor(1, 2) + p[1] * minor(2, 0) + p[2] * minor(0, 1), 1, "facet {opposite}");
+        }
+    }
+}

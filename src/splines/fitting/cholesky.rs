@@ -1,0 +1,234 @@
+//! Symmetric positive definite equations, solved by sparse Cholesky factors.
+//!
+//! Bases can be linearly dependent, and observations can leave gaps, so matrices are never factored
+//! unchanged. Equations are scaled to a diagonal of ones, and [`RIDGE`] is added to it; refinement with the
+//! residuals of the true equations removes the effect of the ridge, as far as the equations determine the
+//! solution.
+//!
+//! A direction v that the equations do not determine has v'Mv near zero for the scaled matrix M. The function
+//! that is eliminated last of those in it has a small pivot then: about v'(M + ridge)v over the square of its
+//! part of v, which may be small. So small pivots are candidates; the solution for a unit vector at a
+//! candidate is nearly such a direction, and decides.
+
+use super::symmetric::Symmetric;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::cholesky::{
+    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky, supernodal,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+use spmesh_core::error::{Error, ErrorKind, Result};
+
+/// Added to a diagonal of ones: some hundred times the rounding error of a pivot.
+pub(super) const RIDGE: f64 = 1e-13;
+/// The ridge is multiplied by this while a pivot is still not positive: knots near one line make energies so
+/// stiff that their rounding errors exceed what other terms add.
+const RIDGE_STEP: f64 = 100.0;
+const RIDGE_MAX: f64 = 1e-6;
+/// The least v'Mv / v'v of directions that are determined.
+const CURVATURE_MIN: f64 = 1e-12;
+/// Steps of refinement: for pivots that are not weak, each multiplies the error by the relative error that
+/// the ridge causes.
+const REFINEMENTS: usize = 3;
+
+/// The order of elimination for a pattern of entries, and the pattern of factors.
+#[derive(Debug)]
+pub(super) struct Elimination {
+    symbolic: SymbolicCholesky<usize>,
+    entries: usize,
+}
+
+/// Factors of a matrix.
+#[derive(Debug)]
+pub(super) struct Factor<'a> {
+    elimination: &'a Elimination,
+    matrix: &'a Symmetric,
+    /// What rows and columns were multiplied by.
+    scale: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Elimination {
+    /// Of the pattern of a matrix. Cost: minimum degree ordering.
+    pub(super) fn of(matrix: &Symmetric) -> Result<Elimination> {
+        let ordering = SymmetricOrdering::Amd;
+        let symbolic =
+            factorize_symbolic_cholesky(pattern(matrix), Side::Lower, ordering, Default::default());
+        let symbolic = symbolic.map_err(|_| too_large(matrix.len()))?;
+        Ok(Elimination { symbolic, entries: matrix.entries_len() })
+    }
+
+    /// Factors of a matrix with the pattern.
+    ///
+    /// # Errors
+    /// Not enough memory; a pivot that is not positive for all the ridge: entries that are no normal
+    /// equations.
+    pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
+        debug_assert_eq!(self.entries, matrix.entries_len());
+        let scale: Vec<f64> =
+            matrix.diagonal().map(|entry| if entry > 0.0 { 1.0 / entry.sqrt() } else { 1.0 }).collect();
+        let mut values = vec![0.0; self.symbolic.len_val()];
+        let scratch = self.symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| too_large(matrix.len()))?;
+        let ridges = std::iter::successors(Some(RIDGE), |ridge| Some(RIDGE_STEP * ridge));
+        for ridge in ridges.take_while(|&ridge| ridge <= RIDGE_MAX) {
+            let scaled = matrix.scaled(&scale, ridge);
+            let factored = self.symbolic.factorize_numeric_llt(
+                &mut values,
+                SparseColMatRef::new(pattern(&scaled), &scaled.values),
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                Default::default(),
+            );
+            // The memory is allocated already, so that only a pivot can fail.
+            if factored.is_ok() {
+                return Ok(Factor { elimination: self, matrix, scale, values });
+            }
+        }
+        Err(Error::usage(
+            "the equations are not positive definite: knots are too near to one line, or weights are too great for 64 bits",
+        ))
+    }
+}
+
+impl Factor<'_> {
+    /// The solution for a right side.
+    pub(super) fn solve(&self, right: &[f64]) -> Vec<f64> {
+        let mut solution = self.solve_once(right);
+        for _ in 0..REFINEMENTS {
+            let product = self.matrix.times(&solution);
+            let residual: Vec<f64> = right.iter().zip(product).map(|(right, left)| right - left).collect();
+            let step = self.solve_once(&residual);
+            solution.iter_mut().zip(step).for_each(|(x, step)| *x += step);
+        }
+        solution
+    }
+
+    /// The solution of the equations with the ridge.
+    pub(super) fn solve_once(&self, right: &[f64]) -> Vec<f64> {
+        let symbolic = &self.elimination.symbolic;
+        let count = right.len();
+        let mut x: Vec<f64> = right.iter().zip(&self.scale).map(|(right, scale)| right * scale).collect();
+        let mut memory = MemBuffer::new(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        LltRef::new(symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut x, count, 1),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+        x.iter_mut().zip(&self.scale).for_each(|(x, scale)| *x *= scale);
+        x
+    }
+
+    /// The functions that are not determined, given those eliminated before, in order of their numbers; with
+    /// the curvature v'Mv / v'v in the direction that they are not determined in.
+    pub(super) fn weak(&self) -> Vec<(usize, f64)> {
+        let symbolic = &self.elimination.symbolic;
+        let original = symbolic.perm().map(|order| order.arrays().0);
+        // Directions have a part of more than one over the root of the number of functions in some function.
+        let pivot_min = 10.0 * CURVATURE_MIN * self.scale.len() as f64;
+        let candidates = self.pivots().into_iter().enumerate().filter(|&(_, pivot)| pivot < pivot_min);
+        let functions = candidates.map(|(place, _)| original.map_or(place, |order| order[place]));
+        let mut weak: Vec<(usize, f64)> = functions
+            .map(|function| (function, self.curvature(function)))
+            .filter(|&(_, curvature)| curvature < CURVATURE_MIN)
+            .collect();
+        weak.sort_unstable_by_key(|&(function, _)| function);
+        weak
+    }
+
+    /// v'Mv / v'v for the solution v for a unit vector.
+    fn curvature(&self, function: usize) -> f64 {
+        let mut unit = vec![0.0; self.scale.len()];
+        if self.matrix.at(function, function) == 0.0 {
+            return 0.0;
+        }
+        unit[function] = 1.0;
+        let direction = self.solve_once(&unit);
+        let square: f64 = direction.iter().zip(&self.scale).map(|(x, scale)| (x / scale).powi(2)).sum();
+        self.matrix.form(&direction).max(0.0) / square
+    }
+
+    /// Squares of the diagonal of the factor, in the order of elimination.
+    fn pivots(&self) -> Vec<f64> {
+        let square = |entry: f64| entry * entry;
+        match self.elimination.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(simplicial) => {
+                let starts = &simplicial.col_ptr()[..simplicial.ncols()];
+                starts.iter().map(|&start| square(self.values[start])).collect()
+            }
+            SymbolicCholeskyRaw::Supernodal(raw) => {
+                let factor = supernodal::SupernodalLltRef::new(raw, &self.values);
+                let nodes = (0..raw.n_supernodes()).map(|node| factor.supernode(node).val());
+                let diagonals = nodes.flat_map(|block| (0..block.ncols()).map(move |at| block[(at, at)]));
+                diagonals.map(square).collect()
+            }
+        }
+    }
+}
+
+fn pattern(matrix: &Symmetric) -> SymbolicSparseColMatRef<'_, usize> {
+    // Rows of the upper triangle are columns of the lower one.
+    let count = matrix.len();
+    SymbolicSparseColMatRef::new_checked(count, count, &matrix.offsets, None, &matrix.columns)
+}
+
+fn too_large(functions: usize) -> Error {
+    let what = format!("not enough memory to solve equations of {functions} functions: use fewer knots");
+    Error::new(ErrorKind::Memory, what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::rows::Rows;
+    use super::*;
+
+    /// A chain with a strong diagonal, long enough for supernodes, or a full matrix.
+    fn matrix(count: usize, reach: usize) -> Symmetric {
+        let mut rows = Rows::new(count, 1);
+        for row in 0..count {
+            let entries: Vec<(u32, f64)> = (row..count.min(row + reach))
+                .map(|column| (column as u32, if column == row { 2.0 * reach as f64 } else { -0.5 }))
+                .collect();
+            rows.add(row, 0, 1.0 + row as f64, &entries);
+        }
+        Symmetric::of_rows(&rows, |_| true)
+    }
+
+    #[test]
+    fn solutions_solve_the_equations() {
+        for (count, reach) in [(1, 1), (40, 3), (300, 300), (500, 60)] {
+            let matrix = matrix(count, reach);
+            let elimination = Elimination::of(&matrix).unwrap();
+            let factor = elimination.factor(&matrix).unwrap();
+            let expected: Vec<f64> = (0..count).map(|i| (i as f64).sin()).collect();
+            let found = factor.solve(&matrix.times(&expected));
+            let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error < 1e-13, "{count} {reach}: {error}");
+            assert!(factor.weak().is_empty());
+            assert_eq!(factor.pivots().len(), count);
+        }
+    }
+
+    #[test]
+    fn functions_that_add_nothing_are_weak() {
+        for (count, reach) in [(30, 2), (300, 100)] {
+            let mut matrix = matrix(count, reach);
+            // The last row becomes a copy of nothing: no entry but those that are zero.
+            let last = count - 1;
+            for row in 0..count {
+                for at in matrix.offsets[row]..matrix.offsets[row + 1] {
+                    if matrix.columns[at] == last {
+                        matrix.values[at] = 0.0;
+                    }
+                }
+            }
+            let elimination = Elimination::of(&matrix).unwrap();
+            let weak = elimination.factor(&matrix).unwrap().weak();
+            assert_eq!(weak.len(), 1);
+            assert_eq!(weak[0].0, last);
+        }
+    }
+}

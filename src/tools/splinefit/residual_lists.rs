@@ -1,0 +1,76 @@
+//! Lists of points with residuals: lines of x, y, elevation and residual.
+
+use std::io::Write;
+use std::num::NonZeroUsize;
+
+use super::layout::Spline;
+use super::points::{Cursor, Points};
+use spmesh_core::error::{Error, Result};
+use spmesh_splines::fitting::{self, Residual, RobustFit};
+
+/// The first line of a list.
+const TITLE: &str = "x y z residual\n";
+
+/// Writes all points in the domain; their number.
+///
+/// # Errors
+/// If points cannot be read, or the list cannot be written.
+pub fn write_residuals(
+    spline: &Spline,
+    points: &Points,
+    threads: NonZeroUsize,
+    output: &mut impl Write,
+) -> Result<u64> {
+    let all = points.in_frame(&spline.layout.frame, &|_| ());
+    let mut list = List::new(points, output)?;
+    let (basis, coefficients) = (&spline.layout.basis, &spline.coefficients);
+    fitting::for_each_residual(basis, coefficients, &all, threads, |found| list.push(&found))?;
+    list.finish()
+}
+
+/// Writes the points that a robust fit rejects; their number.
+///
+/// # Errors
+/// As [`write_residuals`].
+pub(super) fn write_rejected(
+    fit: &RobustFit,
+    spline: &Spline,
+    points: &Points,
+    threads: NonZeroUsize,
+    output: &mut dyn Write,
+) -> Result<u64> {
+    let all = points.in_frame(&spline.layout.frame, &|_| ());
+    let mut list = List::new(points, output)?;
+    fit.rejected(&spline.layout.basis, &all, threads, |found| list.push(&found))?;
+    list.finish()
+}
+
+struct List<'a> {
+    cursor: Cursor<'a>,
+    output: &'a mut dyn Write,
+    /// The number of lines, or why there are no more.
+    written: Result<u64>,
+}
+
+impl<'a> List<'a> {
+    fn new(points: &'a Points, output: &'a mut dyn Write) -> Result<List<'a>> {
+        output.write_all(TITLE.as_bytes()).map_err(write_error)?;
+        Ok(List { cursor: Cursor::new(points)?, output, written: Ok(0) })
+    }
+
+    fn push(&mut self, found: &Residual) {
+        let Ok(count) = self.written else { return };
+        let line = self.cursor.at(found.index).and_then(|([x, y], z)| {
+            writeln!(self.output, "{x} {y} {z} {}", found.residual).map_err(write_error)
+        });
+        self.written = line.map(|()| count + 1);
+    }
+
+    fn finish(self) -> Result<u64> {
+        self.written
+    }
+}
+
+fn write_error(error: std::io::Error) -> Error {
+    Error::io("writing the list", error)
+}

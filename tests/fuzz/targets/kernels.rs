@@ -1,0 +1,117 @@
+//! Kernels: what they make of any points must be provable.
+
+use std::borrow::Cow;
+
+use spmesh_audit::{Audit, Standard, config, diagram::check};
+use spmesh_core::error::ErrorKind;
+use spmesh_geometry::configurations::{Knots, Rule, delaunay, generate};
+use spmesh_geometry::diagram4::{Route, diagram_by};
+use spmesh_geometry::order::{Curve, Sequence};
+use spmesh_geometry::{delaunay2, delaunay3};
+use spmesh_model::cells4::Point4;
+use spmesh_model::diagram4::Diagram4;
+use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_configurations, write_triangles};
+
+use crate::points::{moderate, points};
+use crate::promises;
+
+/// The triangulation passes the audit of its stream.
+pub fn kernel2(bytes: &[u8]) {
+    let points = points::<2>(bytes, 300);
+    let mesh = delaunay2::triangulate(&points).expect("finite points");
+    if mesh.triangles().is_empty() {
+        return;
+    }
+    let triangles: Vec<[u32; 3]> = mesh.triangles().iter().map(|triangle| triangle.vertices).collect();
+    let header = Header::new(Kind::TriangleMesh, Coordinates::F64, 2, false);
+    let at = |v: u32| [points[v as usize][0], points[v as usize][1], 0.0];
+    let (mut stream, merged) = (Vec::new(), mesh.duplicates.len() as u64);
+    write_triangles(header, &triangles, points.len(), merged, at, &mut stream).expect("memory takes it");
+    let mut reader = StreamReader::new(&stream[..], "kernel2").expect("a header");
+    let mut audit = Audit::new(reader.header(), Standard::Canonical, None).expect("a mesh has an audit");
+    while let Some(event) = reader.next_event().expect("a stream that was just written") {
+        if let Err(violation) = audit.event(&event) {
+            panic!("{violation:?}\nlet points = {points:?};");
+        }
+    }
+}
+
+/// The tetrahedra pass an independent proof.
+pub fn kernel3(bytes: &[u8]) {
+    let points = points::<3>(bytes, 120);
+    let mut kernel = delaunay3::Kernel::new();
+    // The bytes choose the order of insertion, too: the usual one for half of them.
+    let choice = bytes.iter().fold(0u8, |sum, &b| sum.wrapping_mul(31).wrapping_add(b));
+    if choice & 1 == 1 {
+        kernel.curve = Curve::ALL[usize::from(choice >> 1 & 3)];
+        let seed = u64::from(choice);
+        kernel.sequence =
+            [Sequence::Rounds, Sequence::Pass, Sequence::Random { seed }][usize::from(choice >> 3) % 3];
+        kernel.by_bit_levels = choice >> 7 == 1;
+    }
+    let mut mesh = delaunay3::Tetrahedralization::default();
+    kernel.triangulate(Cow::Borrowed(&points), &mut mesh).expect("finite points");
+    if let Err(message) = promises::prove(&points, &mesh) {
+        panic!("{message}\nlet points = {points:?};");
+    }
+}
+
+/// Both routes agree, and an audit proves what they say.
+pub fn diagram4(bytes: &[u8]) {
+    let points = moderate::<4>(bytes, 40);
+    let by = |route| -> Option<Diagram4> {
+        match diagram_by(route, points.clone(), None) {
+            Ok((diagram, _)) => Some(diagram),
+            Err(error) => {
+                assert!(error.to_string().contains("dimensions"), "{error}");
+                None
+            }
+        }
+    };
+    let diagram = by(Route::Simplices);
+    assert_eq!(diagram, by(Route::Direct), "let points: Vec<Point4> = vec!{points:?};");
+    if let Some(Diagram4 { points, cells, .. }) = diagram {
+        prove4(&points, &cells);
+    }
+}
+
+fn prove4(points: &[Point4], cells: &spmesh_model::cells4::Cells4) {
+    if let Err(violation) = check(points, cells) {
+        panic!("{violation:?}\nlet points = {points:?};");
+    }
+}
+
+/// Delaunay configurations up to degree 3 pass their audit; other rules end without a panic.
+pub fn configurations(bytes: &[u8]) {
+    let Some((&choice, rest)) = bytes.split_first() else { return };
+    let knots = Knots::new(points::<2>(rest, 40)).expect("finite knots");
+    let Ok(start) = delaunay(&knots) else { return };
+    let rules = [
+        Rule::Delaunay,
+        Rule::MinWeight,
+        Rule::Ear,
+        Rule::Fan,
+        Rule::Random(7),
+        Rule::Aligned(f64::from(choice)),
+    ];
+    let rule = &rules[usize::from(choice) % rules.len()];
+    let degree = usize::from(choice >> 6).min(knots.len().saturating_sub(3));
+    let all = match generate(&knots, start, rule, degree) {
+        Ok(all) => all,
+        // A link of another rule need not be simple.
+        Err(error) if *rule != Rule::Delaunay => {
+            return assert!(matches!(error.kind(), ErrorKind::Audit | ErrorKind::Usage), "{error}");
+        }
+        Err(error) => panic!("{error}\nlet knots = {:?};", knots.points()),
+    };
+    let mut stream = Vec::new();
+    write_configurations(knots.points(), &all, &mut stream).expect("memory takes it");
+    let mut reader = StreamReader::new(&stream[..], "configurations").expect("a header");
+    let mut audit = config::StreamAudit::default();
+    while let Some(event) = reader.next_event().expect("a stream that was just written") {
+        audit.event(&event).expect("room for all configurations");
+    }
+    if let Err(error) = audit.prove() {
+        panic!("{error}, {rule:?}, degree {degree}\nlet knots = {:?};", knots.points());
+    }
+}

@@ -1,0 +1,120 @@
+//! Streams and their text twins.
+
+use spmesh_audit::{Audit, Standard, Survey, config, diagram};
+use spmesh_io::sink::{EventSink, TwinSink};
+use spmesh_io::source::{EventSource, TwinSource};
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, StreamReader, Totals};
+
+/// Bytes of a header before its body, and of its parts.
+const HEAD: usize = 16;
+/// Bytes of a block before its payload.
+const FRAME: usize = 16;
+
+/// Reads bytes as they are, and with checksums that are right.
+pub fn stream(bytes: &[u8]) {
+    read_stream(bytes);
+    let mut sealed = bytes.to_vec();
+    if seal(&mut sealed).is_some() && sealed != bytes {
+        read_stream(&sealed);
+    }
+}
+
+fn read_stream(bytes: &[u8]) {
+    let Ok(mut reader) = StreamReader::new(bytes, "fuzz") else { return };
+    let Some((header, events)) = read(&mut reader) else { return };
+    examine(&header, &events);
+    // All that a stream says, its text says.
+    let mut text = Vec::new();
+    let mut sink = TwinSink::new(&mut text, &header).expect("memory takes the header");
+    events.iter().try_for_each(|event| sink.event(event)).expect("memory takes the events");
+    let mut twin = TwinSource::new(&text[..], "twin").expect("a twin that was just written");
+    loop {
+        match twin.next_event().expect("a twin that was just written") {
+            Some(Event::End(totals)) => break assert_eq!(Some(totals), end_of(&events)),
+            Some(_) => {}
+            None => panic!("the twin has no end"),
+        }
+    }
+}
+
+/// Reads a text twin, and all that its events say.
+pub fn twin(bytes: &[u8]) {
+    let Ok(mut twin) = TwinSource::new(bytes, "fuzz") else { return };
+    if let Some((header, events)) = read(&mut twin) {
+        examine(&header, &events);
+    }
+}
+
+/// Header and events, if the input is without fault up to its end.
+fn read(source: &mut impl EventSource) -> Option<(Header, Vec<Event>)> {
+    let mut events = Vec::new();
+    loop {
+        match source.next_event() {
+            Ok(Some(event)) => events.push(event),
+            Ok(None) => break,
+            Err(_) => return None,
+        }
+    }
+    Some((source.header().clone(), events))
+}
+
+fn end_of(events: &[Event]) -> Option<Totals> {
+    match events.last() {
+        Some(&Event::End(totals)) => Some(totals),
+        _ => None,
+    }
+}
+
+/// Gives events to all that take them. A stream may well claim what is wrong, so that errors are fine.
+fn examine(header: &Header, events: &[Event]) {
+    let mut survey = Survey::new(header);
+    let _ = events.iter().try_for_each(|event| survey.event(event));
+    let mut live = LiveVertices::<Point>::new();
+    let mut cells = header.tree.map(FinalizedCells::new);
+    let _ = events.iter().try_for_each(|event| match (event, &mut cells) {
+        (Event::Patch(patch), _) => live.enter(patch, |_, at| at).map(drop),
+        (Event::Points(points), Some(cells)) => cells.check_points(points),
+        (Event::Cells(tags), Some(cells)) => tags.iter().try_for_each(|&tag| cells.finalize(tag)),
+        _ => Ok(()),
+    });
+    match header.kind {
+        Kind::Cells4 | Kind::Simplices4 => {
+            let mut audit = diagram::StreamAudit::new(header.kind).expect("a kind with an audit");
+            if events.iter().try_for_each(|event| audit.event(event)).is_ok() {
+                let _ = audit.prove();
+            }
+        }
+        Kind::Configurations => {
+            let mut audit = config::StreamAudit::default();
+            if events.iter().try_for_each(|event| audit.event(event)).is_ok() {
+                let _ = audit.prove();
+            }
+        }
+        _ => {
+            if let Ok(mut audit) = Audit::new(header, Standard::Canonical, None) {
+                let _ = events.iter().try_for_each(|event| audit.event(event));
+                let _ = audit.report();
+            }
+        }
+    }
+}
+
+/// Makes checksums right as far as the header and blocks go; `None` if there is no header.
+fn seal(bytes: &mut [u8]) -> Option<()> {
+    let length = |bytes: &[u8], at: usize| -> Option<usize> {
+        let field = bytes.get(at..at + 4)?.try_into().expect("four bytes");
+        usize::try_from(u32::from_le_bytes(field)).ok()
+    };
+    let mut at = HEAD.checked_add(length(bytes, HEAD - 4)?)?;
+    let sum = crc32c::crc32c(bytes.get(..at)?);
+    bytes.get_mut(at..at + 4)?.copy_from_slice(&sum.to_le_bytes());
+    at += 4;
+    while let Some(payload) = length(bytes, at + 8) {
+        let Some(end) = (at + FRAME).checked_add(payload).filter(|&end| end <= bytes.len()) else { break };
+        let sum = crc32c::crc32c_append(crc32c::crc32c(&bytes[at..at + 12]), &bytes[at + FRAME..end]);
+        bytes[at + 12..at + FRAME].copy_from_slice(&sum.to_le_bytes());
+        at = end;
+    }
+    Some(())
+}

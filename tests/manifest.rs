@@ -1,0 +1,94 @@
+//! What the manifests promise.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Packages of this machine's dependency tree, and of the workspace, as `cargo metadata` lists them.
+fn packages() -> Vec<Value> {
+    let version = Command::new("rustc").arg("-vV").output().expect("rustc runs");
+    let version = String::from_utf8(version.stdout).expect("text");
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
+    // Only what this platform needs was downloaded to build the tests.
+    let flags = ["--offline", "--locked", "--all-features", "--format-version=1", "--filter-platform", host];
+    let metadata = Command::new(env!("CARGO"))
+        .arg("metadata")
+        .args(flags)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    assert!(metadata.status.success(), "{}", String::from_utf8_lossy(&metadata.stderr));
+    let metadata: Value = serde_json::from_slice(&metadata.stdout).expect("JSON");
+    metadata["packages"].as_array().expect("packages").clone()
+}
+
+/// The first two numbers of a version.
+fn minor(version: &str) -> (u32, u32) {
+    let mut numbers = version.split('.').map(|number| number.parse().expect("a number"));
+    (numbers.next().expect("a major version"), numbers.next().unwrap_or(0))
+}
+
+#[test]
+fn no_dependency_needs_a_newer_compiler() {
+    let promised = minor(env!("CARGO_PKG_RUST_VERSION"));
+    for package in packages() {
+        let Some(needed) = package["rust_version"].as_str() else { continue };
+        assert!(minor(needed) <= promised, "{} needs Rust {needed}", package["id"]);
+    }
+}
+
+#[test]
+fn no_example_in_documentation_goes_untested() {
+    for package in packages().iter().filter(|package| package["source"].is_null()) {
+        for target in package["targets"].as_array().expect("targets") {
+            if target["doctest"] == true || target["kind"][0] != "lib" {
+                continue;
+            }
+            let root = Path::new(target["src_path"].as_str().expect("a path"));
+            let mut files = Vec::new();
+            collect(root.parent().expect("a folder"), &mut files);
+            for file in files {
+                let text = fs::read_to_string(&file).expect("a source file");
+                assert!(
+                    !has_example(&text),
+                    "{}: remove `doctest = false` from the manifest",
+                    file.display()
+                );
+            }
+        }
+    }
+}
+
+/// Rust files below a folder, but for those of other packages.
+fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            if !path.join("Cargo.toml").exists() {
+                collect(&path, files);
+            }
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+/// Whether a doc comment has a block of code that is not plain text.
+fn has_example(text: &str) -> bool {
+    let doc = |line: &'_ str| -> Option<String> {
+        let line = line.trim_start();
+        let rest = line.strip_prefix("///").or_else(|| line.strip_prefix("//!"))?;
+        rest.trim_start().strip_prefix("```").map(str::to_string)
+    };
+    // Every second fence ends a block.
+    text.lines().filter_map(doc).step_by(2).any(|language| language.trim() != "text")
+}
+
+#[test]
+fn examples_are_told_from_text() {
+    assert!(has_example("/// A\n/// ```\n/// let a = 1;\n/// ```\nfn a() {}\n"));
+    assert!(has_example("    //! ```text\n    //! ```\n    //! ``` rust\n"));
+    assert!(!has_example("//! ```text\n//! a b\n//! ```\n// ```\n"));
+}
