@@ -1,4 +1,4 @@
-//! Command lines: help, versions, exit codes, and that the README tells the truth about the tools.
+//! Command lines: help, versions, exit codes, and the README's table of tools.
 
 use std::fs;
 use std::path::Path;
@@ -41,7 +41,7 @@ fn examples_are_indented_and_paragraphs_are_wrapped_once() {
         let (_, end) = text.split_once("Examples:\n").unwrap();
         let (examples, notes) = end.split_once("\n\n").unwrap();
         assert!(examples.lines().all(|line| line.starts_with("  ")), "{name}: {examples}");
-        // Where the text breaks a line and the wrapping another one, a few words are left alone between.
+        // A line break in the text plus the wrapping would leave a short line in the middle.
         for paragraph in notes.trim().split("\n\n") {
             let lines: Vec<&str> = paragraph.lines().collect();
             let short = lines[..lines.len() - 1].iter().find(|line| line.len() < 60);

@@ -68,7 +68,8 @@ fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.lines().zip(1..).filter_map(move |(line, number)| {
         let is_fence = line.trim_start().starts_with("```") || line.trim_start().starts_with("~~~");
         is_fenced ^= is_fence;
-        // Four spaces start a block of code after a blank line only; elsewhere they continue a paragraph or a list.
+        // Four spaces start a block of code after a blank line only; elsewhere they continue a paragraph or a
+        // list.
         is_indented = line.starts_with("    ") && (was_blank || is_indented);
         was_blank = line.trim().is_empty();
         (!is_fence && !is_fenced && !is_indented).then_some((number, line))

@@ -1,4 +1,4 @@
-//! Tools chained by pipes: what comes out, and what happens when one of them dies.
+//! Programs chained by pipes: their output, and their end when one of them dies.
 
 use std::fs;
 use std::io::Read;
@@ -7,7 +7,7 @@ use std::process::Stdio;
 use crate::programs::{assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
 use crate::vectors::run_python;
 
-/// The streaming triangulators, and what spfinalize has to be told for them.
+/// The streaming triangulators, and the flags of spfinalize for them.
 const TRIANGULATORS: [(&str, &[&str]); 2] = [("spdelaunay2d", &[]), ("spdelaunay3d", &["--octree"])];
 
 /// A chunked stream of a cloud that is much longer than a pipe holds.

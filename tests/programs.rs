@@ -1,4 +1,4 @@
-//! Running the tools as a user does.
+//! Runs the programs as a user does.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -31,7 +31,7 @@ pub fn run(name: &str, arguments: &[&str], input: &[u8]) -> Output {
     let mut child = tool(name).args(arguments).stdin(Stdio::piped()).spawn().expect("the tool starts");
     let mut stdin = child.stdin.take().expect("stdin is piped");
     let input = input.to_vec();
-    // A tool may stop reading early; that is its right and not the test's failure.
+    // A program may stop reading early; that is not a failure of the test.
     let feeder = std::thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().expect("the tool ends");
     feeder.join().expect("the feeder ends");
@@ -48,7 +48,7 @@ pub fn outcome(output: &Output) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
-/// Asserts that a tool whose reader goes away after 100 bytes ends with 141, and silently.
+/// Asserts that a program whose reader closes the pipe after 100 bytes exits silently with 141.
 pub fn assert_silent_without_reader(name: &str, arguments: &[&str]) {
     let mut child = start(name, arguments, Stdio::null());
     let mut head = [0; 100];
@@ -57,15 +57,15 @@ pub fn assert_silent_without_reader(name: &str, arguments: &[&str]) {
     assert_eq!((code, &message[..]), (Some(141), ""), "{name} {arguments:?}");
 }
 
-/// Asserts how a tool ends with some arguments and input, and that it says a part of what it should, without a panic.
+/// Asserts the exit code of a program, and that its message contains a part and no panic.
 pub fn assert_outcome(name: &str, arguments: &[&str], input: &[u8], code: i32, part: &str) {
     let (found, message) = outcome(&run(name, arguments, input));
     assert_eq!(found, Some(code), "{arguments:?}: {message}");
     assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
 }
 
-/// Asserts that a tool refuses a stream that is cut or damaged anywhere, and leaves neither a new file nor a change in an old one;
-/// `names` are those of an old and a new output.
+/// Asserts that a tool refuses a stream that is cut or damaged anywhere, and leaves neither a new file nor a
+/// change in an old one; `names` are those of an old and a new output.
 pub fn assert_damage_leaves_no_file(name: &str, arguments: &[&str], names: [&str; 2], stream: &[u8]) {
     let folder = Folder::new();
     folder.file(names[0], "old");
@@ -107,7 +107,7 @@ pub fn mesh_of_cloud(count: u64) -> Vec<u8> {
     mesh.stdout
 }
 
-/// Files that last as long as a test.
+/// A temporary folder that lasts as long as a test.
 pub struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -127,7 +127,7 @@ impl Folder {
     pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.root().join(name);
         fs::create_dir_all(path.parent().expect("a folder")).expect("a temporary folder");
-        // Some file systems send a file to the disk at once that is written over; a new one can wait.
+        // Some file systems sync an overwritten file at once; a new file avoids that.
         drop(fs::remove_file(&path));
         fs::write(&path, content).expect("a temporary file");
         path

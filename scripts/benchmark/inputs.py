@@ -6,15 +6,15 @@ import subprocess
 import target
 
 UNITS = {"k": 10**3, "M": 10**6}
-# Inputs above this are not kept, unless asked for.
+# Larger inputs are removed, unless --keep is given.
 KEPT_POINTS_MAX = 10**7
-# What is needed for 4D, and for all the rest.
+# Examples that 4D sets need, and that other sets need.
 EXAMPLES4 = ["diagram4_time"]
 EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar"]
 
 
 def count_of(text):
-    """The number that texts like 300, 100k and 10M say."""
+    """The number of a text such as 300, 100k or 10M."""
     return int(text[:-1]) * UNITS[text[-1]] if text[-1] in UNITS else int(text)
 
 
@@ -46,7 +46,7 @@ class Inputs:
         return path
 
     def finalized(self, las):
-        """The stream that spfinalize, as it is now, makes of a file."""
+        """The stream that the current spfinalize makes of a file."""
         path = las.with_suffix(".spm")
         self.make(program("spfinalize"), las, "-o", path)
         return path
@@ -66,7 +66,7 @@ def program(name):
 
 
 def build(dims):
-    """Builds what is measured of sets of these dimensions."""
+    """Builds the programs of this project for sets of these dimensions."""
     names = (EXAMPLES4 if 4 in dims else []) + (EXAMPLES if dims != {4} else [])
     examples = [word for name in names for word in ("--example", name)]
     bins = ["--bins"] if dims != {4} else []

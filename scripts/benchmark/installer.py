@@ -1,4 +1,4 @@
-"""How peers are installed: from public packages alone, in the folder of the benchmark."""
+"""Installs peers from public packages, in the folder of the benchmark."""
 
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""Says where and of what figures are."""
+"""Describes the machine, the commit and the versions of a measurement."""
 
 import datetime
 import os

@@ -1,4 +1,4 @@
-"""Runs programs: wall time, CPU time and peak memory of each, and rounds of many in turn."""
+"""Runs programs, alone or in interleaved rounds, and measures wall time, CPU time and peak memory."""
 
 import contextlib
 import fcntl

@@ -1,4 +1,4 @@
-"""Figures as markdown."""
+"""Results as Markdown tables."""
 
 from contests import ALONE, DECODER, FROM_LAZ, IN_PARTS, OURS, TESS3
 from measure import floor_bytes

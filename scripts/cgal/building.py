@@ -1,4 +1,4 @@
-"""Builds what we are compared with."""
+"""Builds the programs of CGAL for comparisons."""
 
 import pathlib
 import shutil

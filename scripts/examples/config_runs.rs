@@ -1,8 +1,9 @@
 //! Configurations for figures, and many runs of link triangulation.
 //!
-//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N random knots with
-//! random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs COUNT DEGREE SEED` makes COUNT runs
-//! from random knots, flips and rules up to a degree, checks that facets match, and prints a row per degree, tab-separated.
+//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N
+//! random knots with random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs
+//! COUNT DEGREE SEED` makes COUNT runs from random knots, flips and rules up to a degree, checks that facets
+//! match, and prints a row per degree, tab-separated.
 
 use spmesh_audit::configurations as audit;
 use spmesh_core::error::Result;
@@ -20,7 +21,7 @@ fn below(random: &mut Random, count: u64) -> u64 {
     random.bits() % count
 }
 
-/// What happened at one degree.
+/// The counts of one degree.
 #[derive(Default, Clone)]
 struct Row {
     runs: usize,

@@ -1,7 +1,8 @@
 //! Times configurations against the 2D kernel on the same knots, in one thread.
 //!
-//! `config_time POINTS|uniform:N [DEGREE]` reads knots as `kernel_time` does, or makes uniform ones, runs the kernel and the
-//! configurations in turn three times, and prints the least times, seconds and microseconds per knot, with their ratio.
+//! `config_time POINTS|uniform:N [DEGREE]` reads knots as `kernel_time` does, or makes uniform ones, runs the
+//! kernel and the configurations in turn three times, and prints the least times, seconds and microseconds
+//! per knot, with their ratio.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]

@@ -1,8 +1,9 @@
 //! Times least squares of scattered points, step by step.
 //!
-//! `fit_time POINTS FUNCTIONS [THREADS] [LAMBDA]` makes observations at random points of the unit square while they are read, knots
-//! in a moved grid for about as many functions, and prints seconds of the configurations and the basis, of the normal equations,
-//! of the energy of a thin plate, and of the solution, with the greatest residual and the peak of memory.
+//! `fit_time POINTS FUNCTIONS [THREADS] [LAMBDA]` makes observations at random points of the unit square
+//! while they are read, knots in a moved grid for about as many functions, and prints seconds of the
+//! configurations and the basis, of the normal equations, of the energy of a thin plate, and of the solution,
+//! with the greatest residual and the peak of memory.
 
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;

@@ -1,11 +1,12 @@
-//! Tries the 3D kernel on random sets, as degenerate as can be thought of, and proves every result with independent exact
-//! arithmetic. A set that fails is made as small as possible and written to a file.
+//! Fuzzes the 3D kernel with random, highly degenerate sets, and proves each result with independent exact
+//! arithmetic. Shrinks a failing set and writes it to a file.
 //!
 //! ```text
 //! cargo run --release --example fuzz3 -- --seconds 3600 --seed 1 --threads 1
 //! ```
 //!
-//! The same seed gives the same sets. Set `I` of a seed alone: `--set I`. A few large sets with large cavities: `--large`.
+//! The same seed gives the same sets. Set `I` of a seed alone: `--set I`. A few large sets with large
+//! cavities: `--large`.
 
 #[path = "../../tests/geometry/kernel3/promises.rs"]
 mod promises;
@@ -52,7 +53,7 @@ struct Meshes {
 impl Trial<3> for Meshes {
     const CELLS: &str = "tetrahedra";
 
-    /// Few points in most sets, because small sets are tried fast and say clearly what is wrong.
+    /// Most sets have few points: small sets are fast, and their failures are easy to read.
     fn points(seed: u64, set: u64) -> Vec<Point> {
         let mut random = Random::new(seed.wrapping_mul(0x9e6c_63d0_876a_9a37) ^ Random::new(set).bits());
         let (low, high) = match random.integer(0, 99) {
@@ -85,7 +86,7 @@ impl Trial<3> for Meshes {
     }
 }
 
-/// The order of insertion of a set: the usual one in half of them.
+/// The order of insertion of a set; the default order in half of them.
 fn choose_order(kernel: &mut Kernel, set: u64) {
     let mut random = Random::new(set);
     let is_usual = random.integer(0, 1) == 0;

@@ -1,12 +1,12 @@
-//! Tries the 4D engine on random degenerate sets: the diagram must be the same for any order of the points, in integers and
-//! in fractions, and by both routes in a build with `--features experiments`. An exact audit that shares no code with the
-//! engine must pass.
+//! Fuzzes the 4D engine with random degenerate sets. The diagram must be the same for any order of the
+//! points, for integers and fractions, and by both routes in a build with `--features experiments`. An exact
+//! audit that shares no code with the engine must pass.
 //!
 //! ```text
 //! cargo run --release --features experiments --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
-//! Set `I` of a seed alone: `--set I`. A set that fails is made as small as possible and written to a file.
+//! Set `I` of a seed alone: `--set I`. Shrinks a failing set and writes it to a file.
 
 mod fuzzing;
 
@@ -46,7 +46,7 @@ impl Trial<4> for Diagrams {
     }
 }
 
-/// Checks all that must hold; says how many cells there are.
+/// Checks a set and returns its number of cells.
 fn try_set(points: &[Point4], random: &mut Random) -> usize {
     let simplices = by(Route::Simplices, points);
     #[cfg(feature = "experiments")]

@@ -1,5 +1,5 @@
-//! The loop of the programs that try random sets: threads, a watch on sets that take too long, and sets that fail made as
-//! small as possible and written to a file.
+//! The loop of the fuzzers: threads, a watchdog for sets that hang, and failing sets shrunk and written to a
+//! file.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-/// What every such program is told.
+/// The flags of a fuzzer.
 #[derive(Debug, Args)]
 pub struct Fuzzing {
     /// Wall time, in seconds.
@@ -22,33 +22,40 @@ pub struct Fuzzing {
     seed: u64,
     #[arg(long, default_value_t = 1)]
     threads: u64,
-    /// Tries this set only.
+    /// Tries only this set.
     #[arg(long)]
     set: Option<u64>,
-    /// Where a set that fails goes, and the number of the set that is being tried.
-    #[arg(long, default_value = concat!("target/", env!("CARGO_BIN_NAME")))]
+    /// Folder for failing sets and for the numbers of the current sets [default: in Cargo's target folder].
+    #[arg(long, default_value_os_t = default_folder(), hide_default_value = true)]
     out: PathBuf,
-    /// Seconds of CPU after which a set is said to hang.
+    /// Seconds of CPU time after which a set counts as hanging.
     #[arg(long, default_value_t = 60)]
     limit: u64,
 }
 
-/// What is tried; one for all sets of a thread, as nothing of a set may be left for the next.
+/// A folder named after the program, in Cargo's target folder.
+fn default_folder() -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
+    PathBuf::from(target).join(env!("CARGO_BIN_NAME"))
+}
+
+/// The engine under test. A thread uses one for all its sets, to prove that no state of a set leaks into the
+/// next.
 pub trait Trial<const D: usize>: Default {
-    /// What is counted when it is proved.
+    /// The plural of the counted cells.
     const CELLS: &str;
 
     /// The points of one set.
     fn points(seed: u64, set: u64) -> Vec<[f64; D]>;
 
-    /// Makes something of points, says when that is done, and proves it. Returns how many cells there are.
+    /// Triangulates points, calls `done`, and proves the result. Returns the number of cells.
     fn attempt(&mut self, set: u64, points: &[[f64; D]], done: impl FnOnce()) -> Result<u64, String>;
 }
 
-/// What a thread is at.
+/// The progress of a thread.
 #[derive(Debug, Default)]
 struct Progress {
-    /// The set that is being tried, and since when.
+    /// The current set, and its start in CPU time.
     running: Mutex<Option<(u64, Duration)>>,
     sets: AtomicU64,
     points: AtomicU64,
@@ -56,7 +63,7 @@ struct Progress {
 }
 
 impl Fuzzing {
-    /// Tries one set, or as many as there is time for. A failure ends the program.
+    /// Tries one set, or as many as the time allows. A failure ends the program.
     pub fn run<const D: usize, T: Trial<D>>(&self) {
         fs::create_dir_all(&self.out).expect("a folder for sets that fail");
         let Some(set) = self.set else { return self.fuzz::<D, T>() };
@@ -113,7 +120,7 @@ impl Fuzzing {
         let mut set = thread;
         while !is_over.load(Ordering::Relaxed) {
             let points = T::points(self.seed, set);
-            // Whatever happens, it is known which set it was.
+            // If the process dies, the file names the set.
             fs::write(&current, format!("{set}\n")).expect("a writable folder");
             let tell = |running| *progress.running.lock().expect("no panic while locked") = running;
             tell(Some((set, cpu_time())));
@@ -127,7 +134,7 @@ impl Fuzzing {
         }
     }
 
-    /// Writes a set that fails, and the smallest one found that does, and ends the program.
+    /// Writes a failing set and the smallest failing subset found, and ends the program.
     fn fail<const D: usize, T: Trial<D>>(&self, set: u64, points: &[[f64; D]], message: &str) -> ! {
         println!("set {set} of seed {} fails, {} points: {message}", self.seed, points.len());
         write(&self.out, &format!("fail-{}-{set}", self.seed), points);
@@ -141,7 +148,7 @@ impl Fuzzing {
     }
 }
 
-/// Panics are failures.
+/// Counts a panic as a failure.
 fn caught<Cells>(attempt: impl FnOnce() -> Result<Cells, String>) -> Result<Cells, String> {
     catch_unwind(AssertUnwindSafe(attempt)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
@@ -149,12 +156,12 @@ fn caught<Cells>(attempt: impl FnOnce() -> Result<Cells, String>) -> Result<Cell
     })
 }
 
-/// With nothing left of other sets.
+/// Tries a set with a fresh engine.
 fn attempted<const D: usize, T: Trial<D>>(set: u64, points: &[[f64; D]]) -> Result<u64, String> {
     caught(|| T::default().attempt(set, points, || ()))
 }
 
-/// Time of all threads on processors: others may keep them busy for minutes.
+/// CPU time of all threads. Wall time would count the load of other processes.
 fn cpu_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
@@ -169,7 +176,7 @@ fn report(progress: &[Progress], started: Instant, name: &str) {
     println!("{wall} s, {cpu} s of CPU: {sets} sets, {points} points, {cells} {name} proved");
 }
 
-/// Leaves points out, and takes bits away, as long as the set fails.
+/// Removes points, and clears bits of coordinates, as long as the set fails.
 fn shrunk<const D: usize, T: Trial<D>>(set: u64, mut points: Vec<[f64; D]>) -> Vec<[f64; D]> {
     std::panic::set_hook(Box::new(|_| {}));
     let fails = |points: &[[f64; D]]| attempted::<D, T>(set, points).is_err();

@@ -1,6 +1,6 @@
 //! Writes a synthetic LIDAR survey: overlapping swaths flown back and forth over hills, scanned in zig-zag
-//! lines, in the order of acquisition, quantised to 0.01, with about 0.5 % of the points right above each
-//! other. The same arguments give the same points everywhere.
+//! lines, in the order of acquisition, quantised to 0.01, with about 0.5 % of the points exactly above
+//! another one. The same arguments give the same points everywhere.
 
 use std::f64::consts::TAU;
 use std::fs::File;
@@ -21,7 +21,7 @@ const DENSITY: f64 = 4.0;
 const SWATH_WIDTH_MAX: f64 = 500.0;
 const OVERLAP: f64 = 0.3;
 const LINES_MIN: u64 = 4;
-/// Share of points that have another one right above.
+/// Share of points with another one exactly above.
 const DUPLICATES: f64 = 0.005;
 /// Share of points on vegetation, and its greatest height in meters.
 const VEGETATION: f64 = 0.15;
@@ -29,16 +29,16 @@ const VEGETATION_HEIGHT: f64 = 18.0;
 /// Lower left corner of the survey in meters, UTM zone 10 north.
 const ORIGIN: [f64; 2] = [500_000.0, 4_100_000.0];
 const EPSG: u16 = 26910;
-/// Points that are compressed together, by all threads.
+/// Points that all threads compress together.
 const SLAB_POINTS: usize = 16 * 50_000;
 const RECORD_LEN: usize = 28;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Write a seeded synthetic LIDAR survey as LAZ (or LAS, by the ending of the name).
+/// Write a seeded synthetic LIDAR survey as LAZ (or LAS, by the extension of the name).
 #[derive(Parser)]
 struct Arguments {
-    /// Number of points in all
+    /// Total number of points
     #[arg(long, default_value_t = 1_000_000)]
     points: u64,
     /// Seed of all randomness
@@ -82,7 +82,7 @@ fn signed(random: &mut Random) -> f64 {
     2.0 * random.unit() - 1.0
 }
 
-/// One hill range: height, wave numbers and phase of a wave.
+/// A range of hills: height, wave numbers and phase of a wave.
 struct Wave {
     height: f64,
     along: [f64; 2],
@@ -134,7 +134,7 @@ impl Survey {
         250.0 + self.terrain.iter().map(wave).sum::<f64>()
     }
 
-    /// Hands out all returns in the order of acquisition.
+    /// Calls a function with all returns, in the order of acquisition.
     fn fly(&self, mut put: impl FnMut(Return) -> Result<(), Failure>) -> Result<(), Failure> {
         for line in 0..self.lines {
             let share = self.points * (line + 1) / self.lines - self.points * line / self.lines;
@@ -253,7 +253,7 @@ fn geo_keys() -> Vlr {
     }
 }
 
-/// The files of a survey: half-open tiles of its square, the outer ones open to the outside.
+/// The files of a survey: half-open tiles of its square; the outer tiles are unbounded.
 struct Tiles {
     tiles: Vec<Tile>,
     columns: u32,

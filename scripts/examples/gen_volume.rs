@@ -1,5 +1,5 @@
-//! Writes points of space as a stream, in an order that is coherent: slabs from bottom to top, or along a z-order curve.
-//! The same arguments give the same points everywhere.
+//! Writes points in space as a stream, in a coherent order: in slabs from bottom to top, or along a z-order
+//! curve. The same arguments give the same points everywhere.
 
 use std::f64::consts::TAU;
 use std::fs::File;
@@ -19,23 +19,23 @@ const BATCH: usize = 1 << 16;
 const CELL_POINTS: u64 = 256;
 /// Bits per axis of a key along the curve.
 const KEY_BITS: u32 = 20;
-/// Corners per finest cell of a horizontal plane, about, in the octree near the sheet.
+/// Approximate number of corners per finest cell of a horizontal plane, in the octree near the sheet.
 const SHEET: f64 = 30.0;
 /// Waves of the gyroid per side of the cube.
 const WAVES: f64 = 4.0;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Write seeded points of space as a stream.
+/// Write a seeded point cloud in space as a stream.
 #[derive(Parser)]
 struct Arguments {
-    /// Where the points are
+    /// Distribution of the points
     #[arg(long, value_enum, default_value_t = Family::Random)]
     family: Family,
-    /// In which order they come
+    /// Order of the points
     #[arg(long, value_enum, default_value_t = Order::Slabs)]
     order: Order,
-    /// About how many there are
+    /// Approximate number of points
     #[arg(long, default_value_t = 1_000_000)]
     points: u64,
     /// Seed of all randomness
@@ -48,7 +48,7 @@ struct Arguments {
 
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Family {
-    /// Evenly spread in a cube
+    /// Uniform in a cube
     Random,
     /// Integer points of a cube
     Grid,
@@ -115,7 +115,7 @@ fn integers() -> Coordinates {
     Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] }
 }
 
-/// Where points go.
+/// The output stream.
 struct Sink {
     stream: StreamWriter<BufWriter<File>>,
     batch: Vec<Point>,
@@ -153,7 +153,7 @@ impl Sink {
     }
 }
 
-/// Random points, as many in each slab or cell, so that any number of them takes no memory.
+/// Random points, equally many in each slab or cell, so that memory does not depend on their number.
 fn spread(arguments: &Arguments, random: &mut Random, sink: &mut Sink) -> Result<(), Failure> {
     let (points, is_curve) = (arguments.points, arguments.order == Order::Curve);
     let cells = points.div_ceil(CELL_POINTS).max(1);
@@ -206,7 +206,7 @@ fn sphere(count: u64, random: &mut Random) -> Vec<Point> {
     (0..count).map(point).collect()
 }
 
-/// Random points of a cube, moved along the gradient to where the function of the gyroid is zero, which few miss.
+/// Random points of a cube, moved along the gradient to a zero of the function of the gyroid; few miss it.
 fn gyroid(count: u64, random: &mut Random) -> Vec<Point> {
     let mut points = Vec::with_capacity(count as usize);
     while (points.len() as u64) < count {

@@ -1,7 +1,8 @@
 //! Triangulates sets of points in 3D, one after the other, for `scripts/check-cgal3`.
 //!
-//! On stdin each set is its size as u32 and triples of f64; on stdout go the numbers of tetrahedra and of hull facets
-//! as u32, and per tetrahedron four u32, indices of its points in the set. All numbers are little-endian.
+//! On stdin each set is its size as u32 and triples of f64; on stdout go the numbers of tetrahedra and of
+//! hull facets as u32, and per tetrahedron four u32, indices of its points in the set. All numbers are
+//! little-endian.
 
 use std::borrow::Cow;
 use std::io::{self, Read, Write};
@@ -10,7 +11,7 @@ use spmesh_geometry::delaunay3::{Kernel, Tetrahedralization};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut input, mut output) = (io::stdin().lock(), io::BufWriter::new(io::stdout().lock()));
-    // One kernel for all: nothing of a set may be left for the next.
+    // One kernel for all sets, to prove that no state of a set leaks into the next.
     let (mut kernel, mut mesh) = (Kernel::new(), Tetrahedralization::default());
     while let Some(points) = read_set(&mut input)? {
         kernel.triangulate(Cow::Owned(points), &mut mesh)?;

@@ -1,8 +1,9 @@
 //! Times the 3D kernel, in one thread.
 //!
-//! `kernel3_time POINTS` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers, once. With
-//! `--parts` it measures the parts of insertions, too, which takes time itself: the columns of thesis table 3.3. With a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the same buffers. POINTS has triples
-//! of little-endian f64; files that `scripts/bench` made are in its folder.
+//! `kernel3_time POINTS` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers,
+//! once. With `--parts` it measures the parts of insertions, too, which takes time itself: the columns of
+//! thesis table 3.3. With a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the
+//! same buffers. POINTS has triples of little-endian f64; files that `scripts/bench` made are in its folder.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]

@@ -1,8 +1,9 @@
 //! Times the 2D kernel, in one thread.
 //!
-//! `kernel_time POINTS TRIANGLES` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers,
-//! once. `kernel_time POINTS ROUNDS`, with a number, is for tuning: rounds with the same buffers, then in pieces of
-//! the size of leaves, and what the predicates did. The files of points that `scripts/bench` made are in its folder.
+//! `kernel_time POINTS TRIANGLES` is the kernel as one of the programs that `scripts/bench` compares: fresh
+//! buffers, once. `kernel_time POINTS ROUNDS`, with a number, is for tuning: rounds with the same buffers,
+//! then in pieces of the size of leaves, and what the predicates did. The files of points that
+//! `scripts/bench` made are in its folder.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]

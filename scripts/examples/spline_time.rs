@@ -1,8 +1,9 @@
 //! Times splines over uniform, clustered or gridded knots, in one thread.
 //!
-//! `spline_time uniform:N|clustered:N|grid:N [DEGREE]` builds the basis of clamped knots in the unit square and prints, each the
-//! least of three rounds: seconds for the basis; microseconds for each point of a million at random and along a curve, values and
-//! derivatives; nanoseconds for each pixel of a raster of 2000 x 2000.
+//! `spline_time uniform:N|clustered:N|grid:N [DEGREE]` builds the basis of clamped knots in the unit square
+//! and prints, each the least of three rounds: seconds for the basis; microseconds for each point of a
+//! million at random and along a curve, values and derivatives; nanoseconds for each pixel of a raster of
+//! 2000 x 2000.
 
 use spmesh_core::random::Random;
 use spmesh_geometry::configurations::{self, Knots, Rule};

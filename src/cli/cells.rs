@@ -1,4 +1,4 @@
-//! What programs that write rasters have in common: flags that say which cells there are, formats, outputs.
+//! Flags, formats and outputs of the programs that write rasters.
 
 use std::path::{Path, PathBuf};
 
@@ -9,18 +9,18 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_io::raster::{Cells, Grid, NoData, RasterFormat, RasterOptions, Window};
 
-/// Which cells a raster has.
+/// Flags for the grid of a raster.
 #[derive(Debug, Clone, Args)]
 pub(super) struct CellFlags {
-    /// Sides of cells, which are at multiples of it [default: a thousand cells along the longer side]
+    /// Side of cells; their corners are at multiples of it [default: a thousand cells along the longer side]
     #[arg(long, value_name = "S", allow_negative_numbers = true, conflicts_with_all = ["columns", "rows"])]
     step: Option<f64>,
 
-    /// A corner of cells, instead of 0,0: they are at multiples of the step from there
+    /// Corner from which the multiples of the step count [default: 0,0]
     #[arg(long, value_name = "X,Y", value_parser = parse_numbers::<2>, allow_hyphen_values = true, requires = "step")]
     align: Option<[f64; 2]>,
 
-    /// The cells of a GeoTIFF, so that both fit cell by cell
+    /// Take the grid of this GeoTIFF
     #[arg(long, value_name = "FILE", conflicts_with_all = ["step", "columns", "rows", "bounds"])]
     like: Option<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(super) struct CellFlags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     rows: Option<u32>,
 
-    /// What the raster covers [default: all that there is]
+    /// The window that the raster covers [default: all]
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
     bounds: Option<[f64; 4]>,
 }
@@ -63,14 +63,14 @@ impl CellFlags {
     }
 }
 
-/// How a raster is written, but for its format.
+/// Flags for the output of a raster.
 #[derive(Debug, Clone, Args)]
 pub(super) struct RasterFlags {
-    /// What cells have where nothing is known: a number, or nan [default: -9999]
+    /// The value of cells without data: a number, or nan [default: -9999]
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     no_data: Option<f32>,
 
-    /// Cloud-optimised GeoTIFF: with overviews, which stand before the image
+    /// Write a cloud-optimised GeoTIFF, with overviews before the image
     #[arg(long)]
     cog: bool,
 
@@ -110,7 +110,7 @@ impl RasterFlags {
     }
 }
 
-/// What `--bounds` says.
+/// The window of `--bounds`.
 pub(super) fn window_of([x0, y0, x1, y1]: [f64; 4]) -> Result<Window> {
     if x0 < x1 && y0 < y1 {
         return Ok(Window { min: [x0, y0], max: [x1, y1] });
@@ -120,7 +120,7 @@ pub(super) fn window_of([x0, y0, x1, y1]: [f64; 4]) -> Result<Window> {
     )))
 }
 
-/// The format that the ending of a name tells.
+/// The format that the extension of a name implies.
 pub(super) fn format_of(path: &Path) -> Option<RasterFormat> {
     let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
     match &ending[..] {
@@ -130,12 +130,12 @@ pub(super) fn format_of(path: &Path) -> Option<RasterFormat> {
     }
 }
 
-/// An output for a raster: what cannot be written is better known before the work.
+/// Opens the output of a raster before the work, so that a failure shows at once.
 pub(super) fn create(path: &Path, format: RasterFormat) -> Result<Output> {
     Output::create(path, format == RasterFormat::GeoTiff)
 }
 
-/// What was written, for a notice.
+/// The size of the raster, for a notice.
 pub(super) fn summary(grid: &Grid, without_data: u64) -> String {
     let Grid { columns, rows, step, .. } = grid;
     let all = grid.cells();

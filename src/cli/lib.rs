@@ -61,8 +61,8 @@ pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> Exi
     }
 }
 
-/// Makes `--stats json` one argument. For clap the format must be joined to its flag (`--stats=json`), or
-/// `--stats FILE` would take the file for a format. Behind `--` there are only files.
+/// Joins `--stats json` into one argument. clap needs `--stats=json`, or it would take the file in `--stats
+/// FILE` for a format. Arguments after `--` are files.
 fn join_stats_format(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     let mut only_files = false;
@@ -83,7 +83,7 @@ fn join_stats_format(arguments: impl Iterator<Item = OsString>) -> Vec<OsString>
 /// Flags that every tool has.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Say nothing on stderr but errors
+    /// Print nothing but errors on stderr
     #[arg(short, long, global = true)]
     pub quiet: bool,
 
@@ -99,7 +99,7 @@ pub fn notice(tool: &str, common: &Common, message: &str) {
     }
 }
 
-/// Prints on stderr. That nobody listens there is no reason to fail, unlike for `eprint!`.
+/// Prints on stderr. Unlike `eprint!`, it does not panic if stderr is closed.
 pub(crate) fn say(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
@@ -142,7 +142,8 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
 }
 
-/// A box of space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or one of the plane, MINX,MINY,MAXX,MAXY, which is infinitely high.
+/// A box of space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or one of the plane, MINX,MINY,MAXX,MAXY, which is
+/// infinitely high.
 ///
 /// # Errors
 /// If the text is anything else.
@@ -156,10 +157,10 @@ pub fn parse_box(text: &str) -> Result<Bounds, String> {
     Ok(Bounds { min: [x, y, f64::NEG_INFINITY], max: [max_x, max_y, f64::INFINITY] })
 }
 
-/// More threads than these are used if they are asked for only: each costs memory.
+/// The greatest default number of threads. Each costs memory, so more must be requested.
 const THREADS_DEFAULT_MAX: usize = 8;
 
-/// The number of threads asked for, or one per core, at most 8.
+/// The requested number of threads; by default one per core, at most [`THREADS_DEFAULT_MAX`].
 fn threads(asked: Option<u16>) -> NonZeroUsize {
     let cores = || available_threads().get().min(THREADS_DEFAULT_MAX);
     NonZeroUsize::new(asked.map_or_else(cores, usize::from)).unwrap_or(NonZeroUsize::MIN)

@@ -24,7 +24,7 @@ pub enum When {
 pub struct Progress {
     bar: ProgressBar,
     json: Option<(String, Option<u64>, Instant)>,
-    /// What is counted, in the plural.
+    /// The plural of the counted items.
     unit: &'static str,
 }
 

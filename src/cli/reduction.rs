@@ -1,4 +1,5 @@
-//! What the streaming triangulators have in common, in the plane and in space: flags, runs, and what they say.
+//! What the streaming triangulators have in common, in the plane and in space: flags, runs, and what they
+//! say.
 
 mod report;
 
@@ -24,7 +25,7 @@ pub(super) struct Shared<const D: usize> {
     #[arg(value_name = "STREAM", default_value = "-")]
     inputs: Vec<PathBuf>,
 
-    /// Where the mesh goes; - is stdout
+    /// File for the mesh; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
@@ -32,15 +33,15 @@ pub(super) struct Shared<const D: usize> {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
-    /// Write what is final in --region or --cell, and the residual for --merge
+    /// Write the simplices that are final in --region or --cell, and the residual for --merge
     #[arg(long)]
     partial: bool,
 
-    /// Finish several results of --partial; with --region, into a larger partial result
+    /// Finish results of --partial; with --region, into a larger partial result
     #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads"])]
     merge: bool,
 
-    /// Half-open box in world coordinates: a point on its upper sides is outside; inf is allowed
+    /// Half-open box in world coordinates: points on its upper sides are outside; inf is allowed
     #[arg(long, value_name = names(REGION, D), allow_hyphen_values = true, value_parser = parse_region::<D>)]
     region: Option<Region<D>>,
 
@@ -48,7 +49,7 @@ pub(super) struct Shared<const D: usize> {
     #[arg(long, value_name = names(CELL, D), conflicts_with = "region", requires = "partial", value_parser = parse_cell::<D>)]
     cell: Option<Part<D>>,
 
-    /// Print what the run did on stderr
+    /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
 

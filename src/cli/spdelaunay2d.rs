@@ -9,7 +9,7 @@ const EXAMPLES: &str = "\
 Examples:
   From LAZ files to a triangle mesh, in bounded memory:
     spfinalize a.laz b.laz | spdelaunay2d -o terrain.spm
-  Keep the lowest of coinciding points, and show what the run did:
+  Keep the lowest of coinciding points, and print the counts of the run:
     spfinalize --keep-class 2 a.laz | spdelaunay2d --duplicates lowest --stats -o ground.spm
   One tile of many, to be finished later or elsewhere:
     spfinalize a.laz b.laz | spdelaunay2d --partial --region 1000,2000,2000,3000 -o tile7.spm
@@ -18,7 +18,7 @@ Examples:
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 141 output closed by its reader.";
 
-/// Streaming Delaunay triangulation of points in the plane, in bounded memory.
+/// Triangulate a stream of points in the plane (Delaunay), in bounded memory.
 ///
 /// Reads a stream of (finalized) points and writes a triangle mesh stream. The result is exact and canonical:
 /// it depends neither on the order of the points, nor on cells, tiles or threads.
@@ -28,7 +28,7 @@ pub struct Flags {
     #[command(flatten)]
     shared: Shared<2>,
 
-    /// Which elevation a vertex gets where points coincide in x and y
+    /// Elevation of a vertex where points coincide in x and y
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
 }
@@ -71,7 +71,8 @@ const TOOL: Tool<2> = Tool {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`spmesh_reduce::triangulate`] and [`spmesh_reduce::merge_triangles`], and if an input or the output cannot be opened.
+/// As [`spmesh_reduce::triangulate`] and [`spmesh_reduce::merge_triangles`], and if an input or the output
+/// cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     TOOL.run(&flags.shared, flags.duplicates.into())
 }

@@ -10,7 +10,7 @@ const EXAMPLES: &str = "\
 Examples:
   From points of space to a tetrahedral mesh, in bounded memory:
     spfinalize --octree cloud.xyz | spdelaunay3d -o cloud.spm
-  Show what the run did, and prove the result:
+  Print the counts of the run, and prove the result:
     spfinalize --octree cloud.las | spdelaunay3d --stats -o cloud.spm
     spinfo --audit cloud.spm
   One tile of many, to be finished later or elsewhere:
@@ -23,17 +23,18 @@ the balls around their tetrahedra reach far.
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 141 output closed by its reader.";
 
-/// Streaming Delaunay tetrahedralization of points in space, in bounded memory.
+/// Tetrahedralize a stream of points in space (Delaunay), in bounded memory.
 ///
-/// Reads a stream of (finalized) points of three dimensions and writes a tetrahedral mesh stream. The result is exact and
-/// canonical: the set of tetrahedra depends neither on the order of the points, nor on cells, tiles or threads.
+/// Reads a stream of (finalized) points of three dimensions and writes a tetrahedral mesh stream. The result
+/// is exact and canonical: the set of tetrahedra depends neither on the order of the points, nor on cells,
+/// tiles or threads.
 #[derive(Debug, Parser)]
 #[command(name = "spdelaunay3d", version, after_help = EXAMPLES)]
 pub struct Flags {
     #[command(flatten)]
     shared: Shared<3>,
 
-    /// What becomes of points that coincide
+    /// Treatment of coinciding points
     #[arg(long, value_enum, default_value_t = DuplicatesFlag::First, value_name = "POLICY")]
     duplicates: DuplicatesFlag,
 }
@@ -67,7 +68,8 @@ const TOOL: Tool<3> = Tool {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`spmesh_reduce::tetrahedralize`] and [`spmesh_reduce::merge_tetrahedra`], and if an input or the output cannot be opened.
+/// As [`spmesh_reduce::tetrahedralize`] and [`spmesh_reduce::merge_tetrahedra`], and if an input or the
+/// output cannot be opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::give_back_large_blocks();
     TOOL.run(&flags.shared, flags.duplicates.into())

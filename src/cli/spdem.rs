@@ -1,4 +1,4 @@
-//! `spdem`: flags, and the figures of `--stats`.
+//! `spdem`: flags, and the counts of `--stats`.
 
 mod contours;
 
@@ -12,10 +12,11 @@ use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
-use contours::ContourFlags;
+use contours::{ContourFlags, Job};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::system;
 use spmesh_io::raster::{Light, RasterFormat};
+use spmesh_terrain::contours::LineFormat;
 use spmesh_terrain::dem::{self, Attribute, Options, Stats};
 
 const TOOL: &str = "spdem";
@@ -24,19 +25,19 @@ const EXAMPLES: &str = "\
 Examples:
   A terrain model of the ground points of many tiles, with cells of half a metre:
     spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spdem --step 0.5 -o terrain.tif
-  Nothing where points are far apart, as on water:
+  No data where points are far apart, as on water:
     spdem --step 1 --kill 30 ground.spm -o terrain.tif
-  How steep it is, and how it looks with the light from the north-west:
+  Slopes, and a hillshade with light from the north-west:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
-  For the web: overviews, and gaps of up to 20 cells filled:
+  For the web, with overviews, and gaps of up to 20 cells filled:
     spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
-  A part of it as text, for programs that read nothing else:
+  A part as a text grid:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
-  Contour lines every five metres; both, the mesh being made once:
+  Contour lines every five metres; then a raster and lines from one pipe:
     spdem --contours 5 ground.spm -o lines.geojson
     spfinalize tiles/*.laz | spdelaunay2d | tee >(spdem --step 1 -o terrain.tif) | spdem --contours 5 -o lines.geojson
-  Very many lines, as a GeoPackage (the format does not say which coordinates these are):
+  Very many lines as a GeoPackage (the lines format cannot state the coordinate system):
     spdem --contours 0.5 ground.spm -o lines.geojsonl
     ogr2ogr -a_srs EPSG:2154 lines.gpkg lines.geojsonl
   From a mesh of another program:
@@ -45,28 +46,29 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-A cell has what the triangle has at its centre; there is no data (-9999) outside of the mesh. Triangles are drawn as they arrive, and \
-tiles of 256 by 256 cells are written when they are full, so that memory is that of tiles that are begun. Beyond --memory these wait \
-in a temporary file. ESRI grids are written from the top, when all triangles have come, with 256 rows in memory.
+A cell has the value of the mesh at its centre; outside the mesh there is no data (-9999). Triangles are drawn as they arrive. \
+A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles take memory. Tiles beyond --memory wait in a \
+temporary file. ESRI grids are written after the last triangle, from the top, with 256 rows in memory.
 
-Slopes are angles in degrees, aspects directions of steepest descent in degrees clockwise from north; level triangles have no \
-aspect. Elevations and coordinates are taken to be in the same unit.
+Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; level triangles have \
+none. Elevations and coordinates must have the same unit.
 
-With --contours D there are lines instead of a raster, at all multiples of D (beginning at --contour-base), as features of GeoJSON with \
-the properties elevation and is_closed. Higher ground is on the left of a line; a vertex on a level counts as above it. Lines are in memory \
-until nothing can be added to them: 16 bytes for each point. --contour-points bounds that; a line that is cut goes on with its last \
-point. Coordinates are those of the mesh, not degrees as RFC 7946 wants; .geojson states their EPSG code as GDAL and QGIS read it.
+--contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as GeoJSON features with the \
+properties elevation and is_closed. Higher ground is on the left of a line; a vertex on a level counts as above it. Open lines are \
+held in memory, 16 bytes for each point. --contour-points bounds that: a line with that many points is cut and continued from its last \
+point. Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL and QGIS read it.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
 its reader.";
 
-/// What is said where memory that is needed cannot be had.
+/// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";
 
-/// Rasters and contour lines of triangle meshes, in bounded memory.
+/// Write the raster or the contour lines of a triangle mesh, in bounded memory.
 ///
-/// Reads a triangle mesh stream with elevations and writes a GeoTIFF or an ESRI grid, or lines as GeoJSON. Which triangle a cell is in is decided
-/// exactly: there are no gaps along edges, and the raster does not depend on the order of triangles.
+/// Reads a triangle mesh stream with elevations and writes a GeoTIFF, an ESRI grid, or lines as GeoJSON. The
+/// triangle of each cell is decided exactly: there are no gaps along edges, and the raster does not depend on
+/// the order of triangles.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -74,7 +76,7 @@ pub struct Flags {
     #[arg(value_name = "STREAM", default_value = "-")]
     input: PathBuf,
 
-    /// Where the raster or lines go; - is stdout
+    /// File for the raster or the lines; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
@@ -84,35 +86,37 @@ pub struct Flags {
     #[command(flatten)]
     contours: ContourFlags,
 
-    /// What cells have
+    /// The quantity in the cells
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Elevation)]
     kind: KindFlag,
 
-    /// Where the light of a hillshade is: clockwise from north, and above the horizon, in degrees [default: 315,45]
+    /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
+    /// [default: 315,45]
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     light: Option<[f64; 2]>,
 
-    /// Leave out triangles with an edge that is longer
+    /// Leave out triangles with an edge longer than this
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     kill: Option<f64>,
 
-    /// Fill cells without data from data in eight directions, at most so many sides of cells away (1 to 256)
+    /// Fill cells without data from the nearest data in eight directions, at most this many cells away (1 to
+    /// 256)
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
     fill: Option<u32>,
 
-    /// GeoTIFF or ESRI ASCII grid; GeoJSON of lines, whole or a feature on each line [default: by the name of the output, otherwise tif or
-    /// geojson]
+    /// GeoTIFF or ESRI ASCII grid; for lines, GeoJSON as one collection, or one feature a line [default: by
+    /// the extension of the output, else tif or geojson]
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
-    /// Memory for tiles; others wait in a temporary file (see --temp-dir)
+    /// Memory for tiles; the others wait in a temporary file (see --temp-dir)
     #[arg(long, value_name = "SIZE", default_value = "256M", value_parser = parse_size)]
     memory: u64,
 
     #[command(flatten)]
     raster: RasterFlags,
 
-    /// Print what the run did on stderr
+    /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
 
@@ -120,7 +124,7 @@ pub struct Flags {
     common: Common,
 }
 
-/// What `--kind` can say.
+/// The values of `--kind`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum KindFlag {
     Elevation,
@@ -129,7 +133,7 @@ enum KindFlag {
     Hillshade,
 }
 
-/// What `--format` can say.
+/// The values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FormatFlag {
     Tif,
@@ -141,12 +145,20 @@ enum FormatFlag {
 /// Runs the tool.
 ///
 /// # Errors
-/// As [`dem::rasterize`] or [`spmesh_terrain::contours::contour`], and if the input or the output cannot be opened.
+/// As [`dem::rasterize`] or [`spmesh_terrain::contours::contour`], and if the input or the output cannot be
+/// opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
     if let Some(options) = flags.contours.options(flags.kill()?)? {
         system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-        return contours::run(&flags, &options, started);
+        let job = Job {
+            input: &flags.input,
+            output: &flags.output,
+            format: flags.line_format()?,
+            stats: flags.stats,
+            common: &flags.common,
+        };
+        return contours::run(&job, &options, started, |message| notice(TOOL, &flags.common, message));
     }
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
@@ -193,6 +205,17 @@ impl Flags {
         };
         let raster = self.raster.options(self.format()?)?;
         Ok(Options { attribute, kill, fill: self.fill, memory: self.memory, raster })
+    }
+
+    fn line_format(&self) -> Result<LineFormat, Error> {
+        match self.format {
+            Some(FormatFlag::Geojson) => Ok(LineFormat::GeoJson),
+            Some(FormatFlag::Geojsonl) => Ok(LineFormat::GeoJsonLines),
+            None if cells::format_of(&self.output).is_none() => {
+                Ok(contours::format_of(&self.output).unwrap_or(LineFormat::GeoJson))
+            }
+            _ => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
+        }
     }
 
     fn format(&self) -> Result<RasterFormat, Error> {

@@ -1,4 +1,4 @@
-//! The command line of `spfinalize`.
+//! `spfinalize`: flags.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ Examples:
       spfinalize tile.laz | spdelaunay2d -o tile.spm
   Ground and water of many files as one input, keeping within 256 MB:
       spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
-  A grid of 2^6 x 2^6 cells, points in their own order, with the figures of the run:
+  A grid of 2^6 x 2^6 cells, points in their own order, with the counts of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Points of space from compressed text:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
@@ -34,13 +34,15 @@ Examples:
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
 141 output closed by its reader.";
 
-/// Finalize points spatially: tag each cell of a quadtree or octree after the last point in it
+/// Finalize points: tag each cell of a quadtree or octree after the last point in it
 ///
-/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK (VTU, VTP, VTS
-/// or legacy), or numbers without a header (--raw), plain or compressed (.gz), and writes a stream of points in which tags say which cells no later
-/// point lies in. Points of a cell are held back and written together (chunked), unless --preserve is given. The input is
-/// read two times or more: again where headers do not state its bounding box, and where cells are crowded. What cannot be
-/// read again is spooled, and decoded points are where that is cheaper (--spool).
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK
+/// (VTU, VTP, VTS or legacy), or numbers without a header (--raw), all of them plain or
+/// compressed (.gz), and writes a stream of points. Its tags
+/// name cells in which no later point lies. The points of a cell are held back and written together
+/// (chunked), unless --preserve is given. The input is read at least twice, and again if headers do not state
+/// its bounding box or if cells are crowded. Input that cannot be read again is spooled, as are decoded
+/// points where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -48,16 +50,16 @@ pub struct Flags {
     #[arg(value_name = "INPUT")]
     inputs: Vec<PathBuf>,
 
-    /// Read the files that are listed in this file, one per line
+    /// Read the files listed in this file, one per line
     #[arg(long, value_name = "FILE")]
     lof: Option<PathBuf>,
 
-    /// Files hold nothing but numbers, x, y and z of one point after the other: a type of i8, u8, i16, u16, i32, u32, i64,
+    /// Read files of bare numbers, x, y and z of each point: a type of i8, u8, i16, u16, i32, u32, i64,
     /// u64, f32 or f64 with its byte order, as in f32le or f64be
     #[arg(long, value_name = "TYPE")]
     raw: Option<RawType>,
 
-    /// Where to write; - is stdout
+    /// File for the stream; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
@@ -77,21 +79,22 @@ pub struct Flags {
     #[arg(long)]
     octree: bool,
 
-    /// Memory of the process; points beyond it wait in a temporary file (see --temp-dir)
+    /// Memory limit of the process; points beyond it wait in a temporary file (see --temp-dir)
     #[arg(long, value_name = "SIZE", default_value = "512M", value_parser = parse_size)]
     memory: u64,
 
-    /// Folder for temporary files [default: the system's]. That one may be in RAM (tmpfs): name a folder on
-    /// disk for big input without order
+    /// Folder for temporary files [default: the system's]. The default may be in RAM (tmpfs): name a folder
+    /// on disk for big input without order
     #[arg(long, value_name = "FOLDER")]
     temp_dir: Option<PathBuf>,
 
-    /// Keep points that the first pass decoded in a temporary file for later passes (see --temp-dir): where
-    /// decoding again would cost more and there is room on a disk, always, or never
+    /// Spool decoded points to a temporary file for later passes (see --temp-dir): where decoding again would
+    /// cost more and the disk has room, always, or never
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = Spool::Auto)]
     spool: Spool,
 
-    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads ahead
+    /// Threads that decode LAZ [default: one per core]; each takes a part of --memory. One more always reads
+    /// ahead
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
@@ -120,7 +123,7 @@ pub struct Flags {
     #[arg(long)]
     skip_invalid: bool,
 
-    /// Put coordinates on a grid of these steps
+    /// Round coordinates to a grid of these steps
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>)]
     scale: Option<[f64; 3]>,
 
@@ -128,7 +131,7 @@ pub struct Flags {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true, requires = "scale")]
     offset: Option<[f64; 3]>,
 
-    /// Print the figures of the run on stderr
+    /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
     stats: Option<StatsFormat>,
 

@@ -1,4 +1,4 @@
-//! The tool `spinfo`.
+//! `spinfo`: flags.
 
 mod census;
 mod configurations;
@@ -40,7 +40,7 @@ Examples:
 Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
 4 the audit found a violation, 141 output closed by its reader.";
 
-/// Says what a spmesh stream holds, and proves that it keeps its promises
+/// Report what a stream holds, and prove that it is what it claims to be
 #[derive(Debug, Parser)]
 #[command(name = "spinfo", version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -52,11 +52,11 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove with exact arithmetic what the stream claims; exit 4 at the first violation. Meshes of triangles
-    /// and of tetrahedra are proved as they pass: what is held are the vertices that are not finalized and
-    /// the boundary of what came so far. Cells and simplices of four dimensions and configurations are held
-    /// whole. In four dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and
-    /// simplices of it may be any
+    /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation. Triangle and
+    /// tetrahedral meshes are proved as they pass, holding only the live vertices and the boundary of the
+    /// mesh so far. Cells and simplices of four dimensions and configurations are held whole. In four
+    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it
+    /// may be any
     #[arg(
         long,
         value_enum,
@@ -67,15 +67,15 @@ pub struct Flags {
     )]
     audit: Option<AuditStandard>,
 
-    /// Prove also that the vertices of the mesh are exactly the points of this file, of any format that
-    /// spfinalize reads; can be given several times. The points are held: 4 bytes per coordinate of integers,
-    /// 8 of others
+    /// Also prove that the vertices of the mesh are exactly the points of this file, in any format that
+    /// spfinalize reads; can be repeated. The points are held, with 4 bytes per integer coordinate and 8
+    /// bytes per other one
     #[arg(long, value_name = "FILE", requires = "audit")]
     points: Vec<PathBuf>,
 
-    /// Do not stop at the first violation but count them all, exactly and once more in plain floating-point
-    /// arithmetic; for tetrahedral meshes. Holds 4 bytes per tetrahedron more than the audit, and edges and
-    /// facets between vertices that are not finalized
+    /// Count all violations instead of stopping at the first, both exactly and in plain floating-point
+    /// arithmetic; for tetrahedral meshes. Holds 4 bytes per tetrahedron more than the audit, and the edges
+    /// and facets between live vertices
     #[arg(long, requires = "audit", conflicts_with = "points")]
     count_violations: bool,
 
@@ -83,7 +83,7 @@ pub struct Flags {
     common: Common,
 }
 
-/// What `--audit` asks of the edges or facets of a mesh.
+/// The standard for the edges or facets of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum AuditStandard {
     /// Interior edges or facets are locally Delaunay, and ties are resolved as spdelaunay2d and tess3 do

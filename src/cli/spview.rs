@@ -18,26 +18,26 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::system;
 use spmesh_io::raster::Light;
 use spmesh_stream::{Kind, StreamReader};
-use spmesh_view::{Fill, Form, Moments, Options, Picture, Survey, When};
+use spmesh_view::{Extent, Fill, Form, Moments, Options, Picture, When};
 use tee::Tee;
 
 const TOOL: &str = "spview";
 
 const EXAMPLES: &str = "\
 Examples:
-  A terrain as a picture, in colours of its elevations and lit from the north-west:
+  A terrain as a picture, coloured by elevation and lit from the north-west:
     spview terrain.spm -o terrain.png
-  The same in a browser, to look around in it:
+  The same as a page for browsers, with pan and zoom:
     spview terrain.spm -o terrain.html
-  Its triangles and nothing else, of a part of it, to be printed:
+  Only the triangles of a part, for print:
     spview --fill none --bounds 4000,7000,4100,7080 terrain.spm -o part.svg
-  When each cell of a finalized stream got its first and its last point:
+  When each cell of a finalized stream got its first and last point:
     spfinalize tiles/*.laz | spview -o order.png
-  How far a triangulation is after two fifths of its triangles, with its live vertices:
+  A triangulation after two fifths of its triangles, with its live vertices:
     spview --at 0.4 terrain.spm -o front.png
-  Pictures of a pipe at work, one for each million points:
+  Pictures of a pipe at work, one per million points:
     spfinalize big.laz | spview --tee --snapshot every=1000000 -o shots/%04d.png | spdelaunay2d -o big.spm
-  A control mesh, seen from one side:
+  A control mesh, seen obliquely:
     splinefit mesh spline.spm | spview --oblique -o control.svg
   The centroid triangulation of configurations, and the link of a pair of knots:
     spview --order 2 knots.spm -o order2.svg
@@ -46,25 +46,27 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-Up to 20,000 triangles or points are drawn one by one; more are painted as pixels, in memory that depends on the size of the picture: some 64 bytes for each of its pixels. \
-What the header says of where the stream lies is used; a file that does not say it is read twice, a pipe needs --bounds if it is long.
+Up to 20,000 triangles or points are drawn one by one. More are painted as pixels, with memory proportional to the picture: some 64 \
+bytes for each pixel. The picture needs the bounds of the stream. If the header does not state them, a file is read twice, and a long \
+pipe needs --bounds.
 
-Streams in the plane and points in space are seen from above. Colours of time go by the position in the stream; those of a cell show \
-its first point in the middle and its last one at the border. Units are those of the coordinates.
+Streams in the plane and points in space are seen from above. Colours of time show the position in the stream; a cell shows the time \
+of its first point in the middle and that of its last point at the border. Units are those of the coordinates.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
 its reader.";
 
-/// What is said where memory that is needed cannot be had.
+/// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spview: not enough memory: take less --width, or --raster\n";
 
-/// Bytes that are read of a pipe at once.
+/// Length of the input buffer. Units: bytes.
 const BUFFER_LEN: usize = 1 << 18;
 
-/// Pictures of streams: meshes, points and their cells, configurations; also on the way through a pipe.
+/// Draw a stream as a picture: a mesh, points and their cells, or configurations.
 ///
-/// Reads a stream and writes SVG, PNG, or an HTML page that pans and zooms. What is drawn follows from what the stream holds: the relief of a terrain, the
-/// edges of other triangle meshes, cells of finalized points, knots and centroid triangulations of configurations.
+/// Reads a stream and writes SVG, PNG, or an HTML page that pans and zooms. By default it draws the relief of
+/// a terrain, the edges of other triangle meshes, the cells of finalized points, and the knots and centroid
+/// triangulation of configurations. With --tee, it draws a stream that passes through a pipe.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -72,11 +74,12 @@ pub struct Flags {
     #[arg(value_name = "STREAM", default_value = "-")]
     input: PathBuf,
 
-    /// Where the picture goes; - is stdout. With --snapshot, a name with one %d, or %04d for numbers of four digits
+    /// File for the picture; - is stdout. With --snapshot, a name with one %d, or %04d for numbers of four
+    /// digits
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// SVG, PNG, or a page that pans and zooms [default: by the name of the output, otherwise svg]
+    /// SVG, PNG, or an HTML page that pans and zooms [default: by the extension of the output, else svg]
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<Format>,
 
@@ -84,7 +87,7 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "WHAT")]
     fill: Option<FillFlag>,
 
-    /// Whether edges of triangles are drawn
+    /// Whether to draw the edges of triangles
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = WhenFlag::Auto)]
     edges: WhenFlag,
 
@@ -92,19 +95,20 @@ pub struct Flags {
     #[arg(long)]
     no_cells: bool,
 
-    /// Seen from above one side
+    /// Draw an oblique view instead of one from above
     #[arg(long)]
     oblique: bool,
 
-    /// Where the light is: clockwise from north, and above the horizon, in degrees
+    /// Direction of the light, in degrees: clockwise from north, and above the horizon
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = "315,45", allow_hyphen_values = true)]
     light: [f64; 2],
 
-    /// The elevations that colours are for; those beyond have the colours of the ends [default: all that there are]
+    /// The range of elevations that the colours span; those beyond have the colours of the ends [default:
+    /// all]
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 
-    /// Colours of two sorts, for elevations below and above this one
+    /// Use a diverging colour map with its middle at this elevation
     #[arg(long, value_name = "Z", allow_negative_numbers = true)]
     middle: Option<f64>,
 
@@ -112,35 +116,36 @@ pub struct Flags {
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(320..=8192))]
     width: u32,
 
-    /// The part of the plane that is seen, in world coordinates [default: all that there is]
+    /// The part of the plane to draw, in world coordinates [default: all]
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = parse_numbers::<4>, allow_hyphen_values = true)]
     bounds: Option<[f64; 4]>,
 
-    /// Draw triangles or points one by one, however many there are
+    /// Draw any number of triangles or points one by one
     #[arg(long, conflicts_with = "raster")]
     vector: bool,
 
-    /// Paint triangles or points as pixels, however few there are
+    /// Paint any number of triangles or points as pixels
     #[arg(long)]
     raster: bool,
 
-    /// A moment instead of the end: a part of the stream, like 0.4, or a number of triangles or points
+    /// Draw this moment instead of the end: a part of the stream, such as 0.4, or a number of triangles or
+    /// points
     #[arg(long, value_name = "MOMENT", value_parser = moment::parse_moment)]
     at: Option<Moment>,
 
-    /// A picture after each of so many triangles or points, too
+    /// Draw further pictures, one after every N triangles or points
     #[arg(long, value_name = "every=N", value_parser = moment::parse_every)]
     snapshot: Option<Every>,
 
-    /// Pass the stream on to stdout, byte for byte
+    /// Copy the stream to stdout, byte for byte
     #[arg(long)]
     tee: bool,
 
-    /// Of configurations, the centroid triangulation of this order [default: the greatest]
+    /// For configurations: draw the centroid triangulation of this order [default: the greatest]
     #[arg(long, value_name = "K", conflicts_with = "set", value_parser = clap::value_parser!(u16).range(1..))]
     order: Option<u16>,
 
-    /// Of configurations, the link of this set of knots
+    /// For configurations: draw the link of this set of knots
     #[arg(long, value_name = "KNOT,KNOT,...", value_delimiter = ',')]
     set: Option<Vec<u32>>,
 
@@ -148,7 +153,7 @@ pub struct Flags {
     common: Common,
 }
 
-/// What `--fill` can say.
+/// The values of `--fill`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FillFlag {
     None,
@@ -158,7 +163,7 @@ enum FillFlag {
     Time,
 }
 
-/// What `--edges` can say.
+/// The values of `--edges`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum WhenFlag {
     Auto,
@@ -177,10 +182,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let (input, name) = open_input(&flags.input)?;
     let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
     let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
-    let survey = flags.survey(&reader)?;
-    options.surveyed = survey.and_then(|survey| survey.bounds);
+    let extent = flags.extent(&reader)?;
+    options.extent = extent.and_then(|extent| extent.bounds);
     let moments =
-        Moments { at: flags.moment(&reader, survey)?, every: flags.snapshot.map(|Every(count)| count) };
+        Moments { at: flags.moment(&reader, extent)?, every: flags.snapshot.map(|Every(count)| count) };
     let mut progress = Progress::new(&flags.common, "drawing", reader.header().points);
     let mut take = |picture: &Picture| outputs.put(picture);
     let drawn = spmesh_view::draw(&mut reader, &options, moments, &mut take, |count| progress.set(count));
@@ -238,8 +243,8 @@ impl Flags {
         })
     }
 
-    /// Reads a file to its end, if its header does not say what is asked for.
-    fn survey<R: Read>(&self, reader: &StreamReader<R>) -> Result<Option<Survey>> {
+    /// Reads a file to its end, if the header lacks the bounds or counts that the flags need.
+    fn extent<R: Read>(&self, reader: &StreamReader<R>) -> Result<Option<Extent>> {
         let header = reader.header();
         if header.kind.has_knots()
             || header.kind.is_4d()
@@ -255,11 +260,11 @@ impl Flags {
         }
         let (input, name) = open_input(&self.input)?;
         let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;
-        spmesh_view::survey(&mut reader).map(Some)
+        Extent::read(&mut reader).map(Some)
     }
 
     /// The number of triangles or points that `--at` means.
-    fn moment<R: Read>(&self, reader: &StreamReader<R>, survey: Option<Survey>) -> Result<Option<u64>> {
+    fn moment<R: Read>(&self, reader: &StreamReader<R>, extent: Option<Extent>) -> Result<Option<u64>> {
         let part = match self.at {
             None => return Ok(None),
             Some(Moment::Count(count)) => return Ok(Some(count)),
@@ -267,9 +272,9 @@ impl Flags {
         };
         let header = reader.header();
         let is_mesh = header.kind != Kind::Points;
-        let total = match survey {
-            Some(Survey { totals, .. }) if is_mesh => Some(totals.simplices),
-            Some(Survey { totals, .. }) => Some(totals.points),
+        let total = match extent {
+            Some(Extent { totals, .. }) if is_mesh => Some(totals.simplices),
+            Some(Extent { totals, .. }) => Some(totals.points),
             None => header.points.filter(|_| !is_mesh),
         };
         let Some(total) = total else {

@@ -1,26 +1,26 @@
-//! Pixels that triangles and points are painted on, in any number: what they show is known when all are there.
+//! Pixels that any number of triangles and points are painted on. Colours are chosen when all have come.
 
 use resvg::tiny_skia::{ColorU8, Pixmap};
 
-use super::ramp::{Colour, mix};
+use super::colour_map::{Colour, mix};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;
 
-/// How much of edges is seen.
+/// The opacity of edges.
 const INK: f64 = 0.55;
 
-/// An edge is seen if it is not farther behind what is seen there. Units: lengths of the picture.
+/// An edge is visible if it is at most this far behind the nearest triangle. Units: lengths of the picture.
 const DEPTH_TOLERANCE: f32 = 1.0;
 
-/// What is painted with.
+/// The values and the brightness of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Paint {
-    /// Numbers at the corners, to be shown as colours.
+    /// Values at the corners, to be shown as colours.
     pub(super) values: [f64; 3],
-    /// How bright the triangle is, from 0 to 1.
+    /// The brightness, from 0 to 1.
     pub(super) shade: f32,
 }
 
@@ -32,11 +32,12 @@ pub(super) struct Pixels {
     pub(super) png: Vec<u8>,
 }
 
-/// Samples of the pixels of a rectangle: numbers, not colours, because how long a stream is and between which elevations it lies
-/// may be known at its end only.
+/// Samples of the pixels of a rectangle. They are values, not colours, because the length of a stream and its
+/// range of elevations may be known only at its end.
 ///
-/// A sample has what the last triangle, or with depths the nearest one, has there. Triangles with a common edge compute where it
-/// crosses a row of samples from the same numbers, so that no sample between them is left out.
+/// A sample has the value of the last triangle there; with depths, that of the nearest one. Two triangles
+/// with a common edge compute from the same numbers where it crosses a row of samples, so no sample between
+/// them is left out.
 ///
 /// Memory: 52 bytes for each pixel, 68 with depths.
 #[derive(Debug)]
@@ -46,16 +47,16 @@ pub(super) struct Canvas {
     /// Samples of a row, and of a column.
     columns: usize,
     rows: usize,
-    /// NaN where nothing is.
+    /// NaN where nothing was painted.
     values: Vec<f64>,
     shades: Vec<f32>,
     inked: Vec<bool>,
-    /// How far away what is seen is; empty if all is seen.
+    /// The distances of the visible triangles; empty in a view from above.
     depths: Vec<f32>,
 }
 
 impl Canvas {
-    /// Nothing painted so far, on so many pixels.
+    /// A blank canvas of `width` times `height` pixels.
     pub(super) fn new(corner: Point2, [width, height]: [usize; 2], has_depths: bool) -> Canvas {
         let (columns, rows) = (SAMPLES * width, SAMPLES * height);
         let samples = columns * rows;
@@ -70,7 +71,7 @@ impl Canvas {
         }
     }
 
-    /// Paints a triangle, whose corners have a place in the picture and a depth.
+    /// Paints a triangle. Each corner is its place in the picture, and its depth.
     pub(super) fn triangle(&mut self, corners: [[f64; 3]; 3], paint: Paint) {
         let corners = corners.map(|corner| self.to_samples(corner));
         let [low, high] = range_of(corners.map(|corner| corner[1]));
@@ -89,10 +90,10 @@ impl Canvas {
         }
     }
 
-    /// Inks an edge, on samples that have been painted.
+    /// Draws an edge on samples that have been painted.
     pub(super) fn edge(&mut self, ends: [[f64; 3]; 2]) {
         let mut ends = ends.map(|end| self.to_samples(end));
-        // The same samples for both triangles.
+        // Both triangles of the edge must ink the same samples.
         if ends[1] < ends[0] {
             ends.swap(0, 1);
         }
@@ -105,13 +106,13 @@ impl Canvas {
             let [x, y, depth] = [0, 1, 2].map(|axis| from[axis] + part * (to[axis] - from[axis]));
             if x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64 {
                 let at = y as usize * self.columns + x as usize;
-                // An edge is as far away as its triangles.
+                // Rounding may put an edge behind its own triangles.
                 self.inked[at] |= self.depths.is_empty() || depth as f32 <= self.depths[at] + DEPTH_TOLERANCE;
             }
         }
     }
 
-    /// Paints a point: a square around it, two pixels wide, so that a single one is seen.
+    /// Paints a point as a square two pixels wide, so that a single one is visible.
     pub(super) fn point(&mut self, at: Point2, value: f64) {
         let [x, y, _] = self.to_samples([at[0], at[1], 0.0]);
         let reach = SAMPLES as f64;
@@ -122,7 +123,7 @@ impl Canvas {
         }
     }
 
-    /// The picture: `colour` says what a number looks like on a surface of some shade.
+    /// The picture; `colour` maps a value and a brightness to a colour.
     ///
     /// # Errors
     /// If the picture is too large.
@@ -136,7 +137,7 @@ impl Canvas {
         Ok(Pixels { width, height, png })
     }
 
-    /// The mean of the samples of a pixel; those where nothing is make it transparent.
+    /// The mean of the samples of a pixel. Blank samples make it transparent.
     fn pixel(&self, [column, row]: [usize; 2], colour: &impl Fn(f64, f64) -> Colour) -> ColorU8 {
         let (mut sums, mut found) = ([0u32; 3], 0);
         for at in (0..SAMPLES * SAMPLES).map(|sample| {
@@ -154,7 +155,7 @@ impl Canvas {
         ColorU8::from_rgba(r, g, b, (255 * found / (SAMPLES * SAMPLES) as u32) as u8)
     }
 
-    /// Whether something nearer is seen at a sample; if not, that has the new depth.
+    /// Whether a nearer triangle hides a sample. If not, the sample gets the new depth.
     fn is_hidden(&mut self, at: usize, depth: impl Fn() -> f64) -> bool {
         let Some(nearest) = self.depths.get_mut(at) else { return false };
         let depth = depth() as f32;
@@ -170,7 +171,7 @@ impl Canvas {
     }
 }
 
-/// A number that is linear on a triangle.
+/// A linear function on a triangle.
 struct Plane {
     corner: Point2,
     value: f64,
@@ -185,7 +186,7 @@ impl Plane {
         let [s, t] = [values[1] - values[0], values[2] - values[0]];
         let determinant = u[0] * v[1] - u[1] * v[0];
         let gradient = [(s * v[1] - t * u[1]) / determinant, (t * u[0] - s * v[0]) / determinant];
-        // A needle has the number of its first corner.
+        // A needle has the value of its first corner.
         let gradient = if gradient.iter().all(|part| part.is_finite()) { gradient } else { [0.0; 2] };
         Plane { corner: [a[0], a[1]], value: values[0], gradient, range: range_of(values) }
     }
@@ -197,24 +198,25 @@ impl Plane {
     }
 }
 
-/// Least and greatest of three numbers.
+/// The least and the greatest of three numbers.
 fn range_of([a, b, c]: [f64; 3]) -> [f64; 2] {
     [a.min(b).min(c), a.max(b).max(c)]
 }
 
-/// The numbers below `count` whose centres are from `low` on and before `high`.
+/// The indices below `count` whose centres are in the half-open interval from `low` to `high`.
 fn among(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
-    // What is beyond the range of integers becomes its end.
+    // Conversion saturates.
     let first = |bound: f64| ((bound - 0.5).ceil().max(0.0) as usize).min(count);
     first(low)..first(high)
 }
 
-/// Where a row enters and leaves a triangle. An edge has its lower end and not its upper one, so a row crosses none or two.
+/// Where a row enters and leaves a triangle. An edge includes its lower end only, so a row crosses no edge or
+/// two.
 fn crossing([a, b, c]: [[f64; 3]; 3], y: f64) -> Option<[f64; 2]> {
     let mut found = [0.0; 2];
     let mut count = 0;
     for [from, to] in [[a, b], [b, c], [c, a]] {
-        // From the least end, whichever triangle asks.
+        // From the least end, so that both triangles of an edge compute the same place.
         let [low, high] = if (from[1], from[0]) < (to[1], to[0]) { [from, to] } else { [to, from] };
         if low[1] <= y && y < high[1] && count < 2 {
             found[count] = low[0] + (y - low[1]) * ((high[0] - low[0]) / (high[1] - low[1]));
@@ -225,7 +227,7 @@ fn crossing([a, b, c]: [[f64; 3]; 3], y: f64) -> Option<[f64; 2]> {
     (count == 2).then(|| [p.min(q), p.max(q)])
 }
 
-/// The part of a line that is in a box from zero on: so the steps along it are as few as its sides allow.
+/// The part of a line inside a box with its corner at zero; this bounds the number of steps along the line.
 fn inside([from, to]: [[f64; 3]; 2], size: Point2) -> Option<[f64; 2]> {
     let mut part = [0.0f64, 1.0f64];
     for axis in 0..2 {
@@ -242,7 +244,7 @@ fn inside([from, to]: [[f64; 3]; 2], size: Point2) -> Option<[f64; 2]> {
     (part[0] <= part[1]).then_some(part)
 }
 
-/// What is wrong if there is no room for pixels.
+/// The error of a picture whose pixels do not fit in memory.
 pub(super) fn too_large() -> Error {
     Error::usage("the picture is too large: take less --width")
 }
@@ -253,7 +255,7 @@ mod tests {
 
     const SIZE: usize = 16;
 
-    /// Least and greatest number.
+    /// The least and the greatest value.
     fn range(canvas: &Canvas) -> [f64; 2] {
         let known = canvas.values.iter().copied().filter(|value| !value.is_nan());
         known.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
@@ -272,7 +274,7 @@ mod tests {
 
     #[test]
     fn fans_cover_each_sample_once() {
-        // Around places that are samples, corners of samples, and others.
+        // Centres of samples, corners of samples, and other places.
         for centre in [[5.25, 5.25], [8.0, 8.0], [3.1, 12.7], [0.25, 0.25], [15.75, 0.25]] {
             let rim: Vec<[f64; 3]> =
                 [[0.0, 0.0], [7.25, 0.0], [16.0, 0.0], [16.0, 16.0], [4.0, 16.0], [0.0, 16.0]]

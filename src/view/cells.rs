@@ -1,29 +1,30 @@
-//! Cells of the finalization, with the times of their first and of their last point (thesis, figure 5.1).
+//! Cells of the finalization, with the times of their first and last points (thesis, figure 5.1).
 
 use std::collections::BTreeMap;
 
-use super::look::Colours;
-use super::ramp::hex;
-use super::stage::Stage;
+use super::colour_map::hex;
+use super::scene::Scene;
+use super::style::Colours;
 use super::svg;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, FinalizedCells};
 
-/// Cells are not drawn smaller. Units: lengths of the picture.
+/// The least side of a cell that is drawn. Units: lengths of the picture.
 const SIDE_MIN: f64 = 8.0;
-/// The part of the side of a cell that its border takes.
+/// The width of the border of a cell, as a part of its side.
 const BORDER: f64 = 0.25;
-/// Most levels of cells that are drawn, so that their codes are numbers of 64 bits and their number is that of the picture.
+/// The deepest level that is drawn. It keeps codes within 64 bits, and bounds the number of cells by the
+/// picture.
 const LEVEL_MAX: u8 = 12;
 
-/// When the first and the last point of a cell came: the numbers of points before them.
+/// When the first and the last point of a cell came, in points before them.
 type Times = [u64; 2];
 
-/// The cells that points lie in, none smaller than can be seen.
+/// The cells that points lie in, at a level where cells are still visible.
 ///
-/// Memory: with the number of cells in the picture, and what [`FinalizedCells`] needs.
+/// Memory: proportional to the number of cells in the picture, and that of [`FinalizedCells`].
 #[derive(Debug)]
 pub(super) struct Cells {
     tree: CellTree,
@@ -31,23 +32,23 @@ pub(super) struct Cells {
     /// The level of cells that points are counted in.
     level: u8,
     final_cells: FinalizedCells,
-    /// Cells of that level with points, and not final yet.
+    /// Cells of that level that have points and are not final.
     open: BTreeMap<u64, Times>,
-    /// Final cells with points, as large as they were tagged.
+    /// Final cells with points, of the level of their tag.
     closed: Vec<(CellCode, Times)>,
-    /// The corners of the cell of the last point, and its code if it can be seen: points near each other in the stream are so in
-    /// the plane.
+    /// The corners of the cell of the last point, and its code if it is visible. Neighbours in the stream are
+    /// often neighbours in the plane.
     last: Option<([Point; 2], Option<u64>)>,
 }
 
 impl Cells {
-    /// No points so far, in a tree of the plane.
-    pub(super) fn new(tree: CellTree, coordinates: Coordinates, stage: &Stage) -> Cells {
+    /// No points so far, in a quadtree.
+    pub(super) fn new(tree: CellTree, coordinates: Coordinates, scene: &Scene) -> Cells {
         let origin = tree.origin();
         let opposite = [0, 1, 2].map(|axis| origin[axis] + tree.side());
-        let [from, to] = [origin, opposite].map(|corner| stage.view.place(coordinates.to_world(corner)));
+        let [from, to] = [origin, opposite].map(|corner| scene.view.place(coordinates.to_world(corner)));
         let levels = ((to[0] - from[0]) / SIDE_MIN).log2().floor();
-        // What is not a number becomes zero.
+        // Conversion turns NaN into zero.
         let level = (levels.max(0.0) as u8).min(tree.depth()).min(LEVEL_MAX);
         Cells {
             tree,
@@ -60,15 +61,15 @@ impl Cells {
         }
     }
 
-    /// Takes a point, in stored coordinates, with the number of points before it.
-    pub(super) fn point(&mut self, at: Point, number: u64, stage: &Stage) {
+    /// Takes a point in stored coordinates; `number` is the number of points before it.
+    pub(super) fn point(&mut self, at: Point, number: u64, scene: &Scene) {
         let is_in = |[min, max]: [Point; 2]| (0..2).all(|axis| min[axis] <= at[axis] && at[axis] < max[axis]);
         let code = match self.last {
             Some((corners, code)) if is_in(corners) => code,
             _ if !self.tree.contains(at) => None,
             _ => {
                 let cell = self.tree.cell_of(at, self.level);
-                let code = self.sides(cell, stage).map(|_| cell.0);
+                let code = self.sides(cell, scene).map(|_| cell.0);
                 self.last = Some((self.tree.corners(cell).into(), code));
                 code
             }
@@ -78,17 +79,17 @@ impl Cells {
         }
     }
 
-    /// Takes a tag.
+    /// Takes a finalization tag.
     ///
     /// # Errors
-    /// If it is that of no cell of the tree, or of one that is final already.
+    /// If the tree has no such cell, or the cell is final already.
     pub(super) fn finalize(&mut self, cell: CellCode) -> Result<()> {
         self.final_cells.finalize(cell)?;
         let level = self.tree.level(cell);
         let cell = if level <= self.level {
             cell
         } else {
-            // Parts of what can be seen: that is final with the last of them.
+            // A part of a visible cell, which becomes final with its last part.
             CellCode(cell.0 >> (2 * (level - self.level)))
         };
         if !self.final_cells.is_final_cell(cell) {
@@ -105,46 +106,46 @@ impl Cells {
         Ok(())
     }
 
-    /// Final cells, their middle in the colour of their first point and their border in that of their last one; open ones with a
-    /// border that is not filled.
-    pub(super) fn vectors(&self, stage: &Stage, colours: &Colours) -> String {
+    /// All cells. The middle of a cell has the colour of its first point. The border of a final cell has that
+    /// of its last point; that of an open cell is not filled.
+    pub(super) fn vectors(&self, scene: &Scene, colours: &Colours) -> String {
         let colour = |time: u64| hex(colours.of(time as f64, 1.0));
         let mut text = "<g id=\"cells\" stroke=\"#fff\" stroke-width=\"0.5\">\n".to_string();
         for &(cell, [first, last]) in &self.closed {
-            let Some(sides) = self.sides(cell, stage) else { continue };
+            let Some(sides) = self.sides(cell, scene) else { continue };
             text += &rectangle(sides, &format!("fill=\"{}\"", colour(last)));
             text += &rectangle(inner(sides), &format!("fill=\"{}\" stroke=\"none\"", colour(first)));
         }
         text += "</g>\n<g id=\"open\" stroke=\"#24292f\" stroke-opacity=\"0.5\" stroke-width=\"0.75\" fill=\"none\">\n";
         for (&code, &[first, _]) in &self.open {
-            let Some(sides) = self.sides(CellCode(code), stage) else { continue };
+            let Some(sides) = self.sides(CellCode(code), scene) else { continue };
             text += &rectangle(sides, "");
             text += &rectangle(inner(sides), &format!("fill=\"{}\" stroke=\"none\"", colour(first)));
         }
         text + "</g>\n"
     }
 
-    /// Number of final cells with points, and of open ones.
+    /// The numbers of final and of open cells with points.
     pub(super) fn counts(&self) -> [usize; 2] {
         [self.closed.len(), self.open.len()]
     }
 
-    /// Left, upper, right and lower side of what can be seen of a cell.
-    fn sides(&self, cell: CellCode, stage: &Stage) -> Option<[f64; 4]> {
+    /// The left, upper, right and lower side of the visible part of a cell.
+    fn sides(&self, cell: CellCode, scene: &Scene) -> Option<[f64; 4]> {
         let (min, max) = self.tree.corners(cell);
         let [min, max] = [min, max].map(|corner| self.coordinates.to_world(corner));
-        if !stage.may_show(&[min, max]) {
+        if !scene.may_show(&[min, max]) {
             return None;
         }
-        let [[left, lower, _], [right, upper, _]] = [min, max].map(|corner| stage.view.place(corner));
-        // Of a cell that reaches beyond the points, the part with points is all that matters.
-        let [x, y, end_x, end_y] = stage.sides();
+        let [[left, lower, _], [right, upper, _]] = [min, max].map(|corner| scene.view.place(corner));
+        // A cell may reach beyond all points; only the part with points is drawn.
+        let [x, y, end_x, end_y] = scene.sides();
         let sides = [left.max(x), upper.max(y), right.min(end_x), lower.min(end_y)];
         (sides[0] < sides[2] && sides[1] < sides[3]).then_some(sides)
     }
 }
 
-/// What the border of a cell leaves.
+/// The inside of a cell, without its border.
 fn inner([left, upper, right, lower]: [f64; 4]) -> [f64; 4] {
     let (x, y) = (BORDER * (right - left), BORDER * (lower - upper));
     [left + x, upper + y, right - x, lower - y]

@@ -1,18 +1,21 @@
-//! Pictures of configurations: knots, centroid triangulations, and the link of a set of knots (thesis, figure 7.3).
+//! Pictures of configurations: knots, centroid triangulations, and the link of a set of knots (thesis, figure
+//! 7.3).
 
-use super::dots;
+use super::colour_map::{Colour, hex};
+use super::options::Options;
 use super::picture::Picture;
-use super::ramp::{Colour, hex};
+use super::points;
+use super::scene::Scene;
 use super::sheet::{Furniture, Mark, Shape};
-use super::stage::Stage;
 use super::svg::{self, Anchor};
-use super::{Options, ticks};
+use super::ticks;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{ConfigurationSet, Coordinates};
 
-/// Triangles from the lower degree, the link, its inside, and the set.
+/// Triangles of the lower degree, the link, its inside, the chosen set, the knots, and triangles of the upper
+/// degree.
 const LOWER: Colour = [184, 222, 190];
 const LINK: Colour = [214, 96, 20];
 const INSIDE: Colour = [158, 196, 232];
@@ -20,28 +23,29 @@ const CHOSEN: Colour = [130, 50, 160];
 const KNOT: Colour = [36, 41, 47];
 const UPPER: Colour = [255; 3];
 
-/// Knots have their numbers if they are not more.
+/// Up to this many knots are numbered.
 const NUMBERED_MAX: usize = 60;
 
-/// Around the map, so that there is room for numbers.
+/// The margin inside the map, with room for numbers. Units: lengths of the picture.
 const PAD: f64 = 24.0;
 
-/// More triangles are drawn without their edges.
+/// Above this many triangles, edges are drawn as hairlines.
 const EDGES_MAX: usize = 40_000;
 
-/// What of a stream of configurations is drawn.
-struct Scene<'a> {
+/// The configurations of a stream, and how they are drawn.
+struct Diagram<'a> {
     set: &'a ConfigurationSet,
     knots: Knots,
     coordinates: Coordinates,
-    stage: Stage,
+    scene: Scene,
     options: &'a Options,
 }
 
-/// The picture of configurations: the link of [`Options::set`], or else the centroid triangulation of [`Options::order`].
+/// The picture of configurations: the link of [`Options::set`], or else the centroid triangulation of
+/// [`Options::order`].
 ///
 /// # Errors
-/// Usage, if there are no knots, or the stream has not what is asked for.
+/// Usage, if there are no knots, or the stream lacks the degree or the set that the options name.
 pub(super) fn picture(
     set: &ConfigurationSet,
     coordinates: Coordinates,
@@ -50,23 +54,23 @@ pub(super) fn picture(
     let knots = set.points.iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
     let knots: Vec<Point> = knots.collect();
     let bounds = Bounds::of_points(&knots).unwrap_or(Bounds::of_point([0.0; 3]));
-    let stage = Stage::plan(&bounds, options.bounds, PAD, options.width)?;
-    let scene = Scene { set, knots: Knots::new(set.points.clone())?, coordinates, stage, options };
+    let scene = Scene::plan(&bounds, options.bounds, PAD, options.width)?;
+    let diagram = Diagram { set, knots: Knots::new(set.points.clone())?, coordinates, scene, options };
     match &options.set {
-        Some(chosen) => scene.link(chosen, &knots),
-        None => scene.centroids(&knots),
+        Some(chosen) => diagram.link(chosen, &knots),
+        None => diagram.centroids(&knots),
     }
 }
 
-impl Scene<'_> {
-    /// The centroid triangulation of an order, under the knots.
+impl Diagram<'_> {
+    /// The centroid triangulation of an order, with the knots on top.
     fn centroids(&self, knots: &[Point]) -> Result<Picture> {
         let Some(last) = self.set.degrees.last() else {
             return Ok(self.finish(String::new(), knots, &[], &[], "no configurations".to_string()));
         };
         let order = self.options.order.unwrap_or(last.degree() + 1);
         let upper = self.degree(order.wrapping_sub(1))?;
-        // A stream may have one degree alone; then there is nothing in the place of the triangles of the lower one.
+        // A stream may have a single degree; then the triangles of the lower degree stay blank.
         let missing = (order > 1).then(|| Configurations::new(order - 2, upper.claim()));
         let lower = self.find(order.wrapping_sub(2)).or(missing.as_ref());
         let mesh = CentroidMesh::of(&self.knots, lower, upper)?;
@@ -101,7 +105,7 @@ impl Scene<'_> {
         Ok(self.finish(map, knots, &[], words, what))
     }
 
-    /// The link of a set and its triangles, on the triangulation of the knots if there is one.
+    /// The link of a set and its triangles, on the triangulation of the knots if the stream has it.
     fn link(&self, chosen: &[u32], knots: &[Point]) -> Result<Picture> {
         let mut chosen = chosen.to_vec();
         chosen.sort_unstable();
@@ -132,7 +136,7 @@ impl Scene<'_> {
             .collect();
         let map = self.rings("start", UPPER, start)
             + &self.rings("inside", INSIDE, inside.iter().copied())
-            + &dots::lines("link", LINK, &edges, &self.stage);
+            + &points::lines("link", LINK, &edges, &self.scene);
         let words = [
             Mark { shape: Shape::Dot, colour: CHOSEN, words: "the set of knots" },
             Mark { shape: Shape::Line, colour: LINK, words: "its link" },
@@ -147,7 +151,7 @@ impl Scene<'_> {
         Ok(self.finish(map, knots, &chosen, words, format!("link of the set {names}{kind}")))
     }
 
-    /// Puts knots on a map, and its furniture around it.
+    /// Adds the knots to a map, and the furniture around it.
     fn finish(
         &self,
         mut map: String,
@@ -159,27 +163,27 @@ impl Scene<'_> {
         let others: Vec<Point> =
             (0..).zip(knots).filter(|(knot, _)| !chosen.contains(knot)).map(|(_, &at)| at).collect();
         let chosen: Vec<Point> = chosen.iter().map(|&knot| knots[knot as usize]).collect();
-        map += &dots::marks("knots", KNOT, 3.0, &others, &self.stage);
+        map += &points::marks("knots", KNOT, 3.0, &others, &self.scene);
         if !chosen.is_empty() {
-            map += &dots::marks("set", CHOSEN, 5.5, &chosen, &self.stage);
+            map += &points::marks("set", CHOSEN, 5.5, &chosen, &self.scene);
         }
         if knots.len() <= NUMBERED_MAX {
             map += &self.numbers(knots);
         }
         let count = ticks::counted(knots.len() as u64, "knot", "knots");
         let title = format!("{}: {count}, {what}", self.options.name);
-        let frame = self.stage.view.frame();
+        let frame = self.scene.view.frame();
         let unit = frame.map(|frame| frame.unit).filter(|_| !knots.is_empty());
         let knot = Mark { shape: Shape::Dot, colour: KNOT, words: "knots" };
         let marks: Vec<&Mark> = std::iter::once(&knot).chain(marks).collect();
         let furniture = Furniture { title: &title, legend: None, marks: &marks, unit };
-        Picture { svg: self.stage.sheet.svg(&map, &furniture), title, frame }
+        Picture { svg: self.scene.sheet.svg(&map, &furniture), title, frame }
     }
 
     fn numbers(&self, knots: &[Point]) -> String {
         let mut text = format!("<g id=\"numbers\" fill=\"{}\">\n", hex(KNOT));
         for (number, &at) in knots.iter().enumerate() {
-            let [x, y, _] = self.stage.view.place(at);
+            let [x, y, _] = self.scene.view.place(at);
             text += &svg::text([x + 6.0, y - 6.0], 11, Anchor::Start, &number.to_string());
         }
         text + "</g>\n"
@@ -188,8 +192,8 @@ impl Scene<'_> {
     /// Triangles of one colour.
     fn rings(&self, id: &str, colour: Colour, triangles: impl Iterator<Item = [Point; 3]>) -> String {
         let (mut path, mut count) = (String::new(), 0);
-        for corners in triangles.filter(|corners| self.stage.may_show(corners)) {
-            path += &svg::ring(&corners.map(|corner| self.stage.view.place(corner)).map(|[x, y, _]| [x, y]));
+        for corners in triangles.filter(|corners| self.scene.may_show(corners)) {
+            path += &svg::ring(&corners.map(|corner| self.scene.view.place(corner)).map(|[x, y, _]| [x, y]));
             count += 1;
         }
         if count == 0 {
@@ -213,7 +217,8 @@ impl Scene<'_> {
                 self.set.degrees.iter().map(|configurations| configurations.degree().to_string()).collect();
             let known = known.join(", ");
             Error::usage(format!(
-                "an order, or a set, of so many knots needs configurations of a degree that is one less; the stream has degrees {known}"
+                "an order, or a set, of {} knots needs configurations of one degree less; the stream has degrees {known}",
+                degree.wrapping_add(1)
             ))
         })
     }

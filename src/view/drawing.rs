@@ -1,33 +1,34 @@
-//! From a stream to pictures: of its end, or of moments on the way.
+//! From a stream to pictures: of its end, or of moments before.
 
 use std::io::Read;
 
 use super::cells::Cells;
-use super::dots::{self, Dot};
+use super::colour_map::Colour;
 use super::front::Front;
 use super::layer::Layer;
-use super::look::{Colours, Look};
+use super::options::{Fill, Moments, Options};
 use super::picture::Picture;
+use super::points::{self, DrawnPoint};
 use super::projection::PAD;
-use super::ramp::Colour;
 use super::request;
+use super::scene::Scene;
 use super::sheet::{Furniture, Legend, Mark, Shape};
-use super::stage::Stage;
+use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
-use super::{Fill, Moments, Options, configurations, svg, ticks};
+use super::{configurations, svg, ticks};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};
 
-/// Vertices that are live, points of a residual.
+/// Live vertices, and residual points.
 const LIVE: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "live vertices" };
 const RESIDUAL: Mark = Mark { shape: Shape::Dot, colour: [214, 40, 40], words: "residual points" };
-/// The border of what is final, and walls.
+/// The border of the triangles so far, and walls.
 const BORDER: Mark =
     Mark { shape: Shape::Line, colour: [230, 120, 0], words: "border of the triangles so far" };
 const WALLS: Mark = Mark { shape: Shape::Line, colour: [230, 120, 0], words: "walls" };
-/// Cells.
+/// Final and open cells.
 const CLOSED: Colour = [59, 82, 139];
 const FINAL: Mark = Mark {
     shape: Shape::Area,
@@ -39,14 +40,15 @@ const OPEN: Mark = Mark { shape: Shape::Area, colour: [255; 3], words: "open cel
 /// Takes a picture that is complete.
 pub type Take<'a> = dyn FnMut(&Picture) -> Result<()> + 'a;
 
-/// Draws a stream: `take` gets the pictures of `moments`, the last one of which is of the end, unless that is another;
-/// `progress` is told how many points or vertices are read. The stream is read to its end in any case.
+/// Draws a stream and calls `take` with the pictures of `moments`; without [`Moments::at`], the last one
+/// shows the end. Calls `progress` with the number of points or vertices read. Reads the stream to its end in
+/// any case.
 ///
 /// Memory: that of [`super`].
 ///
 /// # Errors
-/// Usage, if the stream has nothing that could be seen from above, or lacks what options ask for; if it is malformed or ends too
-/// early; those of `take`.
+/// Usage, if the stream cannot be drawn in the plane, or lacks what the options ask for; if it is malformed
+/// or truncated; those of `take`.
 pub fn draw<R: Read>(
     reader: &mut StreamReader<R>,
     options: &Options,
@@ -69,36 +71,36 @@ pub fn draw<R: Read>(
     drawing.end(take)
 }
 
-/// For what lies in a box of the world.
-fn stage_of(bounds: &Bounds, options: &Options) -> Result<Stage> {
+/// The scene of a box of the world.
+fn scene_of(bounds: &Bounds, options: &Options) -> Result<Scene> {
     if options.oblique {
-        Stage::oblique(bounds, options.width)
+        Scene::oblique(bounds, options.width)
     } else {
-        Stage::plan(bounds, options.bounds, PAD, options.width)
+        Scene::plan(bounds, options.bounds, PAD, options.width)
     }
 }
 
-/// What has been drawn so far.
+/// The state of a picture while the stream is read.
 struct Drawing<'a> {
     options: &'a Options,
     moments: Moments,
     kind: Kind,
     coordinates: Coordinates,
-    look: Look,
-    stage: Option<Stage>,
-    /// How many points there are, if the header says it: then colours of time are the same in all pictures.
+    style: Style,
+    scene: Option<Scene>,
+    /// The number of points, if the header states it; then the colours of time agree in all pictures.
     count: Option<u64>,
-    /// Elevations, if the header says them.
+    /// The range of elevations, if the header states it.
     stated: Option<[f64; 2]>,
     triangles: Layer<Triangle>,
-    points: Layer<Dot>,
+    points: Layer<DrawnPoint>,
     front: Front,
     cells: Option<Cells>,
     residual: Vec<Point>,
     walls: Vec<[Point; 2]>,
-    /// Triangles so far, or points.
+    /// Number of triangles so far, or of points.
     done: u64,
-    /// Of the last picture.
+    /// The value of `done` at the last picture.
     taken: Option<u64>,
     is_over: bool,
 }
@@ -110,24 +112,24 @@ impl<'a> Drawing<'a> {
             min: coordinates.to_world(bounds.min),
             max: coordinates.to_world(bounds.max),
         };
-        let stated = header.bounds.map(world).or(options.surveyed);
+        let stated = header.bounds.map(world).or(options.extent);
         let is_mesh = header.kind != Kind::Points;
         let has_elevation = header.dims == 3 || header.has_elevation;
         let anywhere = Bounds::of_point([0.0; 3]);
-        let stage = (stated.is_some() || options.bounds.is_some())
-            .then(|| stage_of(&stated.unwrap_or(anywhere), options))
+        let scene = (stated.is_some() || options.bounds.is_some())
+            .then(|| scene_of(&stated.unwrap_or(anywhere), options))
             .transpose()?;
         let has_cells = options.cells && !is_mesh && options.fill.is_none_or(|fill| fill == Fill::Time);
         let tree = header.tree.filter(|tree| has_cells && tree.dims() == 2);
-        let cells = tree.zip(stage.as_ref()).map(|(tree, stage)| Cells::new(tree, coordinates, stage));
+        let cells = tree.zip(scene.as_ref()).map(|(tree, scene)| Cells::new(tree, coordinates, scene));
         Ok(Drawing {
-            look: Look::of(options, has_elevation, if is_mesh { "triangles" } else { "points" }),
+            style: Style::of(options, has_elevation, if is_mesh { "triangles" } else { "points" }),
             front: Front::new(moments.at.is_some() || moments.every.is_some()),
             options,
             moments,
             kind: header.kind,
             coordinates,
-            stage,
+            scene,
             count: header.points.filter(|_| !is_mesh),
             stated: stated.filter(|_| has_elevation).map(|bounds| [bounds.min[2], bounds.max[2]]),
             triangles: Layer::new(options.form),
@@ -169,12 +171,12 @@ impl<'a> Drawing<'a> {
         let coordinates = self.coordinates;
         self.front.begin(patch, |stored| coordinates.to_world(stored))?;
         for local in patch.triangles() {
-            self.look_up(take)?;
+            self.take_due(take)?;
             if self.is_over {
                 return Ok(());
             }
             let triangle = self.front.triangle(local, self.done);
-            self.triangles.push(triangle, self.stage.as_ref(), &self.look)?;
+            self.triangles.push(triangle, self.scene.as_ref(), &self.style)?;
             self.done += 1;
         }
         self.front.end();
@@ -182,17 +184,17 @@ impl<'a> Drawing<'a> {
     }
 
     fn point(&mut self, stored: Point, take: &mut Take) -> Result<()> {
-        self.look_up(take)?;
+        self.take_due(take)?;
         if self.is_over {
             return Ok(());
         }
-        let dot = Dot { at: self.coordinates.to_world(stored), number: self.done };
-        match (&mut self.cells, &self.stage) {
-            (Some(cells), Some(stage)) => {
-                cells.point(stored, self.done, stage);
-                self.points.push_few(dot, stage);
+        let point = DrawnPoint { at: self.coordinates.to_world(stored), number: self.done };
+        match (&mut self.cells, &self.scene) {
+            (Some(cells), Some(scene)) => {
+                cells.point(stored, self.done, scene);
+                self.points.push_few(point, scene);
             }
-            _ => self.points.push(dot, self.stage.as_ref(), &self.look)?,
+            _ => self.points.push(point, self.scene.as_ref(), &self.style)?,
         }
         self.done += 1;
         Ok(())
@@ -203,7 +205,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// Takes the picture that is due before the next triangle or point.
-    fn look_up(&mut self, take: &mut Take) -> Result<()> {
+    fn take_due(&mut self, take: &mut Take) -> Result<()> {
         let Moments { at, every } = self.moments;
         let is_last = at == Some(self.done);
         let is_due = every.is_some_and(|every| self.done > 0 && self.done.is_multiple_of(every));
@@ -215,94 +217,94 @@ impl<'a> Drawing<'a> {
         Ok(())
     }
 
-    /// What there is to be seen now; `relation` is what stands between the name of the stream and how much of it has come.
+    /// The picture now. In its title, `relation` stands between the name of the stream and the counts.
     fn picture(&self, relation: &str) -> Result<Picture> {
-        let stage = match self.stage {
-            _ if self.is_tight() => self.tight_stage()?,
-            Some(stage) => stage,
+        let scene = match self.scene {
+            _ if self.is_tight() => self.tight_scene()?,
+            Some(scene) => scene,
             None => {
                 let seen = self.triangles.bounds.or(self.points.bounds).unwrap_or(Bounds::of_point([0.0; 3]));
-                stage_of(&seen, self.options)?
+                scene_of(&seen, self.options)?
             }
         };
         let (mut map, legend) =
-            if self.kind == Kind::Points { self.map_of_points(&stage)? } else { self.map_of_mesh(&stage)? };
-        let marks = self.marks(&stage, &mut map);
+            if self.kind == Kind::Points { self.map_of_points(&scene)? } else { self.map_of_mesh(&scene)? };
+        let marks = self.marks(&scene, &mut map);
         let title = format!("{}{relation} {}", self.options.name, self.what());
-        let frame = stage.view.frame();
-        // Of nothing there is no scale.
-        let unit = frame.map(|frame| frame.unit).filter(|_| self.done > 0 || self.stage.is_some());
+        let frame = scene.view.frame();
+        // An empty picture has no scale.
+        let unit = frame.map(|frame| frame.unit).filter(|_| self.done > 0 || self.scene.is_some());
         let marks: Vec<&Mark> = marks.iter().collect();
         let furniture = Furniture { title: &title, legend, marks: &marks, unit };
-        Ok(Picture { svg: stage.sheet.svg(&map, &furniture), title, frame })
+        Ok(Picture { svg: scene.sheet.svg(&map, &furniture), title, frame })
     }
 
-    /// Whether all that is seen from one side is there, so that there need not be room for anything else.
+    /// Whether an oblique view is of all kept triangles, so that it needs room for nothing else.
     fn is_tight(&self) -> bool {
         self.options.oblique && self.moments == Moments::default() && !self.triangles.kept.is_empty()
     }
 
-    fn tight_stage(&self) -> Result<Stage> {
+    fn tight_scene(&self) -> Result<Scene> {
         let corners = || self.triangles.kept.iter().flat_map(|triangle| triangle.corners);
         let bounds = corners().map(Bounds::of_point).reduce(Bounds::union);
-        Stage::oblique_of(&bounds.unwrap_or(Bounds::of_point([0.0; 3])), corners(), self.options.width)
+        Scene::oblique_of(&bounds.unwrap_or(Bounds::of_point([0.0; 3])), corners(), self.options.width)
     }
 
-    /// What the title says.
+    /// The counts in the title.
     fn what(&self) -> String {
         let done = self.done;
         if self.kind == Kind::Points {
             return ticks::counted(done, "point", "points");
         }
         let vertices = ticks::counted(self.front.count(), "vertex", "vertices");
-        // A hillshade has no legend that says what it is.
+        // A hillshade has no legend to name it.
         let shade = if self.options.fill == Some(Fill::Hillshade) { ", hillshade" } else { "" };
         format!("{}, {vertices}{shade}", ticks::counted(done, "triangle", "triangles"))
     }
 
-    fn map_of_mesh(&self, stage: &Stage) -> Result<(String, Option<Legend>)> {
+    fn map_of_mesh(&self, scene: &Scene) -> Result<(String, Option<Legend>)> {
         let layer = &self.triangles;
-        let painted = layer.painted(stage, &self.look);
+        let painted = layer.painted(scene, &self.style);
         let canvas = layer.canvas.as_ref().or(painted.as_ref());
-        let fill = self.look.fill(canvas.is_some());
+        let fill = self.style.fill(canvas.is_some());
         let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
         let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
-        let colours = self.look.colours(fill, elevations, self.done);
+        let colours = self.style.colours(fill, elevations, self.done);
         let map = match canvas {
             Some(canvas) => {
-                svg::image(stage.sheet.corner, &canvas.pixels(|value, shade| colours.of(value, shade))?)
+                svg::image(scene.sheet.corner, &canvas.pixels(|value, shade| colours.of(value, shade))?)
             }
-            None => triangles::vectors(&layer.kept, stage, &self.look, &colours),
+            None => triangles::vectors(&layer.kept, scene, &self.style, &colours),
         };
         Ok((map, colours.legend().filter(|_| self.done > 0)))
     }
 
-    fn map_of_points(&self, stage: &Stage) -> Result<(String, Option<Legend>)> {
-        let (layer, fill) = (&self.points, self.look.point_fill());
+    fn map_of_points(&self, scene: &Scene) -> Result<(String, Option<Legend>)> {
+        let (layer, fill) = (&self.points, self.style.point_fill());
         let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
         let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
-        let colours = self.look.colours(fill, elevations, self.count.unwrap_or(self.done));
-        let painted = layer.painted(stage, &self.look);
+        let colours = self.style.colours(fill, elevations, self.count.unwrap_or(self.done));
+        let painted = layer.painted(scene, &self.style);
         let map = match (&self.cells, layer.canvas.as_ref().or(painted.as_ref())) {
             (Some(cells), _) => {
-                cells.vectors(stage, &colours) + &dots::vectors(&layer.kept, stage, &self.look, None)
+                cells.vectors(scene, &colours) + &points::vectors(&layer.kept, scene, &self.style, None)
             }
             (None, Some(canvas)) => svg::image(
-                stage.sheet.corner,
+                scene.sheet.corner,
                 &canvas.pixels(|value, shade| self.point_colour(&colours, value, shade))?,
             ),
-            (None, None) => dots::vectors(&layer.kept, stage, &self.look, Some(&colours)),
+            (None, None) => points::vectors(&layer.kept, scene, &self.style, Some(&colours)),
         };
         Ok((map, colours.legend().filter(|_| self.done > 0)))
     }
 
-    /// Points that show nothing are dark.
+    /// The colour of a point; dark if points show no value.
     fn point_colour(&self, colours: &Colours, value: f64, shade: f64) -> Colour {
-        if self.look.point_fill() == Fill::None { [36, 41, 47] } else { colours.of(value, shade) }
+        if self.style.point_fill() == Fill::None { [36, 41, 47] } else { colours.of(value, shade) }
     }
 
-    /// Puts on the map what stands out, and says what it means.
-    fn marks(&self, stage: &Stage, map: &mut String) -> Vec<Mark> {
+    /// Draws borders, live vertices and residual points on the map, and returns the marks for its legend.
+    fn marks(&self, scene: &Scene, map: &mut String) -> Vec<Mark> {
         let mut marks = Vec::new();
         if let Some(cells) = &self.cells {
             let kinds = cells.counts().into_iter().zip([FINAL, OPEN]);
@@ -313,11 +315,11 @@ impl<'a> Drawing<'a> {
         let dots = if is_partial { (RESIDUAL, &self.residual) } else { (LIVE, &vertices) };
         let lines = if is_partial { (WALLS, &self.walls) } else { (BORDER, &border) };
         if !lines.1.is_empty() {
-            *map += &dots::lines("border", lines.0.colour, lines.1, stage);
+            *map += &points::lines("border", lines.0.colour, lines.1, scene);
             marks.push(lines.0);
         }
         if !dots.1.is_empty() {
-            *map += &dots::marks("live", dots.0.colour, 3.0, dots.1, stage);
+            *map += &points::marks("live", dots.0.colour, 3.0, dots.1, scene);
             marks.push(dots.0);
         }
         marks

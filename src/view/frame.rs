@@ -1,26 +1,26 @@
-//! Where a picture is in the world.
+//! The place of a picture in the world.
 
 use spmesh_geometry::predicates::Point2;
 
-/// From places of a picture to world coordinates: `x = left + unit * across`, `y = top - unit * down`.
+/// The map from a picture to world coordinates: `x = left + unit * across`, `y = top - unit * down`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// The abscissa of the picture's left side. Units: those of the world.
     pub left: f64,
     /// The ordinate of the picture's upper side. Units: those of the world.
     pub top: f64,
-    /// World units for one of the picture.
+    /// World units for one length of the picture.
     pub unit: f64,
 }
 
 impl Frame {
-    /// Where a place of the world is in the picture: across and down.
+    /// The place in the picture of a place in the world: across and down.
     #[must_use]
     pub fn place(&self, [x, y]: Point2) -> Point2 {
         [(x - self.left) / self.unit, (self.top - y) / self.unit]
     }
 
-    /// What a place of the picture is in the world.
+    /// The place in the world of a place in the picture.
     #[must_use]
     pub fn world(&self, [across, down]: Point2) -> Point2 {
         [self.left + self.unit * across, self.top - self.unit * down]

@@ -1,4 +1,5 @@
-//! Where a mesh is still growing: vertices that later triangles may use, and the border of the triangles so far.
+//! Where a mesh still grows: the vertices that later triangles may use, and the border of the triangles so
+//! far.
 
 use foldhash::{HashMap, HashMapExt};
 
@@ -7,31 +8,31 @@ use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{LiveVertices, Patch};
 
-/// Vertices between their patch and their finalization, and edges that have one triangle so far.
+/// The live vertices, and the edges that have one triangle so far.
 ///
-/// Memory: with the width of the stream.
+/// Memory: proportional to the width of the stream.
 #[derive(Debug, Default)]
 pub(super) struct Front {
-    /// Live vertices, but for those that the patch at hand finalizes.
+    /// Live vertices, except those that the current patch finalizes.
     live: LiveVertices<Point>,
-    /// The vertices of the patch at hand.
+    /// The vertices of the current patch.
     local: Vec<(u64, Point)>,
-    /// Those of them that are finalized with it.
+    /// Those that the current patch finalizes, sorted.
     leaving: Vec<u64>,
-    /// Whether anybody asks for more than vertices.
+    /// Whether edges are tracked.
     is_drawn: bool,
-    /// Edges with one triangle, by their ends.
+    /// Edges with one triangle, by the ids of their ends.
     open: HashMap<[u64; 2], [Point; 2]>,
     vertices: u64,
 }
 
 impl Front {
-    /// No vertices. Edges are remembered only if they are going to be drawn.
+    /// An empty front. Edges are tracked only if they are going to be drawn.
     pub(super) fn new(is_drawn: bool) -> Front {
         Front { is_drawn, open: HashMap::new(), ..Front::default() }
     }
 
-    /// Begins a patch; `to_world` says where vertices are.
+    /// Begins a patch; `to_world` maps stored coordinates to the world.
     ///
     /// # Errors
     /// If the patch uses a vertex that is finalized or unknown.
@@ -45,7 +46,7 @@ impl Front {
         Ok(())
     }
 
-    /// A triangle of the patch at hand, with its number in the stream.
+    /// A triangle of the current patch, with its number in the stream.
     pub(super) fn triangle(&mut self, local: [u32; 3], number: u64) -> Triangle {
         let vertices = local.map(|local| self.local[local as usize]);
         let triangle =
@@ -56,10 +57,10 @@ impl Front {
         triangle
     }
 
-    /// Ends the patch at hand.
+    /// Ends the current patch.
     pub(super) fn end(&mut self) {
         if self.is_drawn && !self.leaving.is_empty() {
-            // An edge with a final end and one triangle is on the hull: nothing comes there.
+            // An edge with a final end and one triangle is on the hull; no other triangle can come.
             let leaving = &self.leaving;
             self.open.retain(|ends, _| ends.iter().all(|id| leaving.binary_search(id).is_err()));
         }
@@ -67,11 +68,11 @@ impl Front {
         self.local.clear();
     }
 
-    /// Where live vertices are.
+    /// The places of the live vertices.
     pub(super) fn vertices(&self) -> Vec<Point> {
         let leaving = self.local.iter().copied().filter(|(id, _)| self.leaving.binary_search(id).is_ok());
         let mut live: Vec<(u64, Point)> = self.live.iter().chain(leaving).collect();
-        // As a table has them, they come in any order.
+        // The table has no stable order.
         live.sort_unstable_by_key(|&(id, _)| id);
         live.into_iter().map(|(_, at)| at).collect()
     }

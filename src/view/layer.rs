@@ -1,103 +1,104 @@
-//! Things that are drawn as they are as long as they are few, and painted when they are many.
+//! Triangles or points that are drawn one by one while they are few, and painted as pixels when they are
+//! many.
 
-use super::Form;
 use super::canvas::Canvas;
-use super::look::Look;
-use super::stage::Stage;
+use super::options::Form;
+use super::scene::Scene;
+use super::style::Style;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 
-/// More triangles or points than these are painted, unless it is said how: an SVG of as many triangles has 2 MB.
+/// Above this many triangles or points, they are painted by default. An SVG of this many triangles has 2 MB.
 const VECTORS_MAX: usize = 20_000;
 
-/// What can be painted.
-pub(super) trait Thing {
-    /// Its corners in the world.
+/// A triangle or a point.
+pub(super) trait Drawable {
+    /// Its corners, in world coordinates.
     fn corners(&self) -> &[Point];
 
     /// Paints it.
-    fn paint(&self, canvas: &mut Canvas, stage: &Stage, look: &Look);
+    fn paint(&self, canvas: &mut Canvas, scene: &Scene, style: &Style);
 }
 
-/// Things of one sort.
+/// All triangles, or all points.
 ///
-/// Memory: the things that are kept, or the pixels.
+/// Memory: the items that are kept, or the pixels.
 #[derive(Debug)]
 pub(super) struct Layer<T> {
     form: Form,
     pub(super) kept: Vec<T>,
     pub(super) canvas: Option<Canvas>,
-    /// How many came that are shown beside others.
+    /// The number of items that [`Layer::push_few`] took.
     count: usize,
-    /// The box of all that came.
+    /// The box of all items.
     pub(super) bounds: Option<Bounds>,
 }
 
-impl<T: Thing> Layer<T> {
+impl<T: Drawable> Layer<T> {
     pub(super) fn new(form: Form) -> Layer<T> {
         Layer { form, kept: Vec::new(), canvas: None, count: 0, bounds: None }
     }
 
-    /// Takes a thing; the stage is `None` as long as it is not known where all of them are.
+    /// Takes an item; the scene is `None` as long as the box of all items is unknown.
     ///
     /// # Errors
-    /// Usage, if there are too many to be kept until that is known.
-    pub(super) fn push(&mut self, thing: T, stage: Option<&Stage>, look: &Look) -> Result<()> {
-        for &corner in thing.corners() {
+    /// Usage, if there are too many items to keep without a scene.
+    pub(super) fn push(&mut self, item: T, scene: Option<&Scene>, style: &Style) -> Result<()> {
+        for &corner in item.corners() {
             self.bounds.get_or_insert(Bounds::of_point(corner)).extend(corner);
         }
-        if stage.is_some_and(|stage| !stage.may_show(thing.corners())) {
+        if scene.is_some_and(|scene| !scene.may_show(item.corners())) {
             return Ok(());
         }
-        if let (Some(canvas), Some(stage)) = (&mut self.canvas, stage) {
-            thing.paint(canvas, stage, look);
+        if let (Some(canvas), Some(scene)) = (&mut self.canvas, scene) {
+            item.paint(canvas, scene, style);
             return Ok(());
         }
-        self.kept.push(thing);
+        self.kept.push(item);
         let most = match self.form {
             Form::Auto => VECTORS_MAX,
             Form::Vector => usize::MAX,
-            Form::Raster if stage.is_some() => 0,
-            // Painted at the end, when it is known where they are.
+            Form::Raster if scene.is_some() => 0,
+            // Painted at the end, when the box is known.
             Form::Raster => VECTORS_MAX,
         };
-        if self.kept.len() > most { self.paint_kept(stage, look) } else { Ok(()) }
+        if self.kept.len() > most { self.paint_kept(scene, style) } else { Ok(()) }
     }
 
-    /// Takes a thing that is shown beside others, as long as there are few.
-    pub(super) fn push_few(&mut self, thing: T, stage: &Stage) {
+    /// Takes an item that decorates a picture of something else; drops all of them when there are many.
+    pub(super) fn push_few(&mut self, item: T, scene: &Scene) {
         self.count += 1;
         if self.count > VECTORS_MAX {
             self.kept = Vec::new();
-        } else if stage.may_show(thing.corners()) {
-            self.kept.push(thing);
+        } else if scene.may_show(item.corners()) {
+            self.kept.push(item);
         }
     }
 
-    /// The pixels of what was painted; with [`Form::Raster`], of what was kept.
-    pub(super) fn painted(&self, stage: &Stage, look: &Look) -> Option<Canvas> {
+    /// The pixels of the kept items, if [`Form::Raster`] asks for pixels and none were painted yet.
+    pub(super) fn painted(&self, scene: &Scene, style: &Style) -> Option<Canvas> {
         if self.canvas.is_some() || self.form != Form::Raster {
             return None;
         }
-        Some(paint(&self.kept, stage, look))
+        Some(paint(&self.kept, scene, style))
     }
 
-    fn paint_kept(&mut self, stage: Option<&Stage>, look: &Look) -> Result<()> {
-        let Some(stage) = stage else {
+    fn paint_kept(&mut self, scene: Option<&Scene>, style: &Style) -> Result<()> {
+        let Some(scene) = scene else {
             return Err(Error::usage(format!(
-                "the header does not say where the stream lies, and there are more than {VECTORS_MAX} triangles or \
-                 points: give --bounds, or a file instead of a pipe"
+                "the header does not state the bounds of the stream, and there are more than {VECTORS_MAX} \
+                 triangles or points: give --bounds, or a file instead of a pipe"
             )));
         };
-        self.canvas = Some(paint(&self.kept, stage, look));
+        self.canvas = Some(paint(&self.kept, scene, style));
         self.kept = Vec::new();
         Ok(())
     }
 }
 
-fn paint<T: Thing>(things: &[T], stage: &Stage, look: &Look) -> Canvas {
-    let sheet = &stage.sheet;
-    let mut canvas = Canvas::new(sheet.corner, sheet.size, stage.view.frame().is_none());
-    things.iter().for_each(|thing| thing.paint(&mut canvas, stage, look));
+fn paint<T: Drawable>(items: &[T], scene: &Scene, style: &Style) -> Canvas {
+    let sheet = &scene.sheet;
+    let mut canvas = Canvas::new(sheet.corner, sheet.size, scene.view.frame().is_none());
+    items.iter().for_each(|item| item.paint(&mut canvas, scene, style));
     canvas
 }

@@ -7,19 +7,20 @@ use quick_xml::escape::escape;
 use super::frame::Frame;
 use spmesh_core::error::{Error, Result};
 
-/// A picture, and what its page says of it.
+/// A picture, and the text of its page.
 pub(super) struct Page<'a> {
-    /// What the page is called: plain text.
+    /// The title of the page, as plain text.
     pub(super) title: &'a str,
-    /// The `<svg>` element. It has a view box that begins at zero; `<g id="map">`, without a transform, is what zooms;
-    /// a path in `<g id="scale">` is the scale bar, and a text there says its length: world units, a blank, and
-    /// what they are called.
+    /// The `<svg>` element. Its view box begins at zero. The page zooms `<g id="map">`, which has no
+    /// transform. A path in `<g id="scale">` is the scale bar; a text there is its length in world units, a
+    /// blank, and the name of the unit.
     pub(super) svg: &'a str,
-    /// Where its map is in the world, if it is seen from above.
+    /// Where the map is in the world; `None` for an oblique view.
     pub(super) frame: Option<&'a Frame>,
 }
 
-/// Writes a page of one file. Its policy forbids all that is not in it, and scripts other than its own even there.
+/// Writes a page as one file. Its content policy blocks everything outside the file, and all scripts but its
+/// own.
 ///
 /// # Errors
 /// If writing fails.
@@ -73,7 +74,7 @@ mod tests {
         let svg = format!("{}<!-- {{title}} {{0}} </script> -->", SVG);
         let written = plain("title", &svg);
         assert_eq!(written.matches(&svg).count(), 1);
-        // Nothing of the picture is in the script, which begins after it.
+        // The script begins after the picture.
         assert!(written.find(&svg).unwrap() < written.find("<script").unwrap());
         assert_eq!(written.matches(include_str!("page.js")).count(), 1);
     }

@@ -1,4 +1,4 @@
-//! A picture that is complete: SVG, and what is made of it.
+//! A complete picture: SVG, rendered as PNG or wrapped in a page.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -11,17 +11,17 @@ use super::frame::Frame;
 use super::page::{self, Page};
 use spmesh_core::error::{Error, Result};
 
-/// The font of pictures, so that they look the same everywhere: Latin letters of DejaVu Sans.
+/// The Latin letters of DejaVu Sans. An embedded font makes pictures look the same everywhere.
 const FONT: &[u8] = include_bytes!("DejaVuSans-latin.ttf");
 
 /// A picture.
 #[derive(Debug)]
 pub struct Picture {
-    /// What it shows.
+    /// The name of the stream, and what is shown of it.
     pub title: String,
-    /// The picture as SVG: a group `map` with what is shown, and a group `furniture` with what explains it.
+    /// The picture as SVG: the group `map`, and the group `furniture` with title, legend and scale.
     pub svg: String,
-    /// Where it is in the world; `None` if it is seen from one side.
+    /// Where the map is in the world; `None` for an oblique view.
     pub frame: Option<Frame>,
 }
 
@@ -37,7 +37,7 @@ impl Picture {
     /// The picture as PNG.
     ///
     /// # Errors
-    /// If it is too large.
+    /// If the picture is too large.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut fonts = fontdb::Database::new();
         fonts.load_font_data(FONT.to_vec());

@@ -1,4 +1,4 @@
-//! How places of the world come on the sheet: seen from above, or from above one side.
+//! The projection of the world onto the sheet: from above, or oblique.
 
 use super::frame::Frame;
 use super::sheet::Sheet;
@@ -6,37 +6,38 @@ use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
 use spmesh_model::bounds::{Bounds, Point};
 
-/// How far what is seen from one side is turned, and how far above the horizon the eye is. Units: radians.
+/// The rotation of an oblique view, and the height of the eye above the horizon. Units: radians.
 const TURN: f64 = 0.5;
 const ABOVE: f64 = 0.65;
-/// The range of elevations is drawn as high as this part of the diagonal of the plan.
+/// The drawn height of the range of elevations, as a part of the diagonal of the plan.
 const HEIGHT: f64 = 0.25;
 
-/// Around what is seen, so that nothing of lines and dots on its border is lost. Units: those of the picture.
+/// The margin inside the map, so that lines and dots on the border are not cut. Units: lengths of the
+/// picture.
 pub(super) const PAD: f64 = 6.0;
 
-/// Where the eye is.
+/// From where the world is seen.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum View {
-    /// Above.
+    /// From above.
     Plan(Frame),
-    /// Above one side.
+    /// Obliquely.
     Oblique(Oblique),
 }
 
-/// A parallel view from above one side.
+/// An oblique parallel projection.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Oblique {
     /// The middle of the plan, and the least elevation.
     middle: Point,
-    /// Units of the plan for one of the elevations.
+    /// Units of the plan for one unit of elevation.
     lift: f64,
-    /// From coordinates across and up to the sheet.
+    /// From across and up, in the plane of the picture, to the sheet.
     frame: Frame,
 }
 
 impl View {
-    /// A view of a box from above, with so much around it.
+    /// A view of a box from above, with a margin of `pad` around it.
     ///
     /// # Errors
     /// As [`Sheet::of`].
@@ -45,7 +46,7 @@ impl View {
         Ok((sheet, View::Plan(frame)))
     }
 
-    /// A view of a box from above one side, of which some points show what is to be seen of it.
+    /// An oblique view of a box that has room for some points in it.
     ///
     /// # Errors
     /// As [`Sheet::of`].
@@ -70,7 +71,7 @@ impl View {
         Ok((sheet, View::Oblique(oblique)))
     }
 
-    /// Where a point is on the sheet, and how far away it is, compared with others.
+    /// The place of a point on the sheet, and its depth, which only compares points.
     pub(super) fn place(&self, at: Point) -> [f64; 3] {
         match self {
             View::Plan(frame) => {
@@ -85,7 +86,8 @@ impl View {
         }
     }
 
-    /// If it is from one side: from the world to the plan as the eye sees it, to the right, and away from it.
+    /// For an oblique view: the map from the world to the turned plan, to the right of the eye and away from
+    /// it.
     pub(super) fn turn(&self) -> Option<impl Fn(Point) -> Point2> {
         match *self {
             View::Plan(_) => None,
@@ -93,7 +95,7 @@ impl View {
         }
     }
 
-    /// The frame of what is seen from above.
+    /// The frame of a view from above.
     pub(super) fn frame(&self) -> Option<Frame> {
         match self {
             View::Plan(frame) => Some(*frame),
@@ -103,13 +105,13 @@ impl View {
 }
 
 impl Oblique {
-    /// Places of the plan after the turn: to the right, and away from the eye.
+    /// The place in the turned plan: to the right of the eye, and away from it.
     fn turned(&self, at: Point) -> Point2 {
         let ([x, y], (sine, cosine)) = ([0, 1].map(|axis| at[axis] - self.middle[axis]), TURN.sin_cos());
         [cosine * x - sine * y, sine * x + cosine * y]
     }
 
-    /// Across and up on the plane of the picture, and away from the eye.
+    /// Across and up in the plane of the picture, and away from the eye.
     fn flat(&self, at: Point) -> [f64; 3] {
         let ([across, behind], height) = (self.turned(at), self.lift * (at[2] - self.middle[2]));
         let (sine, cosine) = ABOVE.sin_cos();

@@ -1,26 +1,27 @@
-//! What can be asked of which stream.
+//! Which options suit which stream.
 
-use super::{Fill, Moments, Options};
+use super::options::{Fill, Moments, Options};
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Header, Kind};
 
-/// Checks that a stream can be drawn, and so.
+/// Checks that a stream can be drawn as the options ask.
 ///
 /// # Errors
-/// Usage, if it has nothing that could be seen from above, or lacks what options ask for.
+/// Usage, if the stream cannot be drawn in the plane, or lacks what the options ask for.
 pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Result<()> {
     let kind = header.kind;
     let refuse = |what: String| Err(Error::usage(what));
     if kind.is_4d() {
         let name = kind.name();
         return refuse(format!(
-            "{name} cannot be seen from above: dd4 --slice makes a mesh of one moment of them"
+            "{name} cannot be seen from above: make a mesh of one moment with dd4 --slice"
         ));
     }
     if kind.vertices_per_simplex() == 4 {
         let name = kind.name();
         return refuse(format!(
-            "a {name} hides itself if seen from above: spconvert makes a VTU of it, which other programs draw in space"
+            "a {name} hides itself if seen from above: convert it to VTU with spconvert, for programs that draw \
+             in space"
         ));
     }
     if kind.has_knots() {
@@ -34,13 +35,13 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
     let fill = options.fill;
     let what = if !has_elevation && (options.oblique || !matches!(fill, None | Some(Fill::None | Fill::Time)))
     {
-        "points have no elevation: give points x y z to spfinalize, or take --fill time"
+        "points have no elevation: give points x y z to spfinalize, or use --fill time"
     } else if kind == Kind::Points
         && (options.oblique || matches!(fill, Some(Fill::Hillshade | Fill::Relief)))
     {
-        "points are no surface: make one with spdelaunay2d, or take --fill elevation"
+        "points are no surface: make one with spdelaunay2d, or use --fill elevation"
     } else if options.oblique && options.bounds.is_some() {
-        "--bounds is for what is seen from above: leave out --oblique"
+        "--bounds is for views from above: leave out --oblique"
     } else {
         return Ok(());
     };
@@ -49,7 +50,7 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
 
 fn check_of_knots(options: &Options, moments: &Moments) -> Result<()> {
     let is_plain = *moments == Moments::default() && !options.oblique && options.fill.is_none();
-    let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, --snapshot, --oblique \
-                and --fill";
+    let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, --snapshot, \
+                --oblique and --fill";
     if is_plain { Ok(()) } else { Err(Error::usage(what)) }
 }

@@ -1,24 +1,24 @@
-//! The sheet that a picture is on: where the map is on it, and what stands around the map.
+//! The sheet of a picture: the place of the map, and the title, legend and scale around it.
 
+use super::colour_map::{Colour, ColourMap, hex};
 use super::frame::Frame;
-use super::ramp::{Colour, Ramp, hex};
 use super::svg::{self, Anchor};
 use super::ticks;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
-/// Around everything. Units: those of the picture, as all lengths here.
+/// The margin of the sheet. Units: lengths of the picture, as all lengths here.
 const MARGIN: f64 = 16.0;
 /// Height of the title above the map.
 const HEAD: f64 = 44.0;
-/// Height of the ramp and the scale bar below the map, without their margins.
+/// Height of the colour bar and the scale bar below the map.
 const FOOT: f64 = 58.0;
-/// Height of a row of words that say what marks mean.
+/// Height of a row of marks and their words.
 const ROW: f64 = 22.0;
-/// The map is not higher than so many times its width, and not lower than this part of it.
+/// The greatest and the least height of the map, as parts of its width.
 const TALLEST: f64 = 1.2;
 const FLATTEST: f64 = 0.1;
-/// Parts of a ramp that have one colour.
+/// Number of rectangles in a colour bar.
 const STEPS: usize = 64;
 /// Sizes of text.
 const TITLE: u32 = 16;
@@ -26,63 +26,64 @@ const LABEL: u32 = 12;
 /// Colour of text and lines.
 const DARK: &str = "#24292f";
 
-/// Where the map is.
+/// The place of the map.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sheet {
     width: f64,
     /// The upper left corner of the map.
     pub(super) corner: Point2,
-    /// Width and height of the map, whole numbers.
+    /// Width and height of the map.
     pub(super) size: [usize; 2],
 }
 
-/// Colours and what they mean.
+/// A colour map and its meaning.
 pub(super) struct Legend {
     pub(super) label: String,
-    pub(super) ramp: &'static Ramp,
+    pub(super) colour_map: &'static ColourMap,
     pub(super) range: [f64; 2],
-    /// The numbers are counts.
+    /// Whether the numbers are counts.
     pub(super) is_count: bool,
 }
 
-/// How a mark looks.
+/// The form of a mark.
 pub(super) enum Shape {
     Dot,
     Line,
     Area,
 }
 
-/// A mark and what it means.
+/// A mark and its meaning.
 pub(super) struct Mark {
     pub(super) shape: Shape,
     pub(super) colour: Colour,
     pub(super) words: &'static str,
 }
 
-/// What stands around a map.
+/// Everything around a map.
 pub(super) struct Furniture<'a> {
     pub(super) title: &'a str,
     pub(super) legend: Option<Legend>,
     pub(super) marks: &'a [&'a Mark],
-    /// World units for one of the picture, if it is seen from above.
+    /// World units for one length of the picture, in a view from above.
     pub(super) unit: Option<f64>,
 }
 
 impl Sheet {
-    /// The sheet for a box of the plane, in any units, with so much around it, and how the box lies on it.
+    /// The sheet of a box of the plane, in any units, with a margin of `pad` inside the map; and the frame of
+    /// the box.
     ///
     /// # Errors
-    /// Usage, if the box is out of the range of numbers.
+    /// Usage, if the box overflows.
     pub(super) fn of(min: Point2, max: Point2, pad: f64, width: u32) -> Result<(Sheet, Frame)> {
         let width = f64::from(width);
         let across = width - 2.0 * MARGIN;
-        // Half of each first: the whole may be out of the range of numbers.
+        // Halves first: the difference itself may overflow.
         let half = [0, 1].map(|axis| 0.5 * max[axis] - 0.5 * min[axis]);
         let largest = min.into_iter().chain(max).fold(0.0, |largest: f64, side| largest.max(side.abs()));
         let half = if half[0].max(half[1]) > 0.0 {
             half
         } else {
-            // A single place: something around it.
+            // A single place gets some space around it.
             [0.5f64.max(largest * 1e-6); 2]
         };
         let inner = across - 2.0 * pad;
@@ -100,7 +101,7 @@ impl Sheet {
         Ok((Sheet { width, corner, size: [across as usize, height as usize] }, frame))
     }
 
-    /// The whole picture: what is drawn on the map, and what stands around it.
+    /// The whole picture: the map, and the furniture around it.
     pub(super) fn svg(&self, map: &str, furniture: &Furniture) -> String {
         let ([left, top], [across, down]) = (self.corner, self.size.map(|size| size as f64));
         let (below, rows) = self.marks(top + down, furniture);
@@ -118,7 +119,7 @@ impl Sheet {
              <g id=\"map\">\n<g clip-path=\"url(#window)\">\n",
             background(0.0, height)
         );
-        // What is drawn around a map that is moved or enlarged stays legible.
+        // Keeps the furniture legible when a page moves or zooms the map below it.
         let ends = [background(0.0, top - 4.0), background(top + down + 4.0, height - top - down - 4.0)];
         let parts = [
             head,
@@ -126,7 +127,7 @@ impl Sheet {
             format!("</g>\n</g>\n<g id=\"furniture\" fill=\"{DARK}\">\n"),
             ends.concat(),
             self.title(furniture.title),
-            furniture.legend.as_ref().map_or_else(String::new, |legend| self.ramp(top + down, legend)),
+            furniture.legend.as_ref().map_or_else(String::new, |legend| self.colour_bar(top + down, legend)),
             below,
             furniture.unit.map_or_else(String::new, |unit| self.scale(top + down, unit)),
             "</g>\n</svg>\n".to_string(),
@@ -146,14 +147,15 @@ impl Sheet {
         svg::text([MARGIN, 28.0], TITLE, Anchor::Start, &shown)
     }
 
-    /// A ramp of colours with its numbers.
-    fn ramp(&self, below: f64, legend: &Legend) -> String {
+    /// A colour bar with its numbers.
+    fn colour_bar(&self, below: f64, legend: &Legend) -> String {
         let across = (0.5 * (self.width - 3.0 * MARGIN)).min(360.0).floor();
         let (top, step) = (below + 24.0, across / STEPS as f64);
         let mut text = svg::text([MARGIN, below + 18.0], LABEL, Anchor::Start, &legend.label);
         for at in 0..STEPS {
-            let (left, colour) = (MARGIN + step * at as f64, legend.ramp.at(at as f64 / (STEPS - 1) as f64));
-            // Each reaches below the next one, so that nothing shows between them.
+            let (left, colour) =
+                (MARGIN + step * at as f64, legend.colour_map.at(at as f64 / (STEPS - 1) as f64));
+            // Each rectangle overlaps the next one, so that no gap shows.
             let reach = if at + 1 < STEPS { step + 1.0 } else { step };
             let [left, reach] = [left, reach].map(svg::length);
             text += &format!(
@@ -165,7 +167,7 @@ impl Sheet {
         let words = |at: f64, tick: f64| {
             if legend.is_count { ticks::count(at.max(0.0) as u64) } else { ticks::number(at, tick) }
         };
-        // As many as there is room for.
+        // As many numbers as there is room for.
         let fits = |(places, tick): &(Vec<f64>, f64)| {
             let widest =
                 places.iter().map(|&at| svg::text_width(LABEL - 1, &words(at, *tick))).fold(0.0, f64::max);
@@ -186,7 +188,7 @@ impl Sheet {
         text
     }
 
-    /// A bar of round length.
+    /// A scale bar of round length.
     fn scale(&self, below: f64, unit: f64) -> String {
         let length = ticks::round_below(0.25 * (self.width - 2.0 * MARGIN) * unit);
         let (drawn, right, y) = (length / unit, self.width - MARGIN, below + 30.0);
@@ -200,7 +202,7 @@ impl Sheet {
         )
     }
 
-    /// Marks with their words, in as many rows as they need, and the height of these.
+    /// The marks with their words, in as many rows as needed, and the height of the rows.
     fn marks(&self, below: f64, furniture: &Furniture) -> (String, f64) {
         let foot = if furniture.legend.is_some() || furniture.unit.is_some() { FOOT } else { 0.0 };
         let (mut text, mut x, mut y) = (String::new(), MARGIN, below + foot + 16.0);

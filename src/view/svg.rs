@@ -1,10 +1,10 @@
-//! Pieces of SVG.
+//! Elements and attributes of SVG.
 
 use super::canvas::Pixels;
 use data_encoding::BASE64;
 use spmesh_geometry::predicates::Point2;
 
-/// Text as XML has it; characters that XML cannot have are left out.
+/// Text escaped for XML, without the characters that XML forbids.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -21,19 +21,19 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// A length with hundredths, without zeros at its end.
+/// A length with at most two decimals.
 pub(super) fn length(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_string() } else { text.to_string() }
 }
 
-/// A place as a path has it.
+/// A place in a path.
 pub(super) fn place([x, y]: Point2) -> String {
     format!("{} {}", length(x), length(y))
 }
 
-/// A closed polygon as a piece of a path.
+/// A closed polygon in a path.
 pub(super) fn ring(places: &[Point2]) -> String {
     let mut path = String::new();
     for (number, &at) in places.iter().enumerate() {
@@ -43,12 +43,12 @@ pub(super) fn ring(places: &[Point2]) -> String {
     path + "Z"
 }
 
-/// A line as a piece of a path.
+/// A line in a path.
 pub(super) fn line([from, to]: [Point2; 2]) -> String {
     format!("M{}L{}", place(from), place(to))
 }
 
-/// An anchor of text, as SVG calls it.
+/// The `text-anchor` of SVG.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Anchor {
     Start,
@@ -56,7 +56,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// A line of text of some size at a place.
+/// A line of text.
 pub(super) fn text([x, y]: Point2, size: u32, anchor: Anchor, words: &str) -> String {
     let anchor = match anchor {
         Anchor::Start => "",
@@ -67,14 +67,14 @@ pub(super) fn text([x, y]: Point2, size: u32, anchor: Anchor, words: &str) -> St
     format!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\"{anchor}>{}</text>\n", escape(words))
 }
 
-/// How wide text is at most, in lengths of the picture. Characters of the font are this wide on the average of any word.
+/// An upper estimate of the width of text, from the mean width of characters. Units: lengths of the picture.
 pub(super) fn text_width(size: u32, words: &str) -> f64 {
-    /// The mean width of letters of DejaVu Sans, and a bit.
+    /// Slightly above the mean width of the letters of DejaVu Sans.
     const MEAN: f64 = 0.62;
     MEAN * f64::from(size) * words.chars().count() as f64
 }
 
-/// Pixels at a place, one for each length of the picture.
+/// An image at a place; a pixel is one length of the picture.
 pub(super) fn image([x, y]: Point2, pixels: &Pixels) -> String {
     let data = BASE64.encode(&pixels.png);
     let (x, y, width, height) = (length(x), length(y), pixels.width, pixels.height);

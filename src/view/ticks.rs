@@ -1,11 +1,11 @@
-//! Round numbers for legends and scale bars, and how numbers are written.
+//! Round numbers for legends and scale bars, and the format of numbers.
 
-/// Numbers beyond these powers of ten are written with an exponent.
+/// Powers of ten of numbers that are written without an exponent.
 const PLAIN: std::ops::RangeInclusive<i32> = -6..=7;
 
-/// The greatest of 1, 2 and 5 times a power of ten that is not above a number.
+/// The greatest of 1, 2 and 5 times a power of ten that is at most a number.
 ///
-/// Domain: a normal number above zero.
+/// Domain: positive normal numbers.
 pub(super) fn round_below(number: f64) -> f64 {
     rounds_near(number).filter(|&round| round <= number).fold(f64::MIN_POSITIVE, f64::max)
 }
@@ -25,7 +25,7 @@ fn times(digit: f64, power: i32) -> f64 {
 pub(super) fn ticks([low, high]: [f64; 2], count: usize) -> (Vec<f64>, f64) {
     let step = round_above((high - low) / (count as f64 + 0.5));
     let [first, last] = [(low / step).ceil(), (high / step).floor()];
-    // Where steps are lost in rounding, or nothing is between: the ends alone.
+    // Only the ends, where rounding swallows the step or no multiple lies between them.
     let is_fine = step.is_normal() && last >= first && last - first <= 2.0 * count as f64 && low + step > low;
     if !is_fine {
         return (if low < high { vec![low, high] } else { vec![low] }, high - low);
@@ -33,7 +33,8 @@ pub(super) fn ticks([low, high]: [f64; 2], count: usize) -> (Vec<f64>, f64) {
     ((0..=(last - first) as u32).map(|at| (first + f64::from(at)) * step).collect(), step)
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is not below a number; zero, if that is not a normal number above zero.
+/// The least of 1, 2 and 5 times a power of ten that is at least a number; zero, if the number is not
+/// positive and normal.
 fn round_above(number: f64) -> f64 {
     if !(number.is_normal() && number > 0.0) {
         return 0.0;
@@ -50,7 +51,7 @@ pub(super) fn number(value: f64, step: f64) -> String {
         return format!("{value:.digits$e}");
     }
     let text = format!("{value:.*}", (-fine).clamp(0, 12) as usize);
-    // The least of a range may be zero, rounded from below.
+    // No minus sign on a negative number that rounds to zero.
     if text.trim_start_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text }
 }
 
@@ -67,7 +68,7 @@ pub(super) fn count(count: u64) -> String {
     text
 }
 
-/// A count and what is counted.
+/// A count with the word for the counted items, in the singular or the plural.
 pub(super) fn counted(number: u64, one: &str, many: &str) -> String {
     format!("{} {}", count(number), if number == 1 { one } else { many })
 }

@@ -1,4 +1,4 @@
-//! Plateaus, single points, meshes of one triangle or none, and numbers at the ends of their range.
+//! Plateaus, single points, meshes of one triangle or none, and extreme numbers.
 
 use spmesh_stream::Coordinates;
 use spmesh_terrain::contours::Options;
@@ -25,7 +25,7 @@ fn ring(elevation: f64, points: &[[f64; 2]]) -> Line {
 
 #[test]
 fn plateaus_on_a_level_have_a_line_where_the_ground_falls() {
-    // Whole steps of 0.01: 57 of them are 0.57, as are three times 0.19, which numbers of 64 bits do not make of either product.
+    // In steps of 0.01, 57 steps are 0.57, as are three times 0.19; neither product in f64 is.
     let coordinates = Coordinates::I32 { scale: [1.0, 1.0, 0.01], offset: [0.0; 3] };
     let is_inside = |x: u32, y: u32| (1..=3).contains(&x) && (1..=3).contains(&y);
     let around =
@@ -39,7 +39,7 @@ fn plateaus_on_a_level_have_a_line_where_the_ground_falls() {
     assert_eq!(lines(&around(58.0), &options(0.19, 0.0)), []);
     let mut shore = border;
     shore[1..].reverse();
-    // So near to it that a hundredth of a step is less.
+    // Nearer to it than a hundredth of a step.
     assert_eq!(lines(&around(100.0), &options(10.0, 0.57001)), [ring(0.57001, &shore)]);
 }
 
@@ -48,7 +48,7 @@ fn tops_on_a_level_are_no_lines() {
     let stream = grid(3, |x, y| if [x, y] == [1, 1] { 10.0 } else { 9.0 }).stream(WHOLE);
     let (found, stats) = try_lines(&stream, &options(5.0, 0.0)).unwrap();
     assert_eq!((found, stats.single_points, stats.levels), (Vec::new(), 1, 0));
-    // Two vertices beside each other are a line there and back.
+    // Two adjacent vertices give a line there and back.
     let stream = grid(4, |x, y| if y == 1 && (1..=2).contains(&x) { 10.0 } else { 9.0 }).stream(WHOLE);
     assert_eq!(lines(&stream, &options(5.0, 0.0)), [ring(10.0, &[[1.0, 1.0], [2.0, 1.0]])]);
 }

@@ -1,6 +1,7 @@
-//! Lines of small meshes against lines made of all triangles and all levels in whole numbers.
+//! Lines of small meshes against lines made from all triangles and all levels in integers.
 //!
-//! Coordinates are multiples of a number that all differences of elevations divide, so lines pass edges at whole coordinates.
+//! Coordinates are multiples of a number that all differences of elevations divide, so lines pass edges at
+//! integer coordinates.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -61,7 +62,7 @@ fn place(p: [f64; 3], q: [f64; 3], level: i64) -> [i64; 2] {
     })
 }
 
-/// Which way around three points are.
+/// The orientation of three points.
 fn turn([p, q, r]: [[i64; 2]; 3]) -> i128 {
     let [p, q, r] = [p, q, r].map(|point| point.map(i128::from));
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
@@ -69,7 +70,8 @@ fn turn([p, q, r]: [[i64; 2]; 3]) -> i128 {
 
 type Edge = [u32; 2];
 
-/// From which edge to which one the line of a level leads in a triangle. Its corner, or its two corners, below are on the right.
+/// The edges where the line of a level enters and leaves a triangle. The corners below the level are on its
+/// right.
 fn passage(mesh: &Mesh, triangle: [u32; 3], level: i64) -> Option<[Edge; 2]> {
     let at = |vertex: u32| mesh.points[vertex as usize];
     let is_above = |vertex: &u32| 2 * at(*vertex)[2] as i64 >= level;
@@ -85,7 +87,7 @@ fn passage(mesh: &Mesh, triangle: [u32; 3], level: i64) -> Option<[Edge; 2]> {
     Some(if side < 0 { [p, q] } else { [q, p] })
 }
 
-/// All lines, in whole halves of elevation; each is followed from crossing to crossing.
+/// All lines, in integer halves of elevation; each is traced from crossing to crossing.
 fn expected(mesh: &Mesh, levels: impl Iterator<Item = i64>) -> Vec<Line> {
     let mut all = Vec::new();
     for level in levels {
@@ -106,7 +108,7 @@ fn expected(mesh: &Mesh, levels: impl Iterator<Item = i64>) -> Vec<Line> {
     all
 }
 
-/// Takes the line that starts at an edge; nothing, if it is a single point.
+/// Takes the line that starts at an edge; `None` if it is a single point.
 fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge) -> Option<Line> {
     let (mut edges, mut is_closed) = (vec![start], false);
     while let Some(edge) = next.remove(edges.last().unwrap()) {
@@ -128,7 +130,7 @@ fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge)
     Some(Line { elevation: level as f64 / 2.0, is_closed, points })
 }
 
-/// Distances of levels and where they begin, and the halves of elevation that they are at.
+/// Intervals and bases of levels, and the halves of elevation that they are at.
 fn choices() -> [([f64; 2], Vec<i64>); 4] {
     let at = |first: usize, step: usize| {
         (first..=2 * HIGHEST as usize).step_by(step).map(|level| level as i64).collect()

@@ -1,4 +1,4 @@
-//! Wrong usage, streams that are no mesh in the plane, damaged input, and outputs that cannot be written.
+//! Wrong usage, streams that are not meshes in the plane, damaged input, and outputs that cannot be written.
 
 use crate::programs::{
     Folder, assert_damage_leaves_no_file, assert_outcome, assert_silent_without_reader, cloud, mesh_of_cloud,

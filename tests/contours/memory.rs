@@ -1,4 +1,4 @@
-//! What is held: lines that are over are written while triangles come, and joining takes any order.
+//! Memory: complete lines are written while triangles arrive, and pieces join in any order.
 
 use spmesh_terrain::contours::Options;
 

@@ -1,4 +1,4 @@
-//! `spdem --contours`: lines against what exact arithmetic says of each triangle, and what goes wrong.
+//! `spdem --contours`: lines against exact arithmetic on each triangle, and failures.
 
 mod degenerate;
 mod exact;
@@ -11,10 +11,10 @@ use spmesh_core::error::Result;
 use spmesh_stream::{Coordinates, StreamReader};
 use spmesh_terrain::contours::{Levels, LineFormat, Options, Stats, contour};
 
-/// Whole coordinates that are those of the world.
+/// Integer coordinates equal to those of the world.
 const WHOLE: Coordinates = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
 
-/// A line that was written; the first point of a ring is not repeated at its end.
+/// A written line; a ring does not repeat its first point at the end.
 #[derive(Debug, Clone, PartialEq, PartialOrd)]
 struct Line {
     elevation: f64,

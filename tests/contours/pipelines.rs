@@ -16,7 +16,7 @@ fn length([p, q]: [[f64; 2]; 2]) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// What of a level is in a triangle, from plain arithmetic: higher ground on the left.
+/// The piece of a level in a triangle, by plain arithmetic: higher ground is on the left.
 fn segment(triangle: [[f64; 3]; 3], level: f64) -> Option<[[f64; 2]; 2]> {
     let (mut from, mut to) = (None, None);
     for i in 0..3 {
@@ -31,7 +31,7 @@ fn segment(triangle: [[f64; 3]; 3], level: f64) -> Option<[[f64; 2]; 2]> {
     Some([from?, to?])
 }
 
-/// Lines by elevation, in whole tenths.
+/// Lines by elevation, in integer tenths.
 fn by_level(lines: Vec<Line>) -> BTreeMap<i64, Vec<Line>> {
     let mut levels: BTreeMap<i64, Vec<Line>> = BTreeMap::new();
     lines
@@ -60,7 +60,7 @@ fn a_real_tile_has_the_segments_of_its_triangles() {
         let total = |segments: &[[[f64; 2]; 2]]| segments.iter().copied().map(length).sum::<f64>();
         let difference = (total(&expected) - total(&found)).abs();
         assert!(difference < ROUNDING * expected.len() as f64, "{level}: {difference}");
-        // Each one is there, but for those that are points after rounding.
+        // Each one is there, except those that rounding makes a point.
         let cell = |[p, _]: [[f64; 2]; 2]| p.map(|value| (value * 100.0).round() as i64);
         let mut places: HashMap<[i64; 2], Vec<[[f64; 2]; 2]>> = HashMap::new();
         found.iter().for_each(|&segment| places.entry(cell(segment)).or_default().push(segment));
@@ -109,7 +109,7 @@ fn one_stream_has_one_file_and_another_order_the_same_lines() {
     let file = |mesh: &[u8]| run("spdem", &arguments, mesh).stdout;
     let text = file(&mesh);
     assert_eq!(file(&mesh), text);
-    // OBJ says nothing of where vertices are final, and its coordinates are those of the world.
+    // OBJ does not finalize vertices, and its coordinates are those of the world.
     let obj = run("spconvert", &["--to", "obj"], &mesh).stdout;
     let other = file(&run("spconvert", &["--to", "spm"], &obj).stdout);
     let summary = |text: &[u8]| {
@@ -121,7 +121,7 @@ fn one_stream_has_one_file_and_another_order_the_same_lines() {
     };
     let (ours, others) = (summary(&text), summary(&other));
     assert_eq!(ours.keys().collect::<Vec<_>>(), others.keys().collect::<Vec<_>>());
-    // Small rings are points after rounding, in one of the two.
+    // Rounding makes small rings points in one of the two.
     for (level, [lines, rings]) in ours {
         let [other_lines, other_rings] = others[&level];
         assert_eq!(lines - rings, other_lines - other_rings, "{level}");

@@ -1,4 +1,4 @@
-//! Each cell against all triangles, in integers: which one its centre is in, and what it has there.
+//! Each cell against all triangles, in integers: the triangle that contains its centre, and the value there.
 
 use spmesh_io::raster::{Cells, Grid, RasterFormat, Window};
 use spmesh_stream::Coordinates;
@@ -8,7 +8,7 @@ use super::{Mesh, file, is_same, options, raster, values};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};
 use spmesh_reference::{exhaustive, incremental};
 
-/// A number in units of a power of two, of which it must be a multiple.
+/// A number in units of a power of two; it must be a multiple of the unit.
 fn units(value: f64, bits: i32) -> i128 {
     let scaled = value * 2f64.powi(bits);
     assert!(scaled == scaled.trunc() && scaled.abs() < 2f64.powi(61), "{value} in units of 2^-{bits}");
@@ -22,15 +22,15 @@ fn area(a: Exact, b: Exact, c: Exact) -> i128 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a point is on the left of an edge, or on it; whether it is on the left when it is moved to the right by an infinitesimal,
-/// and up by its square: a polynomial has the sign of its first coefficient that is not zero.
+/// Whether a point is on the left of an edge, or on it; and whether it is on the left after an infinitesimal
+/// move to the right and by its square up. The sign of a polynomial is that of its first nonzero coefficient.
 fn sides([a, b]: [Exact; 2], p: Exact) -> [bool; 2] {
     let coefficients = [area(a, b, p), a[1] - b[1], b[0] - a[0]];
     let first = coefficients.into_iter().find(|&coefficient| coefficient != 0).expect("an edge has a length");
     [coefficients[0] >= 0, first > 0]
 }
 
-/// A mesh in whole units.
+/// A mesh in integer units.
 struct Reference<'a> {
     mesh: &'a Mesh,
     places: Vec<Exact>,
@@ -41,7 +41,7 @@ impl Reference<'_> {
         triangle.map(|vertex| self.places[vertex as usize])
     }
 
-    /// The triangles whose closed area has a point, and the one that has it when it is moved.
+    /// The triangles whose closure contains a point, and the one that contains it after the move.
     fn around(&self, p: Exact) -> (Vec<[u32; 3]>, Option<[u32; 3]>) {
         let holds = |triangle: &[u32; 3], which: usize| {
             let [a, b, c] = self.corners(*triangle);
@@ -60,7 +60,7 @@ impl Reference<'_> {
         sum as f64 / area(a, b, c) as f64
     }
 
-    /// The slope in degrees, of a unit that is so many times that of the world.
+    /// The slope in degrees, if the unit is `scale` times that of the world.
     fn slope(&self, triangle: [u32; 3], unit: f64) -> f64 {
         let [a, b, c] = self.corners(triangle);
         let z = triangle.map(|vertex| self.mesh.points[vertex as usize][2] as i128);
@@ -72,8 +72,9 @@ impl Reference<'_> {
     }
 }
 
-/// Compares rasters of slopes and of elevations with the reference; `bits` make all coordinates and centres whole, and a stored
-/// step is `scale` in the world, from `offset` on. How many centres are on borders of triangles, and how many have no triangle.
+/// Compares rasters of slopes and of elevations with the reference; `bits` make all coordinates and centres
+/// whole, and a stored step is `scale` in the world, from `offset` on. How many centres are on borders of
+/// triangles, and how many have no triangle.
 fn check(mesh: &Mesh, grid: &Grid, bits: i32, [scale, offset]: [f64; 2]) -> [usize; 2] {
     let coordinates = match scale {
         1.0 => Coordinates::F64,
@@ -147,7 +148,7 @@ fn degenerate_points_have_no_gaps_and_no_doubles() {
         });
         let window = Window { min, max };
         let side = (max[0] - min[0]).max(max[1] - min[1]);
-        // Steps of two and more put centres on whole numbers.
+        // Steps of two and more put centres on integers.
         let step = (side / 40.0).ceil() * 2.0;
         for step in [step, step + 1.0] {
             check(&mesh, &Grid::of(window, Cells::Step { step, anchor: [0.0; 2] }).unwrap(), 4, [1.0, 0.0]);
@@ -243,7 +244,7 @@ fn long_edges_leave_holes() {
         let (text, stats) =
             file(&mesh.stream(Coordinates::F64), RasterFormat::Ascii, &grid, &limited).unwrap();
         assert_eq!(stats.killed, killed);
-        // What is left is drawn as if nothing else had been there.
+        // The other triangles are drawn as if these had not been there.
         let mut short = mesh.clone();
         short.triangles.retain(is_short);
         if let Some(expected) = short.without_unused() {
@@ -254,7 +255,7 @@ fn long_edges_leave_holes() {
 }
 
 impl Mesh {
-    /// The same without vertices that no triangle has; nothing, if there are no triangles.
+    /// The mesh without vertices that no triangle uses; `None` if it has no triangles.
     fn without_unused(&self) -> Option<Mesh> {
         let used = |vertex: &usize| self.triangles.as_flattened().contains(&(*vertex as u32));
         let kept: Vec<usize> = (0..self.points.len()).filter(used).collect();

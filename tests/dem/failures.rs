@@ -1,4 +1,4 @@
-//! Wrong usage, streams that are no mesh in the plane, damaged input, and outputs that cannot be written.
+//! Wrong usage, streams that are not meshes in the plane, damaged input, and outputs that cannot be written.
 
 use spmesh_io::raster::{Grid, RasterFormat};
 use spmesh_stream::Coordinates;

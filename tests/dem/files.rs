@@ -1,4 +1,4 @@
-//! What files hold beyond cells that triangles give: holes that are filled, overviews, other numbers for no data, grids of others.
+//! Filled holes, overviews, other no-data values, and grids taken from other files.
 
 use std::io::Cursor;
 

@@ -1,4 +1,4 @@
-//! `spdem`: rasters against what exact arithmetic says of each cell, and what goes wrong.
+//! `spdem`: rasters against exact arithmetic on each cell, and failures.
 
 mod drawing;
 mod failures;
@@ -64,14 +64,14 @@ fn file(stream: &[u8], format: RasterFormat, grid: &Grid, options: &Options) -> 
     Ok((output.into_inner(), stats))
 }
 
-/// The values of an ESRI grid, row by row; NaN where there are none.
+/// The values of an ESRI grid, row by row; NaN for no data.
 fn values(text: &[u8]) -> Vec<f32> {
     let text = std::str::from_utf8(text).unwrap();
     let numbers = text.lines().skip(6).flat_map(|line| line.split(' ')).map(|word| word.parse().unwrap());
     numbers.map(|value| if value == -9999.0 { f32::NAN } else { value }).collect()
 }
 
-/// The values of a raster; NaN where there are none.
+/// The values of a raster; NaN for no data.
 fn raster(stream: &[u8], grid: &Grid, options: &Options) -> Vec<f32> {
     let (text, stats) = file(stream, RasterFormat::Ascii, grid, options).unwrap();
     let values = values(&text);
@@ -80,7 +80,7 @@ fn raster(stream: &[u8], grid: &Grid, options: &Options) -> Vec<f32> {
     values
 }
 
-/// Whether values are the same to the last bit, those that are none included.
+/// Whether values are bitwise equal, NaN included.
 fn is_same(a: &[f32], b: &[f32]) -> bool {
     a.iter().map(|value| value.to_bits()).eq(b.iter().map(|value| value.to_bits()))
 }

@@ -1,10 +1,10 @@
-//! Rasters of pieces: what is triangulated in parts, or comes from several files, has no seams.
+//! Rasters of pieces: meshes made in parts, or from several files, have no seams.
 
 use super::values;
 use crate::programs::{Folder, outcome, run};
 use spmesh_reference::sets::Random;
 
-/// Points with two decimals, many of them on a grid, so that many are on common circles.
+/// Points with two decimals, many of them on a grid, so that many are cocircular.
 fn survey() -> Vec<[f64; 3]> {
     let mut random = Random::new(8);
     let mut point = |i: i64| match i % 2 {

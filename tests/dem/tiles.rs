@@ -1,4 +1,4 @@
-//! Rasters of several tiles: whatever memory there is, in both formats.
+//! Rasters of several tiles, with any amount of memory, in both formats.
 
 use std::io::Cursor;
 
@@ -13,7 +13,8 @@ use spmesh_reference::sets::{Random, uniform};
 
 const SIDE: i64 = 1_000;
 
-/// A mesh with large triangles and small ones, in random order, and a grid of three tiles each way, of which the last ones are cut.
+/// A mesh with large triangles and small ones, in random order, and a grid of three tiles each way, of which
+/// the last ones are cut.
 pub(super) fn mesh_and_grid() -> (Vec<u8>, Grid) {
     let mut random = Random::new(11);
     let mut points = uniform(&mut random, 30, SIDE);
@@ -27,7 +28,7 @@ pub(super) fn mesh_and_grid() -> (Vec<u8>, Grid) {
     (mesh.stream(Coordinates::F64), grid)
 }
 
-/// The values of a GeoTIFF, tile by tile; tiles that are not there have none.
+/// The values of a GeoTIFF, tile by tile; missing tiles have no data.
 pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (grid.columns, grid.rows));
@@ -133,6 +134,6 @@ fn huge_rasters_of_small_meshes_are_small() {
             .unwrap();
     assert_eq!((stats.cells, stats.known), (3_600_000_000, 300 * 299 / 2 + 300));
     assert!(bytes.len() < 2_000_000, "{}", bytes.len());
-    // A file of which nothing is stored is BigTIFF if all of it would need that.
+    // A file without tiles is BigTIFF if the full file would need that.
     assert_eq!(bytes[..4], *b"II+\0");
 }

@@ -1,4 +1,4 @@
-//! Wrong usage, streams that cannot be seen from above, damaged input, and outputs that cannot be written.
+//! Wrong usage, streams that cannot be drawn in the plane, damaged input, and outputs that cannot be written.
 
 use super::{grid, mesh_of, output};
 use crate::programs::{

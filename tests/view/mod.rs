@@ -1,4 +1,4 @@
-//! `spview`: pictures against the streams that they show, and what goes wrong.
+//! `spview`: pictures against the streams that they show, and failures.
 
 mod configurations;
 mod failures;
@@ -33,7 +33,7 @@ fn picture(stream: &[u8], options: &Options) -> Picture {
     pictures.remove(0)
 }
 
-/// What a program writes.
+/// The output of a program.
 fn output(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run(name, arguments, input);
     assert!(output.status.success(), "{name} {arguments:?}: {:?}", outcome(&output));
@@ -45,7 +45,7 @@ fn mesh_of(points: &str) -> Vec<u8> {
     output("spdelaunay2d", &[], &output("spfinalize", &["--cell-points", "60", "-"], points.as_bytes()))
 }
 
-/// Lines of the points of a grid, jogged so that no four are on a circle.
+/// Lines of the points of a grid, jogged so that no four are cocircular.
 fn grid(side: u64) -> String {
     let point = |i: u64| (i % side * 100 + i * 37 % 23, i / side * 100 + i * 53 % 29, i * 71 % 97);
     (0..side * side).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()

@@ -1,4 +1,4 @@
-//! Pixels against what plain arithmetic says of their places.
+//! Pixels against plain arithmetic on their places.
 
 use resvg::tiny_skia::Pixmap;
 use spmesh_stream::Coordinates;
@@ -36,7 +36,7 @@ fn left_of([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / along[0].hypot(along[1])
 }
 
-/// How far inside of a convex polygon, counterclockwise, a place is.
+/// The distance of a place inside a counterclockwise convex polygon from its border.
 fn depth(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     polygon.iter().zip(next).map(|(&a, &b)| left_of([a, b], p)).fold(f64::INFINITY, f64::min)
@@ -61,7 +61,8 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     [lower, upper].concat()
 }
 
-/// Checks that pixels inside of a hull are coloured and those outside are white; those on its border may be anything.
+/// Checks that pixels inside of a hull are coloured and those outside are white; those on its border may be
+/// anything.
 fn check_cover(picture: &Picture, hull: &[[f64; 2]]) {
     let (pixmap, frame) = (pixels(picture), picture.frame.unwrap());
     let [left, upper, right, lower] = map(picture);
@@ -125,7 +126,7 @@ fn the_nearest_of_hidden_triangles_is_painted() {
     let mut random = Random::new(11);
     let points = uniform(&mut random, 80, 300);
     let mesh = Mesh::of(&mut random, &points);
-    // With pictures on the way there is room for all that may come, however it is drawn.
+    // With pictures of moments, there is room for all later triangles, in each form.
     let moments = Moments { at: None, every: Some(u64::MAX) };
     let of = |form| {
         let options =

@@ -1,4 +1,4 @@
-//! What is drawn one by one: triangles, edges, points and cells, where and in which colours.
+//! Places and colours of triangles, edges, points and cells that are drawn one by one.
 
 use std::collections::HashSet;
 
@@ -78,7 +78,7 @@ fn colours_are_in_the_order_of_what_they_mean() {
         .collect();
     lights.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert!(lights.windows(2).all(|pair| pair[0].1 <= pair[1].1 + 0.9), "{lights:?}");
-    // Beyond a range that is given, all have the colour of its end.
+    // Beyond a given range, values have the colour of its end.
     let low = Options { range: Some([-9.0, -1.0]), ..options(Fill::Elevation) };
     let elements = parse(&picture(&stream, &low).svg);
     assert!(triangles(&elements).iter().all(|path| path.attributes["color"] == "#faccfa"));

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-/// An element with its attributes, and the identifiers of those that it is in.
+/// An element with its attributes, and the identifiers of its ancestors.
 #[derive(Debug)]
 pub struct Element {
     pub name: String,
@@ -33,14 +33,14 @@ impl Element {
         pieces.map(|piece| piece.trim_end_matches('Z').split('L').map(place).collect()).collect()
     }
 
-    /// How light its colour is, from 0 to 255, about as the eye sees it.
+    /// The approximate perceived lightness of its colour, from 0 to 255.
     pub fn lightness(&self, attribute: &str) -> f64 {
         let colour = u32::from_str_radix(self.attributes[attribute].trim_start_matches('#'), 16).unwrap();
         lightness([16, 8, 0].map(|shift| (colour >> shift) as u8))
     }
 }
 
-/// How light a colour is, from 0 to 255.
+/// The lightness of a colour, from 0 to 255.
 pub fn lightness(colour: [u8; 3]) -> f64 {
     let [r, g, b] = colour.map(f64::from);
     (0.2126 * r.powf(2.2) + 0.7152 * g.powf(2.2) + 0.0722 * b.powf(2.2)).powf(1.0 / 2.2)

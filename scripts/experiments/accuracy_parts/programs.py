@@ -30,7 +30,7 @@ class Workplace:
         self.points.write_text("".join(numbers))
 
     def triangulate(self, *flags):
-        """What tess3 says of the points under these flags; the mesh is at `mesh`."""
+        """The counts of tess3 on the points with these flags; the mesh is at `mesh`."""
         command = [BIN / "tess3", "--quiet", "--from=points", "--stats=json", *flags, "-o", self.mesh, self.points]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         if done.returncode:
@@ -38,7 +38,7 @@ class Workplace:
         return said(done.stderr)
 
     def audit(self):
-        """What spinfo counts in the mesh; that there are faults is no failure."""
+        """The census of spinfo on the mesh; violations are not failures."""
         command = [BIN / "spinfo", "--audit=delaunay", "--count-violations", "--json", self.mesh]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         if done.returncode not in (0, 4):

@@ -13,7 +13,7 @@ SAID_LENGTH = 300
 
 
 class Failed(Exception):
-    """What a program says that did not do what it was asked."""
+    """The message of a program that failed."""
 
 
 class Workplace:
@@ -59,11 +59,11 @@ class Workplace:
         return np.array([[float(word) for word in line.split()[1:3]] for line in lines if line.startswith("v ")])
 
     def summary(self, stream):
-        """What splinefit info says of a spline, or of configurations."""
+        """The summary by splinefit info of a spline, or of configurations."""
         return json.loads(ours("splinefit", "info", "--json", stream).stdout)
 
     def values(self, sites):
-        """The spline at sites; not a number outside of its domain."""
+        """The spline at sites; NaN outside its domain."""
         lines = ours("splinefit", "eval", "--quiet", self.spline, "--at", self.table("at.xy", sites)).stdout
         return np.array([float(line.split()[2]) for line in lines.splitlines()])
 

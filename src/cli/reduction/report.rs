@@ -1,4 +1,4 @@
-//! The figures of `--stats`.
+//! The counts of `--stats`.
 
 use crate::{StatsFormat, peak_memory, say};
 use spmesh_reduce::Stats;
@@ -13,7 +13,7 @@ pub(crate) struct Report {
 }
 
 impl Report {
-    /// Prints the figures on stderr.
+    /// Prints the counts on stderr.
     pub(crate) fn print(&self, format: StatsFormat) {
         match format {
             StatsFormat::Text => say(&text_report(self)),

@@ -1,28 +1,27 @@
-//! `spdem --contours`: flags, and the figures of `--stats`.
+//! `spdem --contours`: flags, and the counts of `--stats`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
 
-use super::{Flags, FormatFlag, TOOL};
 use crate::progress::Progress;
 use crate::reduction::open_stream;
 use crate::rows::{self, Row};
-use crate::{cells, notice, peak_memory};
-use spmesh_core::error::{Error, Result};
+use crate::{Common, StatsFormat, peak_memory};
+use spmesh_core::error::Result;
 use spmesh_core::output::Output;
 use spmesh_stream::Crs;
 use spmesh_terrain::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
 
-/// What is said where memory that is needed cannot be had.
+/// The message when memory runs out.
 pub(super) const OUT_OF_MEMORY: &str =
     "spdem: not enough memory: take a larger distance for --contours, or cut lines with --contour-points\n";
 
 /// Flags about contour lines.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ContourFlags {
-    /// Contour lines instead of a raster, at multiples of this elevation
+    /// Write contour lines instead of a raster, at multiples of this elevation
     #[arg(
         long,
         value_name = "D",
@@ -31,7 +30,7 @@ pub(super) struct ContourFlags {
     )]
     contours: Option<f64>,
 
-    /// Count multiples from this elevation
+    /// Start the multiples at this elevation
     #[arg(
         long,
         value_name = "B",
@@ -41,7 +40,7 @@ pub(super) struct ContourFlags {
     )]
     contour_base: f64,
 
-    /// Cut lines that have so many points before they are complete, to bound memory
+    /// Cut open lines with this many points, to bound memory
     #[arg(
         long,
         value_name = "N",
@@ -52,7 +51,10 @@ pub(super) struct ContourFlags {
 }
 
 impl ContourFlags {
-    /// Which lines are wanted, if any are.
+    /// The lines to write, if any.
+    ///
+    /// # Errors
+    /// As [`Levels::new`].
     pub(super) fn options(&self, kill: Option<f64>) -> Result<Option<Options>> {
         let Some(interval) = self.contours else { return Ok(None) };
         let levels = Levels::new(interval, self.contour_base)?;
@@ -60,7 +62,7 @@ impl ContourFlags {
     }
 }
 
-/// The format of lines that the ending of a name tells.
+/// The format of lines that the extension of a name implies.
 pub(super) fn format_of(path: &Path) -> Option<LineFormat> {
     let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
     match &ending[..] {
@@ -70,37 +72,42 @@ pub(super) fn format_of(path: &Path) -> Option<LineFormat> {
     }
 }
 
-/// Writes lines instead of a raster.
-pub(super) fn run(flags: &Flags, options: &Options, started: Instant) -> anyhow::Result<()> {
-    let format = format(flags)?;
-    let mut reader = open_stream(&flags.input)?;
-    let mut output = Output::create(&flags.output, false)?;
-    let mut progress = Progress::new(&flags.common, "contouring", reader.header().points);
-    let stats = contours::contour(&mut reader, &mut output, format, options, |done| progress.set(done))?;
+/// A run that writes lines instead of a raster.
+pub(super) struct Job<'a> {
+    pub(super) input: &'a PathBuf,
+    pub(super) output: &'a Path,
+    pub(super) format: LineFormat,
+    pub(super) stats: Option<StatsFormat>,
+    pub(super) common: &'a Common,
+}
+
+/// Writes lines, and calls `notice` with what the user should know of them.
+///
+/// # Errors
+/// As [`contours::contour`], and if the input or the output cannot be opened.
+pub(super) fn run(
+    job: &Job,
+    options: &Options,
+    started: Instant,
+    notice: impl Fn(&str),
+) -> anyhow::Result<()> {
+    let mut reader = open_stream(job.input)?;
+    let mut output = Output::create(job.output, false)?;
+    let mut progress = Progress::new(job.common, "contouring", reader.header().points);
+    let stats = contours::contour(&mut reader, &mut output, job.format, options, |done| progress.set(done))?;
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
-    for message in [summary(&stats), about_crs(format, &reader.header().crs)] {
-        notice(TOOL, &flags.common, &message);
+    for message in [summary(&stats), about_crs(job.format, &reader.header().crs)] {
+        notice(&message);
     }
-    if let Some(format) = flags.stats {
+    if let Some(format) = job.stats {
         rows::print(format, started.elapsed(), counts(&stats, output_bytes));
     }
     Ok(())
 }
 
-fn format(flags: &Flags) -> Result<LineFormat> {
-    match flags.format {
-        Some(FormatFlag::Geojson) => Ok(LineFormat::GeoJson),
-        Some(FormatFlag::Geojsonl) => Ok(LineFormat::GeoJsonLines),
-        None if cells::format_of(&flags.output).is_none() => {
-            Ok(format_of(&flags.output).unwrap_or(LineFormat::GeoJson))
-        }
-        _ => Err(Error::usage("lines are no raster: write them to NAME.geojson or NAME.geojsonl")),
-    }
-}
-
-/// What was written, for a notice.
+/// The counts of the written lines, for a notice.
 fn summary(stats: &Stats) -> String {
     match stats.elevations {
         _ if stats.triangles == 0 => "no lines: there are no triangles".to_string(),
@@ -111,7 +118,7 @@ fn summary(stats: &Stats) -> String {
     }
 }
 
-/// What programs will know of where lines are, for a notice.
+/// What the file tells other programs about its coordinates, for a notice.
 fn about_crs(format: LineFormat, crs: &Crs) -> String {
     match (format, epsg_code(crs)) {
         (LineFormat::GeoJson, Some(code)) => {

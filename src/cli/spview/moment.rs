@@ -1,11 +1,11 @@
-//! What `--at` and `--snapshot` say.
+//! The values of `--at` and `--snapshot`.
 
 /// A moment of a stream.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Moment {
     /// After this part of it, from 0 to 1.
     Part(f64),
-    /// After so many triangles or points.
+    /// After this number of triangles or points.
     Count(u64),
 }
 
@@ -13,7 +13,7 @@ pub(super) enum Moment {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Every(pub(super) u64);
 
-/// A whole number is a count, any other a part.
+/// Parses a moment: an integer is a count, any other number a part.
 ///
 /// # Errors
 /// If it is neither.
@@ -23,11 +23,11 @@ pub(super) fn parse_moment(text: &str) -> Result<Moment, String> {
     }
     match text.parse::<f64>() {
         Ok(part) if (0.0..=1.0).contains(&part) => Ok(Moment::Part(part)),
-        _ => Err(format!("{text:?} is neither a part between 0.0 and 1.0 nor a whole number")),
+        _ => Err(format!("{text:?} is neither a part between 0.0 and 1.0 nor an integer")),
     }
 }
 
-/// `every=N`, N above zero.
+/// Parses `every=N` with N above zero.
 ///
 /// # Errors
 /// If it is anything else.

@@ -1,4 +1,4 @@
-//! Where pictures go: one output, or numbered files.
+//! The outputs of pictures: one file, or numbered files.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_view::Picture;
 
-/// What `--format` can say.
+/// The values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Svg,
@@ -17,7 +17,7 @@ pub(super) enum Format {
     Html,
 }
 
-/// Where pictures go.
+/// The outputs of pictures.
 pub(super) struct Outputs {
     format: Format,
     target: Target,
@@ -25,8 +25,8 @@ pub(super) struct Outputs {
 }
 
 enum Target {
-    /// For one picture: opened before the work, because what cannot be written is better known then. It gets its name at the end,
-    /// when it is known that the stream is whole.
+    /// For one picture: opened before the work, because what cannot be written is better known then. It gets
+    /// its name at the end, when it is known that the stream is whole.
     One { output: Output, is_written: bool },
     /// For several, with names of these parts before and after the number, which has so many digits at least.
     Numbered { before: String, digits: usize, after: String },
@@ -105,7 +105,7 @@ fn write(format: Format, picture: &Picture, output: &mut Output) -> Result<()> {
     }
 }
 
-/// The format that the ending of a name tells.
+/// The format that the extension of a name implies.
 fn format_of(path: &Path) -> Option<Format> {
     let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
     match &ending[..] {

@@ -1,4 +1,4 @@
-//! Passes on what is read.
+//! Copies an input to stdout as it is read.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use spmesh_core::error::Result;
 use spmesh_core::output::Output;
 
-/// An input whose bytes go to stdout, too.
+/// An input whose bytes are copied to stdout.
 pub(super) struct Tee<R> {
     input: R,
     output: Output,

@@ -1,17 +1,16 @@
-//! Triangles with elevations, as engines draw them: which streams have them, and which triangles are left out or refused.
+//! Triangles with elevations: the streams that have them, and the triangles that are left out or refused.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::{Point2, Predicates2, Sign};
 use spmesh_stream::{Coordinates, Header, Kind};
 
-/// By how much, relatively, an edge may be longer than allowed: one that is meant to be as long is not, however its length is
-/// rounded.
+/// Relative tolerance, so that edges exactly at the limit pass however their length is rounded.
 const LENGTH_TOLERANCE: f64 = 1e-12;
 
-/// That a stream is a triangle mesh with elevations.
+/// Checks that a stream is a triangle mesh with elevations.
 ///
 /// # Errors
-/// Usage, if it is something else.
+/// Usage, if it is not.
 pub(crate) fn check_input(header: &Header) -> Result<()> {
     let what = match header.kind {
         Kind::TriangleMesh if header.has_elevation => return Ok(()),
@@ -25,7 +24,7 @@ pub(crate) fn check_input(header: &Header) -> Result<()> {
     Err(Error::usage(what))
 }
 
-/// Which edges are too long for their triangles to be drawn.
+/// The limit on the edges of triangles that are drawn.
 #[derive(Debug)]
 pub(crate) struct LongEdges {
     scale: Point2,
@@ -33,7 +32,7 @@ pub(crate) struct LongEdges {
 }
 
 impl LongEdges {
-    /// Those longer than `kill`, in units of the world; none, if there is no such length.
+    /// Edges longer than `kill` are too long; none are if it is `None`. Units: those of the world.
     pub(crate) fn new(kill: Option<f64>, coordinates: &Coordinates) -> LongEdges {
         let scale = match coordinates {
             Coordinates::F64 => [1.0; 2],
@@ -42,7 +41,7 @@ impl LongEdges {
         LongEdges { scale, longest: kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)) }
     }
 
-    /// Whether a triangle with corners in stored coordinates has one.
+    /// Whether a triangle has an edge that is too long; its corners are in stored coordinates.
     pub(crate) fn are_in(&self, [a, b, c]: [Point2; 3]) -> bool {
         let is_long = |p, q| self.length(p, q) > self.longest;
         self.longest.is_finite() && (is_long(a, b) || is_long(b, c) || is_long(c, a))
@@ -55,7 +54,7 @@ impl LongEdges {
     }
 }
 
-/// Whether corners are counterclockwise; false, if they are on one line.
+/// Whether corners are counterclockwise; false if they are collinear.
 ///
 /// # Errors
 /// [`spmesh_core::error::ErrorKind::Malformed`], if they are clockwise.

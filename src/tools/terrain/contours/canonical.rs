@@ -1,9 +1,9 @@
-//! One form for each line, whatever the order in which its pieces came.
+//! The canonical form of a line, which does not depend on the order of its pieces.
 
 use spmesh_geometry::predicates::Point2;
 
-/// Drops points that are equal to the one before, and has a ring start where the sequence of its points is least: at its least point,
-/// by x, then y. Whether more than one point is left.
+/// Merges successive equal points, and rotates a ring to the least of its sequences, which starts at the
+/// least point by x, then y. Returns whether more than one point is left.
 pub(super) fn tidy(points: &mut Vec<Point2>, is_closed: bool) -> bool {
     points.dedup();
     if is_closed {
@@ -16,10 +16,10 @@ pub(super) fn tidy(points: &mut Vec<Point2>, is_closed: bool) -> bool {
     points.len() > 1
 }
 
-/// Where a cyclic sequence has to start to be the least one in lexicographic order.
+/// The start at which a cyclic sequence is lexicographically least.
 ///
-/// Two starts are compared point by point. Where the first `equal` points are the same and then one sequence is greater, none of
-/// the starts that were passed in it is the least either: so no point is compared more than a few times.
+/// Two starts are compared point by point. If they agree in `equal` points and then one is greater, no start
+/// within those points of the greater one is the least either. So the cost is linear.
 fn least_rotation(points: &[Point2]) -> usize {
     let count = points.len();
     let (mut a, mut b, mut equal) = (0, 1, 0);

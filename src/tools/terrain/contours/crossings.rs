@@ -1,15 +1,16 @@
-//! Which edges of a triangle the lines through it pass.
+//! The edges of a triangle that the lines through it pass.
 
 use super::places::Vertex;
 
-/// Where a line of a level passes an edge: the ids of its ends, the lesser first.
+/// A level on an edge, given by the ids of its ends, the lesser first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Crossing {
     pub(super) edge: [u64; 2],
     pub(super) level: i64,
 }
 
-/// What of a line is in a triangle: numbers of the edges where it comes and where it goes. Edge i leads from corner i to the next.
+/// The piece of a line in a triangle: the edges where it enters and where it leaves. Edge i leads from corner
+/// i to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Piece {
     pub(super) level: i64,
@@ -17,16 +18,16 @@ pub(super) struct Piece {
     pub(super) to: usize,
 }
 
-/// The levels that pass through a triangle: those that one corner at least is above, and one is not.
+/// The levels that pass through a triangle: at least one corner is above them, and one is not.
 pub(super) fn levels([a, b, c]: &[Vertex; 3]) -> std::ops::RangeInclusive<i64> {
     a.rank.min(b.rank).min(c.rank) + 1..=a.rank.max(b.rank).max(c.rank)
 }
 
-/// What of the line of one of these levels is in a counterclockwise triangle.
+/// The piece of the line of one of these levels in a counterclockwise triangle.
 ///
-/// A line has those corners on its left that are above the level. So it comes over the edge that leads, counterclockwise, from above to
-/// below, and goes over the one that leads from below to above; in the triangle beyond, which has the edge in the other direction,
-/// it is the other way round.
+/// Corners above the level are on the left of the line. So the line enters over the edge that leads,
+/// counterclockwise, from above to below, and leaves over the edge that leads from below to above. The
+/// adjacent triangle has the edge in the other direction, so pieces fit.
 pub(super) fn piece(corners: &[Vertex; 3], level: i64) -> Piece {
     let is_above = corners.each_ref().map(|corner| corner.rank >= level);
     let edge = |is_from: bool| (0..3).find(|&i| is_above[i] == is_from && is_above[(i + 1) % 3] != is_from);
@@ -38,7 +39,7 @@ pub(super) fn ends(corners: &[Vertex; 3], edge: usize) -> [&Vertex; 2] {
     [&corners[edge], &corners[(edge + 1) % 3]]
 }
 
-/// Where the line of a level passes an edge.
+/// The crossing of a level and an edge.
 pub(super) fn crossing([p, q]: [&Vertex; 2], level: i64) -> Crossing {
     Crossing { edge: [p.id.min(q.id), p.id.max(q.id)], level }
 }
@@ -52,7 +53,7 @@ mod tests {
         let corners = |ranks: [i64; 3]| {
             [0, 1, 2].map(|i| Vertex { id: i as u64, at: [0.0; 2], elevation: 0.0, rank: ranks[i] })
         };
-        // With one corner above, the line comes over the edge that starts there.
+        // With one corner above, the line enters over the edge that starts there.
         for first in 0..3 {
             let mut ranks = [3; 3];
             ranks[first] = 5;

@@ -1,17 +1,17 @@
-//! Steps of a decimal, as people mean them: three times 0.1 is 0.3.
+//! Multiples of a decimal as people mean them: three times 0.1 is 0.3.
 
-/// Up to this power of ten, powers are numbers of 64 bits exactly.
+/// The greatest power of ten that f64 represents exactly.
 const POWER_MAX: i32 = 22;
 
-/// Whole numbers below this, times a step below [`STEP_MAX`], and a base below [`BASE_MAX`] have a sum of 128 bits.
+/// Limits on step and base, so that `base + k * step` fits in 128 bits.
 const STEP_MAX: i128 = 1 << 60;
 const BASE_MAX: i128 = 1 << 120;
 
-/// `base + k * step` for whole numbers k, as numbers that never decrease as k grows.
+/// `base + k * step` for integers k, nondecreasing in k for a positive step.
 ///
-/// Base and step stand for the shortest decimals that they can be written as, which is what people and files say. Where these have
-/// few digits, the sum is taken of the decimals, and rounded once to the nearest number of 64 bits as long as it has at most 15
-/// digits; otherwise it is a plain sum and product.
+/// Base and step stand for the shortest decimals that denote them, as people and files write them. If these
+/// have few digits, the sum is computed in decimals and rounded once, to the nearest f64 if it has at most 15
+/// digits. Otherwise it is computed in f64.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Decimals {
     base: f64,
@@ -19,7 +19,7 @@ pub(super) struct Decimals {
     exact: Option<Exact>,
 }
 
-/// Base and step as whole numbers of a unit, of which `units` are one.
+/// Base and step as integer multiples of 1 / `units`.
 #[derive(Debug, Clone, Copy)]
 struct Exact {
     base: i128,
@@ -46,7 +46,7 @@ impl Decimals {
 }
 
 impl Exact {
-    /// Nothing, if there are too many digits.
+    /// `None` if there are too many digits.
     fn of(base: f64, step: f64, finer: i32) -> Option<Exact> {
         let ((base, base_power), (step, step_power)) = (digits(base)?, digits(step)?);
         let step_power = step_power - finer;
@@ -60,7 +60,7 @@ impl Exact {
     }
 }
 
-/// The digits of the shortest decimal of a finite number, and the power of ten of the last one.
+/// The digits of the shortest decimal of a finite number, and the power of ten of the last digit.
 fn digits(value: f64) -> Option<(i128, i32)> {
     let text = format!("{value:e}");
     let (number, power) = text.split_once('e')?;

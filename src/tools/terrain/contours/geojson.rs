@@ -1,4 +1,4 @@
-//! Lines as GeoJSON.
+//! Writes lines as GeoJSON.
 
 use std::io::Write;
 
@@ -7,7 +7,7 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::crs_name;
 use spmesh_stream::Crs;
 
-/// How lines are written.
+/// The format of lines.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineFormat {
     /// GeoJSON: one collection of features, which states the coordinate reference system.
@@ -16,18 +16,17 @@ pub enum LineFormat {
     GeoJsonLines,
 }
 
-/// So many bytes are handed over at once.
+/// Length of the buffer that is written at once. Units: bytes.
 const CHUNK_LEN: usize = 1 << 16;
 
-/// Writes lines as features.
-///
-/// Coordinates are those of the stream. A collection has the member `crs` of GeoJSON of 2008, if the stream states an EPSG code: RFC
-/// 7946 allows nothing but longitude and latitude of WGS 84 (but for prior arrangement), and programs that know the member read it.
+/// Writes lines as features. Coordinates are those of the stream. If the stream states an EPSG code, a
+/// collection has the member `crs` of the 2008 GeoJSON specification. RFC 7946 removed it and, without prior
+/// arrangement, allows only longitude and latitude in WGS 84; programs that know the member still read it.
 pub(super) struct LineWriter<W> {
     output: W,
     format: LineFormat,
     text: Vec<u8>,
-    /// Features that were written.
+    /// Number of features written.
     features: u64,
 }
 
@@ -47,7 +46,7 @@ impl<W: Write> LineWriter<W> {
         LineWriter { output, format, text, features: 0 }
     }
 
-    /// Writes a line of two points or more, in world coordinates; of a ring, the first point is the last one, too.
+    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end.
     ///
     /// # Errors
     /// If writing fails.
@@ -93,7 +92,9 @@ impl<W: Write> LineWriter<W> {
         self.output.flush().map_err(write_error)
     }
 
-    /// The shortest decimal that reads back as the same number; zero has no sign. Domain: finite numbers.
+    /// Writes the shortest decimal that reads back as the same number; zero has no sign.
+    ///
+    /// Domain: finite numbers.
     fn number(&mut self, value: f64) -> Result<()> {
         serde_json::to_writer(&mut self.text, &(value + 0.0)).map_err(|cause| write_error(cause.into()))?;
         if self.text.ends_with(b".0") {

@@ -1,12 +1,12 @@
-//! The elevations that have lines, and between which of them a vertex is.
+//! The elevations that have lines, and the rank of a vertex among them.
 
 use super::decimals::Decimals;
 use spmesh_core::error::{Error, Result};
 
-/// Levels have numbers below this: then a quotient of numbers finds the number of a level but for a few.
+/// The limit on numbers of levels. Below it, a rounded quotient is off by at most [`OFF_MAX`].
 const LEVEL_MAX: f64 = (1u64 << 50) as f64;
 
-/// How far the quotient may be off.
+/// The greatest error of the quotient.
 const OFF_MAX: i64 = 4;
 
 /// Evenly spaced elevations, numbered.
@@ -18,13 +18,13 @@ pub struct Levels {
 }
 
 impl Levels {
-    /// Levels at `base` and multiples of `interval` from it.
+    /// Levels at `base` and multiples of `interval` from it. Both stand for the shortest decimals that denote
+    /// them: the third level of 0.1 is the f64 nearest to 0.3.
     ///
-    /// Both stand for the shortest decimals that they can be written as: the third level of 0.1 is 0.3, the nearest number to it.
     /// Units: those of elevations.
     ///
     /// # Errors
-    /// Usage, if the interval is not above zero, or one of them is not finite.
+    /// Usage, if the interval is not positive, or one of them is not finite.
     pub fn new(interval: f64, base: f64) -> Result<Levels> {
         if !(interval.is_finite() && interval > 0.0) {
             return Err(Error::usage(format!(
@@ -43,7 +43,8 @@ impl Levels {
         self.decimals.at(level)
     }
 
-    /// The highest level that is not above an elevation: the vertex is above this level and all that are lower.
+    /// The highest level at or below an elevation. A vertex there counts as above this level and all lower
+    /// ones.
     ///
     /// # Errors
     /// Usage, if levels are too close to each other to be told apart there.
@@ -98,7 +99,7 @@ mod tests {
                 "{error}"
             );
         }
-        // The interval may be larger than all numbers.
+        // The interval may be larger than all elevations.
         assert_eq!(Levels::new(1e308, 0.0).unwrap().rank(-1.0).unwrap(), -1);
     }
 }

@@ -1,8 +1,9 @@
 //! `spdem --contours`: triangles in, contour lines out.
 //!
-//! `levels` says which elevations have lines, and between which of them a vertex is; `crossings` then, in whole numbers, which edges
-//! of a triangle a line passes, and `places` where. `open_lines` joins what is in neighbouring triangles. A line that nothing can
-//! be added to gets its one form from `canonical` and is written by `geojson`. `decimals` are numbers as people write them.
+//! `levels` numbers the elevations that have lines, and ranks each vertex among them. From the ranks,
+//! `crossings` finds the edges of a triangle that a line passes, in integers; `places` computes where.
+//! `open_lines` joins the pieces of adjacent triangles. A complete line gets its canonical form from
+//! `canonical`, and `geojson` writes it. `decimals` computes with numbers as people write them.
 
 mod canonical;
 mod crossings;
@@ -28,19 +29,19 @@ use spmesh_core::limits::CONTOURS_PER_TRIANGLE_MAX;
 use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 
-/// Which lines are made.
+/// The lines to make.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// The elevations that have lines.
     pub levels: Levels,
-    /// Triangles with an edge that is longer are left out. Units: those of the world.
+    /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
-    /// Lines that have so many points and are not complete are written as they are, and go on with their last point as another line;
-    /// two at least. All lines are whole if `None`.
+    /// An incomplete line with this many points, at least two, is cut: it is written, and a new line starts
+    /// at its ends. Lines are not cut if `None`.
     pub points: Option<usize>,
 }
 
-/// Figures of a run.
+/// Counts of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Stats {
     /// Vertices of the mesh.
@@ -49,45 +50,46 @@ pub struct Stats {
     pub triangles: u64,
     /// Triangles left out because of a long edge.
     pub killed: u64,
-    /// Most vertices that were live at once.
+    /// The high-water mark of live vertices.
     pub width: u64,
     /// Levels that have lines.
     pub levels: u64,
     /// Lines, rings included.
     pub lines: u64,
-    /// Lines that are closed.
+    /// Closed lines.
     pub rings: u64,
-    /// Points of lines; that at which a ring begins and ends is one.
+    /// Points of lines; the point at which a ring starts and ends counts once.
     pub points: u64,
-    /// Lines that were left out because all of their points are one.
+    /// Lines left out because all of their points coincide.
     pub single_points: u64,
-    /// How many times a line was cut.
+    /// Number of cuts.
     pub cuts: u64,
-    /// Most points of lines that were held at once.
+    /// The high-water mark of points of open lines.
     pub open_points: u64,
-    /// Most ends of lines that were held at once.
+    /// The high-water mark of open ends.
     pub open_ends: u64,
     /// Bytes read.
     pub input_bytes: u64,
-    /// Least and greatest elevation, if there are vertices.
+    /// The least and the greatest elevation, if there are vertices.
     pub elevations: Option<[f64; 2]>,
 }
 
-/// Writes the contour lines of a triangle mesh with elevations; `progress` is told how many vertices are read.
+/// Writes the contour lines of a triangle mesh with elevations; calls `progress` with the number of vertices
+/// read.
 ///
-/// A vertex on a level counts as above it. So a line passes exactly two edges of a triangle or none, and lines end at the border of
-/// the mesh only. What is level and on a level has no line in it; there is one along it where the ground beyond is lower. Higher
-/// ground is on the left of a line.
+/// A vertex on a level counts as above it. So a line passes two edges of a triangle or none, and lines end
+/// only at the border of the mesh. A flat region on a level has no line inside; a line runs along it where
+/// the ground beyond is lower. Higher ground is on the left of a line.
 ///
-/// The lines are the same for any order of triangles, to the last bit, unless they are cut; their order is that in which they become
-/// complete. Coordinates are those of the world; of whole coordinates, they have two digits more than the step. Successive points
-/// that are equal are one.
+/// Unless lines are cut, each is the same for any order of triangles, bit for bit. Lines are written in the
+/// order in which they become complete. Coordinates are those of the world; integer coordinates get two
+/// digits more than their step. Successive equal points are merged.
 ///
-/// Memory: the vertices that are not final, and the lines that may still grow, 16 bytes for each point.
+/// Memory: the live vertices, and the open lines, 16 bytes for each point.
 ///
 /// # Errors
-/// If the input is no triangle mesh with elevations, is malformed or ends too early; if levels are too close to each other; if
-/// writing fails.
+/// If the input is not a triangle mesh with elevations, is malformed or truncated; if levels are too close to
+/// each other; if writing fails.
 pub fn contour<R: Read, W: Write>(
     reader: &mut StreamReader<R>,
     output: W,
@@ -107,7 +109,7 @@ pub fn contour<R: Read, W: Write>(
                 tracer.trace(&triangle).map_err(|error| reader.locate(error))?;
                 drain.write(&mut tracer.lines.complete)?;
             }
-            if tracer.lines.is_look_due() {
+            if tracer.lines.is_sweep_due() {
                 tracer.lines.finish_ended(|vertex| live.contains(vertex));
                 drain.write(&mut tracer.lines.complete)?;
             }
@@ -182,7 +184,7 @@ impl Tracer {
         }
     }
 
-    /// Adds what of lines is in a triangle.
+    /// Adds the pieces of all lines in a triangle.
     fn trace(&mut self, corners: &[Vertex; 3]) -> Result<()> {
         let places = corners.map(|corner| corner.at);
         if self.long_edges.are_in(places) {
@@ -196,15 +198,16 @@ impl Tracer {
         let count = levels.end().abs_diff(*levels.start()) + 1;
         if count > CONTOURS_PER_TRIANGLE_MAX {
             return Err(Error::usage(format!(
-                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} can: take a larger distance"
+                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} may: take a larger \
+                 distance"
             )));
         }
-        // One that is flat as seen from above goes on with lines like any other.
+        // A triangle that is degenerate in the plane still passes lines on, so only the error matters.
         is_counterclockwise(places, &mut self.predicates)?;
         levels.into_iter().try_for_each(|level| self.add(corners, level))
     }
 
-    /// Adds what of the line of a level is in a triangle.
+    /// Adds the piece of the line of a level in a triangle.
     fn add(&mut self, corners: &[Vertex; 3], level: i64) -> Result<()> {
         let piece = crossings::piece(corners, level);
         let edges = [piece.from, piece.to].map(|edge| crossings::ends(corners, edge));
@@ -217,7 +220,7 @@ impl Tracer {
     }
 }
 
-/// Writes lines that are complete, and counts them.
+/// Writes complete lines, and counts them.
 struct Drain<W> {
     writer: LineWriter<W>,
     levels: Levels,

@@ -1,4 +1,4 @@
-//! Lines that may still grow: pieces in triangles are joined where they meet.
+//! Open lines, which may still grow: pieces in triangles are joined where they meet.
 
 use std::collections::VecDeque;
 use std::collections::hash_map::Entry;
@@ -9,14 +9,14 @@ use super::crossings::Crossing;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
-/// What may be held beyond twice of what was left by the last look at what is complete: ends that wait and points.
+/// Sweep again when held > 2 x (held after the last sweep) + `SLACK`, in open ends and points.
 const SLACK: usize = 1 << 16;
 
-/// A line that nothing will be added to, or a part of one that was cut.
+/// A complete line, or a part of a line that was cut.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Contour {
     pub(super) level: i64,
-    /// Places; the first one of a ring is not repeated at its end.
+    /// Places. A ring does not repeat its first one at the end.
     pub(super) points: Vec<Point2>,
     pub(super) is_closed: bool,
 }
@@ -31,39 +31,38 @@ enum End {
 #[derive(Debug, Default)]
 struct Line {
     points: VecDeque<Point2>,
-    /// Where it may go on at its first and its last point, if it may.
+    /// The crossings where it may grow, at its first and its last point.
     ends: [Option<Crossing>; 2],
 }
 
-/// All lines that may still grow.
-///
-/// Cost: each piece takes constant time, and joining logarithmic time on average, because the shorter line is added to the longer one.
-///
-/// Memory: the points of these lines, and some 50 bytes for each end; lines that have ended are found when twice as much is held
-/// as after the last look at all ends.
+/// All open lines.
+/// Cost: amortised, constant time for each piece and logarithmic time for each point joined, because the
+/// shorter line is moved to the longer one.
+/// Memory: the points of these lines, and some 50 bytes for each end. Sweeps over all ends find lines that
+/// cannot grow; one is due when twice as much is held as after the last.
 #[derive(Debug)]
 pub(super) struct OpenLines {
     waiting: HashMap<Crossing, (usize, End)>,
     lines: Vec<Line>,
     free: Vec<usize>,
-    /// Lines with as many points are cut.
+    /// Lines with this many points are cut.
     points_limit: usize,
-    /// Points that are held.
+    /// Number of points held.
     points: usize,
-    /// Most points that were held.
+    /// The high-water mark of points.
     pub(super) points_max: usize,
-    /// Most ends that were waiting.
+    /// The high-water mark of open ends.
     pub(super) ends_max: usize,
-    /// How many times a line was cut.
+    /// Number of cuts.
     pub(super) cuts: u64,
-    /// What was held after the last look at what is complete.
-    left: usize,
-    /// What is complete and was not fetched.
+    /// Open ends and points held after the last sweep.
+    held_after_sweep: usize,
+    /// Complete lines that the caller has not taken yet.
     pub(super) complete: Vec<Contour>,
 }
 
 impl OpenLines {
-    /// No lines. Those with `points_limit` points, two at least, are cut.
+    /// No lines. Lines with `points_limit` points, at least two, will be cut.
     pub(super) fn new(points_limit: usize) -> OpenLines {
         OpenLines {
             waiting: HashMap::new(),
@@ -74,16 +73,17 @@ impl OpenLines {
             points_max: 0,
             ends_max: 0,
             cuts: 0,
-            left: 0,
+            held_after_sweep: 0,
             complete: Vec::new(),
         }
     }
 
-    /// Adds the piece of a line in a triangle, which leads from a crossing to another one of the same level; `place` says where these
-    /// are, the first (0) and the second (1).
+    /// Adds the piece of a line in a triangle, from one crossing to another of the same level; `place`
+    /// computes the place of the first (0) or the second (1).
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`], if another triangle has one of the edges on the same side; those of `place`.
+    /// [`spmesh_core::error::ErrorKind::Malformed`], if another triangle is on the same side of one of the
+    /// edges; those of `place`.
     pub(super) fn add(
         &mut self,
         [from, to]: [Crossing; 2],
@@ -119,7 +119,7 @@ impl OpenLines {
         self.points_max = self.points_max.max(self.points);
         self.ends_max = self.ends_max.max(self.waiting.len());
         if self.lines[line].ends == [None; 2] {
-            // What was between two cuts, or between a cut and the border.
+            // A line between two cuts, or between a cut and the border.
             self.finish(line, from.level, false);
         } else if self.lines[line].points.len() >= self.points_limit {
             self.cut(line, from.level);
@@ -127,16 +127,16 @@ impl OpenLines {
         Ok(())
     }
 
-    /// Whether so much is held that [`OpenLines::finish_ended`] is worth its time.
-    pub(super) fn is_look_due(&self) -> bool {
-        self.waiting.len() + self.points > 2 * self.left + SLACK
+    /// Whether enough is held to make [`OpenLines::finish_ended`] worth its time.
+    pub(super) fn is_sweep_due(&self) -> bool {
+        self.waiting.len() + self.points > 2 * self.held_after_sweep + SLACK
     }
 
-    /// Completes lines that end at edges that no later triangle has: one of their vertices is not live.
+    /// Completes lines whose ends no later triangle can meet, because a vertex of the edge is not live.
     pub(super) fn finish_ended(&mut self, is_live: impl Fn(u64) -> bool) {
         let is_over = |crossing: &&Crossing| !crossing.edge.iter().all(|&vertex| is_live(vertex));
         let mut over: Vec<Crossing> = self.waiting.keys().filter(is_over).copied().collect();
-        // The table has its own order, which is another one each time.
+        // The order of the table varies from run to run.
         over.sort_unstable();
         for crossing in over {
             let Some((line, end)) = self.waiting.remove(&crossing) else { continue };
@@ -145,10 +145,10 @@ impl OpenLines {
                 self.finish(line, crossing.level, false);
             }
         }
-        self.left = self.waiting.len() + self.points;
+        self.held_after_sweep = self.waiting.len() + self.points;
     }
 
-    /// The line that has this end at a crossing; it waits there no more.
+    /// Takes the line that waits with this end at a crossing.
     fn take(&mut self, crossing: Crossing, end: End) -> Result<Option<usize>> {
         match self.waiting.entry(crossing) {
             Entry::Vacant(_) => Ok(None),
@@ -166,7 +166,7 @@ impl OpenLines {
         }
     }
 
-    /// Has a line wait for a piece that goes on there.
+    /// Registers that a line waits at a crossing for its next piece.
     fn wait(&mut self, line: usize, end: End, crossing: Crossing) {
         self.lines[line].ends[end as usize] = Some(crossing);
         self.waiting.insert(crossing, (line, end));
@@ -190,7 +190,7 @@ impl OpenLines {
         std::mem::take(&mut self.lines[line])
     }
 
-    /// Makes one line of two of which the second begins where the first ends in the triangle; the shorter one is moved.
+    /// Joins two lines; the second one starts where the first one ends. Moves the shorter one.
     fn join(&mut self, before: usize, after: usize) -> usize {
         let is_first_longer = self.lines[before].points.len() >= self.lines[after].points.len();
         let (kept, moved, end) = if is_first_longer {
@@ -209,7 +209,7 @@ impl OpenLines {
         kept
     }
 
-    /// Completes what there is of a line. What comes at its ends goes on with the points there.
+    /// Completes a line as it is. Pieces that come at its ends start new lines from the points there.
     fn cut(&mut self, line: usize, level: i64) {
         let Line { points, ends } = self.remove(line);
         let corners = [points.front().copied(), points.back().copied()];
@@ -230,7 +230,7 @@ impl OpenLines {
     fn finish(&mut self, line: usize, level: i64, is_closed: bool) {
         let Line { points, .. } = self.remove(line);
         self.points -= points.len();
-        // A single point is what was left of a line that was cut: it is in the other part.
+        // A single point is left over from a cut, and already in the other part.
         if points.len() > 1 {
             self.complete.push(Contour { level, points: points.into(), is_closed });
         }

@@ -1,30 +1,30 @@
-//! Where lines pass edges.
+//! The places where lines pass edges.
 
 use super::decimals::Decimals;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use spmesh_stream::Coordinates;
 
-/// Digits of a place beyond those of the step of whole coordinates.
+/// Digits of a place beyond those of the step of integer coordinates.
 const DIGITS: i32 = 2;
 
-/// Parts of a step that these digits tell apart.
+/// The parts of a step that these digits distinguish.
 const PARTS: f64 = 100.0;
 
-/// A vertex of the mesh, as lines see it.
+/// A vertex of the mesh with its rank.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex {
     pub(super) id: u64,
-    /// In stored coordinates.
+    /// Its place in stored coordinates.
     pub(super) at: Point2,
-    /// In the world.
+    /// Its elevation in the world.
     pub(super) elevation: f64,
-    /// The highest level that is not above it.
+    /// The highest level at or below it.
     pub(super) rank: i64,
 }
 
-/// The plane that places of lines are in: hundredths of the step of whole coordinates, in which places are whole numbers, and the
-/// world itself, if coordinates are not whole.
+/// The plane of the places of lines. For integer coordinates, places are integers in hundredths of the step;
+/// otherwise they are world coordinates.
 #[derive(Debug)]
 pub(super) struct Plane {
     grid: Option<[Decimals; 2]>,
@@ -41,13 +41,13 @@ impl Plane {
         Plane { grid }
     }
 
-    /// Where an edge has an elevation. It depends on the ends and not on which of them comes first; along the edge, places of
-    /// higher levels are not nearer to the lower end.
+    /// The place on an edge with an elevation. It does not depend on the order of the ends, and is monotone
+    /// in the elevation.
     ///
     /// Domain: the elevation is between those of the ends, which differ.
     ///
     /// # Errors
-    /// Usage, if differences are out of the range of numbers.
+    /// Usage, if differences overflow.
     pub(super) fn place(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         let [p, q] = if (p.at, p.elevation) < (q.at, q.elevation) { [p, q] } else { [q, p] };
         let at = if elevation == p.elevation {
@@ -56,7 +56,7 @@ impl Plane {
             q.at
         } else {
             let height = q.elevation - p.elevation;
-            // What is divided by infinity would be none of the way.
+            // A quotient by infinity would be zero.
             let share = if height.is_finite() { (elevation - p.elevation) / height } else { f64::NAN };
             [0, 1].map(|axis| between(p.at[axis], q.at[axis], share))
         };
@@ -76,14 +76,14 @@ impl Plane {
     }
 }
 
-/// Part of the way from one number to another, which it does not leave. Each step of the computation keeps the order of shares. Not a
-/// number, if the difference is out of the range of numbers.
+/// Interpolates between two numbers; the result stays between them and is monotone in the share. NaN if the
+/// difference overflows.
 fn between(from: f64, to: f64, share: f64) -> f64 {
     let value = from + share * (to - from);
     if value.is_finite() && share.is_finite() { value.clamp(from.min(to), from.max(to)) } else { f64::NAN }
 }
 
-/// World elevations of stored ones.
+/// The map from stored to world elevations.
 #[derive(Debug)]
 pub(super) struct Elevations {
     grid: Option<Decimals>,
@@ -98,7 +98,8 @@ impl Elevations {
         Elevations { grid }
     }
 
-    /// The elevation of a stored one: 30 steps of 0.01 are 0.3, and so on the level of this elevation.
+    /// The world elevation of a stored one. 30 steps of 0.01 are exactly the f64 0.3, and so on the level
+    /// 0.3.
     pub(super) fn to_world(&self, stored: f64) -> f64 {
         self.grid.map_or(stored, |grid| grid.at(stored as i64))
     }
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_coordinates_have_two_more_digits() {
+    fn integer_coordinates_have_two_more_digits() {
         let coordinates = Coordinates::I32 { scale: [0.01, 0.01, 0.1], offset: [500_000.0, -3.5, 0.0] };
         let plane = Plane::new(&coordinates);
         let place = plane.place(&vertex([0.0, 1.0], 0.0), &vertex([1.0, 2.0], 3.0), 1.0).unwrap();

@@ -1,4 +1,4 @@
-//! Where the centres of columns, or of rows, are, in the coordinates that vertices are stored in.
+//! The centres of columns, or of rows, in stored coordinates.
 
 use std::ops::Range;
 
@@ -7,12 +7,12 @@ use super::search::first;
 /// Half a unit in the last place of one.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// The centres of cells along one axis: abscissae of columns, which grow, or ordinates of rows, which fall.
+/// The centres of cells along one axis: increasing abscissae of columns, or decreasing ordinates of rows.
 ///
-/// A centre is brought from the world to stored coordinates once, and rounded; then it is a point of the axis as any other, and
-/// vertices stay as they are. Centres never turn back, because no step of their computation does. Back from a coordinate to the
-/// *place* among centres, a number that is not whole, there is a formula with a bound for its error: where a place is farther than
-/// that from whole numbers, it tells what is exactly so.
+/// A centre is converted from the world to stored coordinates once, and rounded. From then on it is an exact
+/// point, like a vertex. Centres are monotone, because each step of their computation is. The inverse formula
+/// maps a coordinate to its *place* among the centres, a real number, with an error bound. Where a place is
+/// farther than the bound from all integers, its comparison with the centres is exact.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis {
     first_side: f64,
@@ -20,25 +20,25 @@ pub(super) struct Axis {
     scale: f64,
     offset: f64,
     pub(super) count: u32,
-    /// Places by unit of the stored coordinate, and the place of its zero.
+    /// Places per unit of the stored coordinate, and the place of coordinate zero.
     slope: f64,
     zero: f64,
-    /// What is in the error of all places.
+    /// The part of the error bound that all places share.
     world: f64,
 }
 
-/// A number that is not known exactly.
+/// A computed number with an error bound.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    /// What was computed.
+    /// The computed value.
     pub(super) near: f64,
-    /// How far it is off, at most.
+    /// The error bound.
     pub(super) error: f64,
 }
 
 impl Axis {
-    /// `count` cells with sides of a length `step` (below zero, if coordinates fall) from `first_side` on, in the world; stored
-    /// coordinates times `scale` plus `offset` are those of the world.
+    /// `count` cells of length `step` from `first_side` on, in the world; the step is negative if coordinates
+    /// decrease. World coordinates are stored ones times `scale` plus `offset`.
     pub(super) fn new(first_side: f64, step: f64, count: u32, scale: f64, offset: f64) -> Axis {
         let (slope, zero) = (scale / step, (offset - first_side) / step - 0.5);
         let world = (first_side.abs() + offset.abs()) / step.abs() + f64::from(count);
@@ -53,23 +53,24 @@ impl Axis {
 
     /// The place of a stored coordinate.
     ///
-    /// Error: with u = 2^-53, the slope is off by u, products and sums by u each: below 3u of the product. The place of zero is
-    /// off by 3u (|offset| + |first side|) / step + u. A centre itself is off by at most 2u (count + |first side| / step) + u (its
-    /// place in the world) for sums and products in the world, and by 2u of itself for difference and quotient; its place in the
-    /// world is below |first side| / step + count. All that is below the bound, which has room for its own rounding.
+    /// Error: let u = 2^-53. The slope has a relative error of u, as has each product and sum; together below
+    /// 3u of the product. The place of zero has an error of 3u (|offset| + |first side|) / step + u. The
+    /// centre itself has an error of at most 2u (count + |first side| / step) + u from sums and products in
+    /// the world, and 2u of itself from the difference and the quotient; its place in the world is below
+    /// |first side| / step + count. The bound covers all of this and its own rounding.
     #[inline]
     pub(super) fn place(&self, x: f64) -> Place {
         let product = x * self.slope;
         Place { near: product + self.zero, error: 16.0 * ROUNDING * (product.abs() + self.world + 1.0) }
     }
 
-    /// Places by unit of the stored coordinate.
+    /// Places per unit of the stored coordinate.
     #[inline]
     pub(super) fn slope(&self) -> f64 {
         self.slope
     }
 
-    /// The cells with centres from one coordinate to another, both included.
+    /// The cells with centres in the closed interval between two coordinates.
     #[inline]
     pub(super) fn cells(&self, from: f64, to: f64) -> Range<u32> {
         if self.step > 0.0 {
@@ -83,7 +84,8 @@ impl Axis {
         }
     }
 
-    /// The first cell for which `holds`, which holds for all after a place.
+    /// The first cell for which `holds` is true; it is true for all cells after the place, and for none
+    /// before.
     #[inline]
     fn first_from(&self, place: Place, holds: impl FnMut(u32) -> bool) -> u32 {
         place.first_cell(0..self.count).unwrap_or_else(|| first(0..self.count, place.near, holds))
@@ -91,17 +93,18 @@ impl Axis {
 }
 
 impl Place {
-    /// The first cell of a range that is after this place, or its end; nothing, if a cell is too near to tell.
+    /// The first cell of a range after this place, or the end of the range; `None` if a cell is within the
+    /// error bound.
     #[inline]
     pub(super) fn first_cell(&self, cells: Range<u32>) -> Option<u32> {
         let (low, high) = (self.near - self.error, self.near + self.error);
-        // Rounded up, which processors without an instruction for it do slowly.
+        // f64::ceil is slow on processors without an instruction for it.
         let up = |place: f64| {
             let below = place.min(f64::from(cells.end)) as u32;
             below + u32::from(f64::from(below) < place.min(f64::from(cells.end)))
         };
         let cell = up(low);
-        // What is not a number is not less.
+        // NaN fails the first comparison.
         let is_certain = low <= high && cell == up(high);
         is_certain.then(|| cell.max(cells.start))
     }
@@ -111,7 +114,7 @@ impl Place {
 mod tests {
     use super::*;
 
-    /// Cells by a search that looks at each one.
+    /// The cells, by a linear search.
     fn slow(axis: &Axis, from: f64, to: f64) -> Vec<u32> {
         (0..axis.count).filter(|&cell| (from..=to).contains(&axis.at(cell))).collect()
     }

@@ -1,11 +1,12 @@
-//! Where the centres of cells are, in the coordinates that vertices are stored in.
+//! The centres of cells in stored coordinates.
 
 use super::axis::Axis;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::Grid;
 use spmesh_stream::Coordinates;
 
-/// The centres of the cells of a grid, in stored coordinates: triangles that cover the plane cover each centre, whatever the rounding.
+/// The centres of the cells of a grid, in stored coordinates. Each is an exact point after one rounding, so
+/// triangles that cover the plane cover each centre.
 #[derive(Debug)]
 pub(super) struct Centers {
     pub(super) columns: Axis,
@@ -27,7 +28,7 @@ impl Centers {
         }
     }
 
-    /// A gradient by stored coordinates, by those of the world.
+    /// Converts a gradient from stored to world coordinates.
     pub(super) fn gradient_to_world(&self, gradient: Point2) -> Point2 {
         [0, 1].map(|axis| gradient[axis] / self.scale[axis])
     }

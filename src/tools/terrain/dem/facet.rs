@@ -1,19 +1,19 @@
 //! The plane of a triangle.
 
-use super::out_of_range;
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::{Point2, area};
 use spmesh_model::bounds::Point;
 
-/// From this part of the sum of its two products on, the determinant of a triangle makes its gradient good to 2^-30 of its
-/// differences in elevation; flatter triangles are interpolated by areas, which are accurate whatever they are like.
+/// If the determinant of a triangle is at least this part of the sum of its two products, its gradient is
+/// accurate to 2^-30 of its differences in elevation. Thinner triangles are interpolated by areas, which are
+/// always accurate.
 const BROAD: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// A triangle with elevations: coordinates are stored ones, elevations those of the world.
+/// A triangle with stored coordinates and elevations of the world.
 #[derive(Debug)]
 pub(super) struct Facet {
     corners: [Point; 3],
-    /// By stored coordinates; not a number, if these are out of the range of numbers.
+    /// By stored coordinates; NaN if these overflow.
     pub(super) gradient: Point2,
     is_broad: bool,
     lowest: f64,
@@ -34,10 +34,10 @@ impl Facet {
         let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
         let products = [u[0] * v[1], u[1] * v[0]];
         let determinant = Some(2.0 * area(place(a), place(b), place(c)));
-        // Where products of coordinates are out of the range of numbers, nothing is known.
+        // Where products of coordinates overflow, nothing is known.
         let determinant = determinant.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(f64::NAN);
         let gradient = [(u[2] * v[1] - u[1] * v[2]) / determinant, (u[0] * v[2] - u[2] * v[0]) / determinant];
-        // How far elevations may be from that of the first corner, along each axis.
+        // The greatest difference from the elevation of the first corner, along each axis.
         let rise = [0, 1].map(|axis| gradient[axis] * u[axis].abs().max(v[axis].abs()));
         let is_broad = determinant >= BROAD * (products[0].abs() + products[1].abs())
             && rise.iter().all(|rise| rise.is_finite());
@@ -50,10 +50,10 @@ impl Facet {
         }
     }
 
-    /// The elevations at places in the closed triangle, of one ordinate: between those of its corners.
+    /// The elevations at places of one ordinate in the closed triangle, clamped to those of its corners.
     ///
     /// # Errors
-    /// Usage, if coordinates are out of the range of numbers.
+    /// Usage, if coordinates overflow.
     #[inline]
     pub(super) fn row(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) -> Result<()> {
         if !self.is_broad {
@@ -80,7 +80,7 @@ impl Facet {
         Ok(())
     }
 
-    /// The elevation by areas of the triangles between a place and edges.
+    /// The elevation by the areas of the triangles between a place and the edges.
     fn by_areas(&self, at: Point2) -> f64 {
         let [a, b, c] = self.corners;
         let [p, q, r] = [a, b, c].map(place);
@@ -88,6 +88,11 @@ impl Facet {
         let sum = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2];
         sum / (shares[0] + shares[1] + shares[2])
     }
+}
+
+/// The error of coordinates that are too large or too small to interpolate.
+pub(super) fn out_of_range() -> Error {
+    Error::usage("coordinates are too great or too small to interpolate between: shift and scale them")
 }
 
 #[cfg(test)]

@@ -1,16 +1,16 @@
-//! Cells without data get what is around them.
+//! Fills cells without data from data around them.
 
-use super::canvas::TilePlace;
+use super::tile_cache::TilePlace;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::TILE;
 
-/// Farthest that cells may be filled from: so that a tile needs no more than those next to it.
+/// The greatest reach. It keeps the data for a tile within the adjacent tiles.
 pub(super) const REACH_MAX: u32 = TILE as u32;
 
-/// Fills cells of a tile from the nearest data in eight directions, no farther than a reach in cells, weighted by the inverse of
-/// distances.
+/// Fills cells of a tile from the nearest data in eight directions within a reach, weighted by inverse
+/// distance.
 ///
-/// What is filled does not count as data for other cells, so that the order of tiles does not matter.
+/// Filled cells do not count as data for others, so that the order of tiles does not matter.
 pub(super) struct Filler {
     reach: usize,
     /// Cells along a side of the window: a tile, and a margin of the reach.
@@ -25,14 +25,14 @@ pub(super) struct Filler {
 #[derive(Clone, Copy)]
 struct Seen {
     value: f32,
-    /// Steps back to it.
+    /// The number of steps to it.
     steps: u32,
 }
 
 const NOTHING: Seen = Seen { value: f32::NAN, steps: 0 };
 
 impl Filler {
-    /// For a reach in cells.
+    /// A filler with a reach in cells.
     ///
     /// # Errors
     /// Usage, if it is zero or greater than a tile.
@@ -53,8 +53,8 @@ impl Filler {
         })
     }
 
-    /// Fills cells of the tile at a place; `read` gives tiles as they were drawn, and false for those of which nothing is known.
-    /// False, if there are no data near.
+    /// Fills cells of a tile; `read` reads tiles as drawn, and returns false for blank ones. Returns false if
+    /// no data are near.
     ///
     /// # Errors
     /// Those of `read`.
@@ -79,9 +79,9 @@ impl Filler {
         Ok(has_data)
     }
 
-    /// Puts what is within reach of a tile into the window; `at` is 1, 1 for the tile itself.
+    /// Copies the part of a tile within reach into the window; `at` is 1, 1 for the tile to fill.
     fn place(&mut self, at: [usize; 2]) {
-        // Cells of the neighbour from a place on, that place in the window, and how many.
+        // The first cell in the neighbour, its place in the window, and the number of cells.
         let part = |at: usize| match at {
             0 => (TILE - self.reach, 0, self.reach),
             1 => (0, self.reach, TILE),
@@ -97,7 +97,7 @@ impl Filler {
     fn interpolate(&mut self, values: &mut [f32]) {
         self.sums.fill([0.0; 2]);
         self.sweep();
-        // The other four directions are the first four of a window that is turned by half a turn.
+        // The other four directions are the first four in the window rotated by 180 degrees.
         self.window.reverse();
         self.sums.reverse();
         self.sweep();
@@ -111,7 +111,7 @@ impl Filler {
         }
     }
 
-    /// Adds what cells see in a row to their left, and in three directions above.
+    /// Adds the nearest data to the left of each cell, and in three directions above it.
     fn sweep(&mut self) {
         let side = self.side;
         let mut above = [vec![NOTHING; side], vec![NOTHING; side], vec![NOTHING; side]];
@@ -120,7 +120,7 @@ impl Filler {
             let mut left = NOTHING;
             for (column, &value) in row.iter().enumerate() {
                 let upper = |shift: usize, seen: &[Seen]| {
-                    // Shifts are 0, 1 and 2 for above on the left, above, and above on the right.
+                    // Shifts 0, 1 and 2 are above on the left, above, and above on the right.
                     (column + shift).checked_sub(1).and_then(|at| seen.get(at)).copied().unwrap_or(NOTHING)
                 };
                 let seen = [left, upper(0, &above[0]), upper(1, &above[1]), upper(2, &above[2])];
@@ -144,14 +144,14 @@ impl Filler {
     }
 }
 
-/// A tile and those next to it, of so many in a row and in a column.
+/// A tile and its neighbours in a grid of `tiles[0]` by `tiles[1]` tiles.
 pub(super) fn around([column, row]: TilePlace, tiles: [usize; 2]) -> impl Iterator<Item = TilePlace> {
     let columns = column.saturating_sub(1)..(column + 2).min(tiles[0]);
     let rows = row.saturating_sub(1)..(row + 2).min(tiles[1]);
     rows.flat_map(move |y| columns.clone().map(move |x| [x, y]))
 }
 
-/// Adds data that are seen, if they are within reach.
+/// Adds the nearest data of one direction, if they are within reach.
 fn add([sum, weights]: &mut [f64; 2], seen: Seen, length: f64, reach: usize) {
     let distance = f64::from(seen.steps) * length;
     if !seen.value.is_nan() && distance <= reach as f64 {

@@ -1,18 +1,18 @@
-//! Searching for the place from which something holds.
+//! Search for the first index at which a monotone predicate holds.
 
 use std::ops::Range;
 
-/// The first number of a range for which `holds`, which holds for all after one for which it does; the end, if it holds for none.
+/// The first index of a range at which a monotone predicate holds; the end of the range if it holds nowhere.
 ///
-/// Cost: two calls if the guess is right, logarithmic in how far it is off otherwise; one that is not a number does no harm.
+/// Cost: two calls if the guess is right; otherwise logarithmic in its error. The guess may be NaN.
 #[inline]
 pub(super) fn first(range: Range<u32>, guess: f64, mut holds: impl FnMut(u32) -> bool) -> u32 {
     let Range { mut start, mut end } = range;
-    // Rounded up: conversions take what is not a number for zero, and stay in range.
+    // Rounded up. The conversion turns NaN into zero, and saturates.
     let below = guess as u32;
     let (mut probe, mut stride) = (f64::from(below) + if f64::from(below) < guess { 1.0 } else { 0.0 }, 1.0);
     while start < end {
-        // Beyond the ends the guess says nothing any more: the middle does.
+        // Where the probe leaves the range, bisection takes over.
         let last = end - 1;
         let at = if stride == 1.0 {
             (probe as u32).clamp(start, last)

@@ -1,4 +1,4 @@
-//! Which cells of a row have their centres in a triangle.
+//! The cells of a row with centres in a triangle.
 
 use std::ops::Range;
 
@@ -9,19 +9,20 @@ use spmesh_geometry::predicates::{Point2, Predicates2, Sign};
 /// Half a unit in the last place of one.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// The cells of a row with centres in a closed triangle; the first ones belong to it.
+/// The cells of a row with centres in a closed triangle. The first of them belong to the triangle.
 ///
-/// A centre that is on an edge or a vertex belongs to the triangle that it would be in if it moved to the right by an infinitesimal,
-/// and up by a much smaller one. There is at most one such triangle, and none only where that way leads out of the mesh.
+/// A centre on an edge or a vertex belongs to the triangle that it would be in after an infinitesimal move to
+/// the right and a much smaller one up. There is at most one such triangle; there is none only where the move
+/// leads out of the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Span {
     /// All cells.
     pub(super) cells: Range<u32>,
-    /// From here on, centres are on the border of the triangle and belong to another one, or to none.
+    /// From here on, centres are on the border of the triangle and belong to another triangle, or to none.
     pub(super) owned_end: u32,
 }
 
-/// The edges of a triangle, with what all rows need to know of them.
+/// The edges of a triangle, prepared for all rows.
 #[derive(Debug)]
 pub(super) struct Edges([Edge; 3]);
 
@@ -29,13 +30,13 @@ pub(super) struct Edges([Edge; 3]);
 struct Edge {
     from: Point2,
     to: Point2,
-    /// The place of its start among columns, and by how much that changes by unit of the ordinate.
+    /// The place of its start among columns, and the change of place per unit of the ordinate.
     start: Place,
     slope: f64,
 }
 
 impl Edges {
-    /// Those of a triangle.
+    /// The edges of a triangle.
     ///
     /// Domain: corners counterclockwise.
     #[inline]
@@ -50,7 +51,7 @@ impl Edges {
 
     /// The cells of a row among `within`; `y` is the ordinate of its centres.
     ///
-    /// Domain: the row not above or below all corners, and no column of its cells beside all of them.
+    /// Domain: the row is within the ordinates of the corners, and `within` is inside their columns.
     #[inline]
     pub(super) fn span(
         &self,
@@ -70,10 +71,11 @@ impl Edges {
 }
 
 impl Edge {
-    /// Where the line of the edge meets a row.
+    /// The place where the line of the edge meets a row.
     ///
-    /// Error: differences of ordinates and abscissae are off by u = 2^-53 of themselves, their quotient by 3u, the product with the
-    /// slope of the axis, which is off by u, by 5u, and the distance from the start by 7u, plus u of the sum.
+    /// Error: let u = 2^-53. Differences of ordinates and abscissae have a relative error of u, their
+    /// quotient of 3u, its product with the slope of the axis, itself of error u, of 5u, and the distance
+    /// from the start of 7u, plus u of the sum.
     #[inline]
     fn place(&self, y: f64) -> Place {
         let distance = (y - self.from[1]) * self.slope;
@@ -83,12 +85,13 @@ impl Edge {
 }
 
 impl Span {
-    /// Leaves what is on the left of an edge, or on it. The interior is on the left: on the right side of edges that fall.
+    /// Keeps the cells on the left of an edge, or on it. The interior is on the left; a falling edge has
+    /// larger abscissae there.
     #[inline]
     fn cut(&mut self, edge: &Edge, y: f64, columns: &Axis, predicates: &mut impl Predicates2) {
         let Edge { from, to, .. } = *edge;
         if from[1] == to[1] {
-            // Between its ends, an upper edge has nothing above that would belong to the triangle.
+            // A centre on an upper edge would move up and out of the triangle.
             if from[0] > to[0] && y == from[1] {
                 self.owned_end = 0;
             }
@@ -97,7 +100,7 @@ impl Span {
         let falls = from[1] > to[1];
         let [low, high] = if falls { [to[1], from[1]] } else { [from[1], to[1]] };
         if y < low || y > high || self.cells.is_empty() {
-            // In a row that an edge does not meet, others bound the triangle.
+            // The edge does not meet the row; others bound the triangle there.
             return;
         }
         let place = edge.place(y);

@@ -1,25 +1,25 @@
-//! The cells of a tile while triangles arrive.
+//! A tile of cells while triangles arrive.
 
 use std::ops::Range;
 
 use spmesh_core::error::Error;
 use spmesh_io::raster::TILE;
 
-/// Number of cells of a tile, those beyond the grid included.
+/// Number of cells of a tile, including those beyond the grid.
 pub(super) const CELLS: usize = TILE * TILE;
 
-/// Bits of a word of a set.
+/// Bits of a word of the bit set.
 const WORD: usize = u64::BITS as usize;
 /// Words of a row.
 const WORDS: usize = TILE / WORD;
 
-/// Values of cells, row by row, and which of them belong to triangles that have arrived.
+/// The values of cells, row by row, and the set of cells that belong to triangles so far.
 ///
-/// Others may have a value, too: their centres are on the border of a triangle. If no triangle that they belong to arrives, they are
-/// on the border of the mesh, and keep it.
+/// Other cells may have a value, too: their centres are on the border of a triangle. If no triangle arrives
+/// that they belong to, they are on the border of the mesh, and keep it.
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
-    /// NaN where nothing is known.
+    /// NaN for cells without data.
     pub(super) values: Vec<f32>,
     /// A bit for each cell.
     owned: Vec<u64>,
@@ -28,17 +28,17 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Bytes of its values.
+    /// Length of the values. Units: bytes.
     pub(super) const VALUES_LEN: u64 = (CELLS * size_of::<f32>()) as u64;
-    /// Bytes of a tile.
+    /// Length of a tile. Units: bytes.
     pub(super) const LEN: u64 = Tile::VALUES_LEN + CELLS as u64 / 8;
 
-    /// A tile of which nothing is known.
+    /// A blank tile.
     pub(super) fn new() -> Tile {
         Tile { values: vec![f32::NAN; CELLS], owned: vec![0; CELLS / WORD], owned_count: 0 }
     }
 
-    /// Forgets all.
+    /// Blanks the tile.
     pub(super) fn clear(&mut self) {
         self.values.fill(f32::NAN);
         self.owned.fill(0);
@@ -50,19 +50,19 @@ impl Tile {
         self.owned_count
     }
 
-    /// All of it, as bytes of this process: values, and bits of cells.
+    /// The tile as bytes in native order: the values, and the bit set.
     pub(super) fn bytes(&self) -> [&[u8]; 2] {
         [bytemuck::cast_slice(&self.values), bytemuck::cast_slice(&self.owned)]
     }
 
-    /// Becomes what `fill` puts into the bytes of a tile.
+    /// Replaces the tile with the bytes that `fill` writes.
     pub(super) fn fill<E>(&mut self, fill: impl FnOnce([&mut [u8]; 2]) -> Result<(), E>) -> Result<(), E> {
         fill([bytemuck::cast_slice_mut(&mut self.values), bytemuck::cast_slice_mut(&mut self.owned)])?;
         self.owned_count = self.owned.iter().map(|word| word.count_ones()).sum();
         Ok(())
     }
 
-    /// Gives cells of a row to the triangle that they belong to; their values, to be written.
+    /// Marks cells of a row as owned by a triangle, and returns their values for it to set.
     ///
     /// # Errors
     /// If one of them belongs to another triangle.
@@ -83,8 +83,8 @@ impl Tile {
         Ok(&mut self.values[row * TILE..][cells])
     }
 
-    /// Gives a cell a value for the case that it belongs to no triangle: of several ones the least, so that their order does not
-    /// matter.
+    /// Gives a cell a value in case no triangle owns it. Of several values the least counts, so that their
+    /// order does not matter.
     #[inline]
     pub(super) fn touch(&mut self, row: usize, column: usize, value: f32) {
         if self.owned[row * WORDS + column / WORD] & (1 << (column % WORD)) == 0 {
@@ -94,7 +94,7 @@ impl Tile {
     }
 }
 
-/// What is wrong if a cell belongs to two triangles.
+/// The error of a cell that belongs to two triangles.
 pub(super) fn overlap() -> Error {
-    Error::malformed("triangles overlap: this is no mesh in the plane, and a cell would have two values")
+    Error::malformed("triangles overlap: this is not a mesh in the plane, and a cell would have two values")
 }

@@ -1,18 +1,18 @@
-//! What triangles and points look like.
+//! The values and colours of triangles and points.
 
 use super::canvas::Paint;
-use super::ramp::{self, BATLOW, Colour, Ramp, VIK, VIRIDIS};
+use super::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
+use super::options::{Fill, Options, When};
 use super::sheet::Legend;
-use super::{Fill, Options, When};
 use spmesh_io::raster::Light;
 use spmesh_model::bounds::Point;
 
-/// Of triangles and points that show nothing.
+/// The colour of triangles that show nothing.
 const BARE: Colour = [255; 3];
 
-/// How numbers become colours.
+/// What triangles and points show.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct Style {
     fill: Option<Fill>,
     edges: When,
     light: Light,
@@ -20,29 +20,30 @@ pub(super) struct Look {
     middle: Option<f64>,
     /// Whether vertices have elevations.
     has_elevation: bool,
-    /// What is counted, in the plural.
+    /// The plural of the counted items.
     unit: &'static str,
 }
 
-/// What numbers mean when the range of them is known.
+/// The map from values to colours, when the range of values is known.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Colours {
     fill: Fill,
-    ramp: &'static Ramp,
+    colour_map: &'static ColourMap,
     range: [f64; 2],
-    /// How bright level ground is.
+    /// The brightness of level ground.
     level: f64,
     has_middle: bool,
     unit: &'static str,
 }
 
-impl Look {
-    pub(super) fn of(options: &Options, has_elevation: bool, unit: &'static str) -> Look {
+impl Style {
+    pub(super) fn of(options: &Options, has_elevation: bool, unit: &'static str) -> Style {
         let Options { fill, edges, light, range, middle, .. } = *options;
-        Look { fill, edges, light, range, middle, has_elevation, unit }
+        Style { fill, edges, light, range, middle, has_elevation, unit }
     }
 
-    /// What triangles show: their relief, if they have one; otherwise their edges, if these can be seen.
+    /// What triangles show. By default, the relief if they have elevations; otherwise nothing but edges, or
+    /// the time where painted triangles are too many for edges.
     pub(super) fn fill(&self, is_painted: bool) -> Fill {
         let flat = if is_painted { Fill::Time } else { Fill::None };
         self.fill.unwrap_or(if self.has_elevation { Fill::Relief } else { flat })
@@ -62,7 +63,8 @@ impl Look {
         }
     }
 
-    /// What a triangle is painted with: the triangle of a number in the stream, of corners in the world.
+    /// The values and brightness of a triangle with corners in the world; `number` is the number of triangles
+    /// before it.
     pub(super) fn paint(&self, fill: Fill, corners: &[Point; 3], number: u64) -> Paint {
         let values = match fill {
             Fill::Elevation | Fill::Relief => corners.map(|corner| corner[2]),
@@ -70,11 +72,11 @@ impl Look {
             Fill::Hillshade | Fill::None => [0.0; 3],
         };
         let is_lit = matches!(fill, Fill::Hillshade | Fill::Relief);
-        let shade = if is_lit { ramp::shade(&self.light, gradient(corners)) } else { 1.0 };
+        let shade = if is_lit { colour_map::shade(&self.light, gradient(corners)) } else { 1.0 };
         Paint { values, shade: shade as f32 }
     }
 
-    /// What a point shows.
+    /// The value of a point; `number` is the number of points before it.
     pub(super) fn value(&self, fill: Fill, at: Point, number: u64) -> f64 {
         match fill {
             Fill::Elevation => at[2],
@@ -82,11 +84,11 @@ impl Look {
         }
     }
 
-    /// Colours for elevations of a range, after so many triangles or points.
+    /// The colours of a range of elevations, or of times up to `count`.
     pub(super) fn colours(&self, fill: Fill, elevations: [f64; 2], count: u64) -> Colours {
         let elevations = self.range.unwrap_or(elevations);
         let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief);
-        let (ramp, range) = match self.middle {
+        let (colour_map, range) = match self.middle {
             _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64]),
             None => (&BATLOW, elevations),
             Some(middle) => {
@@ -95,23 +97,23 @@ impl Look {
                 (&VIK, [middle - reach, middle + reach])
             }
         };
-        let level = ramp::shade(&self.light, [0.0; 2]).clamp(0.05, 0.95);
-        Colours { fill, ramp, range, level, has_middle: self.middle.is_some(), unit: self.unit }
+        let level = colour_map::shade(&self.light, [0.0; 2]).clamp(0.05, 0.95);
+        Colours { fill, colour_map, range, level, has_middle: self.middle.is_some(), unit: self.unit }
     }
 }
 
 impl Colours {
-    /// The colour of a number on a surface of some shade.
+    /// The colour of a value on a surface of some brightness.
     pub(super) fn of(&self, value: f64, shade: f64) -> Colour {
         match self.fill {
             Fill::None => BARE,
-            Fill::Hillshade => ramp::grey(shade),
-            Fill::Elevation | Fill::Time => self.ramp.at(self.part(value)),
-            Fill::Relief => ramp::lit(self.ramp.at(self.part(value)), shade, self.level),
+            Fill::Hillshade => colour_map::grey(shade),
+            Fill::Elevation | Fill::Time => self.colour_map.at(self.part(value)),
+            Fill::Relief => colour_map::lit(self.colour_map.at(self.part(value)), shade, self.level),
         }
     }
 
-    /// What the colours mean.
+    /// The legend of the colours, if they show values.
     pub(super) fn legend(&self) -> Option<Legend> {
         let label = match self.fill {
             Fill::None | Fill::Hillshade => return None,
@@ -122,10 +124,11 @@ impl Colours {
             Fill::Elevation | Fill::Relief => "Elevation".to_string(),
         };
         let is_count = self.fill == Fill::Time;
-        Some(Legend { label, ramp: self.ramp, range: self.range, is_count })
+        Some(Legend { label, colour_map: self.colour_map, range: self.range, is_count })
     }
 
-    /// How far up the range a number is; halves, because the whole may be out of the range of numbers.
+    /// The position of a value in the range, from 0 to 1. Halves first: the differences themselves may
+    /// overflow.
     fn part(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         if high > low { (0.5 * value - 0.5 * low) / (0.5 * high - 0.5 * low) } else { 0.5 }

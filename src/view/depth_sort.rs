@@ -1,13 +1,19 @@
-//! The order in which triangles are drawn that hide others: those behind first.
+//! The order in which triangles that may hide each other are drawn: those behind first.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::triangles::Triangle;
+/// A triangle as the eye sees it.
+pub(super) struct Turned {
+    /// Its vertices.
+    pub(super) ids: [u64; 3],
+    /// Where they are in the plan: to the right of the eye, and away from it.
+    pub(super) places: [[f64; 2]; 3],
+}
 
-/// A triangle that may be drawn, with how far away it is.
+/// A triangle that may be drawn next, and its distance from the eye.
 struct Ready {
     depth: f64,
     number: usize,
@@ -33,20 +39,14 @@ impl PartialEq for Ready {
 
 impl Eq for Ready {}
 
-/// Numbers of triangles, each after those that it may hide; `across_away` has places of the plan as the eye sees them: to the
-/// right, and away from it.
+/// The numbers of triangles, each after those that it may hide.
 ///
-/// Of two triangles with a common edge, the one behind it comes first. In a Delaunay triangulation no triangles are behind each other
-/// in turn (Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions", 1990), so this decides; in others the
-/// farthest of such a turn comes first.
-pub(super) fn back_to_front(
-    triangles: &[Triangle],
-    across_away: impl Fn([f64; 3]) -> [f64; 2],
-) -> Vec<usize> {
-    let places: Vec<[[f64; 2]; 3]> =
-        triangles.iter().map(|triangle| triangle.corners.map(&across_away)).collect();
-    let depth = |number: usize| places[number].iter().map(|place| place[1]).sum::<f64>();
-    // For each triangle those that it must wait for, and those that wait for it.
+/// Of two triangles with a common edge, the one behind that edge comes first. In a Delaunay triangulation,
+/// this relation has no cycles (Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions",
+/// 1990), so it decides. In other meshes, the farthest triangle of a cycle comes first.
+pub(super) fn back_to_front(triangles: &[Turned]) -> Vec<usize> {
+    let depth = |number: usize| triangles[number].places.iter().map(|place| place[1]).sum::<f64>();
+    // For each triangle, how many must come before it, and which come after it.
     let (mut waits, mut frees) = (vec![0u8; triangles.len()], vec![[usize::MAX; 3]; triangles.len()]);
     let mut open: HashMap<[u64; 2], usize> = HashMap::new();
     for (number, triangle) in triangles.iter().enumerate() {
@@ -56,9 +56,10 @@ pub(super) fn back_to_front(
                 open.insert([a, b], 3 * number + side);
                 continue;
             };
-            // The triangle is on the left of its edge: behind it, if that goes to the right. An edge straight away from the eye hides
-            // nothing, and is seen as if the eye were a little to one side.
-            let is_behind = places[number][to] > places[number][from];
+            // The triangle is on the left of its edge: behind it if the edge leads to the right. An edge
+            // straight away from the eye hides nothing; it is treated as if the eye were a little to one
+            // side.
+            let is_behind = triangle.places[to] > triangle.places[from];
             let [first, second] =
                 if is_behind { [3 * number + side, other] } else { [other, 3 * number + side] };
             frees[first / 3][first % 3] = second / 3;
@@ -90,18 +91,17 @@ pub(super) fn back_to_front(
 mod tests {
     use super::*;
 
-    fn triangle(ids: [u64; 3], corners: [[f64; 2]; 3]) -> Triangle {
-        Triangle { ids, corners: corners.map(|[x, y]| [x, y, 0.0]), number: 0 }
+    fn triangle(ids: [u64; 3], places: [[f64; 2]; 3]) -> Turned {
+        Turned { ids, places }
     }
 
     #[test]
     fn a_long_triangle_in_front_comes_after_those_that_it_hides() {
         // Its far end is farther away than the middle of the small one behind it.
-        let long = triangle([0, 1, 2], [[0.0, 0.0], [100.0, 90.0], [20.0, 19.0]]);
-        let small = triangle([0, 2, 3], [[0.0, 0.0], [20.0, 19.0], [1.0, 4.0]]);
-        let plan = |[x, y, _]: [f64; 3]| [x, y];
-        assert_eq!(back_to_front(&[long, small], plan), [1, 0]);
-        assert_eq!(back_to_front(&[small, long], plan), [0, 1]);
+        let long = || triangle([0, 1, 2], [[0.0, 0.0], [100.0, 90.0], [20.0, 19.0]]);
+        let small = || triangle([0, 2, 3], [[0.0, 0.0], [20.0, 19.0], [1.0, 4.0]]);
+        assert_eq!(back_to_front(&[long(), small()]), [1, 0]);
+        assert_eq!(back_to_front(&[small(), long()]), [0, 1]);
     }
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
             of([2, 0, 5], [c, a, r]),
             of([0, 3, 5], [a, p, r]),
         ];
-        let mut order = back_to_front(&turn, |[x, y, _]| [x, y]);
+        let mut order = back_to_front(&turn);
         order.sort_unstable();
         assert_eq!(order, [0, 1, 2, 3, 4, 5]);
     }

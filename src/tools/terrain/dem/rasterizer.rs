@@ -1,13 +1,13 @@
-//! Draws triangles.
+//! Draws triangles on tiles.
 
 use std::ops::Range;
 
-use super::canvas::{Canvas, TilePlace};
 use super::centers::Centers;
 use super::facet::{Facet, place};
+use super::options::{Attribute, Options};
 use super::span::{Edges, Span};
 use super::tile::overlap;
-use super::{Attribute, Options};
+use super::tile_cache::{TileCache, TilePlace};
 use crate::surface::{LongEdges, is_counterclockwise};
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
@@ -15,47 +15,47 @@ use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
 
-/// Takes the values of tiles that are complete.
-pub(super) type Handover<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
+/// Takes the values of complete tiles.
+pub(super) type TileSink<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
 
 /// Draws triangles on the tiles of a grid, one by one.
 #[derive(Debug)]
-pub(super) struct Painter {
+pub(super) struct Rasterizer {
     centers: Centers,
     attribute: Attribute,
     long_edges: LongEdges,
-    pub(super) canvas: Canvas,
+    pub(super) cache: TileCache,
     pub(super) predicates: FiniteFloatPredicates,
-    /// Triangles that were not drawn because of a long edge.
+    /// Number of triangles left out because of a long edge.
     pub(super) killed: u64,
-    /// Those of the rows of a triangle in a row of tiles.
+    /// The spans of a triangle in one row of tiles; a field so that the allocation is reused.
     spans: Vec<Span>,
 }
 
-impl Painter {
+impl Rasterizer {
     /// Nothing drawn so far.
     ///
     /// # Errors
-    /// As [`Canvas::new`].
-    pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Painter> {
-        Ok(Painter {
+    /// As [`TileCache::new`].
+    pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Rasterizer> {
+        Ok(Rasterizer {
             centers: Centers::new(grid, coordinates),
             attribute: options.attribute,
             long_edges: LongEdges::new(options.kill, coordinates),
-            canvas: Canvas::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
+            cache: TileCache::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
             predicates: FiniteFloatPredicates::default(),
             killed: 0,
             spans: Vec::with_capacity(TILE),
         })
     }
 
-    /// Draws a triangle: corners have stored coordinates, and elevations of the world. Tiles that become complete go to `complete`, if
-    /// there is one.
+    /// Draws a triangle with corners in stored coordinates and elevations of the world. Tiles that become
+    /// complete go to `complete`, if there is one.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`], if it is clockwise or overlaps another one, as far as there are cells to tell; those of
-    /// `complete` and of temporary files.
-    pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut Handover>) -> Result<()> {
+    /// [`spmesh_core::error::ErrorKind::Malformed`], if it is clockwise, or overlaps another triangle at a
+    /// centre; those of `complete` and of temporary files.
+    pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut TileSink>) -> Result<()> {
         let corners = least_first(corners);
         let places = corners.map(place);
         if self.long_edges.are_in(places) {
@@ -83,14 +83,14 @@ impl Painter {
         Ok(())
     }
 
-    /// Draws what of a triangle is in rows of one row of tiles.
+    /// Draws the part of a triangle in one row of tiles.
     fn draw_band(
         &mut self,
         facet: &Facet,
         edges: &Edges,
         columns: Range<u32>,
         rows: Range<u32>,
-        complete: &mut Option<&mut Handover>,
+        complete: &mut Option<&mut TileSink>,
     ) -> Result<()> {
         let mut spans = std::mem::take(&mut self.spans);
         spans.clear();
@@ -105,17 +105,17 @@ impl Painter {
         for column in tiles {
             self.draw_tile(facet, [column, band], rows.start, &spans)?;
             if let Some(complete) = complete.as_deref_mut()
-                && let Some(tile) = self.canvas.take_complete([column, band])
+                && let Some(tile) = self.cache.take_complete([column, band])
             {
                 complete([column, band], &tile.values)?;
-                self.canvas.give_back(tile);
+                self.cache.recycle(tile);
             }
         }
         self.spans = spans;
         Ok(())
     }
 
-    /// Draws what of spans, from a row on, is in a tile.
+    /// Draws the part of the spans in one tile; they start at a row.
     fn draw_tile(&mut self, facet: &Facet, at: TilePlace, first_row: u32, spans: &[Span]) -> Result<()> {
         let [left, top] = at.map(|place| (place * TILE) as u32);
         let within = |cells: &Range<u32>| cells.start.max(left)..cells.end.min(left + TILE as u32);
@@ -123,8 +123,8 @@ impl Painter {
             return Ok(());
         }
         let flat = self.attribute.of_plane(self.centers.gradient_to_world(facet.gradient))?;
-        let Some(tile) = self.canvas.tile(at)? else {
-            // All of its cells belong to other triangles, on whose borders those of this one must be.
+        let Some(tile) = self.cache.tile(at)? else {
+            // All cells of a written tile belong to other triangles, so this one may only touch them.
             let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
             return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
         };
@@ -153,7 +153,8 @@ impl Painter {
     }
 }
 
-/// The same triangle, with the corner first that is least in x, then y: values do not depend on which corner a stream has first.
+/// The same triangle, starting at the corner that is least in x, then y, so that values do not depend on the
+/// order of corners in the stream.
 fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
     let is_less = |p: Point, q: Point| place(p) < place(q);
     if is_less(a, b) && is_less(a, c) {
@@ -165,7 +166,7 @@ fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
     }
 }
 
-/// Least and greatest coordinate of an axis.
+/// The least and the greatest coordinate along an axis.
 fn range([a, b, c]: [Point2; 3], axis: usize) -> [f64; 2] {
     [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]
 }

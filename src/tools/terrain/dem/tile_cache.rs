@@ -1,4 +1,4 @@
-//! The tiles of a raster that triangles are drawn on: some in memory, others in a temporary file.
+//! The tiles of a raster: some in memory, others in a temporary file.
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use spmesh_core::limits::RASTER_TILES_MAX;
 use spmesh_core::temporary::Records;
 use spmesh_io::raster::{Grid, TILE};
 
-/// What is being done when reading the temporary file fails.
+/// The action in the message when reading the temporary file fails.
 const READING: &str = "reading tiles back";
 
-/// Column and row of a tile.
+/// The column and the row of a tile.
 pub(super) type TilePlace = [usize; 2];
 
 /// Where a tile is.
@@ -19,48 +19,48 @@ pub(super) type TilePlace = [usize; 2];
 enum State {
     /// No triangle has been drawn on it.
     Blank,
-    /// In memory, with the number of its place there.
+    /// In memory, with its index there.
     Held(u32),
     /// In the temporary file, with its record.
     Spilled(u32),
-    /// All its cells belong to triangles, and it was handed on.
-    Complete,
+    /// All its cells belong to triangles, and it was written.
+    Written,
 }
 
 /// A tile in memory.
 #[derive(Debug)]
 struct Held {
     number: usize,
-    /// When it was drawn on last.
+    /// The clock at its last use.
     used: u64,
     tile: Tile,
 }
 
 /// All tiles of a grid.
 ///
-/// Memory: as many tiles as are allowed, and 8 bytes for each tile of the grid.
+/// Memory: the budget for tiles, and 8 bytes for each tile of the grid.
 #[derive(Debug)]
-pub(super) struct Canvas {
+pub(super) struct TileCache {
     grid: Grid,
     across: usize,
     states: Vec<State>,
     held: Vec<Held>,
     held_max: usize,
-    /// Grows with each tile that is asked for.
+    /// Number of requests for a tile.
     clock: u64,
     spill: Records,
-    /// How many times a tile went to the temporary file.
+    /// Number of tiles written to the temporary file.
     pub(super) spilled: u64,
-    /// A tile that can be used again.
+    /// A released tile, for reuse.
     spare: Option<Tile>,
 }
 
-impl Canvas {
-    /// Blank tiles, of which those in memory take `memory` bytes at most, but for one that is always there.
+impl TileCache {
+    /// Blank tiles. Those in memory take `memory` bytes at most, or one tile if that is more.
     ///
     /// # Errors
     /// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
-    pub(super) fn new(grid: Grid, memory: u64, temp_dir: Option<&Path>) -> Result<Canvas> {
+    pub(super) fn new(grid: Grid, memory: u64, temp_dir: Option<&Path>) -> Result<TileCache> {
         let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
         let count = across as u64 * down as u64;
         if count > RASTER_TILES_MAX {
@@ -70,7 +70,7 @@ impl Canvas {
                 grid.columns, grid.rows, grid.step
             )));
         }
-        Ok(Canvas {
+        Ok(TileCache {
             grid,
             across,
             states: vec![State::Blank; count as usize],
@@ -83,17 +83,17 @@ impl Canvas {
         })
     }
 
-    /// Number of tiles in a row, and in a column.
+    /// The number of tiles in a row, and in a column.
     pub(super) fn tiles(&self) -> [usize; 2] {
         [self.across, self.states.len() / self.across]
     }
 
-    /// Bytes of the temporary file.
+    /// Length of the temporary file. Units: bytes.
     pub(super) fn spill_len(&self) -> u64 {
         self.spill.file_len()
     }
 
-    /// A tile, to be drawn on; nothing, if it was complete and handed on.
+    /// A tile to draw on; `None` if it was written.
     ///
     /// # Errors
     /// If the temporary file fails.
@@ -101,7 +101,7 @@ impl Canvas {
         let number = self.number(at);
         let place = match self.states[number] {
             State::Held(place) => place as usize,
-            State::Complete => return Ok(None),
+            State::Written => return Ok(None),
             State::Blank => self.hold(number, None)?,
             State::Spilled(record) => self.hold(number, Some(record))?,
         };
@@ -111,20 +111,20 @@ impl Canvas {
         Ok(Some(&mut held.tile))
     }
 
-    /// Takes a tile in memory, if all of its cells belong to triangles: it is complete.
+    /// Takes a complete tile out of memory, to be written. In a complete tile, all cells belong to triangles.
     pub(super) fn take_complete(&mut self, at: TilePlace) -> Option<Tile> {
         let number = self.number(at);
         let State::Held(place) = self.states[number] else { return None };
         let is_complete =
             self.held[place as usize].tile.owned_count() == self.inside(at).iter().product::<usize>() as u32;
         is_complete.then(|| {
-            self.states[number] = State::Complete;
-            self.let_go(place as usize)
+            self.states[number] = State::Written;
+            self.release(place as usize)
         })
     }
 
-    /// Gives back a tile that was taken.
-    pub(super) fn give_back(&mut self, tile: Tile) {
+    /// Returns a tile from [`TileCache::take_complete`] for reuse.
+    pub(super) fn recycle(&mut self, tile: Tile) {
         self.spare = Some(tile);
     }
 
@@ -133,18 +133,18 @@ impl Canvas {
         self.states[self.number(at)] == State::Blank
     }
 
-    /// Whether a tile was complete and handed on.
-    pub(super) fn is_handed_on(&self, at: TilePlace) -> bool {
-        self.states[self.number(at)] == State::Complete
+    /// Whether a tile was complete and written.
+    pub(super) fn is_written(&self, at: TilePlace) -> bool {
+        self.states[self.number(at)] == State::Written
     }
 
-    /// Reads the values of a tile, which stays what it is; false if it is blank, or was handed on.
+    /// Reads the values of a tile without changing its state; returns false if it is blank or was written.
     ///
     /// # Errors
     /// If the temporary file fails.
     pub(super) fn read(&mut self, at: TilePlace, values: &mut [f32]) -> Result<bool> {
         match self.states[self.number(at)] {
-            State::Blank | State::Complete => return Ok(false),
+            State::Blank | State::Written => return Ok(false),
             State::Held(place) => values.copy_from_slice(&self.held[place as usize].tile.values),
             State::Spilled(record) => {
                 self.spill.read(READING, record, 0, bytemuck::cast_slice_mut(values))?;
@@ -157,13 +157,13 @@ impl Canvas {
         row * self.across + column
     }
 
-    /// Number of columns and rows of a tile that are in the grid.
+    /// The numbers of columns and rows of a tile inside the grid.
     pub(super) fn inside(&self, at: TilePlace) -> [usize; 2] {
         [(self.grid.columns, at[0]), (self.grid.rows, at[1])]
             .map(|(count, at)| (count as usize - at * TILE).min(TILE))
     }
 
-    /// Puts a tile into memory; its place there.
+    /// Puts a tile into memory and returns its index there.
     fn hold(&mut self, number: usize, record: Option<u32>) -> Result<usize> {
         if self.held.len() >= self.held_max {
             self.evict()?;
@@ -181,19 +181,19 @@ impl Canvas {
         Ok(self.held.len() - 1)
     }
 
-    /// Sends the tile to the temporary file that was not drawn on for longest.
+    /// Moves the least recently used tile to the temporary file.
     fn evict(&mut self) -> Result<()> {
         let oldest = (0..self.held.len()).min_by_key(|&place| self.held[place].used);
         let Some(place) = oldest else { return Ok(()) };
         let number = self.held[place].number;
         self.states[number] = State::Spilled(write(&mut self.spill, &self.held[place].tile)?);
         self.spilled += 1;
-        self.spare = Some(self.let_go(place));
+        self.spare = Some(self.release(place));
         Ok(())
     }
 
-    /// Takes a tile out of memory; the last one comes to its place.
-    fn let_go(&mut self, place: usize) -> Tile {
+    /// Takes a tile out of memory; the last one moves to its index.
+    fn release(&mut self, place: usize) -> Tile {
         let Held { tile, .. } = self.held.swap_remove(place);
         if let Some(moved) = self.held.get(place) {
             self.states[moved.number] = State::Held(place as u32);
@@ -202,7 +202,7 @@ impl Canvas {
     }
 }
 
-/// Keeps a tile in the temporary file; the number of its record.
+/// Writes a tile to the temporary file and returns the number of its record.
 fn write(spill: &mut Records, tile: &Tile) -> Result<u32> {
     let (record, [values, owned]) = (spill.add(), tile.bytes());
     let what = "writing tiles that exceed --memory";
@@ -211,7 +211,7 @@ fn write(spill: &mut Records, tile: &Tile) -> Result<u32> {
     Ok(record)
 }
 
-/// Reads a tile that was kept.
+/// Reads a tile from the temporary file.
 fn read(spill: &mut Records, record: u32, tile: &mut Tile) -> Result<()> {
     tile.fill(|[values, owned]| {
         spill.read(READING, record, 0, values)?;

@@ -1,16 +1,16 @@
-//! Colours of numbers: ramps of which equal steps look equal, and lightness tells the order.
+//! Colour maps that are perceptually uniform and ordered by lightness.
 
 use spmesh_io::raster::Light;
 
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];
 
-/// Colours at equal steps from the least number to the greatest.
+/// Colours at equal steps from the least value to the greatest.
 #[derive(Debug, PartialEq)]
-pub(super) struct Ramp(&'static [Colour]);
+pub(super) struct ColourMap(&'static [Colour]);
 
 /// For time and order (viridis, CC0).
-pub(super) const VIRIDIS: Ramp = Ramp(&[
+pub(super) const VIRIDIS: ColourMap = ColourMap(&[
     [68, 1, 84],
     [71, 45, 123],
     [59, 82, 139],
@@ -23,7 +23,7 @@ pub(super) const VIRIDIS: Ramp = Ramp(&[
 ]);
 
 /// For elevations (batlow of Crameri, "Scientific colour maps", MIT).
-pub(super) const BATLOW: Ramp = Ramp(&[
+pub(super) const BATLOW: ColourMap = ColourMap(&[
     [1, 25, 89],
     [16, 63, 96],
     [28, 90, 98],
@@ -36,8 +36,8 @@ pub(super) const BATLOW: Ramp = Ramp(&[
     [250, 204, 250],
 ]);
 
-/// For what is below and above a middle (vik of Crameri, MIT).
-pub(super) const VIK: Ramp = Ramp(&[
+/// Diverging, for values below and above a middle (vik of Crameri, MIT).
+pub(super) const VIK: ColourMap = ColourMap(&[
     [0, 18, 97],
     [2, 63, 125],
     [30, 111, 157],
@@ -51,11 +51,11 @@ pub(super) const VIK: Ramp = Ramp(&[
     [89, 0, 8],
 ]);
 
-impl Ramp {
-    /// The colour of a part between zero and one; beyond, that of the end.
+impl ColourMap {
+    /// The colour at a position from 0 to 1; positions beyond have the colours of the ends.
     pub(super) fn at(&self, part: f64) -> Colour {
         let steps = self.0.len() - 1;
-        // What is no number has the colour of the least.
+        // NaN has the first colour.
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
         let place = part * steps as f64;
         let first = (place as usize).min(steps - 1);
@@ -63,7 +63,7 @@ impl Ramp {
     }
 }
 
-/// What is between two colours, `part` of the way.
+/// The colour `part` of the way between two colours.
 pub(super) fn mix(from: Colour, to: Colour, part: f64) -> Colour {
     [0, 1, 2].map(|channel| {
         let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
@@ -71,19 +71,19 @@ pub(super) fn mix(from: Colour, to: Colour, part: f64) -> Colour {
     })
 }
 
-/// As SVG writes a colour.
+/// A colour as SVG writes it.
 pub(super) fn hex([r, g, b]: Colour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Grey as bright as a surface in some light: from 0 to 1.
+/// Grey of some brightness, from 0 to 1.
 pub(super) fn grey(shade: f64) -> Colour {
     [(255.0 * shade).round() as u8; 3]
 }
 
-/// A colour on a surface: a level one keeps it, others are darker or brighter.
+/// A colour in light: level ground, of brightness `level`, keeps it; other surfaces darken or brighten it.
 pub(super) fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
-    /// What is left of a colour in the dark.
+    /// The part of a colour that remains in the dark.
     const AMBIENT: f64 = 0.45;
     if shade <= level {
         mix([0; 3], colour, AMBIENT + (1.0 - AMBIENT) * shade / level)
@@ -92,10 +92,10 @@ pub(super) fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
     }
 }
 
-/// How bright a surface is, from 0 to 1.
+/// The brightness of a surface, from 0 to 1.
 pub(super) fn shade(light: &Light, gradient: [f64; 2]) -> f64 {
     let shade = light.shade(gradient) / 255.0;
-    // A wall, of which gradients are out of the range of numbers.
+    // A vertical wall, whose gradient overflows.
     if shade.is_nan() { 0.0 } else { shade }
 }
 
@@ -114,18 +114,21 @@ mod tests {
         if luminance > cube { 116.0 * luminance.cbrt() - 16.0 } else { luminance * 24389.0 / 27.0 }
     }
 
-    fn steps(ramp: &Ramp, from: f64, to: f64) -> Vec<f64> {
-        let at = |step: u32| lightness(ramp.at(from + (to - from) * f64::from(step) / 64.0));
+    fn steps(colour_map: &ColourMap, from: f64, to: f64) -> Vec<f64> {
+        let at = |step: u32| lightness(colour_map.at(from + (to - from) * f64::from(step) / 64.0));
         (0..64).map(|step| at(step + 1) - at(step)).collect()
     }
 
     #[test]
     fn lightness_tells_the_order() {
-        for ramp in [&VIRIDIS, &BATLOW] {
-            // Rounding to whole channels takes a little.
-            assert!(steps(ramp, 0.0, 1.0).iter().all(|&step| step > -0.15 && step < 3.0), "{ramp:?}");
-            let [first, last] = [0.0, 1.0].map(|part| lightness(ramp.at(part)));
-            assert!(last - first > 65.0, "{ramp:?}: {first} to {last}");
+        for colour_map in [&VIRIDIS, &BATLOW] {
+            // Channels are rounded to integers.
+            assert!(
+                steps(colour_map, 0.0, 1.0).iter().all(|&step| step > -0.15 && step < 3.0),
+                "{colour_map:?}"
+            );
+            let [first, last] = [0.0, 1.0].map(|part| lightness(colour_map.at(part)));
+            assert!(last - first > 65.0, "{colour_map:?}: {first} to {last}");
         }
     }
 

@@ -1,0 +1,106 @@
+//! What a picture shows, and when pictures are taken.
+
+use spmesh_io::raster::{Light, Window};
+use spmesh_model::bounds::Bounds;
+
+/// What triangles and points show.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fill {
+    /// Nothing.
+    None,
+    /// The elevation.
+    Elevation,
+    /// The brightness of the triangle in some light.
+    Hillshade,
+    /// The elevation and the brightness.
+    Relief,
+    /// The position in the stream.
+    Time,
+}
+
+/// Whether something is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum When {
+    /// If single ones can be told apart.
+    Auto,
+    /// In any case.
+    Always,
+    /// In no case.
+    Never,
+}
+
+/// How triangles and points are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// One by one, unless there are too many.
+    Auto,
+    /// One by one.
+    Vector,
+    /// As pixels.
+    Raster,
+}
+
+/// What a picture shows, and how.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The name of the stream in the title.
+    pub name: String,
+    /// What triangles and points show; depends on the stream if `None`.
+    pub fill: Option<Fill>,
+    /// Edges of triangles.
+    pub edges: When,
+    /// Cells of finalized points.
+    pub cells: bool,
+    /// One by one or as pixels.
+    pub form: Form,
+    /// Width of the picture. Units: pixels.
+    pub width: u32,
+    /// The part of the plane that is drawn; everything if `None`.
+    pub bounds: Option<Window>,
+    /// The box of the stream in the world, if its header does not state it and [`Extent::read`] found it.
+    pub extent: Option<Bounds>,
+    /// Seen obliquely, with elevations, rather than from above.
+    pub oblique: bool,
+    /// Light of hillshades.
+    pub light: Light,
+    /// The range of elevations that the colours span; that of the stream if `None`.
+    pub range: Option<[f64; 2]>,
+    /// The elevation at which the two halves of a diverging colour map meet.
+    pub middle: Option<f64>,
+    /// The order of the centroid triangulation of configurations; the greatest if `None`.
+    pub order: Option<usize>,
+    /// The set of knots of configurations whose link is drawn.
+    pub set: Option<Vec<u32>>,
+}
+
+impl Options {
+    /// The defaults for a stream of some name: a width of 1,000 pixels, and light from the north-west.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Options {
+        Options {
+            name: name.into(),
+            fill: None,
+            edges: When::Auto,
+            cells: true,
+            form: Form::Auto,
+            width: 1_000,
+            bounds: None,
+            extent: None,
+            oblique: false,
+            light: Light::from(315.0, 45.0),
+            range: None,
+            middle: None,
+            order: None,
+            set: None,
+        }
+    }
+}
+
+/// When pictures are taken, in numbers of triangles, or of points in a stream of points.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Moments {
+    /// The last picture is taken after this number; at the end if `None`.
+    pub at: Option<u64>,
+    /// Further pictures are taken after each multiple of this number.
+    pub every: Option<u64>,
+}
