@@ -8,6 +8,7 @@ mod files;
 mod kernels;
 pub mod mutation;
 mod points;
+// Shared with the tests of the kernel, which need more of it.
 #[allow(dead_code)]
 #[path = "../../geometry/kernel3/promises.rs"]
 mod promises;
