@@ -1,4 +1,5 @@
-//! What every crate of spmesh stands on: errors with positions, limits, files that appear only when complete, the system.
+//! What every crate of spmesh stands on: errors with positions, limits, files that appear only when complete,
+//! the system.
 
 pub mod error;
 pub mod limits;

@@ -34,7 +34,8 @@ pub const QUADTREE_DEPTH_MAX: u8 = 31;
 /// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
 pub const OCTREE_DEPTH_MAX: u8 = 20;
 
-/// Most points of four dimensions that are read: 10 GB with values. A diagram of them needs a hundred times as much.
+/// Most points of four dimensions that are read: 10 GB with values. A diagram of them needs a hundred times
+/// as much.
 pub const POINTS4_MAX: u64 = 1 << 28;
 
 /// Most sites of a grid of four dimensions, of which points are chosen: going over them takes hours.
