@@ -212,8 +212,11 @@ impl<'a> Tee<'a> {
             if system::free_bytes(&self.plan.folder)
                 .is_some_and(|free| free < (FREE_FACTOR - 1) * spool.bytes)
             {
-                return Err(Error::new(ErrorKind::Io, "more than a quarter of the free space would be used up")
-                    .of_input(spool.file.name()));
+                return Err(Error::new(
+                    ErrorKind::Io,
+                    "more than a quarter of the free space would be used up",
+                )
+                .of_input(spool.file.name()));
             }
         }
         spool.append(batch, &mut self.block)

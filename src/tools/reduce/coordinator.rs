@@ -21,7 +21,7 @@ use super::bulk::Bulk;
 use super::node::{Rules, Solved};
 use super::reader::{CellReader, InputSummary, Piece};
 use super::residual::Residual;
-use super::run::Run;
+use super::run_state::Run;
 use super::schedule::{Job, Output};
 use super::sequencer::Sequencer;
 use super::stats::Stats;

@@ -35,6 +35,7 @@ mod plane;
 mod reader;
 mod residual;
 mod run;
+mod run_state;
 mod sample;
 mod schedule;
 mod sequencer;

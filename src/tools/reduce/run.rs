@@ -10,17 +10,17 @@ use super::node::Rules;
 use super::partial::Part;
 use super::plan::Plan;
 use super::plane::Plane;
-use super::reader::{CellReader, InputSummary, Piece};
-use super::residual::{Residual, union};
+use super::reader::CellReader;
+use super::residual::Residual;
+use super::run_state::Run;
 use super::schedule::Schedule;
 use super::sequencer::Sequencer;
 use super::space::Space;
 use super::stats::Stats;
 use super::worker::Worker;
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_model::cells::CellCode;
 use spmesh_stream::{Coordinates, Header, Kind, PatchBlocks, StreamReader, StreamWriter};
 
 /// How a run triangulates.
@@ -119,7 +119,7 @@ where
     };
     let (cells, sequencer) = (CellReader::new(reader, outer), Sequencer::new(stream));
     if options.threads <= 1 {
-        run.alone::<B, R, W>(cells, sequencer, progress)
+        alone::<B, R, W, D>(run, cells, sequencer, progress)
     } else {
         coordinator::run::<B, R, W, D>(run, cells, sequencer, options.threads, progress)
     }
@@ -154,130 +154,34 @@ fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<
     header
 }
 
-/// A run under way, without its input and output.
-pub(super) struct Run<const D: usize> {
-    /// Name of the input in messages.
-    name: String,
-    /// Levels of the input's tree.
-    level: u64,
-    pub(super) rules: Rules,
-    pub(super) schedule: Schedule<D>,
-}
-
-impl<const D: usize> Run<D> {
-    /// Does everything on the calling thread.
-    ///
-    /// # Errors
-    /// As [`triangulate`].
-    fn alone<B: Bulk<D>, R: Read, W: Write>(
-        mut self,
-        mut cells: CellReader<R, D>,
-        mut sequencer: Sequencer<W>,
-        mut progress: impl FnMut(u64),
-    ) -> Result<(W, Stats)> {
-        let mut worker = Worker::<B, D>::new(self.rules);
-        let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
-        let ended = loop {
-            let piece = cells.next(|| std::mem::take(&mut fresh))?;
-            let ended = self.take(piece, &mut progress);
-            loop {
-                while let Some(output) = self.schedule.next_output() {
-                    blocks = sequencer.write(output)?;
-                }
-                let Some(job) = self.schedule.next_job() else { break };
-                let (number, cell) = (job.number, job.cell);
-                let solved =
-                    worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
-                self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
+/// Does everything on the calling thread.
+///
+/// # Errors
+/// As [`triangulate`].
+fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
+    mut run: Run<D>,
+    mut cells: CellReader<R, D>,
+    mut sequencer: Sequencer<W>,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    let mut worker = Worker::<B, D>::new(run.rules);
+    let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
+    let ended = loop {
+        let piece = cells.next(|| std::mem::take(&mut fresh))?;
+        let ended = run.take(piece, &mut progress);
+        loop {
+            while let Some(output) = run.schedule.next_output() {
+                blocks = sequencer.write(output)?;
             }
-            if let Some(ended) = ended {
-                break ended;
-            }
-        };
-        self.finish(&ended, sequencer, worker, &PredicateCounts::default())
-    }
-
-    /// Takes a piece of the input. At its end, returns the totals.
-    pub(super) fn take(
-        &mut self,
-        piece: Piece<D>,
-        mut progress: impl FnMut(u64),
-    ) -> Option<Box<InputSummary<D>>> {
-        match piece {
-            Piece::Points(points) => progress(points),
-            Piece::Cell { cell, points, is_whole } => self.schedule.cell(cell, points, is_whole),
-            Piece::End(mut ended) => {
-                self.schedule.rest(std::mem::take(&mut ended.rest));
-                return Some(ended);
-            }
-        }
-        None
-    }
-
-    /// Adds input and cell to an error about points; returns other errors unchanged.
-    pub(super) fn locate(&self, error: Error, cell: CellCode) -> Error {
-        if error.kind() == ErrorKind::Malformed {
-            error.at(format!("cell {}", cell.0)).of_input(&self.name)
-        } else {
-            error
-        }
-    }
-
-    /// Triangulates the root, if it has points, and writes its patches as they come.
-    ///
-    /// # Errors
-    /// As [`triangulate`].
-    fn write_root<B: Bulk<D>, W: Write>(
-        &mut self,
-        sequencer: &mut Sequencer<W>,
-        worker: &mut Worker<B, D>,
-    ) -> Result<()> {
-        // The residual of a partial run passes through all nodes up to the root of the tree.
-        while let Some((job, children)) = self.schedule.take_root() {
+            let Some(job) = run.schedule.next_job() else { break };
             let (number, cell) = (job.number, job.cell);
-            sequencer.open(&children);
-            let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-            let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
-            self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
-            // One node with points, followed by the nodes above it, which have none.
-            while let Some(output) = self.schedule.next_output() {
-                sequencer.close(output)?;
-            }
+            let solved =
+                worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
+            run.schedule.solved(number, solved.map_err(|e| run.locate(e, cell))?);
         }
-        Ok(())
-    }
-
-    /// Finishes when all nodes but the root are written: `worker` triangulates the root. `counts` are the
-    /// decisions of other workers.
-    ///
-    /// # Errors
-    /// As [`triangulate`].
-    pub(super) fn finish<B: Bulk<D>, W: Write>(
-        mut self,
-        ended: &InputSummary<D>,
-        mut sequencer: Sequencer<W>,
-        mut worker: Worker<B, D>,
-        counts: &PredicateCounts,
-    ) -> Result<(W, Stats)> {
-        self.write_root(&mut sequencer, &mut worker)?;
-        let mut predicates = worker.counts();
-        predicates.merge(counts);
-        let is_partial = self.rules.is_partial;
-        let (numbers, residuals, mut stats) = self.schedule.into_residual();
-        if is_partial {
-            let residual = union(residuals);
-            stats.residual = residual.len() as u64;
-            sequencer.write_residual(&numbers, &residual)?;
+        if let Some(ended) = ended {
+            break ended;
         }
-        sequencer.add_to(&mut stats);
-        stats.level = self.level;
-        stats.points = ended.accepted;
-        stats.outside = ended.outside;
-        stats.held_max = ended.held_max as u64;
-        stats.cells = ended.cells;
-        stats.input_bytes = ended.input_bytes;
-        stats.predicates = predicates;
-        let output = sequencer.end(stats.points, stats.merged)?;
-        Ok((output, stats))
-    }
+    };
+    run.finish(&ended, sequencer, worker, &PredicateCounts::default())
 }
