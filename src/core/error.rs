@@ -1,4 +1,4 @@
-//! One error type for the library: what went wrong, where in which input, and the exit code it means.
+//! The error type of all crates: what went wrong, where in which input, and with which exit code.
 
 use std::fmt;
 use std::io;
@@ -6,21 +6,21 @@ use std::io;
 /// Result of every fallible operation of the library.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// What went wrong, as far as a caller must tell cases apart: each kind is one exit code.
+/// The kind of a failure; each kind has its own exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// Reading, writing or running failed (exit 1).
     Io,
-    /// The request makes no sense: flags, or inputs that do not go together (exit 2).
+    /// The request is invalid: flags, or inputs that do not fit together (exit 2).
     Usage,
-    /// The input is malformed, truncated, or breaks its own promises (exit 3).
+    /// The input is malformed, truncated, or contradicts itself (exit 3).
     Malformed,
     /// An audit found a violation (exit 4).
     Audit,
-    /// The memory budget cannot be kept (exit 5).
+    /// The memory budget is too small (exit 5).
     Memory,
-    /// The reader of our output went away (exit 141, silent).
+    /// The reader of the output closed the pipe (exit 141, without a message).
     ClosedPipe,
 }
 
@@ -39,8 +39,8 @@ impl ErrorKind {
     }
 }
 
-/// A failure with its kind, the input it concerns (with a position where there is one) and a message
-/// that says what was found and what was expected.
+/// A failure with its kind, its input, its position there if it has one, and a message that states what was
+/// found and what was expected.
 #[derive(Debug)]
 pub struct Error {
     kind: ErrorKind,
@@ -51,24 +51,24 @@ pub struct Error {
 }
 
 impl Error {
-    /// An error of `kind`; add where it happened with [`Error::at`] and [`Error::of_input`].
+    /// An error of `kind`; [`Error::at`] and [`Error::of_input`] add where it happened.
     pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
         Error { kind, input: None, position: None, message: message.into(), cause: None }
     }
 
-    /// A request that makes no sense.
+    /// An invalid request.
     pub fn usage(message: impl Into<String>) -> Self {
         Error::new(ErrorKind::Usage, message)
     }
 
-    /// Input that is malformed, truncated, or breaks its own promises.
+    /// Input that is malformed, truncated, or contradicts itself.
     pub fn malformed(message: impl Into<String>) -> Self {
         Error::new(ErrorKind::Malformed, message)
     }
 
-    /// An operating-system failure while doing `what` ("reading", "creating the temporary file").
+    /// A failure of the operating system during `what` ("reading", "creating the temporary file").
     ///
-    /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file and invalid data,
+    /// A broken pipe becomes [`ErrorKind::ClosedPipe`]; an unexpected end of file and invalid data become
     /// [`ErrorKind::Malformed`].
     pub fn io(what: impl Into<String>, cause: io::Error) -> Self {
         let kind = match cause.kind() {
@@ -79,14 +79,14 @@ impl Error {
         Error { kind, input: None, position: None, message: what.into(), cause: Some(cause) }
     }
 
-    /// Names the input (or output) that the error concerns, unless it has a name already.
+    /// Adds the name of the input (or output) that the error concerns, unless it has one already.
     #[must_use]
     pub fn of_input(mut self, input: impl Into<String>) -> Self {
         self.input.get_or_insert_with(|| input.into());
         self
     }
 
-    /// Says where in the input ("block 812 at byte 40960", "line 7"), unless that is known already.
+    /// Adds the position in the input ("block 812 at byte 40960", "line 7"), unless it has one already.
     #[must_use]
     pub fn at(mut self, position: impl Into<String>) -> Self {
         self.position.get_or_insert_with(|| position.into());
@@ -122,5 +122,5 @@ impl fmt::Display for Error {
     }
 }
 
-/// The cause is part of the message, so there is no source to be printed a second time.
+/// Without a source: the message includes the cause, which would be printed twice.
 impl std::error::Error for Error {}

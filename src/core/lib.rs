@@ -1,4 +1,5 @@
-//! What every crate of spmesh stands on: errors with positions, limits, files that appear only when complete, the system.
+//! The base of all crates: errors with positions, limits, output files that appear only when complete,
+//! threads, random numbers, and the operating system.
 
 pub mod error;
 pub mod limits;

@@ -1,19 +1,21 @@
-//! Every stated maximum in one place, so that no input can make a reader allocate without bound.
+//! All limits of inputs in one place, so that no input makes a reader allocate without bound.
 
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
 
-/// Longest coordinate reference system that is taken from an input, in bytes: a header body has to hold it
-/// beside its fixed fields and the producer.
+/// Longest coordinate reference system taken from an input, in bytes: a header body must hold it beside its
+/// fixed fields and the producer.
 pub const CRS_LEN_MAX: usize = HEADER_BODY_MAX - (1 << 12);
 
 /// Longest payload of a stream block, in bytes.
 pub const BLOCK_PAYLOAD_MAX: usize = 1 << 20;
 
-/// Words of one cell of four dimensions: 8 GB, so that a block that completes it has fewer than 2^32.
+/// Most words of one cell of four dimensions: 8 GB, so that the block that completes it has fewer than 2^32
+/// words.
 pub const CELL_WORDS_MAX: u64 = 1 << 31;
 
-/// Highest degree of configurations in a stream: an interior set fits a block, and a line of a text twin.
+/// Highest degree of configurations in a stream: an interior set then fits a block, and a line of a text
+/// twin.
 pub const CONFIGURATION_DEGREE_MAX: u32 = 1 << 12;
 
 /// Longest line of a text input, in bytes.
@@ -34,10 +36,11 @@ pub const QUADTREE_DEPTH_MAX: u8 = 31;
 /// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
 pub const OCTREE_DEPTH_MAX: u8 = 20;
 
-/// Most points of four dimensions that are read: 10 GB with values. A diagram of them needs a hundred times as much.
+/// Most points of four dimensions in an input: 10 GB with values. Their diagram needs a hundred times as
+/// much.
 pub const POINTS4_MAX: u64 = 1 << 28;
 
-/// Most sites of a grid of four dimensions, of which points are chosen: going over them takes hours.
+/// Most sites of a grid of four dimensions from which points are selected: a pass over them takes hours.
 pub const SITES4_MAX: u64 = 1 << 40;
 
 /// Longest header of an NRRD file, in bytes.
@@ -46,19 +49,19 @@ pub const NRRD_HEADER_MAX: u64 = 1 << 20;
 /// Most data files of an NRRD file.
 pub const NRRD_FILES_MAX: usize = 1 << 16;
 
-/// Longest number of a volume or of coordinates without lines that is text, in bytes.
+/// Longest number in the text of a volume or of coordinates without lines, in bytes.
 pub const NUMBER_LEN_MAX: usize = 128;
 
 /// Longest tag of an XML file, in bytes.
 pub const XML_TAG_MAX: usize = 1 << 16;
 
-/// Deepest element of an XML file: those of VTK have six levels.
+/// Deepest element of an XML file: VTK files have six levels.
 pub const XML_DEPTH_MAX: usize = 64;
 
-/// Longest block of a VTK file that is decompressed as a whole (LZ4), in bytes; VTK makes blocks of 32 KiB.
+/// Longest block of a VTK file that is decompressed as a whole (LZ4), in bytes; VTK writes blocks of 32 KiB.
 pub const VTK_BLOCK_MAX: u64 = 1 << 26;
 
-/// Most tiles of a raster that triangles are drawn on, of 65,536 cells each: their places take 100 MB.
+/// Most tiles of a raster of triangles, of 65,536 cells each: their index takes 100 MB.
 pub const RASTER_TILES_MAX: u64 = 1 << 22;
 
 /// Most levels of contour lines that pass through one triangle: their open ends take about 40 MB.
@@ -70,5 +73,6 @@ pub const CONDITION_LEN_MAX: usize = 1 << 12;
 /// Deepest parentheses of a condition.
 pub const CONDITION_DEPTH_MAX: usize = 32;
 
-/// Most vertices of a link that is not triangulated by circles: looking for its diagonals takes cubic time.
+/// Most vertices of a link that is not triangulated by circles: the search for its diagonals takes cubic
+/// time.
 pub const LINK_VERTICES_MAX: usize = 512;

@@ -1,4 +1,4 @@
-//! Where a tool writes: stdout, or a file that appears under its name only when it is complete.
+//! The output of a tool: stdout, or a file that appears under its name only when it is complete.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, IsTerminal, Seek, SeekFrom, Write};
@@ -13,32 +13,34 @@ use rustix::fs::{Mode, OFlags};
 use crate::error::{Error, Result};
 use crate::system;
 
+/// Bytes of the write buffer.
 const BUFFER_LEN: usize = 1 << 18;
 
 /// Permissions of a new file, narrowed by the umask of the process.
 const FILE_MODE: u32 = 0o666;
 
-/// After so many bytes a file's data are sent on to the disk, so that few are left to wait for at the end.
-const SEND_ON_LEN: u64 = 8 << 20;
+/// Bytes after which the system starts to write a file to the disk, so that the commit waits for few bytes
+/// only.
+const WRITE_BACK_LEN: u64 = 8 << 20;
 
-/// Start of the name of a file that is not complete, where it has to have a name.
+/// Prefix of the name of an incomplete file, if it needs a name.
 const TEMPORARY_PREFIX: &str = ".spmesh-";
 
-/// An output that is committed or was never there.
+/// An output that leaves nothing behind unless it is committed.
 ///
 /// Invariant: the final name exists only after [`Output::commit`]. The data go to an unnamed file
-/// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind; where the system
-/// cannot do that, to a temporary name that is removed on every exit but a kill.
+/// (`O_TMPFILE`) in the same folder, so that even a killed process leaves nothing behind. If the system has
+/// no unnamed files, the data go to a temporary name, which is removed on every exit except a kill.
 pub struct Output {
     name: String,
     sink: Sink,
     written: u64,
-    /// Bytes of a file that are on their way to the disk.
-    sent_on: u64,
+    /// End of the bytes of a file that the system has started to write to the disk.
+    write_back_end: u64,
 }
 
 enum Sink {
-    /// Stdout, a device or a named pipe: written in place, there is nothing to rename.
+    /// Stdout, a device or a named pipe: written in place.
     InPlace(BufWriter<File>),
     Unnamed {
         file: BufWriter<File>,
@@ -51,8 +53,8 @@ enum Sink {
 }
 
 impl Output {
-    /// Opens stdout for `-`, otherwise a file that will get the name `path`. A symbolic link stays one: the
-    /// file that it leads to is replaced.
+    /// Opens stdout for `-`, otherwise a file that will get the name `path`. If `path` is a symbolic link,
+    /// its target is replaced, and the link stays.
     ///
     /// # Errors
     /// Usage, if `binary` data would go to a terminal; I/O, if the folder cannot be written to.
@@ -64,14 +66,14 @@ impl Output {
                     "refusing to write binary data to a terminal: redirect it, pipe it, or use --output",
                 ));
             }
-            // Past the line buffering of `Stdout`, which would look for line ends in binary data.
+            // Not through `Stdout`, whose line buffering would search binary data for line ends.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
-            return Ok(Output { name: "stdout".into(), sink, written: 0, sent_on: 0 });
+            return Ok(Output { name: "stdout".into(), sink, written: 0, write_back_end: 0 });
         }
         let name = path.display().to_string();
         let sink = create_file(path).map_err(|e| Error::io("creating the output", e).of_input(&name))?;
-        Ok(Output { name, sink, written: 0, sent_on: 0 })
+        Ok(Output { name, sink, written: 0, write_back_end: 0 })
     }
 
     /// Bytes written so far.
@@ -80,10 +82,11 @@ impl Output {
         self.written
     }
 
-    /// Flushes, and gives a file its final name, replacing one that has it, when its data are on the disk.
+    /// Flushes, waits until the data of a file are on the disk, and gives it its final name. An existing file
+    /// of that name is replaced.
     ///
     /// # Errors
-    /// If the last bytes cannot be written or the name cannot be given; then nothing is left behind.
+    /// If the last bytes cannot be written, or the file cannot get its name. Nothing is left behind then.
     pub fn commit(self) -> Result<()> {
         let committed = match self.sink {
             Sink::InPlace(mut file) => file.flush(),
@@ -93,21 +96,21 @@ impl Output {
         committed.map_err(|e| Error::io("finishing the output", e).of_input(self.name))
     }
 
-    /// Puts the name of the output before the reason, for whoever prints the error.
+    /// The error with the name of the output in front.
     fn named(&self, error: io::Error) -> io::Error {
         io::Error::new(error.kind(), format!("{}: {error}", self.name))
     }
 
-    /// Has the system begin to write to the disk what has been written to a file since the last time.
-    fn send_on(&mut self) {
+    /// Makes the system start to write the bytes since the last call to the disk.
+    fn start_write_back(&mut self) {
         let file = match &self.sink {
             Sink::InPlace(_) => return,
             Sink::Unnamed { file, .. } => file.get_ref(),
             Sink::Named { file, .. } => file.get_ref().as_file(),
         };
-        let handed_over = self.written.saturating_sub(BUFFER_LEN as u64);
-        system::start_write_back(file, self.sent_on, handed_over - self.sent_on);
-        self.sent_on = handed_over;
+        let flushed = self.written.saturating_sub(BUFFER_LEN as u64);
+        system::start_write_back(file, self.write_back_end, flushed - self.write_back_end);
+        self.write_back_end = flushed;
     }
 
     fn writer(&mut self) -> &mut dyn Write {
@@ -122,8 +125,8 @@ impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let written = self.writer().write(bytes).map_err(|e| self.named(e))?;
         self.written += written as u64;
-        if self.written - self.sent_on > SEND_ON_LEN {
-            self.send_on();
+        if self.written - self.write_back_end > WRITE_BACK_LEN {
+            self.start_write_back();
         }
         Ok(written)
     }
@@ -134,7 +137,8 @@ impl Write for Output {
 }
 
 impl Seek for Output {
-    /// Errors: a pipe or a terminal; everything else that is a file can be written at any place.
+    /// # Errors
+    /// If the output is a pipe or a terminal.
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let sought = match &mut self.sink {
             Sink::InPlace(file) | Sink::Unnamed { file, .. } => file.seek(to),
@@ -163,16 +167,16 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// A file without a name that can be given one later; `None` where the system or the file system cannot.
+/// A file without a name that can get one later; `None` if the system or the file system does not support it.
 #[cfg(target_os = "linux")]
 fn open_unnamed(folder: &Path) -> Option<File> {
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(FILE_MODE)).ok()?);
-    // The name is given through /proc, which may not be mounted: better to know before the work.
+    // The file gets its name through /proc, which may not be mounted: better to know before the work.
     descriptor_path(&file).exists().then_some(file)
 }
 
-/// A file without a name that can be given one later; `None` where the system or the file system cannot.
+/// A file without a name that can get one later; `None` if the system or the file system does not support it.
 #[cfg(not(target_os = "linux"))]
 fn open_unnamed(_folder: &Path) -> Option<File> {
     None
@@ -182,8 +186,8 @@ fn descriptor_path(file: &File) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
 }
 
-/// Links the unnamed file to its name. A link cannot replace a file: if there is one, it is linked to a
-/// temporary name, and that is renamed.
+/// Links the unnamed file to its name. A link cannot replace an existing file: then the file is linked to a
+/// temporary name, which is renamed.
 fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
     file.sync_all()?;

@@ -1,6 +1,8 @@
 //! Seeded random numbers.
 
-/// A sequence of random numbers that depends on the seed alone (SplitMix64 of Steele, Lea and Flood, 2014).
+/// A sequence of random numbers that depends on the seed alone.
+///
+/// Source: SplitMix64 (Steele, Lea and Flood, 2014).
 #[derive(Debug)]
 pub struct Random(u64);
 
@@ -20,7 +22,9 @@ impl Random {
         z ^ z >> 31
     }
 
-    /// A number below `end`, each as likely as the others (Lemire 2019); `end` must not be 0.
+    /// A uniform number below `end`, which must not be 0.
+    ///
+    /// Source: Lemire, 2019.
     pub fn below(&mut self, end: u64) -> u64 {
         loop {
             let product = u128::from(self.bits()) * u128::from(end);
@@ -36,7 +40,9 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Puts items in random order, each as likely as the others (Fisher and Yates; Durstenfeld, 1964).
+    /// Shuffles items; all orders are equally likely.
+    ///
+    /// Source: Fisher and Yates; Durstenfeld, 1964.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last as u64 + 1) as usize);

@@ -1,5 +1,5 @@
-//! Pipes, memory, free space and write-back, as far as the operating system offers them. No result depends on them: if the
-//! system refuses a request, the program goes on without it.
+//! Pipes, memory, free space and write-back, as far as the operating system offers them. No result depends on
+//! them: if the system refuses a request, the program goes on without it.
 //!
 //! `libc` serves only where `rustix` has no function: `mallopt`, `signal`, `_exit` and `sync_file_range`.
 
@@ -9,7 +9,8 @@ use std::os::fd::AsRawFd;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// Capacity of a widened pipe, in bytes. With the default of 64 KiB, the two ends keep waiting for each other.
+/// Capacity of a widened pipe, in bytes. With the default of 64 KiB, the two ends keep waiting for each
+/// other.
 #[cfg(target_os = "linux")]
 const PIPE_LEN: usize = 1 << 20;
 
@@ -30,8 +31,8 @@ pub fn widen_pipe(_file: &impl AsFd) {}
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const LARGE_BLOCK: libc::c_int = 1 << 18;
 
-/// From now on, large blocks of memory go back to the system when they are freed. By default, glibc raises its threshold
-/// with the first large blocks that are freed, and then keeps such blocks, for each thread.
+/// From now on, large blocks of memory go back to the system when they are freed. By default, glibc raises
+/// its threshold with the first large blocks that are freed, and then keeps such blocks, for each thread.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn give_back_large_blocks() {
     // SAFETY: the call takes integers and only changes where later blocks lie.
@@ -45,8 +46,8 @@ pub fn give_back_large_blocks() {}
 /// The message and the exit code of an abort.
 static AT_ABORT: OnceLock<(&str, u8)> = OnceLock::new();
 
-/// From now on, an abort prints `message` on stderr and exits with `code`. Rust aborts if it cannot allocate. Only the
-/// first call has an effect.
+/// From now on, an abort prints `message` on stderr and exits with `code`. Rust aborts if it cannot allocate.
+/// Only the first call has an effect.
 pub fn exit_at_abort(message: &'static str, code: u8) {
     let handler: extern "C" fn(libc::c_int) = exit_with_message;
     if AT_ABORT.set((message, code)).is_ok() {
@@ -81,7 +82,8 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
-/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs); `false` if the system does not tell.
+/// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs); `false` if the system does not
+/// tell.
 #[cfg(target_os = "linux")]
 #[must_use]
 pub fn is_in_memory(folder: &Path) -> bool {

@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 use super::threads::{Stop, join};
 use crate::error::Result;
 
-/// The results of `work` for all items, in the order of the items. Threads take the items one by one; the calling thread
-/// is one of `threads`, and the only one if the system refuses others.
+/// The results of `work` for all items, in the order of the items. Threads take the items one by one; the
+/// calling thread is one of `threads`, and the only one if the system refuses others.
 ///
 /// Cost: starts `threads - 1` threads per call; a lock per item. Items are therefore large pieces of work.
 ///
@@ -53,8 +53,8 @@ struct Shared<I> {
 }
 
 impl<I: Iterator> Shared<I> {
-    /// Takes items until none is left or one failed. All items before one that failed have been taken by then, and are
-    /// finished, so that the first error does not depend on the threads.
+    /// Takes items until none is left or one failed. All items before one that failed have been taken by
+    /// then, and are finished, so that the first error does not depend on the threads.
     fn run<R>(&self, work: impl Fn(I::Item) -> Result<R>) -> Vec<(usize, Result<R>)> {
         let mut done = Vec::new();
         while let Some((at, item)) = self.next() {

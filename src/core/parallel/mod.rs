@@ -11,9 +11,9 @@
 //!
 //! [`BufferPool`] passes used buffers back to the threads that fill them.
 //!
-//! Rules common to all: a panic of a worker resumes on the calling thread with its payload. After an error or a panic no
-//! further item is begun; items under way are finished. No thread outlives the call or the value that started it, but for
-//! [`produce`].
+//! Rules common to all: a panic of a worker resumes on the calling thread with its payload. After an error or
+//! a panic no further item is begun; items under way are finished. No thread outlives the call or the value
+//! that started it, but for [`produce`].
 
 mod buffer_pool;
 mod map;

@@ -19,8 +19,8 @@ type Outcome<R> = std::result::Result<R, Box<dyn Any + Send>>;
 
 /// Threads that turn jobs into results. The results come back in the order in which the jobs were given.
 ///
-/// Back-pressure: every job has a weight, such as the bytes that it takes up. The caller gives no further job while
-/// [`OrderedPool::is_full`], and takes a result instead.
+/// Back-pressure: every job has a weight, such as the bytes that it takes up. The caller gives no further job
+/// while [`OrderedPool::is_full`], and takes a result instead.
 ///
 /// The drop gives up jobs that are not begun, and waits for those that are.
 pub struct OrderedPool<J, R> {

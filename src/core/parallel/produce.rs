@@ -7,12 +7,12 @@ use crossbeam_channel::{Receiver, bounded};
 use super::threads::spawn;
 use crate::error::Result;
 
-/// Starts a thread called `name` that sends what `next` returns; [`ControlFlow::Break`] is the last item. At most `ahead`
-/// items wait, and the thread holds one more.
+/// Starts a thread called `name` that sends what `next` returns; [`ControlFlow::Break`] is the last item. At
+/// most `ahead` items wait, and the thread holds one more.
 ///
-/// The thread is not joined: `next` may block on an input that stays silent, and a failure elsewhere must not wait for it.
-/// The thread ends after the last item, or with the next item after the receiver is gone. If `next` panics, the receiver
-/// sees the end of the channel without a last item.
+/// The thread is not joined: `next` may block on an input that stays silent, and a failure elsewhere must not
+/// wait for it. The thread ends after the last item, or with the next item after the receiver is gone. If
+/// `next` panics, the receiver sees the end of the channel without a last item.
 ///
 /// # Errors
 /// [`crate::error::ErrorKind::Io`] if the system refuses a thread.

@@ -5,16 +5,17 @@ use crossbeam_channel::bounded;
 use super::threads::{join, spawn_scoped};
 use crate::error::Result;
 
-/// Fills buffers with `produce` on a thread called `name`, and gives them in order to `consume` on the calling thread.
-/// `buffers` of them go round. `produce` returns whether it filled the buffer; if not, that was the end.
+/// Fills buffers with `produce` on a thread called `name`, and gives them in order to `consume` on the
+/// calling thread. `buffers` of them go round. `produce` returns whether it filled the buffer; if not, that
+/// was the end.
 ///
 /// After an error of `consume`, the call waits until the current `produce` has returned.
 ///
 /// Memory: `buffers` buffers.
 ///
 /// # Errors
-/// The first error in the order of the buffers, whichever thread it happens on; [`crate::error::ErrorKind::Io`] if the
-/// system refuses a thread.
+/// The first error in the order of the buffers, whichever thread it happens on;
+/// [`crate::error::ErrorKind::Io`] if the system refuses a thread.
 ///
 /// # Panics
 /// If `produce` or `consume` panics.
@@ -35,7 +36,8 @@ pub fn read_ahead<B: Default + Send>(
         }
         Ok(())
     };
-    // The closure owns both ends of the caller, so that an error or a panic closes the channels before the scope waits.
+    // The closure owns both ends of the caller, so that an error or a panic closes the channels before the
+    // scope waits.
     std::thread::scope(move |scope| {
         let producer = spawn_scoped(scope, name, run)?;
         for _ in 0..buffers {

@@ -7,7 +7,8 @@ use std::thread::{self, Builder, JoinHandle, Scope, ScopedJoinHandle};
 
 use crate::error::{Error, Result};
 
-/// Threads that the system runs at once: the cores that this process may use, or 1 if the system does not tell.
+/// Threads that the system runs at once: the cores that this process may use, or 1 if the system does not
+/// tell.
 #[must_use]
 pub fn available_threads() -> NonZeroUsize {
     thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)

@@ -10,11 +10,11 @@ use std::path::Path;
 use crate::error::{Error, Result};
 pub use records::Records;
 
-/// A file without a name, so that nothing is left of it however the process ends.
+/// A file without a name, so that nothing of it is left however the process ends.
 #[derive(Debug)]
 pub struct TemporaryFile {
     file: File,
-    /// What messages call it.
+    /// Name in messages.
     name: String,
 }
 
@@ -22,7 +22,7 @@ impl TemporaryFile {
     /// An empty file in `folder`, or in the system's folder for temporary files.
     ///
     /// # Errors
-    /// If it cannot be created.
+    /// If the file cannot be created.
     pub fn create(folder: Option<&Path>) -> Result<TemporaryFile> {
         let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
         let name = format!("temporary file in {}", folder.display());
@@ -30,12 +30,12 @@ impl TemporaryFile {
         Ok(TemporaryFile { file, name })
     }
 
-    /// The file itself, to be written and read in order.
+    /// The file, for sequential access.
     pub fn file(&self) -> &File {
         &self.file
     }
 
-    /// What messages call it.
+    /// Its name in messages.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -45,23 +45,23 @@ impl TemporaryFile {
         self.file
     }
 
-    /// Writes bytes at a place; `what` is being done then, for messages.
+    /// Writes bytes at an offset; `what` describes the operation in messages.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file cannot be written.
     pub fn write_at(&self, what: &str, bytes: &[u8], offset: u64) -> Result<()> {
         self.file.write_all_at(bytes, offset).map_err(|e| self.error(what, e))
     }
 
-    /// Reads as many bytes as there is room for from a place; `what` is being done then, for messages.
+    /// Fills `bytes` from an offset; `what` describes the operation in messages.
     ///
     /// # Errors
-    /// If it cannot be read, or has not so many.
+    /// If the file cannot be read, or is too short.
     pub fn read_at(&self, what: &str, bytes: &mut [u8], offset: u64) -> Result<()> {
         self.file.read_exact_at(bytes, offset).map_err(|e| self.error(what, e))
     }
 
-    /// What failed with the file.
+    /// The error of an operation on the file.
     pub fn error(&self, what: &str, cause: io::Error) -> Error {
         Error::io(what, cause).of_input(&self.name)
     }

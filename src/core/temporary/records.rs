@@ -1,11 +1,11 @@
-//! Records of one length in a temporary file, whose places are used again.
+//! Records of one length in a temporary file, whose slots are used again.
 
 use std::path::{Path, PathBuf};
 
 use super::TemporaryFile;
 use crate::error::Result;
 
-/// Records that memory has no room for; the file is made when it is needed first.
+/// Records that do not fit memory. The file is created by the first access.
 #[derive(Debug)]
 pub struct Records {
     folder: Option<PathBuf>,
@@ -13,12 +13,12 @@ pub struct Records {
     record_len: u64,
     /// Number of records in the file.
     count: u32,
-    /// Records that can be used again.
+    /// Free slots.
     free: Vec<u32>,
 }
 
 impl Records {
-    /// None so far; the file is going to be in `folder`, or in the system's folder for temporary files.
+    /// No records; the file will be in `folder`, or in the system's folder for temporary files.
     pub fn new(folder: Option<&Path>, record_len: u64) -> Records {
         let folder = folder.map(Path::to_path_buf);
         Records { folder, file: None, record_len, count: 0, free: Vec::new() }
@@ -30,7 +30,7 @@ impl Records {
         u64::from(self.count) * self.record_len
     }
 
-    /// The number of a record that holds nothing yet.
+    /// Allocates a record and returns its number. Its content is unspecified.
     pub fn add(&mut self) -> u32 {
         self.free.pop().unwrap_or_else(|| {
             self.count += 1;
@@ -38,21 +38,21 @@ impl Records {
         })
     }
 
-    /// Lets a record be used again.
+    /// Frees a record.
     pub fn forget(&mut self, record: u32) {
         self.free.push(record);
     }
 
-    /// Writes bytes at a place of a record; `what` is being done then, for messages.
+    /// Writes bytes at an offset within a record; `what` describes the operation in messages.
     ///
     /// # Errors
-    /// If the file cannot be made or written.
+    /// If the file cannot be created or written.
     pub fn write(&mut self, what: &str, record: u32, at: u64, bytes: &[u8]) -> Result<()> {
         let offset = u64::from(record) * self.record_len + at;
         self.file()?.write_at(what, bytes, offset)
     }
 
-    /// Reads bytes at a place of a record; `what` is being done then, for messages.
+    /// Reads bytes at an offset within a record; `what` describes the operation in messages.
     ///
     /// # Errors
     /// If the file cannot be read.

@@ -1,20 +1,20 @@
-//! How the memory of the process is divided.
+//! The division of the process's memory.
 
 use spmesh_core::error::{Error, ErrorKind, Result};
 
-/// What the process needs beside the budget: program, one batch of points, buffers of input and output.
-/// Measured on LAZ input, with two threads, 26 MiB together with those.
+/// Memory beside the budget: program, one batch of points, buffers of input and output. Measured on LAZ
+/// input: 26 MiB, including two threads.
 const PROCESS_RESERVE: u64 = 32 << 20;
 
-/// What every thread that decodes input needs, up to the number of threads that decode together.
+/// Memory per thread that decodes input, up to the number of threads that decode at once.
 const THREAD_RESERVE: u64 = 6 << 20;
 const THREADS_MAX: u64 = 16;
 
 /// Least memory that counters, leaves and waiting points can work with.
 const ENGINE_MIN: u64 = 64 << 10;
 
-/// More memory for counters would only make the finest cells smaller than any leaf: half a million and more of them
-/// are known, and several grids of them coexist. With 32 MiB 10 million points took 13 MB more.
+/// More memory for counters would only make the finest cells smaller than any leaf: this is enough for half a
+/// million counters, and several grids coexist. With 32 MiB, 10 million points took 13 MB more.
 const COUNTERS_MAX: u64 = 16 << 20;
 
 /// Memory for counters, leaves and waiting points, in bytes.
@@ -24,10 +24,10 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// What is left of the memory `total` of a whole process that decodes its input with `threads` threads.
+    /// The budget of a process with `total` bytes of memory that decodes its input with `threads` threads.
     ///
     /// # Errors
-    /// [`ErrorKind::Memory`] if that is too little to work with.
+    /// [`ErrorKind::Memory`] if that is too little.
     pub fn of_process(total: u64, threads: usize) -> Result<Budget> {
         Budget::of_engine(total.saturating_sub(process_reserve(threads))).map_err(|_| {
             Error::new(
@@ -41,16 +41,16 @@ impl Budget {
         })
     }
 
-    /// Least memory that a process with `threads` threads can be told to keep to, in bytes.
+    /// Least memory of a process with `threads` threads, in bytes.
     #[must_use]
     pub fn process_min(threads: usize) -> u64 {
         process_reserve(threads) + ENGINE_MIN
     }
 
-    /// A budget for counters, leaves and waiting points alone.
+    /// A budget of `bytes` for counters, leaves and waiting points alone.
     ///
     /// # Errors
-    /// [`ErrorKind::Memory`] if it is too little to work with.
+    /// [`ErrorKind::Memory`] if it is too little.
     pub fn of_engine(bytes: u64) -> Result<Budget> {
         if bytes < ENGINE_MIN {
             return Err(Error::new(
@@ -61,28 +61,28 @@ impl Budget {
         Ok(Budget { bytes })
     }
 
-    /// All of it, in bytes.
+    /// The whole budget, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// For the counters of one pass whose grid can be made coarser; four such passes may coexist.
+    /// Bytes for the counters of one pass whose grid can be made coarser; four such grids may coexist.
     pub(super) fn counters(&self) -> u64 {
         (self.bytes / 8).min(COUNTERS_MAX)
     }
 
-    /// For the counters of a grid of a level that the user fixed.
+    /// Bytes for the counters of a grid whose level the user fixed.
     pub(super) fn counters_of_fixed_level(&self) -> u64 {
         self.bytes / 2
     }
 
-    /// For the leaves of the tree and the state of their buffers.
+    /// Bytes for the leaves of the tree and the state of their buffers.
     pub(super) fn leaves(&self) -> u64 {
         self.bytes / 2
     }
 
-    /// For the table that tells the leaf of a point.
+    /// Bytes for the table of the locator.
     pub(super) fn table(&self) -> u64 {
         self.bytes / 64
     }

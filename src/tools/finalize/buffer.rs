@@ -1,10 +1,10 @@
-//! Points that wait for their cell to be complete: packed in pages of memory, and beyond that on disk.
+//! Points that wait for their cell to be complete, packed in pages of memory; the excess waits on disk.
 
 use std::path::PathBuf;
 
-use super::Stats;
 use super::pages::{NO_PAGE, Pages};
 use super::spill::{NO_EXTENT, Spill};
+use super::stats::Stats;
 use spmesh_core::error::Result;
 
 /// Bytes of the state of one cell.
@@ -61,7 +61,7 @@ pub(super) struct CellBuffers {
 }
 
 impl CellBuffers {
-    /// Buffers of `cells` cells that keep to `bytes` of memory and spill to a file in `folder`.
+    /// Buffers of `cells` cells that take up to `bytes` of memory and spill to a file in `folder`.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Memory`] if the system refuses the memory.
@@ -69,7 +69,7 @@ impl CellBuffers {
         let io_len = (bytes / 16).clamp(IO_LEN_MIN, IO_LEN_MAX);
         let for_pages = bytes.saturating_sub(cells as u64 * CELL_COST + 2 * io_len);
         let record = record_len as u64;
-        // Every cell may have a page that is filled in part: with many cells, pages must be short.
+        // Every cell may have a partly filled page: with many cells, pages must be short.
         let points_max = PAGE_LEN_MAX / record;
         let points = (for_pages / (4 * cells as u64 * record)).clamp(PAGE_POINTS_MIN, points_max);
         Ok(CellBuffers {
@@ -97,9 +97,9 @@ impl CellBuffers {
                 self.add_page(cell)?;
             }
             let state = &mut self.cells[cell];
-            let room = &mut self.pages.content_mut(state.last_page)[state.fill as usize..];
-            let (now, later) = records.split_at(records.len().min(room.len()));
-            room[..now.len()].copy_from_slice(now);
+            let free = &mut self.pages.content_mut(state.last_page)[state.fill as usize..];
+            let (now, later) = records.split_at(records.len().min(free.len()));
+            free[..now.len()].copy_from_slice(now);
             state.fill += now.len() as u32;
             records = later;
         }
@@ -107,7 +107,7 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// Hands the records of `cell` to `consume`, in pieces of whole records, and forgets them.
+    /// Calls `consume` with the records of `cell`, in pieces of whole records, and empties the cell.
     ///
     /// # Errors
     /// If the temporary file cannot be read, or `consume` fails.
@@ -127,7 +127,7 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// Adds what happened to `stats`.
+    /// Adds the figures of the buffers to `stats`.
     pub(super) fn report(&self, stats: &mut Stats) {
         stats.buffered_points_max = self.waiting_max;
         stats.buffered_bytes_max = self.pages.bytes_max();
@@ -135,6 +135,10 @@ impl CellBuffers {
         stats.spilled_bytes = self.spill.as_ref().map_or(0, Spill::len);
     }
 
+    /// Appends a page to a cell, after a spill if no page is free.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be written.
     fn add_page(&mut self, cell: usize) -> Result<()> {
         let page = match self.pages.take() {
             Some(page) => page,
@@ -155,8 +159,11 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// Writes the fullest cells to disk until at least half of the pages are free: extents become as long as
-    /// they can, and a cell is written rarely.
+    /// Writes the fullest cells to disk until at least half of the pages are free. So extents are long, and
+    /// each cell is written rarely.
+    ///
+    /// # Errors
+    /// If the temporary file cannot be written.
     fn spill_fullest(&mut self) -> Result<()> {
         let pages_min = self.victim_pages_min();
         if self.spill.is_none() {
@@ -170,7 +177,8 @@ impl CellBuffers {
         self.spill.as_mut().expect("created above").flush()
     }
 
-    /// The power of two such that the cells with at least so many pages have half of all pages in use.
+    /// The greatest power of two such that the cells with at least so many pages have half of all pages in
+    /// use.
     fn victim_pages_min(&self) -> u32 {
         let mut pages_of_size = [0u64; 32];
         for cell in self.cells.iter().filter(|cell| cell.pages > 0) {
@@ -204,7 +212,7 @@ impl CellBuffers {
     }
 }
 
-/// Hands the filled part of every page of a cell to `consume`, in order.
+/// Calls `consume` with the filled part of every page of a cell, in order.
 fn for_each_page(pages: &Pages, state: &Cell, mut consume: impl FnMut(&[u8]) -> Result<()>) -> Result<()> {
     let mut page = state.first_page;
     while page != NO_PAGE {

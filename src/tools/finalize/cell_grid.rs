@@ -1,8 +1,8 @@
 //! The cells of one level of a tree, for many points at once.
 //!
-//! [`CellTree::cell_of`] finds the cell of one point, at any level. Here all that depends on the level alone is
-//! computed once, and the rest is a few operations without branches, so that a loop over a batch runs in parallel
-//! within a core. Both give the same cell for every point (`tests/cell_grid.rs`).
+//! [`CellTree::cell_of`] finds the cell of one point, at any level. [`CellGrid`] computes everything that
+//! depends on the level once; the rest is a few operations without branches, so that a loop over a batch is
+//! vectorized. Both find the same cell for every point (`tests/cell_grid.rs`).
 
 use spmesh_model::bits::{spread2, spread3};
 use spmesh_model::bounds::Point;
@@ -20,8 +20,8 @@ pub struct CellGrid {
 }
 
 impl CellGrid {
-    /// The cells of `level`; `None` if the reciprocal of their side is not finite, which is so for sides that
-    /// [`CellTree::covering`] never gives.
+    /// The cells of `level`; `None` if the reciprocal of their side is not finite and normal.
+    /// [`CellTree::covering`] never makes such a tree.
     #[must_use]
     pub fn new(tree: &CellTree, level: u8) -> Option<CellGrid> {
         let step = tree.side() / (1u64 << level) as f64;
@@ -32,8 +32,9 @@ impl CellGrid {
 
     /// Index on an axis of the half-open cell that holds `x`, which must lie in the cube.
     ///
-    /// Borders are exact, and rounding is monotone: a point below a border never gets beyond it, but the rounded
-    /// difference may reach it. So the index is right or one too large, and the border tells which.
+    /// Borders are exact, and rounding is monotone: the rounded difference of a point below a border may
+    /// reach the border, but not exceed it. So the index is right or one too large, and a comparison with the
+    /// border decides.
     #[inline(always)]
     fn index(&self, axis: usize, x: f64) -> u32 {
         let index = ((x - self.origin[axis]) * self.cells_per_unit) as i32;
@@ -55,8 +56,8 @@ impl CellGrid {
         CellCode(1 << (self.dims * self.level) | morton)
     }
 
-    /// Number of the cell that holds `point`, counted row by row: below `2^(dims * level)`, which must be less
-    /// than 2^32. `point` must lie in the cube; any number below that otherwise.
+    /// Number of the cell that holds `point`, counted row by row: below `2^(dims * level)`, which must be
+    /// less than 2^32. `point` must lie in the cube; any number below that otherwise.
     #[inline(always)]
     #[must_use]
     pub fn number_of(&self, point: Point) -> u32 {

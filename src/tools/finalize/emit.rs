@@ -1,19 +1,20 @@
-//! Pass 3: points and tags go out (thesis 5.2).
+//! Pass 3: writes points and tags (thesis 5.2).
 
 use std::io::Write;
 
 use super::buffer::CellBuffers;
+use super::changed::input_changed;
 use super::locate::Locator;
+use super::options::Options;
+use super::passes::{Pass, Passes};
 use super::plan::Plan;
-use super::survey::input_changed;
 use super::work::Work;
-use super::{Options, Pass, Passes};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Header, StreamWriter, encode_points};
 
-/// Points after which leaves that are complete are written. Counted in the input, not in what happens to be read at once,
-/// so that the output depends on the input alone.
+/// Points of the input after which complete leaves are written. Batches do not matter, so that the output
+/// depends on the input alone.
 const WINDOW: u64 = 1 << 16;
 
 /// A batch of points with the leaf and the record of each.
@@ -31,7 +32,7 @@ impl Located {
         encode_points(header, points, &mut self.records)
     }
 
-    /// Every run of points in one leaf: the leaf, and the bytes of their records.
+    /// Every run of points in one leaf: the leaf, and the bytes of the records.
     fn runs(&self, record_len: usize) -> impl Iterator<Item = (usize, &[u8])> {
         let mut rest = &self.records[..];
         self.leaves.chunk_by(|a, b| a == b).map(move |run| {
@@ -43,10 +44,14 @@ impl Located {
 }
 
 impl<P: Passes + ?Sized> Work<'_, P> {
-    /// Holds the points of a leaf back until its counter is zero, then writes them and its tag.
+    /// Holds the points of a leaf until its counter is zero, then writes them and its tag.
     ///
-    /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree: from points
-    /// in random order nearly all are complete at the very end, and neighbours had better follow each other.
+    /// Leaves that are complete within the same [`WINDOW`] of points are written in the order of the tree. If
+    /// the points are in random order, nearly all leaves are complete at the very end, and neighbours should
+    /// follow each other.
+    ///
+    /// # Errors
+    /// As [`super::run::run`].
     pub(super) fn write_chunked<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -90,6 +95,9 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 
     /// Writes every point as it comes, and the tag of a leaf after its last point.
+    ///
+    /// # Errors
+    /// As [`super::run::run`].
     pub(super) fn write_preserved<W: Write>(
         &mut self,
         mut plan: Plan,
@@ -112,7 +120,10 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         writer.end(0, 0).map(drop)
     }
 
-    /// Copies the points of an input for which there is no tree.
+    /// Copies the points of an input that has no tree.
+    ///
+    /// # Errors
+    /// As [`super::run::run`].
     pub(super) fn write_untagged<W: Write>(&mut self, mut writer: StreamWriter<W>) -> Result<()> {
         let header = writer.header().clone();
         if header.points != Some(0) {
@@ -126,12 +137,15 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     }
 }
 
-/// Fails unless all points lie in the box that was found before.
+/// Checks that all points lie in the box of pass 1.
+///
+/// # Errors
+/// If not: the input has changed.
 fn expect_inside(bounds: &Option<Bounds>, points: &[Point]) -> Result<()> {
     let Some(Bounds { min, max }) = bounds else { return Err(input_changed()) };
     let is_inside = |point: &Point| {
         (0..3).fold(true, |inside, axis| inside & (min[axis] <= point[axis]) & (point[axis] <= max[axis]))
     };
-    // Without a way out of the loop it is a few instructions per point.
+    // A loop without an early exit takes a few instructions per point.
     if points.iter().fold(true, |all, point| all & is_inside(point)) { Ok(()) } else { Err(input_changed()) }
 }

@@ -1,25 +1,25 @@
-//! The leaves of points, found for a whole batch at once: through a table of cells, and by search where leaves
-//! are smaller than its cells.
+//! The leaves of a batch of points: from a table of cells, and by binary search where leaves are smaller than
+//! its cells.
 
-use super::survey::input_changed;
-use crate::cell_grid::CellGrid;
+use super::cell_grid::CellGrid;
+use super::changed::input_changed;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::{CellCode, CellTree};
 
-/// A cell of the table that is in no leaf, and one that is divided further.
+/// In the table: a cell that is in no leaf, and one that several leaves share.
 const EMPTY: u32 = u32::MAX;
 const DIVIDED: u32 = u32::MAX - 1;
 
 /// Most cells of the table, as a power of two: its 256 KiB stay in the cache of a core.
 const LOG_TABLE_MAX: u32 = 16;
 
-/// Which leaf holds a point.
+/// Finds the leaves of points.
 pub(super) struct Locator {
     tree: CellTree,
-    /// In the order of the tree: increasing, when extended to the same depth.
+    /// In the order of the tree: increasing when extended to the same depth.
     leaves: Vec<CellCode>,
-    /// `None` where cells are too small to be computed in this way, which no finite cube around points has.
+    /// `None` if cells are too small for [`CellGrid`], which cannot happen in a finite cube around points.
     grids: Option<Grids>,
     /// Leaf of each cell of the table, row by row.
     table: Vec<u32>,
@@ -52,10 +52,11 @@ impl Locator {
         &self.leaves
     }
 
-    /// Replaces `found` with the number of the leaf of each point. All points must lie in the cube.
+    /// Replaces the content of `found` by the number of the leaf of each point. All points must lie in the
+    /// cube.
     ///
     /// # Errors
-    /// If a point lies in no leaf, so that it was not counted.
+    /// If a point lies in no leaf: it was not counted, so the input has changed.
     pub(super) fn locate(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
         found.clear();
         let Some(Grids { table, deepest }) = self.grids else {
@@ -75,6 +76,10 @@ impl Locator {
         Ok(())
     }
 
+    /// [`Locator::locate`] without the table.
+    ///
+    /// # Errors
+    /// As [`Locator::locate`].
     fn search_all(&self, points: &[Point], found: &mut Vec<u32>) -> Result<()> {
         let mut last = 0;
         for &point in points {
@@ -85,6 +90,9 @@ impl Locator {
     }
 
     /// Number of the leaf that holds the deepest cell `code`; `last` is a guess.
+    ///
+    /// # Errors
+    /// As [`Locator::locate`].
     fn search(&self, code: u64, last: u32) -> Result<u32> {
         if self.holds(last as usize, code) {
             return Ok(last);
@@ -105,7 +113,7 @@ fn extend(cell: u64, code: u64) -> u64 {
     cell << (cell.leading_zeros() - code.leading_zeros())
 }
 
-/// Marks the cells of `level` that `leaf`, which has this `number`, covers or divides.
+/// Enters the leaf with this `number` in the cells of `level` that it covers or divides.
 fn enter(table: &mut [u32], tree: &CellTree, level: u8, leaf: CellCode, number: u32) {
     let (leaf_level, index) = tree.decode(leaf);
     let (value, span) = if leaf_level > level { (DIVIDED, 1) } else { (number, 1 << (level - leaf_level)) };

@@ -1,4 +1,4 @@
-//! Memory for waiting points: pages of one size, chained per cell, recycled through a free list.
+//! Memory for waiting points: pages of one size, chained per cell and recycled through a free list.
 
 use spmesh_core::error::{Error, ErrorKind, Result};
 
@@ -7,7 +7,7 @@ pub(super) const NO_PAGE: u32 = u32::MAX;
 
 /// A fixed number of pages.
 ///
-/// Address space for all of them is reserved at once; memory is taken when a page is used first.
+/// Memory: address space for all pages is reserved at once; a page takes memory from its first use.
 pub(super) struct Pages {
     page_len: usize,
     pages_max: usize,
@@ -19,13 +19,16 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Pages of `page_len` bytes that take up `bytes` at most, their links included.
+    /// Pages of `page_len` bytes that take up at most `bytes`, including their links.
+    ///
+    /// # Panics
+    /// If not even one page fits.
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if the system refuses so much address space.
     pub(super) fn new(page_len: usize, bytes: u64) -> Result<Pages> {
         let pages_max = (bytes / (page_len as u64 + 4)).min(u64::from(NO_PAGE)) as usize;
-        assert!(pages_max > 0, "there is room for a page");
+        assert!(pages_max > 0, "a page fits");
         let (mut content, mut next) = (Vec::new(), Vec::new());
         content
             .try_reserve_exact(pages_max * page_len)
@@ -44,12 +47,12 @@ impl Pages {
         self.in_use
     }
 
-    /// Most bytes that pages took up at once.
+    /// High-water mark of the memory of pages, in bytes.
     pub(super) fn bytes_max(&self) -> u64 {
         self.bytes.len() as u64
     }
 
-    /// A page at the end of no chain yet; `None` if all are in use.
+    /// A free page, not linked yet; `None` if all are in use.
     pub(super) fn take(&mut self) -> Option<u32> {
         let page = if self.free != NO_PAGE {
             let page = self.free;

@@ -1,20 +1,22 @@
 //! The finalization tree: which cells are leaves, which are empty, and how many points each leaf expects.
 
+use super::budget::Budget;
 use super::buffer::CELL_COST;
+use super::cell_counts::CellCounts;
+use super::changed::input_changed;
 use super::locate::Locator;
-use super::survey::{Grid, input_changed};
-use super::{Budget, Leaves};
+use super::options::Leaves;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::cells::{CellCode, CellTree};
 
-/// Bytes that a leaf takes up while its points wait: its code, its counter, and the state of its buffer.
+/// Bytes per leaf while its points wait: its code, its counter, and the state of its buffer.
 const LEAF_COST: u64 = PLAN_COST + CELL_COST;
 
-/// Bytes of code and counter of a leaf.
+/// Bytes of the code and the counter of a leaf.
 const PLAN_COST: u64 = 16;
 
-/// Leaves and empty cells of the tree, which together fill the cube without overlap, and the number of
-/// points that each leaf still expects.
+/// Leaves and empty cells of the tree, which together fill the cube without overlap, and the number of points
+/// that each leaf still expects.
 pub(super) struct Plan {
     tree: CellTree,
     /// Maximal cells without points, in the order of the tree.
@@ -31,10 +33,10 @@ impl Plan {
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if so many leaves do not fit.
-    pub(super) fn new(grid: Grid, rule: Leaves, budget: &Budget) -> Result<Plan> {
+    pub(super) fn new(counts: CellCounts, rule: Leaves, budget: &Budget) -> Result<Plan> {
         let (mut leaves, mut empty, mut depth) = (0u64, 0u64, 0);
-        visit(&grid, rule, CellCode::ROOT, &mut |cell, count| {
-            depth = depth.max(grid.tree.level(cell));
+        visit(&counts, rule, CellCode::ROOT, &mut |cell, count| {
+            depth = depth.max(counts.tree.level(cell));
             *(if count == 0 { &mut empty } else { &mut leaves }) += 1;
         });
         if leaves * LEAF_COST + empty * 8 > budget.leaves() {
@@ -45,7 +47,7 @@ impl Plan {
                 ),
             ));
         }
-        let tree = CellTree::new(grid.tree.dims(), depth, grid.tree.origin(), grid.tree.side())
+        let tree = CellTree::new(counts.tree.dims(), depth, counts.tree.origin(), counts.tree.side())
             .expect("a tree that is less deep is as exact");
         let mut plan = Plan {
             tree,
@@ -55,7 +57,7 @@ impl Plan {
             table_bytes: budget.table(),
             count_max: 0,
         };
-        visit(&grid, rule, CellCode::ROOT, &mut |cell, count| plan.enter(cell, count));
+        visit(&counts, rule, CellCode::ROOT, &mut |cell, count| plan.enter(cell, count));
         Ok(plan)
     }
 
@@ -79,7 +81,7 @@ impl Plan {
         self.leaves.len()
     }
 
-    /// Memory that codes, counters and the table of cells take up.
+    /// Bytes of codes, counters and the table of cells.
     pub(super) fn bytes(&self) -> u64 {
         self.leaves.len() as u64 * PLAN_COST + self.table_bytes
     }
@@ -89,7 +91,7 @@ impl Plan {
         &self.empty
     }
 
-    /// Forgets the empty cells and tells them.
+    /// Takes the empty cells out of the plan.
     pub(super) fn take_empty(&mut self) -> Vec<CellCode> {
         std::mem::take(&mut self.empty)
     }
@@ -99,7 +101,7 @@ impl Plan {
         self.count_max
     }
 
-    /// What tells the leaf of a point, and what counts the points that are still to come.
+    /// The locator of leaves, and the countdown of their points.
     pub(super) fn split(self) -> (Locator, Countdown) {
         (Locator::new(self.tree, self.leaves, self.table_bytes), Countdown { remaining: self.remaining })
     }
@@ -111,25 +113,28 @@ pub(super) struct Countdown {
 }
 
 impl Countdown {
-    /// Takes `points` points of `leaf`, and whether none are left.
+    /// Counts `points` points of `leaf`. Returns whether the leaf is complete.
     ///
     /// # Errors
-    /// If more points have come than were counted.
+    /// If the leaf gets more points than were counted.
     pub(super) fn take(&mut self, leaf: usize, points: usize) -> Result<bool> {
         let remaining = &mut self.remaining[leaf];
         *remaining = remaining.checked_sub(points as u64).ok_or_else(input_changed)?;
         Ok(*remaining == 0)
     }
 
-    /// Fails unless every point that was counted has come.
+    /// Checks that all leaves are complete.
+    ///
+    /// # Errors
+    /// If a leaf got fewer points than were counted.
     pub(super) fn expect_end(&self) -> Result<()> {
         if self.remaining.iter().all(|&remaining| remaining == 0) { Ok(()) } else { Err(input_changed()) }
     }
 }
 
 /// Calls `found` with every leaf and every maximal empty cell below `cell`, and the number of points in it.
-fn visit(grid: &Grid, rule: Leaves, cell: CellCode, found: &mut impl FnMut(CellCode, u64)) {
-    let (count, is_finer_known) = grid.count(cell);
+fn visit(counts: &CellCounts, rule: Leaves, cell: CellCode, found: &mut impl FnMut(CellCode, u64)) {
+    let (count, is_finer_known) = counts.count(cell);
     let is_divided = count > 0
         && match rule {
             Leaves::Collapsed { cell_points, .. } => count > cell_points && is_finer_known,
@@ -138,8 +143,8 @@ fn visit(grid: &Grid, rule: Leaves, cell: CellCode, found: &mut impl FnMut(CellC
     if !is_divided {
         return found(cell, count);
     }
-    let first = cell.0 << grid.tree.dims();
-    for child in first..first + (1 << grid.tree.dims()) {
-        visit(grid, rule, CellCode(child), found);
+    let first = cell.0 << counts.tree.dims();
+    for child in first..first + (1 << counts.tree.dims()) {
+        visit(counts, rule, CellCode(child), found);
     }
 }

@@ -15,8 +15,8 @@ struct Batch<T> {
     prepared: T,
 }
 
-/// Reads `reader` to its end. Each batch goes through `prepare` on the reader's thread, then through `consume` on the
-/// calling thread, in order. `prepare` depends on the batch alone.
+/// Reads `reader` to its end. Each batch goes through `prepare` on the reader's thread, then through
+/// `consume` on the calling thread, in order. `prepare` depends on the batch alone.
 ///
 /// Memory: three batches.
 ///

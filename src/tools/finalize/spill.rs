@@ -1,7 +1,7 @@
-//! The temporary file for points that memory has no room for: extents, chained per cell.
+//! The temporary file for waiting points that exceed memory: extents, chained per cell.
 //!
 //! An extent is the offset of the next extent of its cell, its own length, and points. Extents are appended,
-//! and read back from first to last when their cell is complete; nothing is kept in memory per extent.
+//! and read back from first to last when their cell is complete. No memory is needed per extent.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use spmesh_core::temporary::TemporaryFile;
 pub(super) const NO_EXTENT: u64 = u64::MAX;
 
 const EXTENT_HEADER_LEN: usize = 16;
-/// What is being done when reading fails.
+/// The operation, for messages.
 const READING: &str = "reading points back";
 
 /// Extents of points.
@@ -22,7 +22,7 @@ pub(super) struct Spill {
     waiting: Vec<u8>,
     waiting_max: usize,
     end: u64,
-    /// What was read back last.
+    /// The piece that was read back last.
     piece: Vec<u8>,
 }
 
@@ -43,7 +43,7 @@ impl Spill {
         self.end + self.waiting.len() as u64
     }
 
-    /// Starts an extent of `len` bytes, to follow `previous` in the chain of its cell; its offset.
+    /// Starts an extent of `len` bytes that follows `previous` in the chain of its cell. Returns its offset.
     ///
     /// `previous` must have been flushed.
     ///
@@ -66,8 +66,8 @@ impl Spill {
     /// If the file cannot be written.
     pub(super) fn append(&mut self, mut bytes: &[u8]) -> Result<()> {
         while !bytes.is_empty() {
-            let room = self.waiting_max - self.waiting.len();
-            let (now, later) = bytes.split_at(room.min(bytes.len()));
+            let free = self.waiting_max - self.waiting.len();
+            let (now, later) = bytes.split_at(free.min(bytes.len()));
             self.waiting.extend_from_slice(now);
             bytes = later;
             if self.waiting.len() == self.waiting_max {
@@ -77,7 +77,7 @@ impl Spill {
         Ok(())
     }
 
-    /// Writes what waits.
+    /// Writes the waiting bytes.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -88,8 +88,8 @@ impl Spill {
         Ok(())
     }
 
-    /// Hands the content of the extent at `first` and of those chained to it to `consume`, in pieces of whole
-    /// records. Everything must have been flushed.
+    /// Calls `consume` with the content of the extent at `first` and of those chained to it, in pieces of
+    /// whole records. All extents must have been flushed.
     ///
     /// # Errors
     /// If the file cannot be read, or `consume` fails.

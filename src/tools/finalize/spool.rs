@@ -1,7 +1,8 @@
-//! Points that the first pass decoded, kept in a temporary file for the passes after it.
+//! Decoded points of the first pass, kept in a temporary file for later passes.
 //!
 //! Decompressing and parsing cost more than writing 12 bytes per point and reading them back. The file has no
-//! name, and consists of blocks: the length of the payload, its CRC-32C, and the points of a batch as records.
+//! name, and consists of blocks: the length of the payload, its CRC-32C, and the points of a batch as
+//! records.
 
 use std::path::{Path, PathBuf};
 
@@ -14,19 +15,19 @@ use spmesh_stream::{Header, Kind, decode_points, encode_points};
 
 const BLOCK_HEADER_LEN: usize = 8;
 
-/// Bytes after which an automatic spool looks again whether there is room for it.
-const ROOM_CHECK_LEN: u64 = 16 << 20;
+/// Bytes after which an automatic spool checks the free space again.
+const SPACE_CHECK_LEN: u64 = 16 << 20;
 
 /// When decoded points are kept for later passes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spooling {
-    /// Where decoding again would cost more, and where it takes no more than a quarter of the room on a disk. If the
-    /// file cannot be written, the input is decoded again.
+    /// If decoding again would cost more, and the file takes no more than a quarter of the free space on a
+    /// disk. If the file cannot be written, the input is decoded again.
     #[default]
     Auto,
-    /// In any case; it is an error if the file cannot be written.
+    /// Always; it is an error if the file cannot be written.
     Always,
-    /// Not at all.
+    /// Never.
     Never,
 }
 
@@ -47,7 +48,7 @@ impl Spool {
         Ok(Spool { file, header, bytes: 0, points: 0, invalid: 0 })
     }
 
-    /// Points in it.
+    /// Number of points.
     pub(super) fn points(&self) -> u64 {
         self.points
     }
@@ -138,7 +139,7 @@ pub(super) struct SpoolPlan {
 }
 
 impl SpoolPlan {
-    /// `None` if points are not kept. `is_costly` says that decoding them again is.
+    /// `None` if points are not kept. `is_costly` tells whether decoding them again is costly.
     pub(super) fn new(
         rule: Spooling,
         is_costly: bool,
@@ -153,39 +154,39 @@ impl SpoolPlan {
         let is_kept = match rule {
             Spooling::Always => true,
             Spooling::Never => false,
-            // Memory that is used up behind a folder's name would be no saving, unless the user asks for it.
+            // A folder in memory saves nothing, unless the user asks for it.
             Spooling::Auto => {
-                is_costly && has_room(&folder, bytes) && (is_named || !system::is_in_memory(&folder))
+                is_costly && has_space(&folder, bytes) && (is_named || !system::is_in_memory(&folder))
             }
         };
         is_kept.then_some(SpoolPlan { folder, is_strict: rule == Spooling::Always })
     }
 }
 
-/// So many times the size of the spool has to be free: for the spool itself, for points that wait for their cell, and
-/// for what comes out at the end, which may all be on one disk.
-const ROOM: u64 = 4;
+/// Free space that an automatic spool needs, in multiples of its size: for the spool itself, for points that
+/// wait for their cell, and for the output, which may all be on one disk.
+const FREE_FACTOR: u64 = 4;
 
-/// Whether there is room for `bytes`. What the system does not tell is found out by writing.
-fn has_room(folder: &Path, bytes: u64) -> bool {
-    system::free_bytes(folder).is_none_or(|free| bytes <= free / ROOM)
+/// Whether `folder` has space for a spool of `bytes`. If the system does not tell, writing will.
+fn has_space(folder: &Path, bytes: u64) -> bool {
+    system::free_bytes(folder).is_none_or(|free| bytes <= free / FREE_FACTOR)
 }
 
-/// A reader whose points are kept on the way.
+/// A reader that keeps its points in a spool.
 pub(super) struct Tee<'a> {
     reader: Box<dyn PointReader + 'a>,
     plan: SpoolPlan,
     /// The file, or why there is none.
     spool: Result<Spool>,
     block: Vec<u8>,
-    next_room_check: u64,
+    next_space_check: u64,
 }
 
 impl<'a> Tee<'a> {
-    /// Keeps what `reader` reads.
+    /// A reader that keeps the points of `reader`.
     ///
     /// # Errors
-    /// If the file cannot be created, and must be.
+    /// If the file cannot be created and the plan is strict.
     pub(super) fn new(
         reader: Box<dyn PointReader + 'a>,
         plan: SpoolPlan,
@@ -194,11 +195,11 @@ impl<'a> Tee<'a> {
         let spool = Spool::create(&plan.folder, description);
         match spool {
             Err(error) if plan.is_strict => Err(error),
-            spool => Ok(Tee { reader, plan, spool, block: Vec::new(), next_room_check: ROOM_CHECK_LEN }),
+            spool => Ok(Tee { reader, plan, spool, block: Vec::new(), next_space_check: SPACE_CHECK_LEN }),
         }
     }
 
-    /// The points of a whole pass, or the reason why there are none.
+    /// The spool of a whole pass, or the reason why there is none.
     pub(super) fn finish(self) -> Result<Spool> {
         let invalid = self.reader.invalid();
         self.spool.map(|spool| Spool { invalid, ..spool })
@@ -206,11 +207,16 @@ impl<'a> Tee<'a> {
 
     fn keep(&mut self, batch: &[Point]) -> Result<()> {
         let Ok(spool) = &mut self.spool else { return Ok(()) };
-        if !self.plan.is_strict && spool.bytes >= self.next_room_check {
-            self.next_room_check += ROOM_CHECK_LEN;
-            if system::free_bytes(&self.plan.folder).is_some_and(|free| free < (ROOM - 1) * spool.bytes) {
-                return Err(Error::new(ErrorKind::Io, "more than a quarter of the room would be used up")
-                    .of_input(spool.file.name()));
+        if !self.plan.is_strict && spool.bytes >= self.next_space_check {
+            self.next_space_check += SPACE_CHECK_LEN;
+            if system::free_bytes(&self.plan.folder)
+                .is_some_and(|free| free < (FREE_FACTOR - 1) * spool.bytes)
+            {
+                return Err(Error::new(
+                    ErrorKind::Io,
+                    "more than a quarter of the free space would be used up",
+                )
+                .of_input(spool.file.name()));
             }
         }
         spool.append(batch, &mut self.block)

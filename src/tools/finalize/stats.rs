@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// What happened: the columns of table 5.1 of the thesis, and more.
+/// Figures of a run: the columns of table 5.1 of the thesis, and more.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Stats {
     /// Points written.
@@ -19,17 +19,17 @@ pub struct Stats {
     pub empty_cells: u64,
     /// Points in the fullest leaf.
     pub cell_points_max: u64,
-    /// Most points that waited for their cell at once, in memory and on disk.
+    /// High-water mark of points that wait for their cell, in memory and on disk.
     pub buffered_points_max: u64,
-    /// Most bytes of memory that pages of waiting points took up.
+    /// High-water mark of the memory of waiting points, in bytes.
     pub buffered_bytes_max: u64,
-    /// Points that had to wait on disk.
+    /// Points that waited on disk.
     pub spilled_points: u64,
-    /// Bytes written to the temporary file.
+    /// Bytes of the temporary file for waiting points.
     pub spilled_bytes: u64,
-    /// Points that were kept for later passes.
+    /// Points kept for later passes.
     pub spooled_points: u64,
-    /// Bytes of the temporary file for those.
+    /// Bytes of the temporary file for kept points.
     pub spooled_bytes: u64,
 }
 

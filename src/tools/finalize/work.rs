@@ -1,19 +1,17 @@
-//! The passes of a run, and what they share.
+//! The state that all passes of a run share, and one pass over the input.
 
-use std::io::Write;
 use std::time::Instant;
 
-use super::plan::Plan;
+use super::options::Options;
+use super::passes::{Observer, Pass, Passes};
 use super::read_ahead::read_ahead;
 use super::spool::{Spool, SpoolPlan, Tee};
-use super::survey::Survey;
-use super::{Observer, Options, Order, Pass, Passes, Stats};
+use super::stats::Stats;
 use spmesh_core::error::Result;
-use spmesh_io::source::{Description, PointReader};
+use spmesh_io::source::PointReader;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Header, Kind, StreamWriter};
 
-/// What all passes share.
+/// The state that all passes share.
 pub(super) struct Work<'a, P: Passes + ?Sized> {
     pub(super) input: &'a P,
     pub(super) observer: &'a mut dyn Observer,
@@ -24,36 +22,24 @@ pub(super) struct Work<'a, P: Passes + ?Sized> {
 /// Where decoded points are kept for later passes.
 enum Kept {
     Not,
-    /// The next pass, which is the first, keeps them.
+    /// The next pass, which is the first one, keeps them.
     Next(SpoolPlan),
     In(Box<Spool>),
 }
 
 impl<'a, P: Passes + ?Sized> Work<'a, P> {
-    /// Work on `input`, whose points are kept as `options` say.
+    /// A run over `input`. The options decide whether its points are kept.
     pub(super) fn new(input: &'a P, options: &Options, observer: &'a mut dyn Observer) -> Self {
         let folder = options.temp_dir.as_deref();
         let spooling = SpoolPlan::new(options.spooling, input.is_costly(), folder, input.description());
         Work { input, observer, stats: Stats::default(), kept: spooling.map_or(Kept::Not, Kept::Next) }
     }
 
-    /// Makes all passes.
-    pub(super) fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
-        let survey = self.survey(options)?;
-        let header = header_of(self.input.description(), &survey, options);
-        let Some(grid) = survey.grid else {
-            return self.write_untagged(StreamWriter::new(output, header)?);
-        };
-        let plan = Plan::new(grid, options.leaves, &options.budget)?;
-        self.note_plan(&plan);
-        let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
-        match options.order {
-            Order::Chunked => self.write_chunked(plan, options, writer),
-            Order::Preserved => self.write_preserved(plan, writer),
-        }
-    }
-
-    /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then `consume`.
+    /// Makes one pass over the input: every batch goes through `prepare`, ahead on another thread, then
+    /// through `consume`.
+    ///
+    /// # Errors
+    /// The first error of the input, `prepare` or `consume`, in the order of the points.
     pub(super) fn read_all<T: Default + Send>(
         &mut self,
         pass: Pass,
@@ -106,23 +92,5 @@ impl<'a, P: Passes + ?Sized> Work<'a, P> {
                 self.observer.notice(&format!("{reason}: decoding the input again in each pass"));
             }
         }
-    }
-
-    fn note_plan(&mut self, plan: &Plan) {
-        self.stats.level = plan.tree().depth();
-        self.stats.occupied_cells = plan.leaves() as u64;
-        self.stats.empty_cells = plan.empty().len() as u64;
-        self.stats.cell_points_max = plan.count_max();
-    }
-}
-
-fn header_of(description: &Description, survey: &Survey, options: &Options) -> Header {
-    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
-    Header {
-        bounds: survey.bounds,
-        points: Some(survey.points),
-        chunked: survey.grid.is_some() && options.order == Order::Chunked,
-        crs: crs.clone(),
-        ..Header::new(Kind::Points, coordinates, dims, has_elevation)
     }
 }

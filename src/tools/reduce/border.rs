@@ -1,13 +1,13 @@
-//! Whether walls are the border of what is final: a sum that tells without holding a facet.
+//! A checksum of whether walls are the border of the final simplices, without holding a facet.
 
 use spmesh_stream::Patch;
 
 /// The border of simplices of D + 1 corners, less the walls around them, as one number.
 ///
-/// Every oriented facet counts with a number of its own, drawn from the ids of its corners, and with the opposite number
-/// when it is seen from its other side. So the two sides of a facet between two simplices cancel, walls cancel the others, and
-/// what is left is zero. A wall that is missing, too much, or turned, and a simplex that is lost or comes twice, leave a
-/// number that is zero by accident once in 2^64 times.
+/// Every oriented facet adds a hash of the ids of its corners; the same facet seen from its other side
+/// subtracts it. So the two sides of a facet between two simplices cancel, walls cancel the other facets, and
+/// the sum is zero. If a wall is missing, repeated or reversed, or a simplex is missing or repeated, the sum
+/// is zero with probability 2^-64.
 ///
 /// Cost: D + 1 numbers per simplex, no memory.
 #[derive(Debug, Default)]
@@ -21,8 +21,8 @@ impl<const D: usize> Border<D> {
         for simplex in patch.simplices.chunks_exact(D + 1) {
             for opposite in 0..=D {
                 let facet = std::array::from_fn(|i| patch.id(simplex[i + usize::from(i >= opposite)]));
-                // In their order, the corners are seen as those of a wall if the last one is left out; if the one before it
-                // is, they are seen from behind, and so on in turn.
+                // Without the last corner, the others are oriented as a wall; without the one before it, they
+                // are reversed; and so on in turn.
                 let number = number_of::<D>(facet);
                 let is_seen_so = (D - opposite).is_multiple_of(2);
                 self.sum = self.sum.wrapping_add(if is_seen_so { number } else { number.wrapping_neg() });
@@ -30,7 +30,7 @@ impl<const D: usize> Border<D> {
         }
     }
 
-    /// Takes a wall off, given by the ids of its corners.
+    /// Subtracts a wall, given by the ids of its corners.
     pub(super) fn wall(&mut self, corners: [u64; D]) {
         self.sum = self.sum.wrapping_sub(number_of(corners));
     }
@@ -41,7 +41,7 @@ impl<const D: usize> Border<D> {
     }
 }
 
-/// The number of a facet, and the opposite one for odd permutations of its corners.
+/// The hash of a facet, negated for odd permutations of its corners.
 fn number_of<const D: usize>(mut corners: [u64; D]) -> u64 {
     let mut is_odd = false;
     for end in (1..D).rev() {
@@ -56,7 +56,8 @@ fn number_of<const D: usize>(mut corners: [u64; D]) -> u64 {
     if is_odd { number.wrapping_neg() } else { number }
 }
 
-/// A permutation of 64 bits in which every bit of the result depends on every bit (the last steps of SplitMix64).
+/// A permutation of the 64-bit integers in which every output bit depends on every input bit (the finalizer
+/// of SplitMix64).
 fn mixed(value: u64) -> u64 {
     let value = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let value = (value ^ value >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -9,7 +9,7 @@ pub(super) struct Boxes<const D: usize> {
     tree: Option<CellTree>,
     /// Smallest known box of all points, closed.
     extent: Region<D>,
-    /// What a side becomes beyond which the run sees no point: the region of a partial run, else nothing.
+    /// The region of a partial run, or everything: the run sees no point outside of it.
     outer: Region<D>,
 }
 
@@ -26,7 +26,8 @@ impl<const D: usize> Boxes<D> {
 
     /// The region outside of which points other than those of `cell` may lie.
     ///
-    /// A side at or beyond the border of all points moves out to the outer region: there is nothing between.
+    /// A side on or outside of the border of all points moves out to the outer region, because no point lies
+    /// between.
     pub(super) fn region(&self, cell: CellCode) -> Region<D> {
         let Some(tree) = self.tree.filter(|_| cell != CellCode::ROOT) else { return self.outer };
         let (min, max) = tree.corners(cell);
@@ -42,8 +43,9 @@ impl<const D: usize> Boxes<D> {
         region
     }
 
-    /// Whether the run sees no point outside of the region of a node. That can be one below the root of the tree, whose
-    /// cube is a power of two.
+    /// Whether the run sees no point outside of the region of a node. The node may be below the root of the
+    /// tree, because the side of the root is a power of two and so may be longer than the extent of the
+    /// points.
     pub(super) fn is_everything(&self, region: &Region<D>) -> bool {
         *region == self.outer
     }

@@ -1,4 +1,4 @@
-//! What the reduction has to know of its dimension: how points are triangulated in bulk, and what came of it.
+//! The dimension-dependent part of the reduction: a bulk kernel and its triangulation.
 
 use super::residual::Residual;
 use spmesh_core::error::Result;
@@ -13,23 +13,24 @@ pub(super) struct Facet {
     pub(super) corner: u32,
 }
 
-/// A bulk kernel of D dimensions with what it made last: simplices of D + 1 corners, which are points by their index in
-/// the residual that was triangulated.
+/// A bulk kernel of D dimensions with its last triangulation: simplices of D + 1 corners. A corner is the
+/// index of a point in the residual that was triangulated.
 pub(super) trait Bulk<const D: usize>: Default {
-    /// D + 1 points.
+    /// The corners of a simplex.
     type Corners: AsRef<[u32]> + Copy;
 
-    /// Decides which balls lie in a region.
+    /// A test of whether balls lie in a region.
     type Balls;
 
-    /// What a whole mesh is called, and that of a region.
+    /// Kinds of a whole mesh and of the mesh of a region.
     const MESH: Kind;
     const PARTIAL_MESH: Kind;
 
-    /// What a simplex is called.
+    /// Name of a simplex in messages.
     const SIMPLEX: &'static str;
 
-    /// Whether triangulating a node may leave most of its points, so that they are better passed up as they are.
+    /// Whether a node may leave most of its points when it is triangulated, so that passing them up as they
+    /// are is better.
     const MAY_LEAVE_MOST: bool;
 
     /// Triangulates `points` canonically.
@@ -38,37 +39,38 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// As the kernel's.
     fn triangulate(&mut self, points: &Residual<D>) -> Result<()>;
 
-    /// Points that are no vertices, each with the vertex that it coincides with: the one of least index.
+    /// Points that are not vertices, each with the vertex that it coincides with. The vertex has the least
+    /// index.
     fn duplicates(&mut self) -> &mut Vec<[u32; 2]>;
 
     /// Number of simplices.
     fn len(&self) -> usize;
 
-    /// The `k`-th simplex where neighbours should follow each other.
+    /// The `k`-th simplex in an order that keeps neighbours close to each other.
     fn nth(&self, k: usize) -> u32;
 
     /// The corners of a simplex, in positive orientation.
     fn corners(&self, simplex: u32) -> Self::Corners;
 
-    /// The same facet as that of the other simplex; `None` beyond the hull.
-    fn across(&self, facet: Facet) -> Option<Facet>;
+    /// The same facet, as a facet of the neighbouring simplex; `None` on the hull.
+    fn neighbour(&self, facet: Facet) -> Option<Facet>;
 
-    /// The vertices on the boundary of the hull: all of them, if there are no simplices.
+    /// The vertices on the hull: all vertices, if there are no simplices.
     fn hull_vertices(&self) -> impl Iterator<Item = u32>;
 
-    /// The facets beyond which there is no simplex.
+    /// The facets of the hull, each as a facet of its one simplex.
     fn hull_facets(&self) -> impl Iterator<Item = Facet>;
 
-    /// Tells `found` where the walls are: the facets, as those of the simplices on their final side.
+    /// Calls `found` with every wall, as a facet of the simplex on its final side.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if a wall is no facet of this triangulation.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if a wall is not a facet of this triangulation.
     fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(Facet)) -> Result<()>;
 
-    /// A facet as a wall behind which its simplex is final.
+    /// A facet as a wall with its simplex on the final side.
     fn wall(&self, facet: Facet) -> [u32; D];
 
-    /// Decides for points of these coordinates which balls lie in `region`.
+    /// The test of balls in `region`, for points of these coordinates.
     fn balls(coordinates: &Coordinates, region: Region<D>) -> Self::Balls;
 
     /// Whether the ball around `simplex` certainly lies inside.

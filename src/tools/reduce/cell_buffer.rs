@@ -1,4 +1,4 @@
-//! Points on their way into cells: held until the tag of a cell says that it is complete.
+//! Points that wait for the tag of their cell.
 
 use std::collections::BTreeMap;
 
@@ -12,13 +12,13 @@ use spmesh_stream::FinalizedCells;
 ///
 /// In a chunked stream these are the points since the last tag, all in the cell that is tagged next. In any
 /// other stream, points of other cells go to a bucket of their deepest cell and wait there.
-pub(super) struct Arrivals<const D: usize> {
+pub(super) struct CellBuffer<const D: usize> {
     tree: Option<CellTree>,
     finalized: Option<FinalizedCells>,
-    /// Points outside are counted and dropped.
+    /// Points outside of it are counted and dropped.
     region: Region<D>,
     current: Residual<D>,
-    /// Bounding box of `current`, or one that is larger.
+    /// A box that contains `current`.
     bounds: Option<Bounds>,
     buckets: BTreeMap<u64, Vec<Point>>,
     in_buckets: usize,
@@ -27,9 +27,9 @@ pub(super) struct Arrivals<const D: usize> {
     outside: u64,
 }
 
-impl<const D: usize> Arrivals<D> {
+impl<const D: usize> CellBuffer<D> {
     pub(super) fn new(tree: Option<CellTree>, region: Region<D>) -> Self {
-        Arrivals {
+        CellBuffer {
             tree,
             finalized: tree.map(FinalizedCells::new),
             region,
@@ -43,7 +43,7 @@ impl<const D: usize> Arrivals<D> {
         }
     }
 
-    /// Points of the stream with their bounding box. Those outside of the region are dropped.
+    /// Takes points of the stream with their bounding box, and drops those outside of the region.
     ///
     /// # Errors
     /// If a point lies in a cell that is final, or outside of the tree.
@@ -65,9 +65,9 @@ impl<const D: usize> Arrivals<D> {
         Ok(())
     }
 
-    /// The tag of `cell`: its points, in the order of the stream, and whether they are all of it, because no
-    /// part of the cell was final before. The points come in `fresh`, an empty residual whose memory is used
-    /// again.
+    /// Takes the tag of `cell`. Returns its points, in the order of the stream, and whether they are all
+    /// points of the cell: not if a part of it was final before. `fresh` is an empty residual whose memory is
+    /// used again.
     ///
     /// # Errors
     /// If the cell is final already.
@@ -91,7 +91,7 @@ impl<const D: usize> Arrivals<D> {
         self.take(0..u64::MAX, Residual::default())
     }
 
-    /// Points handed on so far.
+    /// Points passed on so far.
     pub(super) fn accepted(&self) -> u64 {
         self.accepted
     }
@@ -112,7 +112,7 @@ impl<const D: usize> Arrivals<D> {
             || (0..self.current.len()).all(|i| cell.contains(self.current.point(i)))
     }
 
-    /// The points of the buckets in `range`, in its order, and behind them those that are in no bucket.
+    /// The points of the buckets in `range`, in the order of the range, followed by those in no bucket.
     fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual<D>) -> Residual<D> {
         self.bounds = None;
         let current = std::mem::replace(&mut self.current, fresh);

@@ -1,49 +1,60 @@
-//! A run on several threads: one reads, several triangulate, one writes, and the calling one says who does what.
+//! A run on several threads: one reads, several triangulate, one writes, and the calling thread coordinates
+//! them.
 //!
-//! No channel that anyone waits for has a limit of its own, but that of the arrivals: so many points are under way at
-//! most, from the moment in which their node can be triangulated to that in which it is written, or at once passes them
-//! up. What is under way needs nothing that still has to arrive, so it always comes to an end, and no thread waits for one
-//! that waits for it.
+//! Only the reader's channel is bounded; it alone applies back-pressure. The coordinator receives from it
+//! only while few nodes are under way. A node is under way from the moment in which it can be triangulated
+//! until it is written, or until it has passed its points up. A node under way needs no further input, so it
+//! always comes to an end, and no two threads wait for each other.
+//!
+//! The threads, the reader and the buffer pools are those of [`spmesh_core::parallel`]. The coordinator is
+//! not, because no shape there fits: results make new jobs, jobs have two priorities, and a third thread
+//! reports what is written.
 
 use std::io::{Read, Write};
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::thread::{Builder, Scope, ScopedJoinHandle};
+use std::thread::{Scope, ScopedJoinHandle};
 
-use crossbeam_channel::{Receiver, Sender, bounded, never, select, select_biased, unbounded};
+use crossbeam_channel::{Receiver, Sender, never, select, select_biased, unbounded};
 
 use super::bulk::Bulk;
 use super::node::{Rules, Solved};
-use super::reader::{Arrival, Ended, Intake};
+use super::reader::{CellReader, InputSummary, Piece};
 use super::residual::Residual;
-use super::run::Run;
+use super::run_state::Run;
 use super::schedule::{Job, Output};
 use super::sequencer::Sequencer;
 use super::stats::Stats;
 use super::worker::Worker;
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::parallel::{self, BufferPool};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::cells::CellCode;
 use spmesh_stream::PatchBlocks;
 
-/// Points under way per thread that triangulates, beyond which no more are taken in.
+/// Points under way per worker from which the coordinator takes no more input.
 const POINTS_PER_WORKER: usize = 1 << 16;
 
-/// Nodes that wait for a thread or have one, per thread that triangulates, beyond which no cells are taken in.
+/// Nodes per worker, waiting or being triangulated, from which the coordinator takes no more input.
 const JOBS_PER_WORKER: usize = 3;
 
-/// Cells that are read ahead.
-const ARRIVALS_AHEAD: usize = 3;
+/// Pieces of the input that are read ahead.
+const PIECES_AHEAD: usize = 3;
 
-/// Buffers that wait to be used again.
-const SHELF_LEN: usize = 16;
+/// Buffers of each kind that wait to be used again.
+const POOL_LEN: usize = 16;
 
-/// Bytes of blocks that are worth to be kept: after a few large nodes, all of them would be as large.
-const SHELVED_BLOCKS: usize = 4 << 20;
+/// Capacity up to which blocks are kept, in bytes: after a few large nodes, all of them would be as large.
+const KEPT_BLOCKS_MAX: usize = 4 << 20;
 
-/// Runs `run` with `workers` threads that triangulate, and at last the root, when they have ended, on the calling one.
+/// Runs `run` with `workers` threads that triangulate. The calling thread triangulates the root when they
+/// have ended.
+///
+/// # Errors
+/// As [`super::run::triangulate`]; [`ErrorKind::Io`] if the system refuses a thread, or a thread panicked.
 pub(super) fn run<B, R, W, const D: usize>(
     run: Run<D>,
-    intake: Intake<R, D>,
+    mut reader: CellReader<R, D>,
     sequencer: Sequencer<W>,
     workers: usize,
     progress: impl FnMut(u64),
@@ -53,64 +64,52 @@ where
     R: Read + Send + 'static,
     W: Write + Send,
 {
-    let shelf = Shelf::new();
-    let (arrivals_in, arrivals) = bounded(ARRIVALS_AHEAD);
-    let raw = shelf.clone();
-    // Not in the scope: after a failure, nobody waits for an input that says nothing.
-    let read = move || read(intake, &arrivals_in, &raw);
-    Builder::new().name("reader".into()).spawn(read).map_err(no_thread)?;
+    let buffers = Buffers::new();
+    let raw = buffers.raw.clone();
+    let next = move || match reader.next(|| raw.take()) {
+        last @ (Ok(Piece::End(_)) | Err(_)) => ControlFlow::Break(last),
+        piece => ControlFlow::Continue(piece),
+    };
+    // Outside of the scope: a failure must not wait for an input that stays silent.
+    let pieces = parallel::produce("reader", PIECES_AHEAD, next)?;
     std::thread::scope(move |scope| {
-        let (crew, hands) = Crew::start::<B, D>(scope, sequencer, run.rules, workers, &shelf)?;
-        // What lies on it is freed with the last of the threads, before the root is triangulated.
-        drop(shelf);
-        crew.coordinate::<B, D>(run, hands, &arrivals, workers, progress)
+        let (pool, channels) = WorkerPool::start::<B, D>(scope, sequencer, run.rules, workers, &buffers)?;
+        // The buffers are then freed with the last of the threads, before the root is triangulated.
+        drop(buffers);
+        pool.coordinate::<B, D>(run, channels, &pieces, workers, progress)
     })
 }
 
 /// Memory to be used again, of raw points and of blocks.
 #[derive(Clone)]
-struct Shelf<const D: usize> {
-    raw: (Sender<Residual<D>>, Receiver<Residual<D>>),
-    blocks: (Sender<PatchBlocks>, Receiver<PatchBlocks>),
+struct Buffers<const D: usize> {
+    raw: BufferPool<Residual<D>>,
+    blocks: BufferPool<PatchBlocks>,
 }
 
-impl<const D: usize> Shelf<D> {
+impl<const D: usize> Buffers<D> {
     fn new() -> Self {
-        Shelf { raw: bounded(SHELF_LEN), blocks: bounded(SHELF_LEN) }
+        Buffers { raw: BufferPool::new(POOL_LEN), blocks: BufferPool::new(POOL_LEN) }
     }
 
-    fn keep_blocks(&self, blocks: PatchBlocks) {
-        if blocks.capacity() <= SHELVED_BLOCKS {
-            drop(self.blocks.0.try_send(blocks));
+    fn give_back_blocks(&self, blocks: PatchBlocks) {
+        if blocks.capacity() <= KEPT_BLOCKS_MAX {
+            self.blocks.give_back(blocks);
         }
     }
 }
 
-/// Reads until the end, a failure, or until nobody wants to know.
-fn read<R: Read, const D: usize>(
-    mut intake: Intake<R, D>,
-    arrivals: &Sender<Result<Arrival<D>>>,
-    shelf: &Shelf<D>,
-) {
-    loop {
-        let arrival = intake.next(|| shelf.raw.1.try_recv().unwrap_or_default());
-        let is_last = matches!(arrival, Ok(Arrival::End(_)) | Err(_));
-        if arrivals.send(arrival).is_err() || is_last {
-            return;
-        }
-    }
-}
-
-/// What a worker has done.
+/// The result of a job.
 struct Done<const D: usize> {
     number: u64,
     cell: CellCode,
-    /// Number of its points.
+    /// Number of points of the node.
     points: usize,
     solved: Result<Solved<D>>,
 }
 
-/// Does jobs until there are no more or one fails; those that are not leaves first, because others wait for them.
+/// Does jobs until there are no more or one fails. Inner nodes come before leaves, because other nodes wait
+/// for them.
 fn work<const D: usize>(
     mut solve: impl FnMut(Job<D>) -> Result<Solved<D>>,
     inner: &Receiver<Job<D>>,
@@ -126,39 +125,42 @@ fn work<const D: usize>(
         let (number, cell, points) = (job.number, job.cell, job.len());
         // A panic must reach the coordinator, which would wait for this node forever.
         let solved = catch_unwind(AssertUnwindSafe(|| solve(job))).unwrap_or_else(|_| Err(thread_gone()));
-        let is_lost = solved.is_err();
-        if done.send(Done { number, cell, points, solved }).is_err() || is_lost {
+        let has_failed = solved.is_err();
+        if done.send(Done { number, cell, points, solved }).is_err() || has_failed {
             return;
         }
     }
 }
 
-/// Writes until there is no more; says of each node that has patches that it is written.
+/// Writes nodes until there are no more, and reports the points of each node that has patches.
+///
+/// # Errors
+/// If writing fails.
 fn write<W: Write, const D: usize>(
     mut sequencer: Sequencer<W>,
     outputs: &Receiver<Output<D>>,
     written: &Sender<usize>,
-    shelf: &Shelf<D>,
+    buffers: &Buffers<D>,
 ) -> Result<Sequencer<W>> {
     for output in outputs {
         let (points, has_patches) = (output.points, output.solved.has_patches());
-        shelf.keep_blocks(sequencer.write(output)?);
+        buffers.give_back_blocks(sequencer.write(output)?);
         if has_patches {
-            // Only a failure elsewhere makes the coordinator stop listening.
+            // The coordinator stops listening only after a failure elsewhere.
             let _ = written.send(points);
         }
     }
     Ok(sequencer)
 }
 
-/// The threads under the coordinator, to be joined.
-struct Crew<'scope, W: Write> {
+/// The threads that triangulate and the one that writes, to be joined.
+struct WorkerPool<'scope, W: Write> {
     workers: Vec<ScopedJoinHandle<'scope, PredicateCounts>>,
     writer: ScopedJoinHandle<'scope, Result<Sequencer<W>>>,
 }
 
 /// The coordinator's ends of the channels. Dropping them ends the threads.
-struct Hands<const D: usize> {
+struct Channels<const D: usize> {
     inner: Sender<Job<D>>,
     leaves: Sender<Job<D>>,
     done: Receiver<Done<D>>,
@@ -166,14 +168,18 @@ struct Hands<const D: usize> {
     written: Receiver<usize>,
 }
 
-impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
+impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
+    /// Starts the threads.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Io`] if the system refuses a thread.
     fn start<B: Bulk<D>, const D: usize>(
         scope: &'scope Scope<'scope, '_>,
         sequencer: Sequencer<W>,
         rules: Rules,
         workers: usize,
-        shelf: &Shelf<D>,
-    ) -> Result<(Self, Hands<D>)> {
+        buffers: &Buffers<D>,
+    ) -> Result<(Self, Channels<D>)> {
         let (inner, inner_out) = unbounded();
         let (leaves, leaves_out) = unbounded();
         let (done_in, done) = unbounded();
@@ -181,40 +187,43 @@ impl<'scope, W: Write + Send + 'scope> Crew<'scope, W> {
         let (written_in, written) = unbounded();
         let worker = |number| {
             let (inner, leaves, done) = (inner_out.clone(), leaves_out.clone(), done_in.clone());
-            let shelf = shelf.clone();
+            let buffers = buffers.clone();
             let work = move || {
                 let mut worker = Worker::<B, D>::new(rules);
                 let solve = |job| {
-                    let blocks = shelf.blocks.1.try_recv().unwrap_or_default();
-                    worker.solve(job, blocks, |raw| drop(shelf.raw.0.try_send(raw)), &mut |_| Ok(()))
+                    let give_back = |raw| buffers.raw.give_back(raw);
+                    worker.solve(job, buffers.blocks.take(), give_back, &mut |_| Ok(()))
                 };
                 work(solve, &inner, &leaves, &done);
                 worker.counts()
             };
-            Builder::new().name(format!("worker {number}")).spawn_scoped(scope, work).map_err(no_thread)
+            parallel::spawn_scoped(scope, format!("worker {number}"), work)
         };
         let workers = (0..workers).map(worker).collect::<Result<_>>()?;
-        let shelf = shelf.clone();
-        let write = move || write(sequencer, &outputs_out, &written_in, &shelf);
-        let writer = Builder::new().name("writer".into()).spawn_scoped(scope, write).map_err(no_thread)?;
-        Ok((Crew { workers, writer }, Hands { inner, leaves, done, outputs, written }))
+        let buffers = buffers.clone();
+        let write = move || write(sequencer, &outputs_out, &written_in, &buffers);
+        let writer = parallel::spawn_scoped(scope, "writer", write)?;
+        Ok((WorkerPool { workers, writer }, Channels { inner, leaves, done, outputs, written }))
     }
 
-    /// Runs until all is written, and ends the threads.
+    /// Runs until everything is written, ends the threads, and finishes with the root.
+    ///
+    /// # Errors
+    /// As [`run`].
     fn coordinate<B: Bulk<D>, const D: usize>(
         self,
         mut run: Run<D>,
-        hands: Hands<D>,
-        arrivals: &Receiver<Result<Arrival<D>>>,
+        channels: Channels<D>,
+        pieces: &Receiver<Result<Piece<D>>>,
         workers: usize,
         progress: impl FnMut(u64),
     ) -> Result<(W, Stats)> {
         let rules = run.rules;
-        let ended = hand_out(&mut run, &hands, arrivals, workers, progress);
-        drop(hands);
+        let ended = dispatch(&mut run, &channels, pieces, workers, progress);
+        drop(channels);
         let writer = self.writer.join().map_err(|_| thread_gone());
         let counts: Vec<_> = self.workers.into_iter().map(ScopedJoinHandle::join).collect();
-        // That a thread has gone is the consequence of a failure elsewhere, if there is another one.
+        // If there is another failure, the missing thread is its consequence.
         let (ended, sequencer) = match (ended, writer) {
             (Err(Stop::Failed(error)), _) => return Err(error),
             (_, Ok(Err(error)) | Err(error)) => return Err(error),
@@ -235,14 +244,14 @@ enum Stop {
     ThreadGone,
 }
 
-/// The coordinator: hands out what can be triangulated and what can be written, until everything is written.
-fn hand_out<const D: usize>(
+/// The coordinator's loop: passes on nodes that can be triangulated or written, until all are written.
+fn dispatch<const D: usize>(
     run: &mut Run<D>,
-    hands: &Hands<D>,
-    arrivals: &Receiver<Result<Arrival<D>>>,
+    channels: &Channels<D>,
+    pieces: &Receiver<Result<Piece<D>>>,
     workers: usize,
     mut progress: impl FnMut(u64),
-) -> std::result::Result<Box<Ended<D>>, Stop> {
+) -> std::result::Result<Box<InputSummary<D>>, Stop> {
     let nothing = never();
     let (mut jobs, mut nodes, mut points, mut ended) = (0, 0, 0, None);
     loop {
@@ -250,39 +259,40 @@ fn hand_out<const D: usize>(
             nodes += 1;
             jobs += 1;
             points += job.len();
-            let hand = if job.is_leaf() { &hands.leaves } else { &hands.inner };
-            hand.send(job).map_err(|_| Stop::ThreadGone)?;
+            let queue = if job.is_leaf() { &channels.leaves } else { &channels.inner };
+            queue.send(job).map_err(|_| Stop::ThreadGone)?;
         }
         while let Some(output) = run.schedule.next_output() {
-            hands.outputs.send(output).map_err(|_| Stop::ThreadGone)?;
+            channels.outputs.send(output).map_err(|_| Stop::ThreadGone)?;
         }
         if nodes == 0
             && let Some(ended) = ended
         {
             return Ok(ended);
         }
-        let has_room =
+        let takes_input =
             jobs < JOBS_PER_WORKER * workers && (nodes <= workers || points < workers * POINTS_PER_WORKER);
-        let arrivals = if ended.is_none() && has_room { arrivals } else { &nothing };
+        let pieces = if ended.is_none() && takes_input { pieces } else { &nothing };
         select! {
-            recv(hands.done) -> done => {
+            recv(channels.done) -> done => {
                 let Done { number, cell, points: solved_points, solved } = done.map_err(|_| Stop::ThreadGone)?;
                 let solved = solved.map_err(|e| Stop::Failed(run.locate(e, cell)))?;
                 jobs -= 1;
                 if !solved.has_patches() {
-                    // Nothing to be written: what it passes up must not hold others up until its turn comes.
+                    // Without patches, the node counts as done at once: otherwise it would hold back input
+                    // until its turn to be written, although writing it does nothing.
                     points -= solved_points;
                     nodes -= 1;
                 }
                 run.schedule.solved(number, solved);
             }
-            recv(hands.written) -> written => {
+            recv(channels.written) -> written => {
                 points -= written.map_err(|_| Stop::ThreadGone)?;
                 nodes -= 1;
             }
-            recv(arrivals) -> arrival => {
-                let arrival = arrival.map_err(|_| Stop::ThreadGone)?.map_err(Stop::Failed)?;
-                ended = run.take(arrival, &mut progress);
+            recv(pieces) -> piece => {
+                let piece = piece.map_err(|_| Stop::ThreadGone)?.map_err(Stop::Failed)?;
+                ended = run.take(piece, &mut progress);
             }
         }
     }
@@ -290,10 +300,6 @@ fn hand_out<const D: usize>(
 
 fn thread_gone() -> Error {
     Error::new(ErrorKind::Io, "a thread ended before its time")
-}
-
-fn no_thread(cause: std::io::Error) -> Error {
-    Error::io("starting a thread", cause)
 }
 
 #[cfg(test)]

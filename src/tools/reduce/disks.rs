@@ -1,16 +1,16 @@
-//! The common case of the question whether a circumscribing disk lies in a box, decided without a division.
+//! Whether a circumscribing disk lies in a box: the common case, decided without a division.
 
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
 
-/// Part of the sums of magnitudes that errors of doubled area and numerators are taken to be: more than a
-/// hundred million times what they are.
+/// Assumed error of doubled area and numerators, relative to their sums of magnitudes: more than a hundred
+/// million times the true bound.
 const ERROR: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// Part of the coordinates by which distances to sides are shortened, which covers all rounding of sides.
+/// Distances to sides are shortened by this fraction of the coordinates, which covers all rounding of sides.
 const SHORTENED: f64 = 1.0 / (1u64 << 45) as f64;
 
-/// Magnitudes below which underflow could matter; that of [`CircleBounds`] is far below.
+/// Magnitude below which underflow could matter; that of [`CircleBounds`] is far smaller.
 const SMALLEST: f64 = 1e-100;
 
 /// Decides whether disks certainly lie in a region, exactly as [`CircleBounds::disk_inside`] does.
@@ -31,13 +31,14 @@ impl Disks {
         self.is_far_inside(a, b, c) || self.bounds.disk_inside(a, b, c, &self.region)
     }
 
-    /// Whether twice the radius is certainly less than the distance from `a` to each side: then the disk is
-    /// inside, and so clearly that the full test says so, too.
+    /// Whether twice the radius is certainly less than the distance from `a` to each side. The disk is then
+    /// inside, and by such a margin that the full test agrees.
     ///
-    /// The circle's centre is `m / 2 d` relative to `a`, with `d` the doubled area: the test is `|m| < distance |d|`,
-    /// squared. The terms of errors, `E` times the sums of magnitudes `n`, are 2^28 times those of the full test
-    /// or more. So `|d| > E n_d` leaves `d` a relative error below 2^-28, and `|m| + E n` is more than what the
-    /// full test adds up from `m`, its error, and the errors of the quotient; the rest is the factor at the end.
+    /// The circle's centre is `m / 2 d` relative to `a`, with `d` the doubled area: the test is `|m| <
+    /// distance |d|`, squared. The terms of errors, `E` times the sums of magnitudes `n`, are 2^28 times
+    /// those of the full test or more. So `|d| > E n_d` leaves `d` a relative error below 2^-28, and `|m| + E
+    /// n` is more than what the full test adds up from `m`, its error, and the errors of the quotient; the
+    /// rest is the factor at the end.
     #[inline]
     fn is_far_inside(&self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
         let (bx, by) = (b[0] - a[0], b[1] - a[1]);
@@ -54,7 +55,7 @@ impl Disks {
         let distance = least(to_x, to_y) - SHORTENED * (a[0].abs() + a[1].abs());
         let reach = distance * d;
         let smallest = least(least(n_x, n_y), least(p, q));
-        // Written so that a NaN anywhere answers false.
+        // Any NaN makes this false.
         (d > SMALLEST)
             & (distance > 0.0)
             & (smallest > SMALLEST)
@@ -62,7 +63,7 @@ impl Disks {
     }
 }
 
-/// The lesser of two numbers; one instruction, unlike `f64::min`, which has a rule for NaN.
+/// The lesser of two numbers: one instruction, unlike `f64::min`, which has a rule for NaN.
 #[inline]
 fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

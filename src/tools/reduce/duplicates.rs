@@ -1,4 +1,4 @@
-//! Points that coincide are one vertex; in the plane a policy says which elevation it gets.
+//! Coinciding points are one vertex; in the plane, a policy chooses its elevation.
 
 use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
@@ -7,22 +7,26 @@ use spmesh_stream::Coordinates;
 /// Which elevation survives where points coincide in x and y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Duplicates {
-    /// That of the point that comes first in the stream.
+    /// The elevation of the first point in the stream.
     #[default]
     First,
     /// The lowest.
     Lowest,
     /// The highest.
     Highest,
-    /// The mean; on integer coordinates rounded to the nearest, halves away from zero.
+    /// The mean; with integer coordinates rounded to the nearest, halves away from zero.
     Mean,
-    /// None: coinciding points are an error.
+    /// Coinciding points are an error.
     Error,
 }
 
 impl Duplicates {
-    /// Gives each vertex its elevation. `duplicates` are pairs of a point and the vertex that it coincides
-    /// with, which is the first of them in the order of the points.
+    /// Sets the elevation of each vertex. `duplicates` are pairs of a point and the vertex that it coincides
+    /// with. The vertex is the first of the coinciding points.
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if points coincide and the policy is
+    /// [`Duplicates::Error`].
     pub(super) fn settle<const D: usize>(
         self,
         points: &mut Residual<D>,

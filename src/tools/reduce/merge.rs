@@ -1,4 +1,4 @@
-//! Finishes what partial runs left: their residuals become one node.
+//! Merging partial runs: their residuals become one node.
 
 use std::io::{Read, Write};
 
@@ -17,20 +17,24 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_stream::{Event, Header, Kind, PatchBlocks, StreamReader, StreamWriter, Totals};
 
-/// Numbers of two nodes: all that the inputs have left, and what is made of it.
+/// Numbers of two nodes: the residuals of all inputs, and the node that triangulates them.
 const LEFT: u64 = 0;
 const MERGED: u64 = 1;
 
-/// Merges the results of partial runs over regions that do not overlap; `progress` is told how many vertices
-/// are read. Without `part`, the regions must cover all points, and the result is the whole mesh: the set of
-/// triangles that one run over all points gives. With it, the result is partial again, for the region `part`,
-/// which must contain the merged ones, and all points in it must lie in one of them.
+/// Merges the results of partial runs over regions that do not overlap. `progress` is called with the number
+/// of vertices read so far.
 ///
-/// Cost: final triangles are copied through; memory is the residuals.
+/// Without `part`, the regions must cover all points, and the result is the whole mesh: the same set of
+/// triangles as one run over all points. With `part`, the result is partial again, for the region `part`.
+/// That region must contain the merged ones, and every point in it must lie in one of them.
+///
+/// Cost: linear in the final triangles, which are copied, and one triangulation of the residuals.
+///
+/// Memory: the residuals.
 ///
 /// # Errors
-/// If the inputs do not go together (kind, coordinates, reference system, overlapping regions), or one is
-/// malformed or ends too early, or writing fails. END is not written then.
+/// If the inputs do not fit together (kind, coordinates, reference system, overlapping regions), or one is
+/// malformed or truncated, or writing fails. END is not written then.
 pub fn merge_triangles<R: Read, W: Write>(
     readers: Vec<StreamReader<R>>,
     output: W,
@@ -40,7 +44,7 @@ pub fn merge_triangles<R: Read, W: Write>(
     merge::<Plane, R, W, 2>(readers, output, part, progress)
 }
 
-/// Merges the results of partial runs in space, as [`merge_triangles`] does it in the plane.
+/// Merges the results of partial runs in space, as [`merge_triangles`] does in the plane.
 ///
 /// # Errors
 /// As [`merge_triangles`].
@@ -88,7 +92,10 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     Ok((output, stats))
 }
 
-/// Header of the result, after checking that the inputs go together.
+/// Header of the result, after a check that the inputs fit together.
+///
+/// # Errors
+/// Usage, if they do not.
 fn merged_header<B: Bulk<D>, R: Read, const D: usize>(
     readers: &[StreamReader<R>],
     part: Option<Part<D>>,
@@ -152,12 +159,15 @@ fn check_regions<R: Read, const D: usize>(a: &StreamReader<R>, b: &StreamReader<
     Ok(())
 }
 
-/// The region of a partial mesh; everything, if the mesh is whole.
+/// The region of a partial mesh; everything for a whole mesh.
 fn region_of<const D: usize>(header: &Header) -> Region<D> {
     header.region.map_or(Region::EVERYTHING, |region| Region::between(region.min, region.max))
 }
 
-/// Copies the final simplices of one input and adds its residual to that of all.
+/// Copies the final simplices of one input, and adds its residual to `residual`.
+///
+/// # Errors
+/// If the input is malformed, or writing fails.
 fn copy_through<R: Read, W: Write, const D: usize>(
     reader: &mut StreamReader<R>,
     sequencer: &mut Sequencer<W>,

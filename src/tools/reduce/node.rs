@@ -9,7 +9,7 @@ use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
 use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode};
 
-/// What every node of one run has in common.
+/// The rules that all nodes of a run share.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
     coordinates: Coordinates,
@@ -28,45 +28,45 @@ impl Rules {
         Rules { coordinates: header.coordinates, code, duplicates, is_partial, every_node: false }
     }
 
-    /// How coordinates are stored, which tells what numbers they are.
+    /// How coordinates are stored, and so which numbers they are.
     pub(super) fn coordinates(&self) -> &Coordinates {
         &self.coordinates
     }
 }
 
-/// No number of a point of the residual.
-const NONE: u32 = u32::MAX;
+/// In place of the index of a point in the residual: the point is not in it.
+const NO_POINT: u32 = u32::MAX;
 
-/// What became of a simplex of a node's triangulation.
+/// State of a simplex of the node's triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Fate {
-    /// Not in a hole, and not found active: final.
+enum SimplexState {
+    /// Final at this node: neither in a hole nor active.
     Open,
-    /// In a hole: a final simplex stands there already, written at a node below.
+    /// In a hole: a node below has written a final simplex here.
     Hole,
-    /// Not final: triangulated again above.
+    /// Not final: the node above triangulates it again.
     Active,
 }
 
-/// What is known of a point of a node beside the simplices that it is in.
+/// State of a point of the node, which decides when it is finalized.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Mark {
-    /// Nothing: it is done with its last final simplex.
-    None,
-    /// On the hull, where there are no points beyond: done, and maybe in no final simplex of this node.
+enum PointState {
+    /// In final simplices only: finalized with the last of them.
+    Interior,
+    /// On the hull of all points: finalized here, even if it is in no final simplex of this node.
     Hull,
-    /// Belongs to the residual.
+    /// In the residual.
     Residual,
-    /// Coincides with another point and is no vertex.
+    /// Merged with a point that it coincides with.
     Merged,
 }
 
-/// What a node leaves.
+/// The result of a node.
 #[derive(Debug, Default)]
 pub(super) struct Solved<const D: usize> {
     /// Its final simplices.
     pub(super) blocks: PatchBlocks,
-    /// What the node above has to triangulate.
+    /// The points and walls that the node above triangulates.
     pub(super) residual: Residual<D>,
     /// For each point of the residual that is not raw, the reference that stands for its id.
     pub(super) references: Vec<u64>,
@@ -75,24 +75,24 @@ pub(super) struct Solved<const D: usize> {
 }
 
 impl<const D: usize> Solved<D> {
-    /// Whether there is anything to be written: not where points are passed up as they are.
+    /// Whether there is anything to write. There is nothing if the points are passed up as they are.
     pub(super) fn has_patches(&self) -> bool {
         self.blocks.count() > 0
     }
 }
 
-/// Triangulates nodes, one after the other, in buffers that are used again.
+/// Triangulates one node after the other, in buffers that are used again.
 pub(super) struct Solver<B, const D: usize> {
     rules: Rules,
     bulk: B,
-    fates: Vec<Fate>,
+    simplex_states: Vec<SimplexState>,
     /// For each simplex the set of its facets (bit i: opposite to corner i) that are walls of its hole.
     wall_facets: Vec<u8>,
     stack: Vec<u32>,
-    marks: Vec<Mark>,
+    point_states: Vec<PointState>,
     /// Simplices that are not final.
     active: Vec<u32>,
-    /// Walls of the residual, as facets of simplices that are done.
+    /// Walls of the residual, as facets of simplices that are not active.
     walls: Vec<Facet>,
     builder: PatchBuilder<D>,
 }
@@ -102,24 +102,24 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         Solver {
             rules,
             bulk: B::default(),
-            fates: Vec::new(),
+            simplex_states: Vec::new(),
             wall_facets: Vec::new(),
             stack: Vec::new(),
-            marks: Vec::new(),
+            point_states: Vec::new(),
             active: Vec::new(),
             walls: Vec::new(),
             builder: PatchBuilder::default(),
         }
     }
 
-    /// Triangulates the points of node `number`, and finds what is final in `region`, outside of which other points
-    /// may lie. Nodes are numbered in the order in which they are written. The memory of `blocks` is used again;
-    /// `flush` may take patches as they come, and what it leaves is in the result.
+    /// Triangulates the points of node `number`, and finds the simplices that are final in `region`, outside
+    /// of which other points may lie. Nodes are numbered in the order in which they are written. The memory
+    /// of `blocks` is used again. `flush` may take patches as they come; the others are in the result.
     ///
     /// # Errors
-    /// What `flush` fails with;
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if coinciding points are forbidden or come from different
-    /// nodes, or the walls do not fit the points, which only damaged partial results can bring about.
+    /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if coinciding points are forbidden or
+    /// come from different nodes, or if the walls do not fit the points, which only damaged partial results
+    /// can cause.
     pub(super) fn solve(
         &mut self,
         number: u64,
@@ -138,7 +138,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
         self.split(points, region, everything);
-        self.mark_points(points.len(), everything);
+        self.find_point_states(points.len(), everything);
         self.write_patches(points, &mut blocks, flush)?;
         self.find_walls(everything);
         let (residual, references) = self.residual(number, points);
@@ -151,21 +151,26 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.bulk.counts()
     }
 
-    /// Marks the simplices in holes: floods from the final sides of the walls, and stops at walls.
+    /// Finds the simplices in holes: a flood fill from the final sides of the walls that stops at walls.
+    ///
+    /// # Errors
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if a wall is not a facet, or the walls do not close a
+    /// hole.
     fn find_holes(&mut self, walls: &[[u32; D]]) -> Result<()> {
-        let (fates, wall_facets, stack) = (&mut self.fates, &mut self.wall_facets, &mut self.stack);
-        fates.clear();
-        fates.resize(self.bulk.len(), Fate::Open);
+        let (simplex_states, wall_facets, stack) =
+            (&mut self.simplex_states, &mut self.wall_facets, &mut self.stack);
+        simplex_states.clear();
+        simplex_states.resize(self.bulk.len(), SimplexState::Open);
         if walls.is_empty() {
             return Ok(());
         }
         wall_facets.clear();
-        wall_facets.resize(fates.len(), 0);
+        wall_facets.resize(simplex_states.len(), 0);
         stack.clear();
         self.bulk.find(walls, |Facet { simplex, corner }| {
             wall_facets[simplex as usize] |= 1 << corner;
-            if fates[simplex as usize] == Fate::Open {
-                fates[simplex as usize] = Fate::Hole;
+            if simplex_states[simplex as usize] == SimplexState::Open {
+                simplex_states[simplex as usize] = SimplexState::Hole;
                 stack.push(simplex);
             }
         })?;
@@ -174,59 +179,64 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 if wall_facets[simplex as usize] & 1 << corner != 0 {
                     continue;
                 }
-                let Some(beyond) = self.bulk.across(Facet { simplex, corner }) else {
+                let Some(neighbour) = self.bulk.neighbour(Facet { simplex, corner }) else {
                     return Err(Error::malformed("the walls of a residual do not close a hole"));
                 };
-                let fate = &mut fates[beyond.simplex as usize];
-                if *fate == Fate::Open {
-                    *fate = Fate::Hole;
-                    stack.push(beyond.simplex);
+                let state = &mut simplex_states[neighbour.simplex as usize];
+                if *state == SimplexState::Open {
+                    *state = SimplexState::Hole;
+                    stack.push(neighbour.simplex);
                 }
             }
         }
         Ok(())
     }
 
-    /// Decides the simplices that are not in holes: final ones are planned for patches, the others are active. Where no
-    /// other point exists, `everything` is final.
+    /// Splits the simplices outside of holes: final ones are planned for patches, the others are active. If
+    /// no other point exists, `everything` is final.
     fn split(&mut self, points: &Residual<D>, region: &Region<D>, everything: bool) {
         let balls = B::balls(&self.rules.coordinates, *region);
         self.builder.start(points.len());
         self.active.clear();
-        for simplex in (0..self.fates.len()).map(|k| self.bulk.nth(k)) {
-            let fate = &mut self.fates[simplex as usize];
-            if *fate == Fate::Hole {
+        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
+            let state = &mut self.simplex_states[simplex as usize];
+            if *state == SimplexState::Hole {
                 continue;
             }
             if everything || self.bulk.is_inside(simplex, points, &balls) {
                 self.builder.plan(self.bulk.corners(simplex).as_ref());
             } else {
-                *fate = Fate::Active;
+                *state = SimplexState::Active;
                 self.active.push(simplex);
             }
         }
     }
 
-    /// Finds out what becomes of the points. If `everything` is final, the infinite simplices are, too.
-    fn mark_points(&mut self, points: usize, everything: bool) {
-        let marks = &mut self.marks;
-        marks.clear();
-        marks.resize(points, Mark::None);
-        let on_hull = if everything { Mark::Hull } else { Mark::Residual };
-        self.bulk.hull_vertices().for_each(|v| marks[v as usize] = on_hull);
+    /// Finds the states of the points. If `everything` is final, so are the infinite simplices.
+    fn find_point_states(&mut self, points: usize, everything: bool) {
+        let point_states = &mut self.point_states;
+        point_states.clear();
+        point_states.resize(points, PointState::Interior);
+        let on_hull = if everything { PointState::Hull } else { PointState::Residual };
+        self.bulk.hull_vertices().for_each(|v| point_states[v as usize] = on_hull);
         for &simplex in &self.active {
             for &v in self.bulk.corners(simplex).as_ref() {
-                marks[v as usize] = Mark::Residual;
+                point_states[v as usize] = PointState::Residual;
             }
         }
-        self.bulk.duplicates().iter().for_each(|&[point, _]| marks[point as usize] = Mark::Merged);
+        self.bulk
+            .duplicates()
+            .iter()
+            .for_each(|&[point, _]| point_states[point as usize] = PointState::Merged);
     }
 
-    /// Writes the final simplices, and the points that are done but in none of them: vertices of the hull whose simplices
-    /// were all written below, and at the root the points of an input without simplices.
+    /// Writes the final simplices, and the points that are finalized here without being in one: vertices of
+    /// the hull whose simplices were all written below, and at the root the points of an input without
+    /// simplices.
     ///
     /// # Errors
-    /// If a point has no simplex outside of the holes: no node leaves such a point.
+    /// Those of `flush`; [`spmesh_core::error::ErrorKind::Malformed`] if a point has no simplex outside of
+    /// the holes: no node leaves such a point.
     fn write_patches(
         &mut self,
         points: &Residual<D>,
@@ -235,35 +245,36 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     ) -> Result<()> {
         let (builder, code) = (&mut self.builder, self.rules.code);
         let mut unused = Vec::new();
-        for (v, &mark) in (0..).zip(&self.marks) {
-            match mark {
-                Mark::Hull if builder.is_unused(v) => unused.push(v),
-                Mark::None if builder.is_unused(v) => {
+        for (v, &state) in (0..).zip(&self.point_states) {
+            match state {
+                PointState::Hull if builder.is_unused(v) => unused.push(v),
+                PointState::Interior if builder.is_unused(v) => {
                     let point = points.point(v as usize);
                     return Err(Error::malformed(format!(
                         "residual point {point:?} lies inside of a final {}",
                         B::SIMPLEX
                     )));
                 }
-                Mark::Residual => builder.keep(v),
+                PointState::Residual => builder.keep(v),
                 _ => {}
             }
         }
-        for simplex in (0..self.fates.len()).map(|k| self.bulk.nth(k)) {
-            if self.fates[simplex as usize] == Fate::Open {
+        for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
+            if self.simplex_states[simplex as usize] == SimplexState::Open {
                 builder.simplex(self.bulk.corners(simplex).as_ref(), points, code, blocks, flush)?;
             }
         }
         builder.finish(unused.into_iter(), points, code, blocks, flush)
     }
 
-    /// Finds the facets of simplices that are done beyond which there is one that is not, finite or infinite.
+    /// Finds the walls: facets between a simplex that is not active and an active or infinite one.
     fn find_walls(&mut self, everything: bool) {
-        let is_done = |facet: &Facet| self.fates[facet.simplex as usize] != Fate::Active;
+        let is_done = |facet: &Facet| self.simplex_states[facet.simplex as usize] != SimplexState::Active;
         self.walls.clear();
         for &simplex in &self.active {
-            let beyond = (0..=D as u32).filter_map(|corner| self.bulk.across(Facet { simplex, corner }));
-            self.walls.extend(beyond.filter(is_done));
+            let neighbours =
+                (0..=D as u32).filter_map(|corner| self.bulk.neighbour(Facet { simplex, corner }));
+            self.walls.extend(neighbours.filter(is_done));
         }
         if !everything {
             self.walls.extend(self.bulk.hull_facets().filter(is_done));
@@ -273,11 +284,11 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
 
     /// The residual, with references for the ids of its points.
     fn residual(&mut self, number: u64, points: &Residual<D>) -> (Residual<D>, Vec<u64>) {
-        let count = self.marks.iter().filter(|&&mark| mark == Mark::Residual).count();
+        let count = self.point_states.iter().filter(|&&state| state == PointState::Residual).count();
         let mut residual = Residual::with_capacity(count, self.walls.len());
         let mut references = Vec::with_capacity(count);
-        let mut index_above = vec![NONE; if count == 0 { 0 } else { points.len() }];
-        for (v, _) in (0..).zip(&self.marks).filter(|&(_, &mark)| mark == Mark::Residual) {
+        let mut index_above = vec![NO_POINT; if count == 0 { 0 } else { points.len() }];
+        for (v, _) in (0..).zip(&self.point_states).filter(|&(_, &state)| state == PointState::Residual) {
             let reference = self.builder.reference(v, points);
             index_above[v as usize] = residual.len() as u32;
             residual.push(points.point(v as usize), self.builder.key(v, number, points));

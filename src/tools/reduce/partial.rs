@@ -1,11 +1,12 @@
-//! Which part of the plane or of space a run takes.
+//! The part of the plane or of space that a run triangulates.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Region;
 use spmesh_model::cells::CellTree;
 use spmesh_stream::{Coordinates, Header};
 
-/// The part of the plane, or of space with `D = 3`, that a partial run triangulates. Points outside of it are left out.
+/// The part of the plane, or of space with `D = 3`, that a partial run triangulates. The run drops points
+/// outside of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Part<const D: usize = 2> {
     /// A half-open box in world coordinates; sides may be infinite.
@@ -37,8 +38,11 @@ impl<const D: usize> Part<D> {
     }
 }
 
-/// A world box in stored coordinates. The map is monotone, so boxes that share a side still do. A side that
-/// names a grid point up to rounding lies on it, so that the point is on the border.
+/// A world box in stored coordinates. The map is monotone, so boxes that share a side still do. A side within
+/// rounding of a grid point is snapped to it, so that the point lies on the border.
+///
+/// # Errors
+/// Usage, if the box is empty.
 fn stored_region<const D: usize>(region: &Region<D>, coordinates: &Coordinates) -> Result<Region<D>> {
     let stored = |corner: [f64; D]| -> [f64; D] {
         match coordinates {
@@ -62,6 +66,10 @@ fn on_grid(side: f64) -> f64 {
     if (side - nearest).abs() <= 1e-6 { nearest } else { side }
 }
 
+/// The box of a cell of the tree.
+///
+/// # Errors
+/// Usage, if the tree has no such cell.
 fn cell_region<const D: usize>(tree: &CellTree, level: u8, at: [u32; D]) -> Result<Region<D>> {
     let cells = 1u64 << level.min(63);
     if level > tree.depth() || at.iter().any(|&place| u64::from(place) >= cells) {

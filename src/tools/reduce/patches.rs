@@ -1,9 +1,9 @@
-//! Cuts the final simplices of a node into patches: vertices with their first simplex and finalized with their
-//! last.
+//! Cuts the final simplices of a node into patches. A vertex comes with its first simplex and is finalized
+//! with its last.
 //!
-//! All of it happens where the node is triangulated, before it is known how many vertices precede it in the
-//! stream. So references stand for the ids of imported vertices: the number of a vertex among those that the node
-//! writes itself, or the number of a point among those that the nodes below have left.
+//! The thread that triangulates the node cuts it, before the number of preceding vertices in the stream is
+//! known. So references stand for the ids of imported vertices: the number of a vertex among those that the
+//! node writes itself, or the number of a point among those that the nodes below have left.
 
 use super::residual::{Residual, UNWRITTEN};
 use spmesh_core::error::Result;
@@ -12,30 +12,34 @@ use spmesh_stream::{PatchBlocks, PointCode};
 /// Isolated or imported vertices per patch, which take 36 bytes at most.
 const PATCH_VERTICES: usize = 16384;
 
-/// Simplices of D + 1 corners per patch: with as many vertices of their own, a triangle takes at most 108 bytes and a
-/// tetrahedron 128, so that a patch stays below the maximum of a block.
+/// Simplices of D + 1 corners per patch. If all their vertices are new, a triangle takes at most 108 bytes
+/// and a tetrahedron 128, so that a patch stays below the maximum of a block.
 const fn patch_simplices(dimensions: usize) -> usize {
     if dimensions == 2 { 8192 } else { 8000 }
 }
 
-/// Bits of a key that count the vertices of a node, of which there are fewer than the kernel takes points.
+/// Bits of a key for the number of a vertex within its node; the kernel takes fewer than 2^30 points.
 const KEY_BITS: u32 = 30;
 
 /// Bit of a reference to a vertex that the node writes itself.
 pub(super) const OWN: u64 = 1 << 63;
 
-const NONE: u32 = u32::MAX;
+/// In place of the number of a vertex among those that the node writes, and of an index in `locals`: there is
+/// none.
+const NO_VERTEX: u32 = u32::MAX;
 
-/// In place of the number of a patch: in none, and in one or none but not done with it.
+/// In place of the number of the last patch of a point: it is in none, or it is not finalized here.
 const UNUSED: u32 = u32::MAX;
 const KEPT: u32 = u32::MAX - 1;
 
 /// Builds the patches of one node after the other, in buffers that are used again.
 ///
-/// All final simplices are planned first, in the order in which they are written: patches are cut by their number, so it is
-/// known which patch is the last of each vertex before any is encoded, and patches can leave one by one.
+/// All final simplices are planned first, in the order in which they are written. Patches have a fixed number
+/// of simplices, so the last patch of each vertex is known before any is encoded, and patches can be flushed
+/// one by one.
 ///
-/// The vertices of a patch have codes, counting up over all patches of a node, so that none has to be reset.
+/// The vertices of a patch have codes that count up over all patches of a node, so that no code has to be
+/// reset.
 #[derive(Default)]
 pub(super) struct PatchBuilder<const D: usize> {
     /// For each point, the number of the last patch that uses it, [`UNUSED`] or [`KEPT`].
@@ -62,13 +66,13 @@ pub(super) struct PatchBuilder<const D: usize> {
     order: Vec<u32>,
 }
 
-/// Where patches go: called after each of them, with those that were not taken before.
+/// Called after each patch, with the blocks that it has not taken before.
 pub(super) type Flush<'f> = dyn FnMut(&mut PatchBlocks) -> Result<()> + 'f;
 
 impl<const D: usize> PatchBuilder<D> {
-    /// Begins with a node of `points` points.
+    /// Begins a node of `points` points.
     pub(super) fn start(&mut self, points: usize) {
-        for (array, value) in [(&mut self.codes, 0), (&mut self.own, NONE), (&mut self.last, UNUSED)] {
+        for (array, value) in [(&mut self.codes, 0), (&mut self.own, NO_VERTEX), (&mut self.last, UNUSED)] {
             array.clear();
             array.resize(points, value);
         }
@@ -90,12 +94,12 @@ impl<const D: usize> PatchBuilder<D> {
         }
     }
 
-    /// Whether `v` is in no simplex that is planned.
+    /// Whether `v` is in no planned simplex.
     pub(super) fn is_unused(&self, v: u32) -> bool {
         self.last[v as usize] == UNUSED
     }
 
-    /// Says that `v` is not finalized, as it is not done with its last simplex here.
+    /// Keeps `v` from being finalized here, because a node above uses it.
     pub(super) fn keep(&mut self, v: u32) {
         self.last[v as usize] = KEPT;
     }
@@ -124,7 +128,7 @@ impl<const D: usize> PatchBuilder<D> {
         flush(blocks)
     }
 
-    /// Ends the simplices, and adds vertices that are in none of them and done.
+    /// Ends the simplices, and adds vertices that are in none of them and finalized here.
     ///
     /// # Errors
     /// As [`PatchBlocks::push`] and `flush`.
@@ -148,24 +152,24 @@ impl<const D: usize> PatchBuilder<D> {
         flush(blocks)
     }
 
-    /// A reference to a point that is a vertex by now; [`UNWRITTEN`] for one that is none.
+    /// A reference to a point that is a written vertex; [`UNWRITTEN`] for other points.
     pub(super) fn reference(&self, v: u32, points: &Residual<D>) -> u64 {
         match self.own[v as usize] {
-            NONE if points.key(v as usize) == UNWRITTEN => UNWRITTEN,
-            NONE => u64::from(v) - points.raw as u64,
+            NO_VERTEX if points.key(v as usize) == UNWRITTEN => UNWRITTEN,
+            NO_VERTEX => u64::from(v) - points.raw as u64,
             own => OWN | u64::from(own),
         }
     }
 
-    /// Key of a point: vertices of node `number` come behind those of nodes with lesser numbers.
+    /// Key of a point: vertices of node `number` follow those of nodes with lesser numbers.
     pub(super) fn key(&self, v: u32, number: u64, points: &Residual<D>) -> u64 {
         match self.own[v as usize] {
-            NONE => points.key(v as usize),
+            NO_VERTEX => points.key(v as usize),
             own => number << KEY_BITS | u64::from(own),
         }
     }
 
-    /// Index of `v` in the patch, which it enters if it is new to it.
+    /// Index of `v` in the patch. Adds it if it is new to the patch.
     #[inline]
     fn index(&mut self, v: u32) -> u32 {
         let code = &mut self.codes[v as usize];
@@ -176,8 +180,11 @@ impl<const D: usize> PatchBuilder<D> {
         *code - self.first_code
     }
 
-    /// Encodes the patch, if there is anything in it: unwritten points become new vertices in order of appearance,
-    /// the others are imported. Vertices are finalized that are done and in no later patch.
+    /// Encodes the patch, unless it is empty. Unwritten points become new vertices in order of appearance,
+    /// the others are imported. Vertices that are in no later patch and not kept are finalized.
+    ///
+    /// # Errors
+    /// As [`PatchBlocks::push`].
     fn close(&mut self, points: &Residual<D>, code: PointCode, blocks: &mut PatchBlocks) -> Result<()> {
         if self.vertices.is_empty() {
             return Ok(());
@@ -187,14 +194,14 @@ impl<const D: usize> PatchBuilder<D> {
         self.imported.clear();
         for (i, &v) in (0..).zip(&self.vertices) {
             let own = &mut self.own[v as usize];
-            let key = if *own == NONE { points.key(v as usize) } else { OWN | u64::from(*own) };
+            let key = if *own == NO_VERTEX { points.key(v as usize) } else { OWN | u64::from(*own) };
             if key == UNWRITTEN {
                 *own = self.own_count;
                 self.own_count += 1;
                 self.locals.push(self.order.len() as u32);
                 self.order.push(v);
             } else {
-                self.locals.push(NONE);
+                self.locals.push(NO_VERTEX);
                 self.imported.push((key, i));
             }
         }

@@ -1,13 +1,13 @@
-//! Which nodes there will be, in which order they are written, and whose residuals each of them takes.
+//! The nodes, the order in which they are written, and the nodes whose residuals each of them takes.
 
 use std::collections::BTreeMap;
 
 use spmesh_model::cells::{CellCode, CellTree};
 
-/// Nodes without a parent yet, keyed by the first deepest cell of their cell, so that the nodes below a cell are
-/// a range.
+/// Nodes without a parent yet, keyed by the first deepest cell of their cell, so that the nodes below a cell
+/// are a range.
 ///
-/// Everything here follows from the order of the tags alone, so it is the same for any number of threads.
+/// The plan depends on the order of the tags alone, and so not on the number of threads.
 ///
 /// Invariant: no node without a parent contains another.
 pub(super) struct Plan {
@@ -21,8 +21,8 @@ impl Plan {
         Plan { tree, waiting: BTreeMap::new(), next: 0 }
     }
 
-    /// Plans the node of `cell`, over all nodes inside that have no parent: its number, which is its place in the
-    /// order in which nodes are written, and theirs, in Morton order.
+    /// Plans the node of `cell`, over all nodes inside that have no parent. Returns its number, which is its
+    /// place in the order in which nodes are written, and theirs, in Morton order.
     pub(super) fn node(&mut self, cell: CellCode) -> (u64, Vec<u64>) {
         let range = self.range(cell);
         let keys: Vec<u64> = self.waiting.range(range.clone()).map(|(&key, _)| key).collect();
@@ -34,7 +34,7 @@ impl Plan {
         (number, children)
     }
 
-    /// Parent of `cell`, if there are nodes of all its children.
+    /// Parent of `cell`, if all its children have nodes.
     pub(super) fn complete_parent(&self, cell: CellCode) -> Option<CellCode> {
         let tree = self.tree.as_ref()?;
         let parent = tree.parent(cell)?;
@@ -43,7 +43,7 @@ impl Plan {
         tree.children(parent).all(waits).then_some(parent)
     }
 
-    /// Whether there is a node of the root, over everything.
+    /// Whether the root has a node.
     pub(super) fn is_complete(&self) -> bool {
         self.waiting.values().any(|(cell, _)| *cell == CellCode::ROOT)
     }

@@ -38,7 +38,7 @@ impl Bulk<2> for Plane {
         self.triangulation.triangles().len()
     }
 
-    /// The kernel's order is that of a curve.
+    /// The kernel's order follows a curve.
     #[inline]
     fn nth(&self, k: usize) -> u32 {
         k as u32
@@ -50,7 +50,7 @@ impl Bulk<2> for Plane {
     }
 
     #[inline]
-    fn across(&self, edge: Facet) -> Option<Facet> {
+    fn neighbour(&self, edge: Facet) -> Option<Facet> {
         let beyond = self.triangulation.triangles()[edge.simplex as usize].neighbour(edge.corner as usize);
         beyond.map(facet)
     }

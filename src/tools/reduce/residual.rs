@@ -1,25 +1,27 @@
-//! What a node triangulates, and what it passes up: points that are not done, and walls around the holes.
+//! Points that are not finalized yet, with walls around the holes: what a node triangulates, and what it
+//! passes up.
 
 use spmesh_model::bounds::Point;
 
-/// Key of a point that is no vertex yet.
+/// Key of a point that is not a vertex yet.
 pub(super) const UNWRITTEN: u64 = u64::MAX;
 
-/// Points of D dimensions that a node has to triangulate, with walls around what is final already.
+/// Points of D dimensions that a node has to triangulate, with walls around the simplices that are final
+/// already.
 ///
-/// The raw points of a leaf are a residual too, one without walls whose points are all unwritten.
+/// The raw points of a leaf are a residual too: it has no walls, and all its points are unwritten.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Residual<const D: usize> {
-    /// The D coordinates of each point that are geometry.
+    /// The D coordinates of each point that the geometry uses.
     pub(super) at: Vec<[f64; D]>,
-    /// Elevation of each point of the plane, zero where the stream has none; empty in space.
+    /// Elevation of each point of the plane, zero if the stream has none; empty in space.
     pub(super) elevation: Vec<f64>,
-    /// Number of points, first of all, that no node has triangulated yet. Only these may coincide.
+    /// Number of points that no node has triangulated yet. They are the first ones; only they may coincide.
     pub(super) raw: usize,
-    /// For each point behind the raw ones, a number that orders vertices as the stream does, or [`UNWRITTEN`].
+    /// For each point after the raw ones, a number that orders vertices as the stream does, or [`UNWRITTEN`].
     pub(super) keys: Vec<u64>,
-    /// Facets of final simplices with none on their other side, as D points each: an edge has its final triangle on its
-    /// left; a triangle is counterclockwise as seen from the last corner of its final tetrahedron.
+    /// Facets with a final simplex on one side only, as D points each. An edge has its final triangle on its
+    /// left; a triangle is counterclockwise as seen from the opposite corner of its final tetrahedron.
     pub(super) walls: Vec<[u32; D]>,
     /// Simplices that were not final at the node that left this residual.
     pub(super) active: usize,
@@ -67,10 +69,10 @@ impl<const D: usize> Residual<D> {
         self.keys.push(key);
     }
 
-    /// Adds points right from the stream; none may have come in another way before.
+    /// Adds points from the stream. All points so far must be raw.
     pub(super) fn extend_raw(&mut self, points: &[Point]) {
         debug_assert_eq!(self.raw, self.len());
-        // By an eighth, not twofold: so much more memory would lie idle in each leaf under way.
+        // By an eighth, not twofold: half of the memory would lie idle in each leaf under way.
         let growth = points.len().max(self.len() / 8);
         if self.at.capacity() - self.len() < points.len() {
             self.at.reserve_exact(growth);
@@ -95,7 +97,7 @@ impl<const D: usize> Residual<D> {
         index.checked_sub(self.raw).map_or(UNWRITTEN, |index| self.keys[index])
     }
 
-    /// Takes over the raw points of `other`, if it has any; none may have come in another way before.
+    /// Adds the raw points of `other`, if it has any. All points so far must then be raw.
     pub(super) fn append_raw(&mut self, other: &Self) {
         debug_assert!(other.raw == 0 || self.raw == self.len());
         self.at.extend_from_slice(&other.at[..other.raw]);
@@ -105,7 +107,7 @@ impl<const D: usize> Residual<D> {
         self.raw += other.raw;
     }
 
-    /// Takes over the points of `other` that nodes have left, and its walls, when its raw points are here already, the
+    /// Adds the points of `other` that nodes have left, and its walls. Its raw points are here already, the
     /// first of them at `first_raw`.
     fn append_left(&mut self, other: &Self, first_raw: usize) {
         let first = self.len();
@@ -122,8 +124,9 @@ impl<const D: usize> Residual<D> {
         self.active += other.active;
     }
 
-    /// Adds all `parts` in their order: first the raw points of all of them, which stay first, then what nodes have
-    /// left. If any of them are raw, all points so far must be. Each part is freed as soon as it is here.
+    /// Adds all `parts` in their order: first the raw points of all of them, then the points that nodes have
+    /// left. If any part has raw points, all points so far must be raw. Frees each part as soon as it is
+    /// copied.
     pub(super) fn unite(&mut self, parts: Vec<Self>) {
         self.reserve(&parts);
         let mut left = Vec::new();
@@ -139,7 +142,7 @@ impl<const D: usize> Residual<D> {
         }
     }
 
-    /// Makes room for all `parts`, and for no more: they can be large.
+    /// Allocates exactly the memory for all `parts`, because they can be large.
     fn reserve(&mut self, parts: &[Self]) {
         let points = parts.iter().map(Residual::len).sum();
         self.at.reserve_exact(points);
@@ -158,7 +161,8 @@ pub(super) fn union<const D: usize>(parts: Vec<Residual<D>>) -> Residual<D> {
     all
 }
 
-/// The coordinates that are geometry. Adding zero makes -0.0 the same number as 0.0 in every bit.
+/// The coordinates that the geometry uses. Adding zero turns -0.0 into 0.0, so that equal numbers have equal
+/// bits.
 fn geometry<const D: usize>(point: &Point) -> [f64; D] {
     std::array::from_fn(|axis| point[axis] + 0.0)
 }

@@ -10,17 +10,17 @@ use super::node::Rules;
 use super::partial::Part;
 use super::plan::Plan;
 use super::plane::Plane;
-use super::reader::{Arrival, Ended, Intake};
-use super::residual::{Residual, union};
+use super::reader::CellReader;
+use super::residual::Residual;
+use super::run_state::Run;
 use super::schedule::Schedule;
 use super::sequencer::Sequencer;
 use super::space::Space;
 use super::stats::Stats;
 use super::worker::Worker;
-use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
-use spmesh_model::cells::CellCode;
 use spmesh_stream::{Coordinates, Header, Kind, PatchBlocks, StreamReader, StreamWriter};
 
 /// How a run triangulates.
@@ -29,29 +29,30 @@ pub struct Options<const D: usize = 2> {
     /// Which elevation survives where points coincide.
     pub duplicates: Duplicates,
     /// Threads that triangulate. With one, everything happens on the calling thread; with more, reading and
-    /// writing have threads of their own. What comes out does not depend on it.
+    /// writing have threads of their own. The output does not depend on it.
     pub threads: usize,
     /// For a partial run, the part of the plane or of space to triangulate.
     pub part: Option<Part<D>>,
-    /// Whether every node is triangulated, also those in space that would leave most of their points to the node above.
-    /// What comes out is the same set.
+    /// Whether every node is triangulated, including those in space that would leave most of their points to
+    /// the node above. The set of simplices does not depend on it.
     pub every_node: bool,
 }
 
-/// Triangulates a stream of two-dimensional points and writes the mesh to `output`; `progress` is told how
-/// many points are read.
+/// Triangulates a stream of two-dimensional points and writes the mesh to `output`. `progress` is called with
+/// the number of points read so far.
 ///
 /// The result is the canonical Delaunay triangulation, whatever the order of the points, the cells and the
 /// number of threads. A partial run writes the triangles that are final in its region, and the residual.
 ///
-/// With several threads, the input belongs to a thread that ends with it or with the next block after a failure:
-/// a failure does not wait for an input that says nothing.
+/// With several threads, a thread owns the input. It ends with the input, or with the next block after a
+/// failure: a failure does not wait for an input that stays silent.
 ///
-/// Cost: linear in the points; memory is the residuals of nodes whose parent is not complete, and the points
-/// of cells that are not final.
+/// Cost: linear in the points.
+///
+/// Memory: the residuals of nodes whose parent is not complete, and the points of cells that are not final.
 ///
 /// # Errors
-/// If the input is no stream of two-dimensional points, is malformed or ends too early, or writing fails. END
+/// If the input is not a stream of two-dimensional points, is malformed or truncated, or writing fails. END
 /// is not written then.
 pub fn triangulate<R, W>(
     reader: StreamReader<R>,
@@ -66,8 +67,8 @@ where
     reduce::<Plane, R, W, 2>(reader, output, options, progress)
 }
 
-/// Tetrahedralizes a stream of three-dimensional points and writes the mesh to `output`, as [`triangulate`] does it in
-/// the plane. A point that coincides with others is one vertex, or an error if `options.duplicates` is
+/// Tetrahedralizes a stream of three-dimensional points and writes the mesh to `output`, as [`triangulate`]
+/// does in the plane. Coinciding points are one vertex, or an error if `options.duplicates` is
 /// [`Duplicates::Error`]: there are no elevations to choose from.
 ///
 /// # Errors
@@ -88,6 +89,9 @@ where
 }
 
 /// Reduces points to a mesh.
+///
+/// # Errors
+/// As [`triangulate`].
 fn reduce<B, R, W, const D: usize>(
     reader: StreamReader<R>,
     output: W,
@@ -113,15 +117,18 @@ where
         rules,
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
     };
-    let (intake, sequencer) = (Intake::new(reader, outer), Sequencer::new(stream));
+    let (cells, sequencer) = (CellReader::new(reader, outer), Sequencer::new(stream));
     if options.threads <= 1 {
-        run.alone::<B, R, W>(intake, sequencer, progress)
+        alone::<B, R, W, D>(run, cells, sequencer, progress)
     } else {
-        coordinator::run::<B, R, W, D>(run, intake, sequencer, options.threads, progress)
+        coordinator::run::<B, R, W, D>(run, cells, sequencer, options.threads, progress)
     }
 }
 
-/// That the input is points of D dimensions.
+/// Checks that the input is points of D dimensions.
+///
+/// # Errors
+/// Usage, if not.
 fn check_input<B: Bulk<D>, const D: usize>(header: &Header) -> Result<()> {
     let remedy = if D == 2 { "without --octree" } else { "with --octree" };
     match (header.kind, header.dims) {
@@ -147,121 +154,34 @@ fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<
     header
 }
 
-/// A run under way, but for its two ends.
-pub(super) struct Run<const D: usize> {
-    /// What messages call the input.
-    name: String,
-    /// Levels of the input's tree.
-    level: u64,
-    pub(super) rules: Rules,
-    pub(super) schedule: Schedule<D>,
-}
-
-impl<const D: usize> Run<D> {
-    /// Does everything on the calling thread.
-    fn alone<B: Bulk<D>, R: Read, W: Write>(
-        mut self,
-        mut intake: Intake<R, D>,
-        mut sequencer: Sequencer<W>,
-        mut progress: impl FnMut(u64),
-    ) -> Result<(W, Stats)> {
-        let mut worker = Worker::<B, D>::new(self.rules);
-        let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
-        let ended = loop {
-            let arrival = intake.next(|| std::mem::take(&mut fresh))?;
-            let ended = self.take(arrival, &mut progress);
-            loop {
-                while let Some(output) = self.schedule.next_output() {
-                    blocks = sequencer.write(output)?;
-                }
-                let Some(job) = self.schedule.next_job() else { break };
-                let (number, cell) = (job.number, job.cell);
-                let solved =
-                    worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
-                self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
+/// Does everything on the calling thread.
+///
+/// # Errors
+/// As [`triangulate`].
+fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
+    mut run: Run<D>,
+    mut cells: CellReader<R, D>,
+    mut sequencer: Sequencer<W>,
+    mut progress: impl FnMut(u64),
+) -> Result<(W, Stats)> {
+    let mut worker = Worker::<B, D>::new(run.rules);
+    let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
+    let ended = loop {
+        let piece = cells.next(|| std::mem::take(&mut fresh))?;
+        let ended = run.take(piece, &mut progress);
+        loop {
+            while let Some(output) = run.schedule.next_output() {
+                blocks = sequencer.write(output)?;
             }
-            if let Some(ended) = ended {
-                break ended;
-            }
-        };
-        self.finish(&ended, sequencer, worker, &PredicateCounts::default())
-    }
-
-    /// Takes what arrived; what was known at the end, if that is it.
-    pub(super) fn take(
-        &mut self,
-        arrival: Arrival<D>,
-        mut progress: impl FnMut(u64),
-    ) -> Option<Box<Ended<D>>> {
-        match arrival {
-            Arrival::Read(points) => progress(points),
-            Arrival::Cell { cell, points, is_whole } => self.schedule.cell(cell, points, is_whole),
-            Arrival::End(mut ended) => {
-                self.schedule.rest(std::mem::take(&mut ended.rest));
-                return Some(ended);
-            }
-        }
-        None
-    }
-
-    /// Adds input and cell to an error about points. Others stay as they are.
-    pub(super) fn locate(&self, error: Error, cell: CellCode) -> Error {
-        if error.kind() == ErrorKind::Malformed {
-            error.at(format!("cell {}", cell.0)).of_input(&self.name)
-        } else {
-            error
-        }
-    }
-
-    /// Triangulates the root, if it has points, and writes its patches as they come.
-    fn write_root<B: Bulk<D>, W: Write>(
-        &mut self,
-        sequencer: &mut Sequencer<W>,
-        worker: &mut Worker<B, D>,
-    ) -> Result<()> {
-        // What a partial run leaves goes through all nodes up to the root of the tree.
-        while let Some((job, children)) = self.schedule.take_root() {
+            let Some(job) = run.schedule.next_job() else { break };
             let (number, cell) = (job.number, job.cell);
-            sequencer.open(&children);
-            let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-            let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
-            self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
-            // One with points, and behind it the nodes above, which have none.
-            while let Some(output) = self.schedule.next_output() {
-                sequencer.close(output)?;
-            }
+            let solved =
+                worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));
+            run.schedule.solved(number, solved.map_err(|e| run.locate(e, cell))?);
         }
-        Ok(())
-    }
-
-    /// Writes what is left, when all nodes but the root are written: `worker` triangulates that. The other nodes took the
-    /// decisions `counts`, beside those of `worker`.
-    pub(super) fn finish<B: Bulk<D>, W: Write>(
-        mut self,
-        ended: &Ended<D>,
-        mut sequencer: Sequencer<W>,
-        mut worker: Worker<B, D>,
-        counts: &PredicateCounts,
-    ) -> Result<(W, Stats)> {
-        self.write_root(&mut sequencer, &mut worker)?;
-        let mut predicates = worker.counts();
-        predicates.merge(counts);
-        let is_partial = self.rules.is_partial;
-        let (numbers, residuals, mut stats) = self.schedule.into_residual();
-        if is_partial {
-            let residual = union(residuals);
-            stats.residual = residual.len() as u64;
-            sequencer.write_residual(&numbers, &residual)?;
+        if let Some(ended) = ended {
+            break ended;
         }
-        sequencer.add_to(&mut stats);
-        stats.level = self.level;
-        stats.points = ended.accepted;
-        stats.outside = ended.outside;
-        stats.held_max = ended.held_max as u64;
-        stats.cells = ended.cells;
-        stats.input_bytes = ended.input_bytes;
-        stats.predicates = predicates;
-        let output = sequencer.end(stats.points, stats.merged)?;
-        Ok((output, stats))
-    }
+    };
+    run.finish(&ended, sequencer, worker, &PredicateCounts::default())
 }

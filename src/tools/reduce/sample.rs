@@ -1,7 +1,8 @@
-//! Whether it is worth while to triangulate a node: that depends on what it would leave.
+//! Whether a node is worth triangulating, estimated from a sample of its points.
 //!
-//! In space, points on a surface have tetrahedra whose balls are as large as what the surface is of (thesis 5.4). Where the
-//! cell is smaller, nothing is final, and triangulating it is time lost. A sample tells.
+//! In space, points on a surface have tetrahedra whose balls are as large as the object that the surface
+//! bounds (thesis 5.4). If the cell is smaller, no tetrahedron is final, and the time to triangulate it is
+//! lost.
 
 use super::bulk::Bulk;
 use super::node::Rules;
@@ -14,11 +15,12 @@ use spmesh_model::bounds::{Point, Region};
 /// Points of a sample.
 const SAMPLE_POINTS: usize = 2048;
 
-/// Nodes of fewer points are not triangulated: too many of them are near the sides, and a sample would cost too much.
+/// Nodes of fewer points are passed up: too many of their points are near the sides, and a sample would cost
+/// too much.
 const POINTS_MIN: usize = 50_000;
 
-/// Part of the sample that may be left where it is worth while. Of so many random points in a cube 59 % are left, of points on a
-/// surface nearly all.
+/// Largest fraction of the sample that a node worth triangulating may leave. A sample of random points in a
+/// cube leaves 59 %, one of points on a surface nearly all.
 const SHARE_MAX: f64 = 0.85;
 
 /// Triangulates samples of the points of nodes.
@@ -34,16 +36,18 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         Sample { rules, bulk: B::default(), points: Residual::default(), is_left: Vec::new() }
     }
 
-    /// Whether triangulating `points` would leave most of them, because other points may lie outside of `region`.
+    /// Whether triangulating `points` would leave most of them, because other points may lie outside of
+    /// `region`.
     ///
-    /// Only raw points are looked at: where most points are what nodes below have left, those have found that it is worth
-    /// while. The answer depends on the points and their order alone.
+    /// The sample holds raw points only. If most points come from nodes below, those nodes were worth
+    /// triangulating, and the answer is `false` without a sample. The answer depends on the points and their
+    /// order alone.
     ///
     /// # Errors
     /// As the kernel's.
     pub(super) fn leaves_most(&mut self, points: &Residual<D>, region: &Region<D>) -> Result<bool> {
-        let is_asked = B::MAY_LEAVE_MOST && !self.rules.every_node && *region != Region::EVERYTHING;
-        if !is_asked || 2 * points.raw < points.len() {
+        let is_sampled = B::MAY_LEAVE_MOST && !self.rules.every_node && *region != Region::EVERYTHING;
+        if !is_sampled || 2 * points.raw < points.len() {
             return Ok(false);
         }
         if points.len() < POINTS_MIN {
@@ -61,7 +65,7 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         self.bulk.counts()
     }
 
-    /// Draws at random: every so manieth point of a grid might lie in one plane.
+    /// Draws points at random: every k-th point of a grid could lie in one plane.
     fn draw(&mut self, points: &Residual<D>) {
         let mut random = Random::new(points.raw as u64);
         let choose = |_| points.point(random.below(points.raw as u64) as usize);
@@ -102,7 +106,7 @@ mod tests {
         Sample::<Space, 3>::new(rules).leaves_most(&raw, &region).unwrap()
     }
 
-    /// Random points of the unit cube, moved.
+    /// Random points of the unit cube, each moved by `place`.
     fn cube(count: usize, place: impl Fn(Point) -> Point) -> Vec<Point> {
         let mut random = Random::new(5);
         let mut unit = || random.bits() as f64 / u64::MAX as f64;

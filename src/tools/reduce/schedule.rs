@@ -1,4 +1,4 @@
-//! What can be triangulated next, and what can be written next.
+//! The next node to triangulate, and the next node to write.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -10,18 +10,18 @@ use super::stats::Stats;
 use spmesh_model::bounds::Region;
 use spmesh_model::cells::CellCode;
 
-/// A node to be triangulated.
+/// A node that can be triangulated.
 #[derive(Debug)]
 pub(super) struct Job<const D: usize> {
     pub(super) number: u64,
     pub(super) cell: CellCode,
-    /// Outside of it, other points may lie.
+    /// Other points may lie outside of it.
     pub(super) region: Region<D>,
     /// Whether the run sees no point outside of it.
     pub(super) is_root: bool,
-    /// Points right from the stream.
+    /// Points from the stream.
     pub(super) raw: Residual<D>,
-    /// What the nodes below have left, in Morton order.
+    /// Residuals of the nodes below, in Morton order.
     pub(super) parts: Vec<Residual<D>>,
 }
 
@@ -31,13 +31,13 @@ impl<const D: usize> Job<D> {
         self.raw.len() + self.parts.iter().map(Residual::len).sum::<usize>()
     }
 
-    /// Whether the points come right from the stream, and wait for nothing below.
+    /// Whether all points come from the stream, without a node below.
     pub(super) fn is_leaf(&self) -> bool {
         self.parts.is_empty()
     }
 }
 
-/// A node to be written.
+/// A node that can be written when its turn comes.
 #[derive(Debug)]
 pub(super) struct Output<const D: usize> {
     pub(super) number: u64,
@@ -50,7 +50,7 @@ pub(super) struct Output<const D: usize> {
     pub(super) solved: Solved<D>,
 }
 
-/// A node whose residual was not taken yet.
+/// A node whose residual no parent has taken yet.
 #[derive(Debug)]
 struct Node<const D: usize> {
     cell: CellCode,
@@ -60,22 +60,23 @@ struct Node<const D: usize> {
     /// How many of the children are not triangulated yet.
     missing: usize,
     parent: Option<u64>,
-    /// Number of its points, when it is released.
+    /// Number of its points, once it is released.
     points: usize,
-    /// What it has left, when it is triangulated.
+    /// Its residual, once it is triangulated.
     residual: Option<Residual<D>>,
 }
 
 /// The nodes between their tag and the output.
 ///
-/// A node can be triangulated as soon as the nodes below are, whatever was written by then. Nodes come out by
-/// number, so the order of the output does not depend on when each was done.
+/// A node can be triangulated as soon as the nodes below are, whether or not they are written. Nodes are
+/// written by number, so the order of the output does not depend on the order in which they were
+/// triangulated.
 pub(super) struct Schedule<const D: usize> {
     plan: Plan,
     boxes: Boxes<D>,
     nodes: BTreeMap<u64, Node<D>>,
     jobs: VecDeque<Job<D>>,
-    /// The node of everything, above all others that have points.
+    /// The node above all others that have points.
     root: Option<Job<D>>,
     outputs: BTreeMap<u64, Output<D>>,
     next_output: u64,
@@ -96,8 +97,8 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// Takes the points of a cell that is final. If they are not all of it, because parts of it were final
-    /// before, its node is one above those of the parts.
+    /// Takes the points of a final cell. If parts of it were final before, its node is above the nodes of the
+    /// parts.
     pub(super) fn cell(&mut self, cell: CellCode, points: Residual<D>, is_whole: bool) {
         if is_whole {
             self.stats.leaves += u64::from(!points.is_empty());
@@ -111,7 +112,7 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// Takes the points of the cells that were never tagged: with them, everything is final.
+    /// Takes the points of the cells that were never tagged; with them, all points are final.
     pub(super) fn rest(&mut self, points: Residual<D>) {
         self.stats.untagged = points.len() as u64;
         if !points.is_empty() || !self.plan.is_complete() {
@@ -119,7 +120,7 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// Takes what triangulating node `number` gave.
+    /// Takes the result of node `number`.
     pub(super) fn solved(&mut self, number: u64, mut solved: Solved<D>) {
         let node = self.nodes.get_mut(&number).expect("a node waits until its parent takes its residual");
         let active = solved.residual.active;
@@ -136,13 +137,13 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// The next node that can be triangulated, but for the root.
+    /// The next node that can be triangulated, except the root.
     pub(super) fn next_job(&mut self) -> Option<Job<D>> {
         self.jobs.pop_front()
     }
 
-    /// The node of everything, with the numbers of the nodes below it: to be triangulated when all others are written.
-    /// That waits for nothing and nothing waits for it, so its patches need not wait for each other.
+    /// The root, with the numbers of the nodes below it, to be triangulated when all others are written. Its
+    /// patches can then be written as they come.
     pub(super) fn take_root(&mut self) -> Option<(Job<D>, Vec<u64>)> {
         let root = self.root.take()?;
         let children = self.nodes.get(&root.number).map(|node| node.children.clone());
@@ -160,8 +161,8 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// What is left when everything is written, with the numbers of the nodes that left it, in their order; and
-    /// what was counted.
+    /// The residuals when everything is written, with the numbers of the nodes that left them, in order; and
+    /// the figures.
     pub(super) fn into_residual(self) -> (Vec<u64>, Vec<Residual<D>>, Stats) {
         debug_assert!(self.jobs.is_empty() && self.outputs.is_empty());
         let left = self.nodes.into_iter().filter_map(|(number, node)| Some((number, node.residual?)));
@@ -185,7 +186,7 @@ impl<const D: usize> Schedule<D> {
         }
     }
 
-    /// Makes a node whose children are triangulated a job; without points, it is done.
+    /// Turns a node whose children are triangulated into a job; a node without points is finished at once.
     fn release(&mut self, number: u64) {
         let node = self.nodes.get_mut(&number).expect("the node is planned");
         let (cell, raw, children) = (node.cell, std::mem::take(&mut node.raw), node.children.clone());

@@ -1,4 +1,4 @@
-//! Writes nodes in their order, and numbers the vertices.
+//! Writes nodes in their order, and assigns the ids of vertices.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -12,10 +12,10 @@ use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Patch, PatchBlocks, StreamWriter};
 
-/// Residual points and their walls are written in blocks of about this many.
+/// Residual points per block.
 const RESIDUAL_CHUNK: usize = 1 << 14;
 
-/// What a node that was written has left for the node above.
+/// What a written node has left for the node above.
 #[derive(Debug)]
 struct Left {
     /// Ids of the points of its residual, or [`UNWRITTEN`].
@@ -24,13 +24,13 @@ struct Left {
     active: usize,
 }
 
-/// The output: all that has to happen in the order of the stream.
+/// The output: everything that must happen in the order of the stream.
 pub(super) struct Sequencer<W: Write> {
     stream: StreamWriter<W>,
     left: BTreeMap<u64, Left>,
-    /// Ids of the points that the nodes below the one being written have left.
+    /// Ids of the points that the nodes below the open node have left.
     ids: Vec<u64>,
-    /// Id of the first vertex of the node that is being written.
+    /// Id of the first vertex of the open node.
     first: u64,
     merged: u64,
     live: u64,
@@ -63,7 +63,7 @@ impl<W: Write> Sequencer<W> {
         self.stream.totals().vertices
     }
 
-    /// Writes a patch made elsewhere, whose ids already fit this stream.
+    /// Writes a patch of another stream whose ids already fit this one.
     ///
     /// # Errors
     /// If writing fails.
@@ -75,7 +75,7 @@ impl<W: Write> Sequencer<W> {
         Ok(())
     }
 
-    /// Takes the ids of a residual that comes from elsewhere, as if node `number` had left it.
+    /// Takes the ids of a residual as that of node `number`.
     pub(super) fn leave(&mut self, number: u64, ids: Vec<u64>, active: usize) {
         self.points += ids.len();
         self.points_max = self.points_max.max(self.points);
@@ -84,7 +84,7 @@ impl<W: Write> Sequencer<W> {
         self.left.insert(number, Left { ids, active });
     }
 
-    /// Writes the next node; its blocks, to be used again.
+    /// Writes the next node. Returns its blocks, to be used again.
     ///
     /// # Errors
     /// If writing fails.
@@ -93,13 +93,13 @@ impl<W: Write> Sequencer<W> {
         self.close(output)
     }
 
-    /// Begins with the next node, over `children`.
+    /// Opens the next node, over `children`.
     pub(super) fn open(&mut self, children: &[u64]) {
         self.take_left(children);
         self.first = self.stream.totals().vertices;
     }
 
-    /// Writes patches of the node that is open, and empties `blocks`.
+    /// Writes patches of the open node, and empties `blocks`.
     ///
     /// # Errors
     /// If writing fails.
@@ -119,7 +119,7 @@ impl<W: Write> Sequencer<W> {
         Ok(())
     }
 
-    /// Writes what is left of the node that is open; its blocks, to be used again.
+    /// Writes the rest of the open node. Returns its blocks, to be used again.
     ///
     /// # Errors
     /// If writing fails.
@@ -133,8 +133,8 @@ impl<W: Write> Sequencer<W> {
         Ok(blocks)
     }
 
-    /// Writes the residual of a partial run, which the nodes `children` have left. None of its points is raw: the root is
-    /// triangulated whatever it leaves, so that points which coincide are one.
+    /// Writes the residual of a partial run, which the nodes `children` have left. None of its points is raw:
+    /// the root is always triangulated, so that coinciding points are merged.
     ///
     /// # Errors
     /// If writing fails.
@@ -158,7 +158,7 @@ impl<W: Write> Sequencer<W> {
         self.stream.walls(residual.walls.as_flattened())
     }
 
-    /// Adds to `stats` what was counted.
+    /// Adds the figures of the output to `stats`.
     pub(super) fn add_to(&self, stats: &mut Stats) {
         stats.merged += self.merged;
         stats.width = self.live_max;
@@ -168,7 +168,7 @@ impl<W: Write> Sequencer<W> {
         stats.simplices = self.stream.totals().simplices;
     }
 
-    /// Writes END, for `points` of the input, `merged` of which are no vertices.
+    /// Writes END, for `points` of the input, of which `merged` were merged with others.
     ///
     /// # Errors
     /// If writing fails.
@@ -188,8 +188,8 @@ impl<W: Write> Sequencer<W> {
     }
 }
 
-/// The id that a reference stands for in a node whose first vertex is `first`, over nodes that have left points of the
-/// given ids.
+/// The id of a reference in a node whose first vertex is `first`, over nodes that have left points with these
+/// `ids`.
 #[inline]
 fn id_of(reference: u64, first: u64, ids: &[u64]) -> u64 {
     match reference {

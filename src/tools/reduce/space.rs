@@ -15,7 +15,7 @@ use spmesh_model::bounds::Region;
 use spmesh_model::simplex::TETRAHEDRON_FACETS_FROM_INSIDE;
 use spmesh_stream::{Coordinates, Kind};
 
-/// How many tetrahedra ahead of the one that is looked at are fetched.
+/// Distance of the prefetch, in tetrahedra.
 const AHEAD: usize = 12;
 
 /// The kernel of space and its tetrahedralization.
@@ -23,24 +23,24 @@ const AHEAD: usize = 12;
 pub(super) struct Space {
     kernel: Kernel,
     mesh: Tetrahedralization,
-    /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds leaves them all over.
+    /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds scatters them.
     sequence: Vec<u32>,
     hull: Vec<Facet>,
     walls: WallIndex,
 }
 
-/// Decides which balls lie in a region.
+/// The test of whether a ball lies in a region.
 pub(super) struct Balls {
     bounds: SphereBounds,
     region: Region<3>,
 }
 
 impl Space {
-    /// Puts the tetrahedra in sequence.
+    /// Finds the sequence of the tetrahedra, by a counting sort.
     fn arrange(&mut self) {
         let tetrahedra = self.mesh.tetrahedra();
         let last = |vertices: [u32; 4]| vertices.into_iter().fold(0, u32::max) as usize;
-        // For each vertex, where tetrahedra of which it is the last go.
+        // For each vertex, the places of the tetrahedra whose last vertex it is.
         let mut places = vec![0u32; self.mesh.vertices().len()];
         tetrahedra.iter().for_each(|tetrahedron| places[last(tetrahedron.vertices)] += 1);
         sizes_to_starts(&mut places);
@@ -87,7 +87,8 @@ impl Bulk<3> for Space {
 
     #[inline]
     fn nth(&self, k: usize) -> u32 {
-        // Neighbours in sequence are all over the array: without this, half of the time is waiting for them.
+        // Neighbours in the sequence are scattered over the array: without the prefetch, half of the time is
+        // spent waiting.
         if let Some(&ahead) = self.sequence.get(k + AHEAD) {
             prefetch(self.mesh.tetrahedra(), ahead as usize);
         }
@@ -101,13 +102,13 @@ impl Bulk<3> for Space {
     }
 
     #[inline]
-    fn across(&self, Facet { simplex, corner }: Facet) -> Option<Facet> {
+    fn neighbour(&self, Facet { simplex, corner }: Facet) -> Option<Facet> {
         let beyond = self.mesh.tetrahedra()[simplex as usize].neighbour(corner as usize);
         beyond.map(|Corner { tetrahedron: simplex, corner }| Facet { simplex, corner })
     }
 
     fn hull_vertices(&self) -> impl Iterator<Item = u32> {
-        // Points of a plane are all on the boundary.
+        // Without tetrahedra, all vertices are on the hull.
         let flat = if self.mesh.tetrahedra().is_empty() { self.mesh.vertices() } else { &[] };
         flat.iter().map(|vertex| vertex.index).chain(self.hull.iter().flat_map(|&facet| self.wall(facet)))
     }

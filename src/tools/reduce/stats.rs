@@ -1,4 +1,4 @@
-//! What a run did, for `--stats`.
+//! Figures of a run, for `--stats`.
 
 use spmesh_geometry::predicates::PredicateCounts;
 
@@ -7,7 +7,7 @@ use spmesh_geometry::predicates::PredicateCounts;
 pub struct Stats {
     /// Points triangulated.
     pub points: u64,
-    /// Points that coincide with another one, in the plane in x and y, and are no vertices.
+    /// Points merged with another one that they coincide with (in the plane: in x and y).
     pub merged: u64,
     /// Points left out because they lie outside of the region.
     pub outside: u64,
@@ -25,23 +25,23 @@ pub struct Stats {
     pub leaf_max: u64,
     /// Points of the largest node above the leaves.
     pub inner_node_max: u64,
-    /// Points that were left for the root, where everything is final.
+    /// Points of the root, where everything is final.
     pub root_points: u64,
-    /// Most points held at once because their cell was not final.
+    /// High-water mark of points held because their cell was not final.
     pub held_max: u64,
     /// Levels of the input's finalization tree below its root.
     pub level: u64,
     /// Length of the input streams.
     pub input_bytes: u64,
-    /// Most simplices, at the nodes that waited at once, that were not final.
+    /// High-water mark of simplices that are not final, over the nodes that wait for their parent.
     pub active_max: u64,
-    /// Most residual points that waited at once for their parent.
+    /// High-water mark of residual points that wait for their parent.
     pub residual_max: u64,
-    /// Points that were never covered by a tag and were held until the end.
+    /// Points that no tag covered, which were held until the end.
     pub untagged: u64,
     /// Points of the residual that a partial run wrote.
     pub residual: u64,
-    /// Most vertices that were written but not final at once: the width of the mesh.
+    /// High-water mark of vertices that are written but not finalized: the width of the mesh.
     pub width: u64,
     /// Decisions of the predicates, by stage.
     pub predicates: PredicateCounts,

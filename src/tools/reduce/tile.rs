@@ -1,4 +1,4 @@
-//! A partial mesh as it is read, to be merged with others.
+//! A partial mesh that is read to be merged with others.
 
 use super::border::Border;
 use super::residual::{Residual, UNWRITTEN};
@@ -6,11 +6,11 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Point, Region};
 use spmesh_stream::{LiveVertices, Patch};
 
-/// What is known of a partial mesh so far: its residual, its live vertices, and the border of its final simplices.
+/// A partial mesh read so far: its residual, its live vertices, and the border of its final simplices.
 #[derive(Debug)]
 pub(super) struct Tile<const D: usize> {
     region: Region<D>,
-    /// What is added to the ids of the tile to make them those of the merged mesh.
+    /// The sum of this and an id of the tile is the id in the merged mesh.
     id_offset: u64,
     live: LiveVertices<Point>,
     border: Border<D>,
@@ -23,10 +23,10 @@ impl<const D: usize> Tile<D> {
         Tile { region, id_offset, live, border, residual }
     }
 
-    /// A patch with the ids of the merged mesh.
+    /// Turns the ids of a patch into those of the merged mesh.
     ///
     /// # Errors
-    /// If it uses a vertex that is finalized.
+    /// If the patch uses a finalized vertex.
     pub(super) fn patch(&mut self, mut patch: Patch) -> Result<Patch> {
         self.live.enter(&patch, |_, point| point)?;
         patch.first_id += self.id_offset;
@@ -38,7 +38,7 @@ impl<const D: usize> Tile<D> {
     /// Takes residual points.
     ///
     /// # Errors
-    /// If one lies outside of the region, or is not where its vertex is.
+    /// If a point lies outside of the region, or is not where its vertex is.
     pub(super) fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
         points.iter().try_for_each(|&(id, point)| self.residual_point(id, point))
     }
@@ -67,11 +67,11 @@ impl<const D: usize> Tile<D> {
         self.residual.walls.extend_from_slice(walls);
     }
 
-    /// That nothing is lost: every vertex that is not finalized is in the residual, and the walls are the border of what
-    /// is final, without which a hole would stay open.
+    /// Checks that nothing is missing: every vertex that is not finalized is in the residual, and the walls
+    /// are the border of the final simplices, so that every hole is closed.
     ///
     /// # Errors
-    /// If it is not so.
+    /// [`spmesh_core::error::ErrorKind::Malformed`], if not.
     pub(super) fn check_end(&self) -> Result<()> {
         let lost = self.live.len();
         if lost > 0 {

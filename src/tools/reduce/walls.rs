@@ -1,17 +1,18 @@
-//! Looking for walls of space among the facets of tetrahedra.
+//! An index of the walls of space, to find them among the facets of tetrahedra.
 
-/// Oriented triangles by their least corner, so that a look at one place of an array mostly tells that a facet is none.
+/// Oriented triangles by their least corner, so that one access to an array mostly rules out that a facet is
+/// a wall.
 #[derive(Debug, Default)]
 pub(super) struct WallIndex {
-    /// For each point, where the walls of which it is the least corner end; those of the point before end where they
-    /// start.
+    /// For each point, the end of the walls whose least corner it is. They start at the end of the point
+    /// before.
     ends: Vec<u32>,
-    /// The other two corners of each wall, in their order behind the least one.
+    /// The other two corners of each wall, in their order after the least one.
     others: Vec<[u32; 2]>,
 }
 
 impl WallIndex {
-    /// Takes `walls` between `points` points in place of those that were here.
+    /// Replaces the content by `walls` between `points` points.
     pub(super) fn fill(&mut self, walls: &[[u32; 3]], points: usize) {
         self.ends.clear();
         self.ends.resize(points, 0);

@@ -1,4 +1,4 @@
-//! Does jobs, one after the other.
+//! One worker: triangulates one node after the other.
 
 use super::bulk::Bulk;
 use super::node::{Rules, Solved, Solver};
@@ -10,7 +10,7 @@ use spmesh_core::error::Result;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_stream::PatchBlocks;
 
-/// A solver with the memory for the union of residuals.
+/// A solver, with the memory for the union of residuals.
 pub(super) struct Worker<B, const D: usize> {
     solver: Solver<B, D>,
     sample: Sample<B, D>,
@@ -22,8 +22,9 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
         Worker { solver: Solver::new(rules), sample: Sample::new(rules), union: Residual::default() }
     }
 
-    /// Triangulates a node, or passes its points up if that would leave most of them. The memory of `blocks` is used
-    /// again; `give_back` gets the memory of raw points, and `flush` may take patches as they come.
+    /// Triangulates a node, or passes its points up if the node would leave most of them. The memory of
+    /// `blocks` is used again; `give_back` gets the memory of raw points, and `flush` may take patches as
+    /// they come.
     ///
     /// # Errors
     /// As [`Solver::solve`].
@@ -61,7 +62,7 @@ impl<B: Bulk<D>, const D: usize> Worker<B, D> {
     }
 }
 
-/// A node that leaves its points as they are.
+/// The result of a node that passes its points up as they are.
 fn passed_up<const D: usize>(residual: Residual<D>, mut blocks: PatchBlocks) -> Solved<D> {
     blocks.clear();
     let reference = |(number, &key): (u64, &u64)| if key == UNWRITTEN { UNWRITTEN } else { number };

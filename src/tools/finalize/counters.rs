@@ -1,4 +1,4 @@
-//! Pass 2: counters per cell, kept only where there are points.
+//! Counters per cell, only where there are points.
 
 use std::collections::HashMap;
 
@@ -11,14 +11,16 @@ use spmesh_model::cells::{CellCode, CellTree};
 const PAGE_CELLS: usize = 64;
 const PAGE_BITS: u32 = PAGE_CELLS.trailing_zeros();
 
-/// Bytes that a page takes up, its entry in the index included (which doubles when it grows).
+/// Bytes of a page with its entry in the index, which doubles when it grows.
 const PAGE_COST: u64 = (PAGE_CELLS * 8 + 64) as u64;
 
 /// Counts points per cell of one level of a tree.
 ///
 /// Pages of counters exist only where points are, so that a cluster in a huge extent is counted finely. When
-/// the pages fill their memory, the grid becomes coarser by a level, unless its level is fixed. The level that
-/// remains is the finest whose pages fit, whatever the order of the points.
+/// the pages fill their memory, the grid becomes coarser by a level, unless its level is fixed. The final
+/// level is the finest whose pages fit, whatever the order of the points.
+///
+/// Memory: the bytes given to the constructor.
 pub(super) struct Counters {
     tree: CellTree,
     level: u8,
@@ -27,12 +29,12 @@ pub(super) struct Counters {
     pages: Vec<[u64; PAGE_CELLS]>,
     /// Page of each key, a key being the location code without its last bits.
     index: HashMap<u64, usize, FixedState>,
-    /// Key and page of the last point: the next one is often near.
+    /// Key and page of the last point: the next point is often near.
     last: Option<(u64, usize)>,
 }
 
 impl Counters {
-    /// Counters that start at `level` and make do with `bytes` by becoming coarser.
+    /// Counters that start at `level`, and become coarser to fit in `bytes`.
     pub(super) fn adaptive(tree: CellTree, level: u8, bytes: u64) -> Self {
         // Half of the memory, because the finer grid still exists while it is made coarser.
         Counters::new(tree, level, false, bytes / 2)
@@ -56,13 +58,12 @@ impl Counters {
         }
     }
 
-    /// Level of the grid now.
+    /// Current level of the grid.
     pub(super) fn level(&self) -> u8 {
         self.level
     }
 
-    /// Counts points by the cells of the deepest level of the tree that they lie in. A code of 0 is no cell, and
-    /// not counted.
+    /// Counts points, given by their cells of the deepest level of the tree. Codes of 0 are skipped.
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if the counters of a fixed level do not fit.
@@ -70,7 +71,7 @@ impl Counters {
         for &CellCode(code) in deepest.iter().filter(|cell| cell.0 > 0) {
             self.add_count(CellCode(code >> (self.tree.dims() * (self.tree.depth() - self.level))), 1);
             if self.pages.len() > self.pages_max {
-                self.make_room()?;
+                self.coarsen_to_fit()?;
             }
         }
         Ok(())
@@ -95,7 +96,10 @@ impl Counters {
     }
 
     /// Makes the grid coarser until it fits.
-    fn make_room(&mut self) -> Result<()> {
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if the level is fixed.
+    fn coarsen_to_fit(&mut self) -> Result<()> {
         if self.is_fixed {
             return Err(Error::new(
                 ErrorKind::Memory,
@@ -111,7 +115,7 @@ impl Counters {
         Ok(())
     }
 
-    /// Each page becomes a part of one page of the level above.
+    /// Makes the grid coarser by a level: each page becomes a part of a page of the level above.
     fn coarsen(&mut self) {
         let mut coarse = Counters::new(self.tree, self.level - 1, false, 0);
         coarse.pages_max = self.pages_max;
@@ -129,7 +133,7 @@ impl Counters {
         *self = coarse;
     }
 
-    /// The counts, ready to be summed over cells of any level up to theirs.
+    /// The counts as prefix sums, for cells of any level down to this one.
     pub(super) fn into_sums(mut self) -> CellSums {
         let mut keys: Vec<(u64, usize)> = self.index.into_iter().collect();
         keys.sort_unstable();
@@ -155,12 +159,12 @@ pub(super) struct CellSums {
 }
 
 impl CellSums {
-    /// Finest level that is known.
+    /// Finest level of the counts.
     pub(super) fn level(&self) -> u8 {
         self.level
     }
 
-    /// Number of points in `cell`, of a level not below [`CellSums::level`].
+    /// Number of points in `cell`, whose level is at most [`CellSums::level`].
     pub(super) fn count(&self, cell: CellCode) -> u64 {
         let cell_level = (63 - cell.0.leading_zeros()) as u8 / self.dims;
         let shift = self.dims * (self.level - cell_level);

@@ -1,0 +1,84 @@
+//! The passes over an input.
+
+use spmesh_core::error::Result;
+use spmesh_io::source::{Description, Input, PointReader};
+
+/// An input that can be read from its start as often as needed, the same every time.
+pub trait Passes {
+    /// Properties of the input, known before its points are read.
+    fn description(&self) -> &Description;
+
+    /// Starts a pass.
+    ///
+    /// # Errors
+    /// If the input cannot be opened.
+    fn read(&self) -> Result<Box<dyn PointReader + '_>>;
+
+    /// Whether decoding costs more than writing decoded points to disk and reading them back.
+    fn is_costly(&self) -> bool {
+        false
+    }
+
+    /// Name of the input in messages, if it has one.
+    fn name(&self) -> Option<String> {
+        None
+    }
+}
+
+impl Passes for Input {
+    fn description(&self) -> &Description {
+        Input::description(self)
+    }
+
+    fn read(&self) -> Result<Box<dyn PointReader + '_>> {
+        Input::read(self)
+    }
+
+    fn is_costly(&self) -> bool {
+        Input::is_costly(self)
+    }
+
+    fn name(&self) -> Option<String> {
+        Some(Input::name(self))
+    }
+}
+
+/// The passes over the input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pass {
+    /// Finding the bounding box.
+    Bounds,
+    /// Counting points per cell.
+    Count,
+    /// Counting the points of crowded cells on a finer grid.
+    Refine,
+    /// Writing points and tags.
+    Write,
+}
+
+impl Pass {
+    /// Name in reports and in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Pass::Bounds => "bounds",
+            Pass::Count => "count",
+            Pass::Refine => "refine",
+            Pass::Write => "write",
+        }
+    }
+}
+
+/// Receives the progress of a run; `()` ignores it.
+pub trait Observer {
+    /// A pass starts; the input has `total` points, if that is known.
+    fn pass(&mut self, _pass: Pass, _total: Option<u64>) {}
+
+    /// `points` points of the pass are done.
+    fn done(&mut self, _points: u64) {}
+
+    /// A message for the user.
+    fn notice(&mut self, _message: &str) {}
+}
+
+impl Observer for () {}

@@ -1,0 +1,79 @@
+//! A whole run: count the points, plan the leaves, write points and tags.
+
+use std::io::Write;
+
+use super::count_pass::PointCounts;
+use super::options::{Options, Order};
+use super::passes::{Observer, Passes};
+use super::plan::Plan;
+use super::stats::Stats;
+use super::work::Work;
+use spmesh_core::error::{ErrorKind, Result};
+use spmesh_io::source::Description;
+use spmesh_stream::{Header, Kind, StreamWriter};
+
+/// Reads `input` two or more times and writes its finalized point stream, END included, to `output`.
+///
+/// Without points, the stream has neither bounds nor tree. If no cube around the points is finite, it has no
+/// tree and no tags, and keeps the input order.
+///
+/// Memory: the budget, on any input, and a few batches of the reader.
+///
+/// # Errors
+/// Those of the input; [`spmesh_core::error::ErrorKind::Malformed`] if it changes between passes;
+/// [`spmesh_core::error::ErrorKind::Memory`] if the budget is too small for the counters or leaves asked for;
+/// I/O if output or temporary file cannot be written.
+pub fn run<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
+    options.check(input.description().dims)?;
+    let mut work = Work::new(input, options, observer);
+    work.write(options, output).map_err(|error| match input.name() {
+        // An error without a name concerns the input as a whole.
+        Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
+        _ => error,
+    })?;
+    Ok(work.stats)
+}
+
+impl<P: Passes + ?Sized> Work<'_, P> {
+    /// Makes all passes.
+    ///
+    /// # Errors
+    /// As [`run`].
+    fn write<W: Write>(&mut self, options: &Options, output: W) -> Result<()> {
+        let counts = self.count_points(options)?;
+        let header = header_of(self.input.description(), &counts, options);
+        let Some(cells) = counts.cells else {
+            return self.write_untagged(StreamWriter::new(output, header)?);
+        };
+        let plan = Plan::new(cells, options.leaves, &options.budget)?;
+        self.note_plan(&plan);
+        let writer = StreamWriter::new(output, Header { tree: Some(plan.tree()), ..header })?;
+        match options.order {
+            Order::Chunked => self.write_chunked(plan, options, writer),
+            Order::Preserved => self.write_preserved(plan, writer),
+        }
+    }
+
+    fn note_plan(&mut self, plan: &Plan) {
+        self.stats.level = plan.tree().depth();
+        self.stats.occupied_cells = plan.leaves() as u64;
+        self.stats.empty_cells = plan.empty().len() as u64;
+        self.stats.cell_points_max = plan.count_max();
+    }
+}
+
+fn header_of(description: &Description, counts: &PointCounts, options: &Options) -> Header {
+    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
+    Header {
+        bounds: counts.bounds,
+        points: Some(counts.points),
+        chunked: counts.cells.is_some() && options.order == Order::Chunked,
+        crs: crs.clone(),
+        ..Header::new(Kind::Points, coordinates, dims, has_elevation)
+    }
+}

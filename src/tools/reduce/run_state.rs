@@ -1,0 +1,112 @@
+//! A run under way: the steps that one thread and several have in common.
+
+use std::io::Write;
+
+use super::bulk::Bulk;
+use super::node::Rules;
+use super::reader::{InputSummary, Piece};
+use super::residual::union;
+use super::schedule::Schedule;
+use super::sequencer::Sequencer;
+use super::stats::Stats;
+use super::worker::Worker;
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_geometry::predicates::PredicateCounts;
+use spmesh_model::cells::CellCode;
+use spmesh_stream::PatchBlocks;
+
+/// A run under way, without its input and output.
+pub(super) struct Run<const D: usize> {
+    /// Name of the input in messages.
+    pub(super) name: String,
+    /// Levels of the input's tree.
+    pub(super) level: u64,
+    pub(super) rules: Rules,
+    pub(super) schedule: Schedule<D>,
+}
+
+impl<const D: usize> Run<D> {
+    /// Takes a piece of the input. At its end, returns the totals.
+    pub(super) fn take(
+        &mut self,
+        piece: Piece<D>,
+        mut progress: impl FnMut(u64),
+    ) -> Option<Box<InputSummary<D>>> {
+        match piece {
+            Piece::Points(points) => progress(points),
+            Piece::Cell { cell, points, is_whole } => self.schedule.cell(cell, points, is_whole),
+            Piece::End(mut ended) => {
+                self.schedule.rest(std::mem::take(&mut ended.rest));
+                return Some(ended);
+            }
+        }
+        None
+    }
+
+    /// Adds input and cell to an error about points; returns other errors unchanged.
+    pub(super) fn locate(&self, error: Error, cell: CellCode) -> Error {
+        if error.kind() == ErrorKind::Malformed {
+            error.at(format!("cell {}", cell.0)).of_input(&self.name)
+        } else {
+            error
+        }
+    }
+
+    /// Triangulates the root, if it has points, and writes its patches as they come.
+    ///
+    /// # Errors
+    /// As [`super::run::triangulate`].
+    fn write_root<B: Bulk<D>, W: Write>(
+        &mut self,
+        sequencer: &mut Sequencer<W>,
+        worker: &mut Worker<B, D>,
+    ) -> Result<()> {
+        // The residual of a partial run passes through all nodes up to the root of the tree.
+        while let Some((job, children)) = self.schedule.take_root() {
+            let (number, cell) = (job.number, job.cell);
+            sequencer.open(&children);
+            let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
+            let solved = worker.solve(job, PatchBlocks::default(), drop, flush);
+            self.schedule.solved(number, solved.map_err(|e| self.locate(e, cell))?);
+            // One node with points, followed by the nodes above it, which have none.
+            while let Some(output) = self.schedule.next_output() {
+                sequencer.close(output)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Finishes when all nodes but the root are written: `worker` triangulates the root. `counts` are the
+    /// decisions of other workers.
+    ///
+    /// # Errors
+    /// As [`super::run::triangulate`].
+    pub(super) fn finish<B: Bulk<D>, W: Write>(
+        mut self,
+        ended: &InputSummary<D>,
+        mut sequencer: Sequencer<W>,
+        mut worker: Worker<B, D>,
+        counts: &PredicateCounts,
+    ) -> Result<(W, Stats)> {
+        self.write_root(&mut sequencer, &mut worker)?;
+        let mut predicates = worker.counts();
+        predicates.merge(counts);
+        let is_partial = self.rules.is_partial;
+        let (numbers, residuals, mut stats) = self.schedule.into_residual();
+        if is_partial {
+            let residual = union(residuals);
+            stats.residual = residual.len() as u64;
+            sequencer.write_residual(&numbers, &residual)?;
+        }
+        sequencer.add_to(&mut stats);
+        stats.level = self.level;
+        stats.points = ended.accepted;
+        stats.outside = ended.outside;
+        stats.held_max = ended.held_max as u64;
+        stats.cells = ended.cells;
+        stats.input_bytes = ended.input_bytes;
+        stats.predicates = predicates;
+        let output = sequencer.end(stats.points, stats.merged)?;
+        Ok((output, stats))
+    }
+}
