@@ -71,7 +71,7 @@ fn bad_lines_are_named_and_shown() {
         ("x y\nmore names\n1 2\n", &["line 2", "\"more\""]),
         ("at[0] = (1,2,3);\nat[1] = (4,5,6);\n", &["line 1", "expected a point", "separated"]),
         ("LAS", &["line 1", "expected a point"]),
-        ("OFF\n3 1 0\n0 0 0\n", &["line 1", "expected a point"]),
+        ("OFF\n3 1 0\n0 0 0\n", &["this is an OFF file", "tess3 reads"]),
         ("REMARK   3\n", &["PDB", "tess3"]),
         ("data_1ABC\n#\n", &["mmCIF", "tess3"]),
         ("id,e,n,up\n7,1,2,3\n", &["line 1", "call them x, y and z"]),
