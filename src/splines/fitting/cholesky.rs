@@ -88,7 +88,8 @@ impl Elimination {
             }
         }
         Err(Error::usage(
-            "the equations are not positive definite: knots are too near to one line, or weights are too great for 64 bits",
+            "the equations are not positive definite: knots are too near to one line, or weights are too \
+             great for 64 bits",
         ))
     }
 }

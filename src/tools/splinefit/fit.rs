@@ -75,7 +75,8 @@ pub fn fit(
     done: &dyn Fn(u64),
 ) -> Result<Fitted> {
     if options.interpolates && (options.loss.is_some() || options.smoothing.is_some()) {
-        let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out --interpolate, or \
+        let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out \
+         --interpolate, or \
                     --lambda and --robust";
         return Err(Error::usage(what));
     }
