@@ -74,7 +74,7 @@ impl<R: Read> StreamReader<R> {
         &self.header
     }
 
-    /// What messages call the input.
+    /// The name of the input in messages.
     pub fn name(&self) -> &str {
         &self.name
     }

@@ -23,7 +23,7 @@ pub struct Interpolation<'a> {
     offsets: Vec<usize>,
     functions: Vec<usize>,
     values: Vec<f64>,
-    /// Of the transposed matrix, whose columns are sites.
+    /// Factors of the transposed matrix, whose columns are sites.
     factors: Lu<usize, f64>,
 }
 

@@ -34,7 +34,7 @@ pub struct Fitted {
     robust: Option<RobustFit>,
 }
 
-/// What a fit did.
+/// The report of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// Points of the input.
