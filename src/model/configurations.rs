@@ -163,7 +163,7 @@ impl Configurations {
         Ok(())
     }
 
-    /// What the configurations are by the way they were made.
+    /// The claim that follows from the way the configurations were made.
     #[must_use]
     pub fn claim(&self) -> Claim {
         self.claim

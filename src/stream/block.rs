@@ -6,7 +6,7 @@ use spmesh_core::error::{Error, Result};
 /// Length of the frame before the payload, in bytes.
 pub(super) const FRAME_LEN: usize = 16;
 
-/// What a block holds.
+/// The type of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tag {
     Points,

@@ -30,7 +30,7 @@ pub fn claim_from_name(name: &[u8]) -> Option<Claim> {
 pub struct ConfigurationBlock {
     /// The size of interior sets.
     pub degree: u32,
-    /// What the degree claims to be.
+    /// The claim of the degree.
     pub claim: Claim,
     /// Interior sets, one after the other, each sorted.
     pub interiors: Vec<u32>,

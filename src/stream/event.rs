@@ -119,7 +119,7 @@ fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
     values.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// What the END block states of the whole stream.
+/// The totals of the whole stream, as END states them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
     /// Points: of a points stream, those in it; of a mesh, those of the input it was made from, which are

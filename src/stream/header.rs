@@ -172,7 +172,8 @@ impl Header {
         let body_len = FIXED_BODY_LEN + crs.len() + self.producer.len();
         if body_len > HEADER_BODY_MAX || self.producer.len() > usize::from(u16::MAX) {
             return Err(Error::usage(format!(
-                "cannot write the header: {body_len} bytes with CRS and producer, the maximum is {HEADER_BODY_MAX}"
+                "cannot write the header: {body_len} bytes with CRS and producer, the maximum is \
+                 {HEADER_BODY_MAX}"
             )));
         }
         let mut bytes = vec![0u8; PREAMBLE_LEN + FIXED_BODY_LEN];

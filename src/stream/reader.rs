@@ -74,7 +74,7 @@ impl<R: Read> StreamReader<R> {
         &self.header
     }
 
-    /// What messages call the input.
+    /// The name of the input in messages.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -227,7 +227,8 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
     }
     if !MAGIC.starts_with(&bytes[..found.min(MAGIC.len())]) {
         return Err(Error::malformed(
-            "the first bytes are not those of a spmesh stream; LAS, LAZ and text go through spfinalize first, other formats through spconvert",
+            "the first bytes are not those of a spmesh stream; LAS, LAZ and text go through spfinalize \
+             first, other formats through spconvert",
         ));
     }
     if found < PREAMBLE_LEN {

@@ -13,7 +13,7 @@ use spmesh_model::points::Point2;
 /// Boundaries that are handed to the writer at a time.
 const BATCH: usize = 1 << 12;
 
-/// What a stream of knots holds, apart from its header.
+/// The contents of a stream of knots, without its header.
 #[derive(Debug, Clone, Copy)]
 pub struct Content<'a> {
     /// The knots, in stored coordinates: integers if the header says so.

@@ -100,7 +100,7 @@ pub(super) fn is_right_or_on([p, q]: [Point2; 2], x: Point2) -> bool {
     FiniteFloatPredicates::default().orient2d(p, q, x) != Sign::Positive
 }
 
-/// What of a convex polygon is to the right of a line.
+/// The part of a convex polygon to the right of a line.
 fn cut(polygon: &[Point2], [p, q]: [Point2; 2]) -> Vec<Point2> {
     let depth = |x: Point2| area(q, p, x);
     let mut kept = Vec::with_capacity(polygon.len() + 1);

@@ -191,7 +191,7 @@ fn middle(points: &[Point2]) -> (Point2, [f32; 2]) {
     (origin, [0, 1].map(|axis| rounded_up(half(axis))))
 }
 
-/// What the area of x and the edge is multiplied by, unless the edge is a wall.
+/// The factor of the area of x and the edge; `None` for a wall.
 pub(super) fn slope(knots: &[Point2], [a, b]: [Point2; 2]) -> Option<f64> {
     let [first, second] = [a, b].map(|end| knots.iter().position(|&knot| knot == end));
     let others = (0..knots.len()).filter(|&at| Some(at) != first && Some(at) != second);

@@ -135,7 +135,7 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-/// What one knot of the triple adds: the recurrence, and its derivatives, in which shares are not
+/// The term of one knot of the triple: the recurrence, and its derivatives, in which shares are not
 /// differentiated.
 fn term(degree: f64, share: f64, slope: [f64; 2], part: Jet) -> Jet {
     let second = |i: usize, j: usize| 0.5 * (slope[i] * part.gradient[j] + slope[j] * part.gradient[i]);

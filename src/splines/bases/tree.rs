@@ -15,7 +15,7 @@ const SHARE_MAX: f64 = 0.9;
 const LEVELS_MAX: usize = 48;
 /// Entries of lists per element, at most: elements that all meet in one knot cannot be told apart there.
 const ENTRIES_MAX: usize = 48;
-/// Of the magnitude of the products in an orientation, more than what rounding may do.
+/// A bound of the rounding error of an orientation, relative to the magnitude of its products.
 const MARGIN: f64 = 16.0 * f64::EPSILON;
 
 /// Cells in a row of the grid, at most.

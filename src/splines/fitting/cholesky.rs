@@ -43,13 +43,13 @@ pub(super) struct Elimination {
 pub(super) struct Factor<'a> {
     elimination: &'a Elimination,
     matrix: &'a Symmetric,
-    /// What rows and columns were multiplied by.
+    /// The factors of rows and columns.
     scale: Vec<f64>,
     values: Vec<f64>,
 }
 
 impl Elimination {
-    /// Of the pattern of a matrix. Cost: minimum degree ordering.
+    /// Analyses the pattern of a matrix. Cost: minimum degree ordering.
     pub(super) fn of(matrix: &Symmetric) -> Result<Elimination> {
         let ordering = SymmetricOrdering::Amd;
         let symbolic =
@@ -88,7 +88,8 @@ impl Elimination {
             }
         }
         Err(Error::usage(
-            "the equations are not positive definite: knots are too near to one line, or weights are too great for 64 bits",
+            "the equations are not positive definite: knots are too near to one line, or weights are too \
+             great for 64 bits",
         ))
     }
 }

@@ -14,7 +14,7 @@ pub struct Goal {
     /// The factor of the energy, in units of [`NormalEquations::default_lambda`]: not zero, so that gaps in
     /// the data are bridged.
     pub smoothing: f64,
-    /// What residuals cost, if not their squares.
+    /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
 }
 

@@ -23,7 +23,7 @@ pub struct Interpolation<'a> {
     offsets: Vec<usize>,
     functions: Vec<usize>,
     values: Vec<f64>,
-    /// Of the transposed matrix, whose columns are sites.
+    /// Factors of the transposed matrix, whose columns are sites.
     factors: Lu<usize, f64>,
 }
 
@@ -106,7 +106,8 @@ impl<'a> Interpolation<'a> {
         let mut outside = sites.iter().zip(&found).filter(|(_, value)| value.is_none());
         if let Some(([x, y], _)) = outside.next() {
             let what = format!(
-                "{} of {} Greville sites are outside of the hull of the points: use least squares, or knots inside",
+                "{} of {} Greville sites are outside of the hull of the points: use least squares, or \
+                 knots inside",
                 outside.count() + 1,
                 sites.len()
             );

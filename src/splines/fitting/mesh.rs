@@ -12,7 +12,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Of points that are not all on one line; of those at one place the first counts.
+    /// Triangulates points that are not all on one line; of coincident points, the first counts.
     ///
     /// # Errors
     /// Coordinates that are not finite; no triangle.

@@ -79,7 +79,8 @@ impl NormalEquations {
         let what = match self.outside {
             0 => "no observations: nothing can be fitted".to_string(),
             outside => format!(
-                "none of {outside} observations is in the domain of the knots: give knots that surround the data, \
+                "none of {outside} observations is in the domain of the knots: give knots that surround \
+                 the data, \
                  in the same coordinates"
             ),
         };

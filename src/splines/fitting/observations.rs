@@ -11,7 +11,7 @@ const BATCH: usize = 1 << 13;
 pub struct Observation {
     /// Where.
     pub point: Point2,
-    /// What was measured there.
+    /// The measured value.
     pub value: f64,
     /// How much it counts: as one over a variance, or as a number of equal observations. Not negative.
     pub weight: f64,

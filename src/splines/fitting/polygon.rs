@@ -31,7 +31,7 @@ pub(super) struct Clipper {
 }
 
 impl Clipper {
-    /// What two convex polygons have in common.
+    /// The intersection of two convex polygons.
     pub(super) fn common(&mut self, subject: &[Point2], with: &[Point2]) -> &[Point2] {
         self.current.clear();
         self.current.extend_from_slice(subject);

@@ -158,7 +158,8 @@ impl<'a> Equations<'a> {
             "smooth with a lambda above zero, or use fewer knots there"
         };
         Err(Error::usage(format!(
-            "{} of {} functions are not determined by {} observations, {empty} of them have none at all; the first \
+            "{} of {} functions are not determined by {} observations, {empty} of them have none at all; \
+             the first \
              one is at {} {}: {remedy}",
             undetermined.len(),
             self.basis.len(),

@@ -24,7 +24,7 @@ pub struct ControlMesh {
 }
 
 impl ControlMesh {
-    /// Of a spline.
+    /// The control mesh of a spline.
     ///
     /// # Errors
     /// Usage, if all sites are on one line.

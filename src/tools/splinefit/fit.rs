@@ -34,7 +34,7 @@ pub struct Fitted {
     robust: Option<RobustFit>,
 }
 
-/// What a fit did.
+/// The report of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// Points of the input.
@@ -75,7 +75,8 @@ pub fn fit(
     done: &dyn Fn(u64),
 ) -> Result<Fitted> {
     if options.interpolates && (options.loss.is_some() || options.smoothing.is_some()) {
-        let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out --interpolate, or \
+        let what = "a spline that interpolates is not smoothed, and has no residuals to weigh: leave out \
+         --interpolate, or \
                     --lambda and --robust";
         return Err(Error::usage(what));
     }

@@ -29,7 +29,8 @@ pub(super) fn layout(
         Opened::Points(input) => {
             if let Some(degree) = degree.filter(|&degree| degree != 2) {
                 let what = format!(
-                    "points as knots are for splines of degree 2: for degree {degree}, make configurations with configgen"
+                    "points as knots are for splines of degree 2: for degree {degree}, make \
+                     configurations with configgen"
                 );
                 return Err(Error::usage(what).of_input(name));
             }

@@ -46,8 +46,8 @@ impl Layout {
         Layout { frame, knots, configurations, functions, basis }
     }
 
-    /// Of a set of knots. Of several degrees it takes that for splines of degree `degree`; without one, that
-    /// of the functions listed, or else the highest.
+    /// Builds a layout from a set of knots. Of several degrees it takes that for splines of degree `degree`;
+    /// without one, that of the functions listed, or else the highest.
     ///
     /// # Errors
     /// Usage, if the degree is not there; those of [`Basis`].

@@ -6,7 +6,7 @@
 //! | `points`, `elevations` | points of files as observations, in world or knot coordinates |
 //! | `given_knots`, `breaklines`, `distinct_points` | knots from files, and features between them |
 //! | `smoothing_choice` | the choice of the smoothing parameter |
-//! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis, read and written |
+//! | `frame`, `layout` | the coordinate frame of knots; knots with configurations and basis |
 //! | `statistics`, `residual_lists` | residuals, as numbers and as lists |
 //! | `attributes`, `values`, `raster` | values and derivatives, at sites and in cells |
 //! | `summary`, `smoothness` | the domain, condition and smoothness of functions |

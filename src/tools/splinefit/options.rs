@@ -6,12 +6,12 @@ use std::str::FromStr;
 use spmesh_io::source::Polyline;
 use spmesh_splines::fitting::Loss;
 
-/// What a fit is to be like.
+/// Options of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// How much to smooth; without it, as little as leaves no coefficient undetermined.
     pub smoothing: Option<Smoothing>,
-    /// What residuals cost, if not their squares.
+    /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
     /// Whether values at Greville sites are to be those of the triangulated points.
     pub interpolates: bool,

@@ -246,7 +246,7 @@ impl<'a> Cursor<'a> {
         Ok(Cursor { reader: points.read_world()?, batch: Vec::new(), first: 0 })
     }
 
-    /// The point with a number that is not less than any asked for before.
+    /// The point with this number; numbers must not decrease from call to call.
     ///
     /// # Errors
     /// As its source; if there are fewer points than before.

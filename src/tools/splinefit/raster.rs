@@ -104,7 +104,7 @@ struct Bands<'a> {
 }
 
 impl Bands<'_> {
-    /// A row; rows are asked for in order.
+    /// A row; callers request rows in order.
     fn row(&mut self, row: usize) -> Result<&[f64]> {
         let columns = self.grid.columns as usize;
         if row * columns >= self.first * columns + self.values.len() {

@@ -14,7 +14,7 @@ pub struct SmoothingChoice {
     pub lambda: f64,
     /// Number of functions that points leave undetermined without smoothing, if that was looked at.
     pub undetermined: Option<usize>,
-    /// What was tried, by cross-validation; `lambda` in world coordinates.
+    /// The trials of cross-validation; `lambda` in world coordinates.
     pub choice: Option<Choice>,
 }
 

@@ -42,7 +42,7 @@ pub struct Smoothness {
 }
 
 impl Smoothness {
-    /// Of all functions, inside of their domain.
+    /// Examines all functions inside of their domain.
     ///
     /// # Errors
     /// As [`configurations::link_triangulate`].

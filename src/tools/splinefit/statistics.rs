@@ -30,7 +30,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of points, in one pass.
+    /// Computes the statistics of points in one pass.
     ///
     /// # Errors
     /// If points cannot be read.

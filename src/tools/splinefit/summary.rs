@@ -42,7 +42,7 @@ pub enum Condition {
 }
 
 impl Summary {
-    /// Of a layout.
+    /// Summarises a layout.
     ///
     /// # Errors
     /// As [`Smoothness::of`].

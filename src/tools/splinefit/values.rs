@@ -63,7 +63,7 @@ impl std::fmt::Display for Number {
 }
 
 impl Spline {
-    /// What an attribute needs at a place of the world, in world coordinates; nothing outside of the domain.
+    /// The jet that an attribute needs at a world point, in world coordinates; `None` outside of the domain.
     pub(super) fn jet(&self, world: Point2, attribute: Attribute, scratch: &mut Scratch) -> Option<Jet> {
         let (basis, frame) = (&self.layout.basis, &self.layout.frame);
         let at = frame.to_stored(world);
