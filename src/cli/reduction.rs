@@ -4,7 +4,7 @@
 mod report;
 
 use std::io::Read;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -138,7 +138,7 @@ impl<const D: usize> Tool<D> {
         if flags.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
             return Err(Error::usage("stdin can be given once").into());
         }
-        let readers = flags.inputs.iter().map(open_stream).collect::<Result<Vec<_>, Error>>()?;
+        let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
         let output = Output::create(&flags.output, true)?;
         let mut progress = Progress::new(&flags.common, "merging", None);
         Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
@@ -177,7 +177,7 @@ impl<const D: usize> Shared<D> {
 }
 
 /// Opens a stream, `-` for stdin.
-pub(super) fn open_stream(path: &PathBuf) -> Result<Reader, Error> {
+pub(super) fn open_stream(path: &Path) -> Result<Reader, Error> {
     let (input, name) = open_input(path)?;
     StreamReader::new(input, name)
 }

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -187,7 +187,12 @@ impl Flags {
             tolerance: self.tol,
             max_knots: self.max_knots,
             step: self.step,
-            polylines: self.features.as_ref().map(read_features).transpose()?.unwrap_or_default(),
+            polylines: self
+                .features
+                .as_ref()
+                .map(|path| read_features(path))
+                .transpose()?
+                .unwrap_or_default(),
             degree: self.degree,
             seed: self.seed,
             threads: self.threads.get(),
@@ -203,7 +208,7 @@ impl Flags {
             threads: Some(self.threads.get()),
             ..SourceOptions::default()
         };
-        let weights = self.weights.as_ref().map(read_weights).transpose()?;
+        let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
         // The search for knots and robust weights take many passes.
         let is_search = self.knots.is_none() && self.step.is_none();
         let often = is_search || self.robust.is_some();
@@ -231,12 +236,12 @@ fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>)
     Ok(Some(written))
 }
 
-fn read_features(path: &PathBuf) -> Result<Vec<Polyline>> {
+fn read_features(path: &Path) -> Result<Vec<Polyline>> {
     let (input, name) = open_input(path)?;
     read_polylines(input).map_err(|error| error.of_input(name))
 }
 
-fn read_weights(path: &PathBuf) -> Result<Vec<f64>> {
+fn read_weights(path: &Path) -> Result<Vec<f64>> {
     let (input, name) = open_input(path)?;
     match read_values(input).map_err(|error| error.of_input(&name))? {
         Values::Numbers(numbers) => Ok(numbers),
