@@ -19,7 +19,7 @@ fn each_failure_has_its_exit_code() {
         (&["fit"], b"0 0 1\n1 x 2\n", 3, "stdin: line 2"),
         (&["fit"], b"0 0\n1 1\n", 2, "stdin: points have no elevation"),
         (&["fit"], b"0 0 1\n1 0 2\n2 0 3\n", 2, "stdin: all observations have the same x or y"),
-        (&["fit", "--tol", "0"], b"", 2, "no number above zero"),
+        (&["fit", "--tol", "0"], b"", 2, "not a number above zero"),
         (&["fit", "--max-knots", "5"], plane.as_bytes(), 2, "5 knots: 29 are needed"),
         (&["fit", "--lambda", "-1"], b"", 2, "--lambda"),
         (&["fit", "--lambda=reml"], b"", 2, "expected a number that is not negative"),

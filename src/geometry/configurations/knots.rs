@@ -86,7 +86,7 @@ impl Knots {
         self.ranks.get(id as usize).copied().unwrap_or(0)
     }
 
-    /// Position of knot `id`, which is not [`FARAWAY`].
+    /// Position of knot `id`, which is not [`FARAWAY`](spmesh_model::configurations::FARAWAY).
     #[inline(always)]
     #[must_use]
     pub fn at(&self, id: u32) -> Point2 {

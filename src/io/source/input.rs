@@ -273,7 +273,10 @@ impl Content {
             Format::Spa => (Content::Spa, spa::state(origin.plain()?)?),
             Format::Spb => (Content::Spb, spb::state(origin.plain()?)?),
             Format::Ply => (Content::Ply, stream::state_of_ply(origin.plain()?, name)?),
-            Format::Obj | Format::VertexLines => (Content::Obj, stream::state_of_obj(origin.plain()?, name)?),
+            // The vertices of an SMA mesh are lines as those of OBJ, and its other lines are passed over.
+            Format::Obj | Format::Sma | Format::VertexLines => {
+                (Content::Obj, stream::state_of_obj(origin.plain()?, name)?)
+            }
             Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&origin.view()?, name)?]),
             Format::VtkXml => Content::of_arrays(vtk::read_xml(&origin.view()?)?),
             Format::Text | Format::OtherText => {

@@ -52,6 +52,15 @@ pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVe
     VertexPoints::new(ObjVertices { lines: Lines::new(input, name) }, header)
 }
 
+/// The position of a vertex; colours and weights behind it are passed over.
+fn parse_vertex(line: &[u8]) -> Result<Point> {
+    let mut coordinates = fields(line).skip(1);
+    if fields(line).nth(3).is_none() {
+        return Err(unexpected(line, "v and three numbers"));
+    }
+    parse_decimals(&mut coordinates)
+}
+
 /// The vertices of an OBJ.
 pub(super) struct ObjVertices<R> {
     lines: Lines<R>,
@@ -62,7 +71,7 @@ impl<R: Read> Vertices for ObjVertices<R> {
         while let Some(line) = self.lines.next_line()? {
             let mut fields = fields(line);
             match fields.next() {
-                Some(b"v") => return parse_decimals(&mut fields).map(Some),
+                Some(b"v") => return parse_vertex(line).map(Some),
                 None | Some(b"f") => {}
                 Some(other) if other[0] == b'#' || PASSED_OVER.contains(&other) => {}
                 Some(other) => return Err(unexpected(other, "a statement of a polygonal OBJ")),
@@ -95,7 +104,7 @@ impl<R: Read> Elements for ObjElements<R> {
             let Some(line) = self.lines.next_line()? else { return Ok(None) };
             let mut fields = fields(line);
             match fields.next() {
-                Some(b"v") => return Ok(Some(Element::Vertex(parse_decimals(&mut fields)?))),
+                Some(b"v") => return Ok(Some(Element::Vertex(parse_vertex(line)?))),
                 Some(b"f") => {
                     let corners: Result<Vec<u64>> =
                         fields.map(|field| parse_corner(field, vertices)).collect();

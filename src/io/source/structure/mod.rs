@@ -138,7 +138,7 @@ fn recognized(head: &[u8]) -> Result<Format> {
         detect::Format::Mmcif => Format::Mmcif,
         detect::Format::Xyz => Format::Xyz,
         detect::Format::Ply => Format::Ply,
-        detect::Format::Obj | detect::Format::VertexLines => Format::Obj,
+        detect::Format::Obj | detect::Format::Sma | detect::Format::VertexLines => Format::Obj,
         detect::Format::Off => Format::Off,
         _ => Format::Points,
     })
