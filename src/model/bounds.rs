@@ -17,6 +17,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// The bounding box of a single point.
+    #[inline]
     #[must_use]
     pub fn of_point(point: Point) -> Self {
         Bounds { min: point, max: point }
@@ -32,6 +33,7 @@ impl Bounds {
     }
 
     /// Grows the box so that it contains `point`.
+    #[inline]
     pub fn extend(&mut self, point: Point) {
         for (axis, value) in point.into_iter().enumerate() {
             self.min[axis] = self.min[axis].min(value);
@@ -40,6 +42,7 @@ impl Bounds {
     }
 
     /// The smallest box that contains both.
+    #[inline]
     #[must_use]
     pub fn union(mut self, other: Bounds) -> Self {
         self.extend(other.min);
@@ -63,6 +66,7 @@ impl Bounds {
     }
 
     /// Whether `point` lies in the closed box.
+    #[inline]
     #[must_use]
     pub fn contains(&self, point: Point) -> bool {
         (0..3).all(|axis| self.min[axis] <= point[axis] && point[axis] <= self.max[axis])
@@ -106,6 +110,7 @@ impl<const D: usize> Region<D> {
     }
 
     /// The same box in space, open in the axes that it does not have.
+    #[inline]
     #[must_use]
     pub fn in_space(&self) -> Region<3> {
         Region::of_sides(&self.min, &self.max)
@@ -119,12 +124,14 @@ impl<const D: usize> Region<D> {
     }
 
     /// Whether no point of `inner` lies outside of this box.
+    #[inline]
     #[must_use]
     pub fn covers(&self, inner: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] <= inner.min[axis] && inner.max[axis] <= self.max[axis])
     }
 
     /// Whether the two half-open boxes have a point in common.
+    #[inline]
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..D).all(|axis| self.min[axis] < other.max[axis] && other.min[axis] < self.max[axis])
