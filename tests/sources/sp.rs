@@ -184,5 +184,8 @@ fn damaged_text_is_an_error() {
     assert_fails(points_of("# npoints 3\nv 1 2 3\n"), ErrorKind::Malformed, &["states 3 points", "has 1"]);
     assert_fails(points_of("v 1 2 3\nv 1 2\n"), ErrorKind::Malformed, &["line 2", "\"v 1 2\""]);
     assert_fails(points_of("v 1 2 3\nx cell\n"), ErrorKind::Malformed, &["line 2", "x cell"]);
-    assert_fails(points_of("v 1 2 3\nv 1 inf 3\n"), ErrorKind::Malformed, &["line 2", "not finite"]);
+    assert_fails(points_of("v 1 2 3\nv 1 inf 3\n"), ErrorKind::Malformed, &["line 2", "\"inf\"", "finite"]);
+    let text = "# npoints 2\nv 1 2 3\nv 1 inf 3\n";
+    assert_fails(points_of(text), ErrorKind::Malformed, &["line 3", "not finite"]);
+    assert_fails(points_of("# npoints 1\nv 1 2\n"), ErrorKind::Malformed, &["line 2", "\"v 1 2\"", "SPA"]);
 }
