@@ -30,8 +30,7 @@ impl ConfigurationSet {
     /// Memory: what the stream holds.
     ///
     /// # Errors
-    /// Usage, if the stream is of another kind or has more knots than can be handled; otherwise as
-    /// [`StreamReader::next_event`].
+    /// Usage, if the stream is of another kind; otherwise as [`StreamReader::next_event`].
     pub fn read<R: Read>(reader: &mut StreamReader<R>) -> Result<Self> {
         let kind = reader.header().kind;
         if !kind.has_knots() {

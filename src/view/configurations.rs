@@ -35,30 +35,31 @@ const EDGES_MAX: usize = 40_000;
 /// The configurations of a stream, and how they are drawn.
 struct Diagram<'a> {
     set: &'a ConfigurationSet,
-    knots: Knots,
+    knots: &'a Knots,
     coordinates: Coordinates,
     scene: Scene,
     options: &'a Options,
 }
 
-/// The picture of configurations: the link of [`Options::set`], or else the centroid triangulation of
-/// [`Options::order`].
+/// The picture of the configurations of `knots` in a set: the link of [`Options::set`], or else the centroid
+/// triangulation of [`Options::order`].
 ///
 /// # Errors
 /// Usage, if there are no knots, or the stream lacks the degree or the set that the options name.
 pub(super) fn picture(
+    knots: &Knots,
     set: &ConfigurationSet,
     coordinates: Coordinates,
     options: &Options,
 ) -> Result<Picture> {
-    let knots = set.points.iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
-    let knots: Vec<Point> = knots.collect();
-    let bounds = Bounds::of_points(&knots).unwrap_or(Bounds::of_point([0.0; 3]));
+    let places = knots.points().iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
+    let places: Vec<Point> = places.collect();
+    let bounds = Bounds::of_points(&places).unwrap_or(Bounds::of_point([0.0; 3]));
     let scene = Scene::plan(&bounds, options.bounds, PAD, options.width)?;
-    let diagram = Diagram { set, knots: Knots::new(set.points.clone())?, coordinates, scene, options };
+    let diagram = Diagram { set, knots, coordinates, scene, options };
     match &options.set {
-        Some(chosen) => diagram.link(chosen, &knots),
-        None => diagram.centroids(&knots),
+        Some(chosen) => diagram.link(chosen, &places),
+        None => diagram.centroids(&places),
     }
 }
 
@@ -73,7 +74,7 @@ impl Diagram<'_> {
         // A stream may have a single degree; then the triangles of the lower degree stay blank.
         let missing = (order > 1).then(|| Configurations::new(order - 2, upper.claim()));
         let lower = self.find(order.wrapping_sub(2)).or(missing.as_ref());
-        let mesh = CentroidMesh::of(&self.knots, lower, upper)?;
+        let mesh = CentroidMesh::of(self.knots, lower, upper)?;
         let places: Vec<Point> =
             mesh.vertices.iter().map(|&[x, y]| self.coordinates.to_world([x, y, 0.0])).collect();
         let corners = |triangle: &[u32; 3]| triangle.map(|vertex| places[vertex as usize]);
@@ -117,7 +118,7 @@ impl Diagram<'_> {
         }
         let names: Vec<String> = chosen.iter().map(u32::to_string).collect();
         let names = names.join(",");
-        let links = configurations::links(&self.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
+        let links = configurations::links(self.knots, self.degree(chosen.len().wrapping_sub(1))?)?;
         let Some(link) = links.find(&chosen).map(|index| links.link(index)) else {
             return Err(Error::usage(format!("the set {names} has no link")));
         };
@@ -201,7 +202,8 @@ impl Diagram<'_> {
         }
         let width = if count <= EDGES_MAX { 0.6 } else { 0.1 };
         format!(
-            "<path id=\"{id}\" fill=\"{}\" stroke=\"#24292f\" stroke-width=\"{width}\" stroke-linejoin=\"round\" \
+            "<path id=\"{id}\" fill=\"{}\" stroke=\"#24292f\" stroke-width=\"{width}\" \
+             stroke-linejoin=\"round\" \
              vector-effect=\"non-scaling-stroke\" d=\"{path}\"/>\n",
             hex(colour)
         )

@@ -17,6 +17,7 @@ use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
 use super::{configurations, svg, ticks};
 use spmesh_core::error::Result;
+use spmesh_geometry::configurations::Knots;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};
@@ -59,8 +60,9 @@ pub fn draw<R: Read>(
     let header = reader.header().clone();
     request::check(&header, options, &moments).map_err(|error| error.of_input(reader.name()))?;
     if header.kind.has_knots() {
-        let set = ConfigurationSet::read(reader)?;
-        let picture = configurations::picture(&set, header.coordinates, options);
+        let mut set = ConfigurationSet::read(reader)?;
+        let knots = Knots::new(std::mem::take(&mut set.points)).map_err(|e| e.of_input(reader.name()))?;
+        let picture = configurations::picture(&knots, &set, header.coordinates, options);
         return take(&picture?);
     }
     let mut drawing = Drawing::new(&header, options, moments)?;

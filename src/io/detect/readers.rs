@@ -9,8 +9,8 @@ use super::{Format, detect};
 pub struct Reader {
     /// Name of the tool.
     pub tool: &'static str,
-    /// The formats that it reads, in the order of its messages.
-    pub formats: &'static [Format],
+    /// The formats that it reads, in the order of its messages: lists, one after the other.
+    pub formats: &'static [&'static [Format]],
     /// Whether `--raw` makes it read numbers without a header.
     pub has_raw: bool,
 }
@@ -33,21 +33,21 @@ const POINTS: &[Format] = &[
 ];
 
 /// `spfinalize`.
-pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: POINTS, has_raw: true };
+pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: &[POINTS], has_raw: true };
 
 /// `configgen`.
-pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: POINTS, has_raw: false };
+pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false };
 
 /// `splinefit`.
-pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: POINTS, has_raw: false };
+pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false };
 
 /// `spinfo`, for the points that an audit compares with.
-pub const SPINFO: Reader = Reader { tool: "spinfo", formats: POINTS, has_raw: false };
+pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS], has_raw: false };
 
 /// `spconvert`.
 pub const SPCONVERT: Reader = Reader {
     tool: "spconvert",
-    formats: &[
+    formats: &[&[
         Format::Stream,
         Format::Twin,
         Format::Obj,
@@ -60,53 +60,29 @@ pub const SPCONVERT: Reader = Reader {
         Format::VtkLegacy,
         Format::VtkXml,
         Format::Text,
-    ],
+    ]],
     has_raw: false,
 };
 
 /// `tess3`.
 pub const TESS3: Reader = Reader {
     tool: "tess3",
-    formats: &[
-        Format::Pdb,
-        Format::Mmcif,
-        Format::Xyz,
-        Format::Off,
-        Format::Las,
-        Format::Text,
-        Format::OtherText,
-        Format::Stream,
-        Format::Twin,
-        Format::Spa,
-        Format::Spb,
-        Format::Ply,
-        Format::Obj,
-        Format::Sma,
-        Format::VertexLines,
-        Format::VtkLegacy,
-        Format::VtkXml,
-    ],
+    formats: &[&[Format::Pdb, Format::Mmcif, Format::Xyz, Format::Off], POINTS],
     has_raw: false,
 };
 
 /// `dd4`.
 pub const DD4: Reader = Reader {
     tool: "dd4",
-    formats: &[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin],
+    formats: &[&[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin]],
     has_raw: true,
 };
 
 /// All of them.
 pub const READERS: [&Reader; 7] = [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &TESS3, &DD4];
 
-/// Formats that hold points of space.
-#[must_use]
-pub fn formats_of_points() -> &'static [Format] {
-    POINTS
-}
-
 /// The reader of a caller that does not say which tool it is.
-static ANY: Reader = Reader { tool: "this program", formats: POINTS, has_raw: true };
+static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true };
 
 impl Default for &'static Reader {
     fn default() -> Self {
@@ -127,14 +103,14 @@ impl Reader {
     /// Whether the tool reads this format.
     #[must_use]
     pub fn reads(&self, format: Format) -> bool {
-        self.formats.contains(&format)
+        self.formats.iter().any(|list| list.contains(&format))
     }
 
     /// What the tool says of a file of this format, which starts with `head`.
     #[must_use]
     pub fn refusal(&self, format: Format, head: &[u8]) -> String {
         let mut listed: Vec<&str> = Vec::new();
-        for format in self.formats {
+        for format in self.formats.iter().copied().flatten() {
             let name = format.row().listed;
             if !listed.contains(&name) {
                 listed.push(name);

@@ -68,8 +68,8 @@ impl<'a, C: Coefficient> Insertion<'a, C> {
     /// Too many simplices.
     pub(super) fn run(&mut self) -> Result<()> {
         #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // Safety: the processor has AVX2.
+        if crate::processor::Avx2Fma::detect().is_some() {
+            // SAFETY: the token proves that the processor has AVX2.
             return unsafe { self.run_avx2() };
         }
         self.run_portable()
