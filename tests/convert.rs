@@ -33,7 +33,8 @@ pub fn text_of(stream: &[u8]) -> String {
     String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
 }
 
-/// Asserts that a text twin in which `found` is `replaced` is refused, with the line and `expected` in the message.
+/// Asserts that a text twin in which `found` is `replaced` is refused, with the line and `expected` in the
+/// message.
 pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
     assert!(text.contains(found), "{found} in {text}");
     let damaged = text.replacen(found, replaced, 1);

@@ -1,4 +1,5 @@
-//! Formats, plain and compressed, through every tool that reads several: one table of formats, one gzip layer.
+//! Formats, plain and compressed, through every tool that reads several: one table of formats, one gzip
+//! layer.
 
 use std::io::Write;
 
@@ -60,7 +61,8 @@ fn point_files() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-/// Runs a tool on a file, plain and compressed, by its name and through a pipe: what it writes must be the same.
+/// Runs a tool on a file, plain and compressed, by its name and through a pipe: what it writes must be the
+/// same.
 fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: &[u8]) {
     let folder = Folder::new();
     let compressed = gzip(content);

@@ -43,7 +43,8 @@ pub fn determinant(rows: &[Vec<i128>]) -> i128 {
     (0..first.len()).map(|column| sign(column) * first[column] * determinant(&without(column))).sum()
 }
 
-/// The determinant of a simplex: its volume times the factorial of the dimension, in units of `1 / scale` per axis.
+/// The determinant of a simplex: its volume times the factorial of the dimension, in units of `1 / scale` per
+/// axis.
 pub fn volume<const D: usize>(points: &[[f64; D]], simplex: &[u32], scale: f64) -> i128 {
     let at = |vertex: u32| points[vertex as usize].map(|x| exact(x * scale));
     let origin = at(simplex[0]);

@@ -14,8 +14,8 @@ fn pipe_len(file: &impl AsFd) -> Option<usize> {
     rustix::pipe::fcntl_getpipe_size(file).ok()
 }
 
-/// 1 MiB if the system lets another pipe hold that much, and otherwise what `pipe` holds: a user who has many pipes
-/// may be refused.
+/// 1 MiB if the system lets another pipe hold that much, and otherwise what `pipe` holds: a user who has many
+/// pipes may be refused.
 #[cfg(target_os = "linux")]
 fn widest(pipe: &impl AsFd) -> Option<usize> {
     let (_reader, probe) = std::io::pipe().expect("a pipe");

@@ -45,7 +45,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let micros = |seconds: f64| seconds * 1e6 / points.len() as f64;
     println!(
         "{{\"knots\": {}, \"degree\": {degree}, \"configurations\": {count}, \"bytes\": {bytes}, \
-         \"kernel_seconds\": {kernel_seconds:.6}, \"seconds\": {config_seconds:.6}, \"kernel_us_per_knot\": {:.4}, \
+         \"kernel_seconds\": {kernel_seconds:.6}, \"seconds\": {config_seconds:.6}, \"kernel_us_per_knot\": \
+         {:.4}, \
          \"us_per_knot\": {:.4}, \"ratio\": {:.3}}}",
         points.len(),
         micros(kernel_seconds),

@@ -54,8 +54,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     result?;
     println!(
-        "{{\"knots\": \"{source}\", \"degree\": {degree}, \"functions\": {}, \"basis_seconds\": {seconds:.4}, \
-         \"bytes_per_function\": {:.0}, \"alive\": {:.2}, \"us_random\": {of_random:.4}, \"us_near\": {of_near:.4}, \
+        "{{\"knots\": \"{source}\", \"degree\": {degree}, \"functions\": {}, \"basis_seconds\": \
+         {seconds:.4}, \
+         \"bytes_per_function\": {:.0}, \"alive\": {:.2}, \"us_random\": {of_random:.4}, \"us_near\": \
+         {of_near:.4}, \
          \"us_jets\": {of_jets:.4}, \"us_domain\": {of_domain:.4}, \"ns_pixel\": {:.2}, \"mean\": {:.4}}}",
         basis.len(),
         basis.bytes() as f64 / basis.len() as f64,

@@ -38,29 +38,30 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-A configuration of degree k is three knots B and k knots I; with the rule delaunay, those inside of the circle through B. The \
-configurations of each degree triangulate the links of the degree before, by a rule. The start is the Delaunay triangulation, \
-or with the rules lifted:... the regular one; a mesh that is not the Delaunay triangulation of its vertices is the start itself.
+A configuration of degree k is three knots B and k knots I; with the rule delaunay, those inside of the \
+circle through B. The configurations of each degree triangulate the links of the degree before, by a rule. \
+The start is the Delaunay triangulation, or with the rules lifted:... the regular one; a mesh that is not \
+the Delaunay triangulation of its vertices is the start itself.
 
-Rules: delaunay; lifted:heights (values are those of a strictly convex function) and lifted:weights (power circles), which \
-give projective configurations; min-weight; ear; fan; random; aligned:ANGLE (edges near a direction, in degrees \
-counterclockwise from the x axis); data (edges along which values differ least or, where they are gradients, slopes). Values \
-are elevations, or those of --values.
+Rules: delaunay; lifted:heights (values are those of a strictly convex function) and lifted:weights (power \
+circles), which give projective configurations; min-weight; ear; fan; random; aligned:ANGLE (edges near a \
+direction, in degrees counterclockwise from the x axis); data (edges along which values differ least or, \
+where they are gradients, slopes). Values are elevations, or those of --values.
 
-Special configurations of degree 1 are for quadratic splines. --box zp cuts the links of knots amid four unit squares so that \
-half the sum of the B-splines of the sides of a square is a box spline. --patches does the same on grids, with the knots of \
-the input, if there is one, between them. --features reads lines of a word and ids: corner (splines interpolate there), crease \
-(sharp up to its ends, which are interpolated), smooth-crease (smooth at its ends) or linear (values along it are \
-interpolated linearly). Segments between consecutive ids become edges of the triangulation; they may touch at knots only. Patches may touch along \
-whole sides. In both files # starts a comment. \
---stats counts the functions that splines are made of.
+Special configurations of degree 1 are for quadratic splines. --box zp cuts the links of knots amid four \
+unit squares so that half the sum of the B-splines of the sides of a square is a box spline. --patches does \
+the same on grids, with the knots of the input, if there is one, between them. --features reads lines of a \
+word and ids: corner (splines interpolate there), crease (sharp up to its ends, which are interpolated), \
+smooth-crease (smooth at its ends) or linear (values along it are interpolated linearly). Segments between \
+consecutive ids become edges of the triangulation; they may touch at knots only. Patches may touch along \
+whole sides. In both files # starts a comment. --stats counts the functions that splines are made of.
 
-Knots are numbered in the order of the input, from 0. Knots at one place are repeated knots, which lowers the smoothness of \
-splines there; spdelaunay2d makes one of them. Knots that are added come last: copies, then those amid the edges of smooth \
-creases. Knots of --patches come first, row by row.
+Knots are numbered in the order of the input, from 0. Knots at one place are repeated knots, which lowers \
+the smoothness of splines there; spdelaunay2d makes one of them. Knots that are added come last: copies, \
+then those amid the edges of smooth creases. Knots of --patches come first, row by row.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed or truncated \
-input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed \
+or truncated input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a lower degree\n";

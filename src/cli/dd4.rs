@@ -29,11 +29,12 @@ Examples:
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
 
-Cells: of each empty sphere through points that span space, the convex hull of all points on it; and infinite ones, \
-one for each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 that they are.
+Cells: of each empty sphere through points that span space, the convex hull of all points on it; and \
+infinite ones, one for each facet of a cell on the hull. Without --quantum, coordinates are taken as the f64 \
+that they are.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed or truncated \
-input, 5 not enough memory for the points, 141 output closed by its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed \
+or truncated input, 5 not enough memory for the points, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";

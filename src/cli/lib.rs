@@ -174,8 +174,8 @@ pub fn peak_memory() -> u64 {
     line.and_then(|line| line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()).unwrap_or(0) * 1024
 }
 
-/// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use. gzip data is
-/// decompressed.
+/// Opens an input that is read in order: stdin for `-`, a file otherwise; with the name that messages use.
+/// gzip data is decompressed.
 ///
 /// # Errors
 /// If the file cannot be opened, or stdin is a terminal.

@@ -28,10 +28,10 @@ Examples:
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
 The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
-output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, SMB \
-rounded to 32 bits. A notice says what is lost. \
-Of tetrahedra, OBJ and PLY get the hull; VTU has the labels of vertices as point data, Medit as references. \
-Meshes of OBJ and PLY do not say when vertices are final: all of them are at the end.
+output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, \
+SMB rounded to 32 bits. A notice says what is lost. Of tetrahedra, OBJ and PLY get the hull; VTU has the \
+labels of vertices as point data, Medit as references. Meshes of OBJ and PLY do not say when vertices are \
+final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
 141 output closed by its reader.";

@@ -46,20 +46,23 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-A cell has the value of the mesh at its centre; outside the mesh there is no data (-9999). Triangles are drawn as they arrive. \
-A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles take memory. Tiles beyond --memory wait in a \
-temporary file. ESRI grids are written after the last triangle, from the top, with 256 rows in memory.
+A cell has the value of the mesh at its centre; outside the mesh there is no data (-9999). Triangles are \
+drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
+take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
+from the top, with 256 rows in memory.
 
-Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; level triangles have \
-none. Elevations and coordinates must have the same unit.
+Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
+level triangles have none. Elevations and coordinates must have the same unit.
 
---contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as GeoJSON features with the \
-properties elevation and is_closed. Higher ground is on the left of a line; a vertex on a level counts as above it. Open lines are \
-held in memory, 16 bytes for each point. --contour-points bounds that: a line with that many points is cut and continued from its last \
-point. Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL and QGIS read it.
+--contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
+GeoJSON features with the properties elevation and is_closed. Higher ground is on the left of a line; a \
+vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
+--contour-points bounds that: a line with that many points is cut and continued from its last point. \
+Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
+and QGIS read it.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
-its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 141 output closed by its reader.";
 
 /// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";

@@ -41,12 +41,12 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-A spline is a sum of functions over configurations of knots. Its domain is where all functions sum to one; with a border that is \
-pulled apart, that is the convex hull of the knots. There splines of degree k reproduce polynomials of degree k. Outside of the domain \
-nothing is evaluated: sites get nan, cells no data.
+A spline is a sum of functions over configurations of knots. Its domain is where all functions sum to one; \
+with a border that is pulled apart, that is the convex hull of the knots. There splines of degree k \
+reproduce polynomials of degree k. Outside of the domain nothing is evaluated: sites get nan, cells no data.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 malformed or truncated \
-input, 5 not enough memory, 141 output closed by its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 \
+malformed or truncated input, 5 not enough memory, 141 output closed by its reader.";
 
 /// The message after the number of bytes of a failed allocation.
 const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";

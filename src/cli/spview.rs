@@ -46,15 +46,16 @@ Examples:
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "
-Up to 20,000 triangles or points are drawn one by one. More are painted as pixels, with memory proportional to the picture: some 64 \
-bytes for each pixel. The picture needs the bounds of the stream. If the header does not state them, a file is read twice, and a long \
-pipe needs --bounds.
+Up to 20,000 triangles or points are drawn one by one. More are painted as pixels, with memory proportional \
+to the picture: some 64 bytes for each pixel. The picture needs the bounds of the stream. If the header does \
+not state them, a file is read twice, and a long pipe needs --bounds.
 
-Streams in the plane and points in space are seen from above. Colours of time show the position in the stream; a cell shows the time \
-of its first point in the middle and that of its last point at the border. Units are those of the coordinates.
+Streams in the plane and points in space are seen from above. Colours of time show the position in the \
+stream; a cell shows the time of its first point in the middle and that of its last point at the border. \
+Units are those of the coordinates.
 
-Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough memory, 141 output closed by \
-its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
+memory, 141 output closed by its reader.";
 
 /// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spview: not enough memory: take less --width, or --raster\n";

@@ -39,11 +39,12 @@ Examples:
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2
     find pdb -name '*.cif.gz' | tess3 --lof - --out-dir meshes --threads 2 --resume
 
-Defaults: what the file shows of one molecule. That is its first model; all atoms, hydrogen too; HETATM records, with \
-ligands, ions and water; and of alternate locations, for each residue, those of the conformer that is occupied most.
+Defaults: what the file shows of one molecule. That is its first model; all atoms, hydrogen too; HETATM \
+records, with ligands, ions and water; and of alternate locations, for each residue, those of the conformer \
+that is occupied most.
 
-Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or truncated \
-input, 141 output closed by its reader.";
+Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or \
+truncated input, 141 output closed by its reader.";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///

@@ -2,8 +2,8 @@
 
 /// A point in stored coordinates: x, y and z. Two-dimensional points without an elevation have z = 0.
 ///
-/// Streams of integer coordinates carry integer values; `Coordinates` of the crate `spmesh-stream` tells how they map
-/// to the world.
+/// Streams of integer coordinates carry integer values; `Coordinates` of the crate `spmesh-stream` tells how
+/// they map to the world.
 pub type Point = [f64; 3];
 
 /// Closed bounding box of at least one point, in stored coordinates.

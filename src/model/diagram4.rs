@@ -11,7 +11,7 @@ pub struct Diagram4 {
     pub values: Option<Vec<f64>>,
     /// Points of the input that are equal to an earlier one.
     pub merged: u64,
-    /// The cells: finite ones in the order of their vertices, then infinite ones in that of theirs, if the engine made
-    /// them; a stream may hold them in any order. Neighbours are numbers of cells.
+    /// The cells: finite ones in the order of their vertices, then infinite ones in that of theirs, if the
+    /// engine made them; a stream may hold them in any order. Neighbours are numbers of cells.
     pub cells: Cells4,
 }

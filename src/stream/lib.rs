@@ -10,7 +10,8 @@
 //!   the stream.
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
 //!   patches may still use, and cells that no later point lies in.
-//! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at once.
+//! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
+//!   once.
 //!
 //! `formats/spmesh.md` specifies every byte. Tools exchange data through this crate only.
 //!

@@ -57,7 +57,8 @@ pub struct Options {
     pub width: u32,
     /// The part of the plane that is drawn; everything if `None`.
     pub bounds: Option<Window>,
-    /// The box of the stream in the world, if its header does not state it and [`Extent::read`](crate::Extent::read) found it.
+    /// The box of the stream in the world, if its header does not state it and
+    /// [`Extent::read`](crate::Extent::read) found it.
     pub extent: Option<Bounds>,
     /// Seen obliquely, with elevations, rather than from above.
     pub oblique: bool,

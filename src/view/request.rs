@@ -20,7 +20,8 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
     if kind.vertices_per_simplex() == 4 {
         let name = kind.name();
         return refuse(format!(
-            "a {name} hides itself if seen from above: convert it to VTU with spconvert, for programs that draw \
+            "a {name} hides itself if seen from above: convert it to VTU with spconvert, for programs that \
+             draw \
              in space"
         ));
     }
@@ -50,7 +51,8 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
 
 fn check_of_knots(options: &Options, moments: &Moments) -> Result<()> {
     let is_plain = *moments == Moments::default() && !options.oblique && options.fill.is_none();
-    let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, --snapshot, \
+    let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, \
+                --snapshot, \
                 --oblique and --fill";
     if is_plain { Ok(()) } else { Err(Error::usage(what)) }
 }

@@ -113,7 +113,8 @@ impl Sheet {
             format!("<rect y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n")
         };
         let head = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+             height=\"{height}\" \
              role=\"img\" font-family=\"'DejaVu Sans', sans-serif\">\n<title>{title}</title>\n{}\
              <clipPath id=\"window\"><rect x=\"{left}\" y=\"{top}\" width=\"{across}\" height=\"{down}\"/></clipPath>\n\
              <g id=\"map\">\n<g clip-path=\"url(#window)\">\n",

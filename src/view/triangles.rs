@@ -95,7 +95,8 @@ fn edges(triangles: &[Triangle], scene: &Scene, opacity: f64) -> String {
         }
     }
     format!(
-        "<path id=\"edges\" fill=\"none\" stroke=\"#24292f\" stroke-opacity=\"{opacity}\" stroke-width=\"0.6\" \
+        "<path id=\"edges\" fill=\"none\" stroke=\"#24292f\" stroke-opacity=\"{opacity}\" \
+         stroke-width=\"0.6\" \
          stroke-linejoin=\"round\" vector-effect=\"non-scaling-stroke\" d=\"{path}\"/>\n"
     )
 }

@@ -140,8 +140,8 @@ pub fn partial_space() -> Vec<u8> {
     writer.end(6, 1).unwrap()
 }
 
-/// A box of `LAYERS` layers of cubes, five tetrahedra in each, one patch per layer of vertices; vertices are final after
-/// the layer above theirs. Labels, where there are any, come behind every other patch.
+/// A box of `LAYERS` layers of cubes, five tetrahedra in each, one patch per layer of vertices; vertices are
+/// final after the layer above theirs. Labels, where there are any, come behind every other patch.
 pub fn tetrahedra(coordinates: Coordinates, has_labels: bool) -> Vec<u8> {
     const SIDE: u64 = 4;
     const LAYERS: u64 = 3;
@@ -174,8 +174,8 @@ pub fn label(id: u64) -> u64 {
     1000 - 7 * id
 }
 
-/// Local indices of the five tetrahedra of a cube whose upper side is new, and whose lower one is imported. Neighbours
-/// are mirror images, so that diagonals meet.
+/// Local indices of the five tetrahedra of a cube whose upper side is new, and whose lower one is imported.
+/// Neighbours are mirror images, so that diagonals meet.
 fn cube(x: u64, y: u64, layer: u64, side: u64) -> Vec<u32> {
     let corner = |i: u64| {
         let lower = if i & 4 == 0 { side * side } else { 0 };

@@ -9,7 +9,8 @@ use std::collections::{HashMap, HashSet};
 
 type Point = [f64; 3];
 
-/// Corners of the facet opposite to each corner, such that the corner followed by these is positively oriented.
+/// Corners of the facet opposite to each corner, such that the corner followed by these is positively
+/// oriented.
 const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// Every way to run it, with signs checked.
@@ -45,7 +46,8 @@ fn in_sphere(corners: [Point; 4], e: Point) -> f64 {
     -insphere(a, b, c, d, coord(e))
 }
 
-/// Checks all that holds whatever was rounded: the tetrahedra fit together; distinct points are vertices or missing.
+/// Checks all that holds whatever was rounded: the tetrahedra fit together; distinct points are vertices or
+/// missing.
 fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
     let distinct: HashSet<[u64; 3]> = points.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
     assert_eq!(mesh.vertices().len(), distinct.len());
@@ -83,7 +85,8 @@ fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
     assert!(stats.created as usize >= mesh.tetrahedra().len());
 }
 
-/// Checks exactly that a mesh is a Delaunay tetrahedralization: positively oriented, locally Delaunay, and convex.
+/// Checks exactly that a mesh is a Delaunay tetrahedralization: positively oriented, locally Delaunay, and
+/// convex.
 fn check_delaunay(mesh: &Tetrahedralization) {
     let mut hull = Vec::new();
     for tetrahedron in mesh.tetrahedra() {

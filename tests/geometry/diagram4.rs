@@ -1,4 +1,5 @@
-//! The engine of 4D diagrams: what brute force finds, and what the audit proves, at every size of coordinates.
+//! The engine of 4D diagrams: what brute force finds, and what the audit proves, at every size of
+//! coordinates.
 
 use spmesh_audit::diagram::check;
 use spmesh_core::error::ErrorKind;

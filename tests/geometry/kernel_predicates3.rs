@@ -1,4 +1,5 @@
-//! Every arithmetic of the predicates of space against arbitrary precision, inside its domain and at the edge of it.
+//! Every arithmetic of the predicates of space against arbitrary precision, inside its domain and at the edge
+//! of it.
 
 use spmesh_geometry::predicates::{Arithmetic3, Extent, PredicateCounts, Predicates3, Sign, WithPredicates3};
 use spmesh_reference::exact3;

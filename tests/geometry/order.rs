@@ -85,8 +85,8 @@ fn many_points_of_space_in_extents_of_every_size() {
 
 #[test]
 fn flat_and_thin_sets_are_as_coherent_as_others() {
-    // How far apart neighbours in the order may be, in distances of neighbours in a lattice of as many axes. The curve
-    // of space does not follow a line from one end to the other.
+    // How far apart neighbours in the order may be, in distances of neighbours in a lattice of as many axes.
+    // The curve of space does not follow a line from one end to the other.
     for (sides, axes, distances) in [
         ([1e3, 1e3, 1e3], 3, 1.3),
         ([1e3, 1e3, 1.0], 2, 1.3),
@@ -169,8 +169,8 @@ fn levels_by_zeros_are_counts_of_trailing_zeros() {
 #[test]
 fn levels_by_the_most_common_suffix() {
     let points = [[5.0, -2.0], [13.0, 6.0], [9.0, -6.0], [3.0, 2.0], [4.0, 2.0], [5.0, 1.0]];
-    // x: 5 of 6 end with 1, 4 of those with 01, 3 of those with 101. y: 5 end with 0, all of them with 10; -2 and 6 end
-    // with 110, but -6 and 2 (twice) with 010.
+    // x: 5 of 6 end with 1, 4 of those with 01, 3 of those with 101. y: 5 end with 0, all of them with 10; -2
+    // and 6 end with 110, but -6 and 2 (twice) with 010.
     assert_eq!(levels(&points, Suffixes::MostCommon), [2, 2, 2, 1, 0, 0]);
     // Numbers need not end with zeros to have their last bits in common.
     let uniform: Vec<[f64; 2]> =

@@ -31,7 +31,8 @@ fn orientation<const N: usize, const D: usize>(points: [[f64; D]; N]) -> i64 {
     determinant(&points[1..].iter().map(row).collect::<Vec<Vec<i64>>>())
 }
 
-/// The vertices of a simplex whose replacement by the target leaves a positive volume; `None` if one becomes negative.
+/// The vertices of a simplex whose replacement by the target leaves a positive volume; `None` if one becomes
+/// negative.
 fn face<const N: usize, const D: usize>(
     points: &[[f64; D]],
     simplex: [u32; N],
@@ -108,7 +109,8 @@ fn check<const N: usize, const F: usize, const D: usize>(
         for &point in points {
             let mut corners = [point; N];
             facet.iter().enumerate().for_each(|(i, &v)| corners[i] = points[v as usize]);
-            // A counterclockwise edge of the plane has all points on its left, a facet of space on its inner side.
+            // A counterclockwise edge of the plane has all points on its left, a facet of space on its inner
+            // side.
             let side = orientation(corners);
             assert!(if D == 2 { side >= 0 } else { side <= 0 }, "{facet:?}");
         }

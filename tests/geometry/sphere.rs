@@ -28,7 +28,8 @@ fn centre(corners: [Corner; 4]) -> Option<([BigInt; 3], BigInt)> {
     (volume != BigInt::ZERO).then(|| (m, volume.abs()))
 }
 
-/// Whether the ball lies strictly on the near side of a plane at `side` from the first corner, towards `sign` of `axis`.
+/// Whether the ball lies strictly on the near side of a plane at `side` from the first corner, towards `sign`
+/// of `axis`.
 fn is_within(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64, side: &BigInt) -> bool {
     let gap: BigInt = volume * side * 2 - &m[axis] * sign;
     gap.is_positive() && &gap * &gap > dot(m, m)
@@ -47,8 +48,8 @@ fn tightest(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64) -> BigInt 
     high
 }
 
-/// Tests boxes with one finite side around the border of the ball, which is `tightest` away: counts claims, and balls
-/// inside.
+/// Tests boxes with one finite side around the border of the ball, which is `tightest` away: counts claims,
+/// and balls inside.
 fn check(corners: [Corner; 4], bounds: SphereBounds, counts: &mut (u32, u32)) {
     let Some((m, volume)) = centre(corners) else { return };
     for axis in 0..3 {

@@ -1,4 +1,5 @@
-//! Points of four dimensions: every point of the input that is wanted, or an error that says what is wrong where.
+//! Points of four dimensions: every point of the input that is wanted, or an error that says what is wrong
+//! where.
 
 mod grids;
 mod nifti;

@@ -58,7 +58,8 @@ pub fn expected(points: &[Point]) -> Vec<Corners> {
     set
 }
 
-/// The tetrahedra of a mesh stream and its number of vertices, after checking that each is used only while it is live.
+/// The tetrahedra of a mesh stream and its number of vertices, after checking that each is used only while it
+/// is live.
 pub fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
     let mut reader = StreamReader::new(bytes, "mesh").unwrap();
     let mut live = LiveVertices::new();

@@ -24,7 +24,8 @@ fn run(input: &[u8], part: Part<3>, options: &Options<3>) -> (Vec<u8>, Stats) {
     tetrahedralize(input, &Options { part: Some(part), ..*options }).unwrap()
 }
 
-/// The exact audit, which shares nothing with the reduction; with the points that there must be, if they are given.
+/// The exact audit, which shares nothing with the reduction; with the points that there must be, if they are
+/// given.
 fn assert_proven(bytes: &[u8], points: Option<&[Point]>) {
     let mut reader = StreamReader::new(bytes, "part").unwrap();
     let coordinates = reader.header().coordinates;
@@ -54,7 +55,8 @@ struct Tiler<'a> {
 }
 
 impl Tiler<'_> {
-    /// Partial meshes that cover `region`, which is cut `depth` times: through points, through nothing, or beyond all.
+    /// Partial meshes that cover `region`, which is cut `depth` times: through points, through nothing, or
+    /// beyond all.
     fn parts(&mut self, region: Region<3>, depth: usize) -> Vec<Vec<u8>> {
         let Some([lower, upper]) = (depth > 0).then(|| self.cut(region)).flatten() else {
             return vec![self.tile(region)];

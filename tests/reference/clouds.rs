@@ -221,8 +221,8 @@ fn orbit(random: &mut Random) -> Vec<Point> {
     rows.iter().flat_map(|row| (0..8).map(move |i| floats([0, 1, 2].map(|k| row[k] * signs(i)[k])))).collect()
 }
 
-/// A random set of families, moved, scaled and mixed, with points made of others and copies among them: of about `count`
-/// points. All are finite.
+/// A random set of families, moved, scaled and mixed, with points made of others and copies among them: of
+/// about `count` points. All are finite.
 pub fn mixture(random: &mut Random, count: usize) -> Vec<Point> {
     let mut points = Vec::new();
     let parts = pick(random, &[1, 1, 1, 2, 2, 3, 5]);

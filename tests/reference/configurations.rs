@@ -9,8 +9,8 @@ pub type Configuration = ([u32; 3], Vec<u32>);
 
 /// Configurations of all degrees up to `degree_max`, each degree sorted by interior set, then by boundary.
 ///
-/// Knots at one place are told apart by numbers, not symbols: the j-th is moved by e (j, j²) for an e so small that no sign
-/// of different places depends on it. Cost: O(n⁴).
+/// Knots at one place are told apart by numbers, not symbols: the j-th is moved by e (j, j²) for an e so
+/// small that no sign of different places depends on it. Cost: O(n⁴).
 pub fn by_definition(points: &[[f64; 2]], degree_max: usize) -> Vec<Vec<Configuration>> {
     let points = moved(points);
     let count = points.len() as u32;
@@ -63,7 +63,8 @@ pub fn moved(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     moved.collect()
 }
 
-/// Number of directed lines through two points with `degree` points to the left, those between the two included.
+/// Number of directed lines through two points with `degree` points to the left, those between the two
+/// included.
 pub fn lines(points: &[[f64; 2]], degree: usize) -> Vec<([u32; 2], Vec<u32>)> {
     let points = moved(points);
     let count = points.len() as u32;

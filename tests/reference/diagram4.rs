@@ -1,5 +1,5 @@
-//! Delaunay diagrams of four dimensions by definition: every five points, tried against all others, in integers of 128
-//! bits. Shares no code with the library.
+//! Delaunay diagrams of four dimensions by definition: every five points, tried against all others, in
+//! integers of 128 bits. Shares no code with the library.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,8 @@ fn determinant(rows: &[Vec<i128>]) -> i128 {
         .sum()
 }
 
-/// The signed minors of one row less than columns: their product with a row is the determinant with it as first row.
+/// The signed minors of one row less than columns: their product with a row is the determinant with it as
+/// first row.
 fn complement(rows: &[Vec<i128>]) -> Vec<i128> {
     let minor = |column: usize| -> Vec<Vec<i128>> {
         rows.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
@@ -79,7 +80,8 @@ fn subsets(len: usize, size: usize) -> Vec<Vec<usize>> {
     subsets
 }
 
-/// The rows on each hyperplane through rows that has none below, or where `both`, that has none on one of its sides.
+/// The rows on each hyperplane through rows that has none below, or where `both`, that has none on one of its
+/// sides.
 fn supported(rows: &[Vec<i128>], both: bool) -> BTreeSet<Vec<u32>> {
     let mut found = BTreeSet::new();
     let Some(size) = rows.first().map(Vec::len) else { return found };
@@ -136,8 +138,8 @@ pub fn orientation(simplex: [Point; 5]) -> i128 {
     determinant(&simplex.map(|point| row(&point, false)))
 }
 
-/// The diagram of distinct points in lexicographic order: finite cells by their vertices, then infinite cells by
-/// theirs, with the numbers of their neighbours. None if all points lie in a hyperplane.
+/// The diagram of distinct points in lexicographic order: finite cells by their vertices, then infinite cells
+/// by theirs, with the numbers of their neighbours. None if all points lie in a hyperplane.
 ///
 /// Domain: coordinates below 1000 in magnitude, and up to about 30 points: O(n^6).
 pub fn diagram(points: &[Point]) -> Vec<Cell> {
@@ -176,7 +178,8 @@ pub fn diagram(points: &[Point]) -> Vec<Cell> {
     cells
 }
 
-/// The corners of the unit cube are one cell with eight facets, and one more point at the centre makes eight pyramids.
+/// The corners of the unit cube are one cell with eight facets, and one more point at the centre makes eight
+/// pyramids.
 #[test]
 fn diagrams_of_cubes_are_known() {
     let cube: Vec<Point> = (0..16).map(|i| [3, 2, 1, 0].map(|axis| 2 * (i >> axis & 1))).collect();

@@ -41,8 +41,8 @@ pub fn orientation(p: &ExactPoint, q: &ExactPoint, r: &ExactPoint) -> i32 {
     sign(&area(p, q, r))
 }
 
-/// Coefficients of the four lifts in the determinant of rows (x, y, lift, 1), times the sign that makes it positive
-/// where the fourth point is inside the circle of the others, counterclockwise.
+/// Coefficients of the four lifts in the determinant of rows (x, y, lift, 1), times the sign that makes it
+/// positive where the fourth point is inside the circle of the others, counterclockwise.
 fn cofactors(points: [&ExactPoint; 4]) -> [BigInt; 4] {
     let [a, b, c, d] = points;
     [area(b, c, d), -area(a, c, d), area(a, b, d), -area(a, b, c)]

@@ -1,4 +1,5 @@
-//! Determinants of lifted points of space in arbitrary precision, by cofactors, with the perturbation written out.
+//! Determinants of lifted points of space in arbitrary precision, by cofactors, with the perturbation written
+//! out.
 
 use super::exact::{sign, times_2_1074};
 use num_bigint::BigInt;
@@ -39,8 +40,8 @@ pub fn orientation(points: [&ExactPoint; 4]) -> i32 {
     sign(&volume(points))
 }
 
-/// Coefficients of the five lifts in the determinant of rows (1, x, y, z, lift), times the sign that makes it positive
-/// where the fifth point is inside the sphere of the others, positively oriented.
+/// Coefficients of the five lifts in the determinant of rows (1, x, y, z, lift), times the sign that makes it
+/// positive where the fifth point is inside the sphere of the others, positively oriented.
 fn cofactors(points: [&ExactPoint; 5]) -> [BigInt; 5] {
     let [a, b, c, d, e] = points;
     [

@@ -1,8 +1,8 @@
 //! Exact decisions about the points of one set in space, fast enough for hundreds of sets, and the proof that
 //! tetrahedra are the canonical ones. Shares no code with the library.
 //!
-//! A decision is made in `f64` where the error bound allows, in 128 bits where the points are small integers times a
-//! power of two, and in integers without limit where neither is so.
+//! A decision is made in `f64` where the error bound allows, in 128 bits where the points are small integers
+//! times a power of two, and in integers without limit where neither is so.
 
 use super::exact::{sign, times_2_1074};
 use super::exact3::ExactPoint;
@@ -30,8 +30,8 @@ pub struct Space {
     exact: OnceCell<Vec<ExactPoint>>,
 }
 
-/// Largest difference of integers whose in-sphere determinant fits in 128 bits: with squares of lengths up to 3 * 2^48
-/// and volumes up to 6 * 2^72, the sum of four products is below 2^127.
+/// Largest difference of integers whose in-sphere determinant fits in 128 bits: with squares of lengths up to
+/// 3 * 2^48 and volumes up to 6 * 2^72, the sum of four products is below 2^127.
 const SMALL: i128 = 1 << 24;
 
 trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
@@ -75,8 +75,8 @@ fn certain(value: f64, error: f64) -> Option<i32> {
     (value.abs() > error).then_some(if value > 0.0 { 1 } else { -1 })
 }
 
-/// The sum of the magnitudes of the products is at most 2/sqrt(3) times the product of the lengths, and 8 roundings
-/// of 2^-53 each go into every one: 1.1e-15 times the lengths.
+/// The sum of the magnitudes of the products is at most 2/sqrt(3) times the product of the lengths, and 8
+/// roundings of 2^-53 each go into every one: 1.1e-15 times the lengths.
 fn filtered_orientation(points: [&Point; 4]) -> Option<i32> {
     let [a, b, c, d] = points;
     let squares = [b, c, d].map(|p| minus(p, a)).map(|p| dot(&p, &p));
@@ -115,8 +115,8 @@ impl Space {
         }
     }
 
-    /// Sign of the in-sphere determinant, positive if e is inside of the positive tetrahedron abcd; never zero for
-    /// distinct points, by the canonical perturbation.
+    /// Sign of the in-sphere determinant, positive if e is inside of the positive tetrahedron abcd; never
+    /// zero for distinct points, by the canonical perturbation.
     pub fn insphere(&self, corners: [usize; 4], e: usize) -> i32 {
         let [a, b, c, d] = corners;
         let five = [a, b, c, d, e];
@@ -146,8 +146,8 @@ impl Space {
         ranked.into_iter().map(coefficient).find(|&sign| sign != 0).unwrap_or(0)
     }
 
-    /// The canonical Delaunay tetrahedra by definition, as [`as_set`] has them: every four points, tried against every
-    /// fifth. None if all points lie in a plane.
+    /// The canonical Delaunay tetrahedra by definition, as [`as_set`] has them: every four points, tried
+    /// against every fifth. None if all points lie in a plane.
     pub fn tetrahedra(&self) -> Vec<[u32; 4]> {
         let count = self.points.len();
         let mut found = Vec::new();
@@ -171,14 +171,14 @@ impl Space {
         as_set(found)
     }
 
-    /// Proves that the claimed tetrahedra are the canonical Delaunay tetrahedra of the points, or says why not. In
-    /// O(n + h^2) for h facets of the hull.
+    /// Proves that the claimed tetrahedra are the canonical Delaunay tetrahedra of the points, or says why
+    /// not. In O(n + h^2) for h facets of the hull.
     ///
-    /// All are positive, and what is across from each other has its facet in common: so the number of tetrahedra around a
-    /// place changes only at open facets. These have all of their own vertices on their inner side, so they are on the
-    /// hull of these: the number is 0 outside of it, and all points are inside. Within it is 1, because it is 1 at one
-    /// place. So they fill the hull. Neighbours are locally Delaunay: the lifted points are convex across all facets,
-    /// hence convex.
+    /// All are positive, and what is across from each other has its facet in common: so the number of
+    /// tetrahedra around a place changes only at open facets. These have all of their own vertices on their
+    /// inner side, so they are on the hull of these: the number is 0 outside of it, and all points are
+    /// inside. Within it is 1, because it is 1 at one place. So they fill the hull. Neighbours are locally
+    /// Delaunay: the lifted points are convex across all facets, hence convex.
     pub fn prove(&self, claims: &[Claim]) -> Result<(), String> {
         if claims.is_empty() {
             return if self.is_flat() { Ok(()) } else { Err("there are no tetrahedra".into()) };
@@ -248,8 +248,8 @@ impl Space {
         Ok(())
     }
 
-    /// Whether the center of tetrahedron `of` is in a tetrahedron. If it is in the plane of a facet, an infinitesimal step
-    /// towards corner 0 of `of` decides, then one towards corner 1, then corner 2.
+    /// Whether the center of tetrahedron `of` is in a tetrahedron. If it is in the plane of a facet, an
+    /// infinitesimal step towards corner 0 of `of` decides, then one towards corner 1, then corner 2.
     fn is_around_center(&self, corners: [usize; 4], of: [usize; 4]) -> bool {
         let is_apart = |axis: usize| {
             let [p, q] = [corners, of].map(|corners| corners.map(|i| self.points[i][axis]));
@@ -437,7 +437,8 @@ mod tests {
         }
     }
 
-    /// Lifts of other points are no Delaunay tetrahedra of these: but for ties, of five points there are two ways.
+    /// Lifts of other points are no Delaunay tetrahedra of these: but for ties, of five points there are two
+    /// ways.
     #[test]
     fn the_other_tetrahedra_of_five_points_are_refused() {
         let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 3.0], [1.0, 1.0, -3.0]];

@@ -1,10 +1,10 @@
-//! The canonical Delaunay tetrahedralization by definition: every four points, tried against every fifth, in O(n^5)
-//! and in integers without limit. For up to about 60 points. Shares no code with the library.
+//! The canonical Delaunay tetrahedralization by definition: every four points, tried against every fifth, in
+//! O(n^5) and in integers without limit. For up to about 60 points. Shares no code with the library.
 //!
 //! The perturbation is written out: the lift of the point of rank r in lexicographic order is raised by
-//! epsilon^(n - r). The in-sphere determinant is then a polynomial in infinitesimals of falling size, whose sign is
-//! that of its first coefficient that is not zero: the determinant itself, or the cofactor of the lift of the largest
-//! point that has one.
+//! epsilon^(n - r). The in-sphere determinant is then a polynomial in infinitesimals of falling size, whose
+//! sign is that of its first coefficient that is not zero: the determinant itself, or the cofactor of the
+//! lift of the largest point that has one.
 
 use num_bigint::BigInt;
 
@@ -35,7 +35,8 @@ fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
     dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
 }
 
-/// The sphere of a positive tetrahedron: a point is inside, on it or outside as `side` is positive, zero or negative.
+/// The sphere of a positive tetrahedron: a point is inside, on it or outside as `side` is positive, zero or
+/// negative.
 struct Sphere<'a> {
     origin: &'a ExactPoint,
     normal: ExactPoint,
@@ -71,7 +72,8 @@ fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
     cofactors.iter().map(|(_, cofactor)| sign(cofactor)).find(|&sign| sign != 0).unwrap_or(0)
 }
 
-/// Canonical Delaunay tetrahedra of distinct points, as [`as_set`] has them. None if all points lie in a plane.
+/// Canonical Delaunay tetrahedra of distinct points, as [`as_set`] has them. None if all points lie in a
+/// plane.
 pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
     let exact = exact_points(points);
     let count = points.len();
@@ -108,7 +110,8 @@ fn is_empty(points: &[ExactPoint], tetrahedron: [usize; 4]) -> bool {
     })
 }
 
-/// A tetrahedron as its vertex indices: in increasing order, but for the last two if that keeps the orientation.
+/// A tetrahedron as its vertex indices: in increasing order, but for the last two if that keeps the
+/// orientation.
 pub fn normalised(tetrahedron: [u32; 4]) -> [u32; 4] {
     let mut sorted = tetrahedron;
     let mut is_odd = false;

@@ -15,7 +15,8 @@ const PLACE: &str = "Cartn_x Cartn_y Cartn_z";
 
 #[test]
 fn columns_may_be_in_any_order_and_any_case() {
-    let tags = "Cartn_z b_iso_or_equiv AUTH_SEQ_ID id cartn_x Group_PDB pdbx_PDB_ins_code auth_asym_id auth_comp_id \
+    let tags = "Cartn_z b_iso_or_equiv AUTH_SEQ_ID id cartn_x Group_PDB pdbx_PDB_ins_code auth_asym_id \
+                auth_comp_id \
                 Cartn_y auth_atom_id type_symbol label_alt_id occupancy pdbx_PDB_model_num other";
     let text = block(tags, "3 20 -5 7 1.25 HETATM C AA HEM 2 FE Fe B 0.5 4 ?");
     assert_eq!(atoms(&read(text).unwrap()), ["4 7 FE* Fe B AA HEM -5C 0.5 1250 2000 3000"]);
@@ -24,7 +25,8 @@ fn columns_may_be_in_any_order_and_any_case() {
 #[test]
 fn names_of_the_authors_come_before_those_of_the_archive() {
     let tags = format!(
-        "{PLACE} id auth_atom_id label_atom_id auth_comp_id label_comp_id auth_asym_id label_asym_id auth_seq_id \
+        "{PLACE} id auth_atom_id label_atom_id auth_comp_id label_comp_id auth_asym_id label_asym_id \
+         auth_seq_id \
          label_seq_id"
     );
     let rows = "1 2 3 1 A1 L1 A2 L2 A3 L3 4 5\n1 2 3 2 ? L1 . L2 ? L3 . 5\n1 2 3 3 ? ? ? ? ? ? ? ?";

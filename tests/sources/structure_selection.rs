@@ -17,10 +17,11 @@ fn labels(structure: &Structure, selection: &Selection) -> Vec<u64> {
     labels
 }
 
-/// Atoms `serial name element altloc residue chain number occupancy` as a structure, HETATM if the residue is not one
-/// of three small letters.
+/// Atoms `serial name element altloc residue chain number occupancy` as a structure, HETATM if the residue is
+/// not one of three small letters.
 fn structure(atoms: &[&str]) -> Structure {
-    let tags = "id auth_atom_id type_symbol label_alt_id auth_comp_id auth_asym_id auth_seq_id occupancy group_PDB Cartn_x \
+    let tags = "id auth_atom_id type_symbol label_alt_id auth_comp_id auth_asym_id auth_seq_id occupancy \
+                group_PDB Cartn_x \
                 Cartn_y Cartn_z";
     let tags: String = tags.split(' ').map(|tag| format!("_atom_site.{tag}\n")).collect();
     let row = |(index, atom): (usize, &&str)| {

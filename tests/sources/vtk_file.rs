@@ -144,8 +144,8 @@ impl VtkXml {
     }
 }
 
-/// A block of LZ4 that is nothing but one run of literals: 15 in the high half of the token says that bytes follow to
-/// be added, up to the first that is less than 255.
+/// A block of LZ4 that is nothing but one run of literals: 15 in the high half of the token says that bytes
+/// follow to be added, up to the first that is less than 255.
 fn lz4(literals: &[u8]) -> Vec<u8> {
     if literals.len() < 15 {
         return [&[(literals.len() as u8) << 4], literals].concat();

@@ -48,7 +48,8 @@ fn points_of_bytes_are_big_endian() {
     assert_eq!(points_of(binary("float", b"", &floats)).unwrap(), THREE);
     let integers: Vec<u8> = [1i32, -2, 3].iter().flat_map(|x| x.to_be_bytes()).collect();
     assert_eq!(points_of(binary("int", b"", &integers)).unwrap(), [[1.0, -2.0, 3.0]]);
-    // Texts have a length of one byte, or more, before them; and all of them may hold words and ends of lines.
+    // Texts have a length of one byte, or more, before them; and all of them may hold words and ends of
+    // lines.
     let mut field = b"FIELD FieldData 3\nt 1 1 double\n\nPOINTS\n\nwho 1 3 string\n\xc7POINTS\n".to_vec();
     field.extend([&[0x80, 70][..], &[b'\n'; 70], &[0x40, 0, 0, 2], b"\n\n"].concat());
     field.extend(b"\nbits 1 9 bit\n\n\n\n");

@@ -18,10 +18,11 @@ use spmesh_splinefit::{Attribute, Spline};
 const NOTES: &str = "\
 Splines are not extrapolated: outside of the domain, sites get nan and cells no data (-9999). A cell has the value at its centre.
 
-Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. Curvatures are those of \
-normal sections along the steepest descent (profile) and across it (tangential), in one over the unit of coordinates; they are \
-positive where the surface is convex upwards. Level places have neither aspect nor curvature. Elevations and coordinates are taken \
-to be in the same unit. Second derivatives of splines of degree 2 jump.";
+Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. \
+Curvatures are those of normal sections along the steepest descent (profile) and across it (tangential), in \
+one over the unit of coordinates; they are positive where the surface is convex upwards. Level places have \
+neither aspect nor curvature. Elevations and coordinates are taken to be in the same unit. Second \
+derivatives of splines of degree 2 jump.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]

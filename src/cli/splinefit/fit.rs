@@ -21,21 +21,25 @@ use spmesh_splines::fitting::Loss;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. Each round adds knots where \
-residuals exceed --tol [default: 0.25 % of the range of most elevations], up to --max-knots [default: one for 4 points, at most \
-20,000]. With --step, knots form a grid; one knot for each point predicts terrain best and takes the most time. Points as knots are \
-for splines of degree 2 over their convex hull: the border is pulled apart.
+Without --knots, the program searches for knots. It starts with a coarse grid over the box of the points. \
+Each round adds knots where residuals exceed --tol [default: 0.25 % of the range of most elevations], up to \
+--max-knots [default: one for 4 points, at most 20,000]. With --step, knots form a grid; one knot for each \
+point predicts terrain best and takes the most time. Points as knots are for splines of degree 2 over their \
+convex hull: the border is pulled apart.
 
-Without --lambda, given knots get the coefficients of least squares if the points determine them all. Otherwise the default lambda \
-halves waves as short as two distances of points, which bridges gaps and predicts terrain best. LAMBDA multiplies the thin-plate \
-energy (plus a thousandth of the bending of the control mesh), which is added to the sum of squares of residuals.
+Without --lambda, given knots get the coefficients of least squares if the points determine them all. \
+Otherwise the default lambda halves waves as short as two distances of points, which bridges gaps and \
+predicts terrain best. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
+control mesh), which is added to the sum of squares of residuals.
 
---features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which values are linear. Their \
-vertices become knots. Long segments get more knots, and other knots near them are dropped. In GeoJSON points are corners, and lines \
-and rings are creases, unless a feature has a property spline with one of the words. Polylines may meet at common vertices only.
+--features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \
+values are linear. Their vertices become knots. Long segments get more knots, and other knots near them are \
+dropped. In GeoJSON points are corners, and lines and rings are creases, unless a feature has a property \
+spline with one of the words. Polylines may meet at common vertices only.
 
---robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard deviations, tukey reduces them to \
-zero at 4.685. Points beyond 4.685 are rejected. The deviation is estimated from the median of magnitudes.";
+--robust weighs points by their residuals, iteratively: huber reduces weights beyond 1.345 standard \
+deviations, tukey reduces them to zero at 4.685. Points beyond 4.685 are rejected. The deviation is \
+estimated from the median of magnitudes.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]

@@ -20,10 +20,10 @@ const LISTED: usize = 5;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, a lower estimate in the \
-1-norm. Splines of degree k have k - 1 continuous derivatives, except across segments between knots that are repeated or collinear \
-with others. For degree 2, the gradients of functions on both sides of these segments are compared. Residuals are elevations less \
-values.";
+The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, a \
+lower estimate in the 1-norm. Splines of degree k have k - 1 continuous derivatives, except across segments \
+between knots that are repeated or collinear with others. For degree 2, the gradients of functions on both \
+sides of these segments are compared. Residuals are elevations less values.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]

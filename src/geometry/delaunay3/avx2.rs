@@ -17,9 +17,9 @@ pub(super) struct Avx2(__m256d);
 /// Evaluates instructions of AVX2 and FMA on registers, or with a token.
 macro_rules! instructions {
     ($($code:tt)*) => {
-        // SAFETY: the code below uses it only where an `Avx2` or an `Avx2Fma` exists, so the processor has AVX2 and FMA;
-        // the instructions on registers have no other precondition, and the store writes to an array of four
-        // numbers.
+        // SAFETY: the code below uses it only where an `Avx2` or an `Avx2Fma` exists, so the processor has
+        // AVX2 and FMA; the instructions on registers have no other precondition, and the store writes to an
+        // array of four numbers.
         unsafe { $($code)* }
     };
 }

@@ -10,8 +10,8 @@ use spmesh_model::bounds::Point;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};
 
-/// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside. The facet opposite to corner 1
-/// begins with its last corner: the bytes of the files depend on where a facet begins.
+/// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside. The facet
+/// opposite to corner 1 begins with its last corner: the bytes of the files depend on where a facet begins.
 const FACETS: [[usize; 3]; 4] = {
     let [first, [a, b, c], third, fourth] = TETRAHEDRON_FACETS;
     [first, [c, a, b], third, fourth]

@@ -195,7 +195,8 @@ impl Source {
         }
         if options.dims == 3 && self.stated.has_z == Some(false) {
             return Err(Error::usage(
-                "points have no third coordinate, three dimensions need it: for a triangulation in the plane use \
+                "points have no third coordinate, three dimensions need it: for a triangulation in the plane \
+                 use \
                  spfinalize | spdelaunay2d",
             ));
         }

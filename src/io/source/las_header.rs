@@ -109,7 +109,8 @@ impl LasHeader {
         let record_len = self.record_len as u64;
         let truncated = || {
             Error::malformed(format!(
-                "truncated: the header states {} points of {record_len} bytes from byte {} on, the file ends at \
+                "truncated: the header states {} points of {record_len} bytes from byte {} on, the file ends \
+                 at \
                  byte {}",
                 self.points,
                 self.points_start,

@@ -26,8 +26,8 @@ const LIST_MAX: u64 = 1 << 16;
 /// Memory: one patch or batch, and triangles that come before their vertices.
 ///
 /// # Errors
-/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every later
-/// error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and place.
+/// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every
+/// later error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and place.
 pub fn open_ply<R: Read + 'static>(
     input: R,
     name: impl Into<String>,

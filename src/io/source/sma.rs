@@ -12,8 +12,8 @@ use spmesh_core::error::{Error, Result};
 /// Reads an SMA mesh, pre-order or post-order: now up to the first element. `name` is what messages call the
 /// input.
 ///
-/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole line looks like a
-/// short one.
+/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole line looks
+/// like a short one.
 ///
 /// # Errors
 /// If the lines before the first element are no header of SMA. This and every later error is

@@ -15,8 +15,8 @@ use spmesh_core::limits::HEADER_BODY_MAX;
 /// from what header and first block say in each, because the flag in the file is often wrong. `name` is what
 /// messages call the input.
 ///
-/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole element looks
-/// like a short one.
+/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole element
+/// looks like a short one.
 ///
 /// # Errors
 /// If the header makes sense in neither byte order. This and every later error is

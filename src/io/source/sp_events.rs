@@ -131,7 +131,8 @@ impl<S: SpReader> EventSource for SpEvents<S> {
 
     fn notices(&self) -> Vec<String> {
         let notice = format!(
-            "{} finalization tags dropped: their cells are not those of an exact tree; pipe the points through \
+            "{} finalization tags dropped: their cells are not those of an exact tree; pipe the points \
+             through \
              spfinalize",
             self.dropped
         );

@@ -11,8 +11,8 @@ pub struct Goal {
     pub tolerance: f64,
     /// Most places of knots: copies on the border do not count.
     pub max_knots: usize,
-    /// The factor of the energy, in units of [`default_lambda`](super::NormalEquations::default_lambda): not zero, so that gaps in
-    /// the data are bridged.
+    /// The factor of the energy, in units of [`default_lambda`](super::NormalEquations::default_lambda): not
+    /// zero, so that gaps in the data are bridged.
     pub smoothing: f64,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,

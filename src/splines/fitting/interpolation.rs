@@ -207,7 +207,8 @@ impl<'a> Interpolation<'a> {
         }
         let [x, y] = self.basis.greville(function);
         let what = format!(
-            "functions depend on each other at Greville sites (condition {condition:.0e}): use least squares, or \
+            "functions depend on each other at Greville sites (condition {condition:.0e}): use least \
+             squares, or \
              move knots"
         );
         Err(Error::usage(what).at(format!("site {x} {y}")))

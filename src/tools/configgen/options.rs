@@ -35,7 +35,8 @@ impl Options {
     pub(super) fn check_special(&self) -> spmesh_core::error::Result<()> {
         let Some(special) = &self.special else { return Ok(()) };
         if matches!(self.rule, RuleName::Heights | RuleName::Weights) {
-            let what = "the rules lifted:... come with a triangulation of their own: leave out --box, --patches or \
+            let what = "the rules lifted:... come with a triangulation of their own: leave out --box, \
+                        --patches or \
                         --features, or take another rule";
             return Err(Error::usage(what));
         }
@@ -47,7 +48,8 @@ impl Options {
             return Ok(());
         }
         if self.border != Border::Free || self.pull_apart.is_some() {
-            let what = "knots of --patches are no knots of the input: leave out --boundary and --pull-apart, or give \
+            let what = "knots of --patches are no knots of the input: leave out --boundary and --pull-apart, \
+                        or give \
                         all as points with --box";
             return Err(Error::usage(what));
         }
@@ -106,7 +108,8 @@ impl FromStr for RuleName {
             _ => match text.strip_prefix("aligned:") {
                 Some(angle) => RuleName::Aligned(parse_angle(angle)?),
                 None => {
-                    return Err("expected delaunay, lifted:heights, lifted:weights, min-weight, ear, fan, random, data \
+                    return Err("expected delaunay, lifted:heights, lifted:weights, min-weight, ear, fan, \
+                                random, data \
                                 or aligned:ANGLE"
                         .into());
                 }

@@ -58,8 +58,10 @@ pub(super) fn set_up(sites: Sites, options: &Options) -> Result<Setup> {
         knots = special.knots.clone();
     }
     if own.is_some() && (knots.len() > given.len() || special.is_some()) {
-        let message = "a mesh that is not the Delaunay triangulation of its vertices has no place for copies of knots, \
-                       nor for what --box, --patches and --features make: leave these and --boundary and --pull-apart \
+        let message = "a mesh that is not the Delaunay triangulation of its vertices has no place for copies \
+                       of knots, \
+                       nor for what --box, --patches and --features make: leave these and --boundary and \
+                       --pull-apart \
                        out, or give points";
         return Err(Error::usage(message));
     }

@@ -18,7 +18,8 @@ use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::predicates::Point3;
 
 /// What a build says that lacks the feature `experiments`.
-pub const NO_EXPERIMENTS: &str = "this build has no experiments: --arithmetic, --order, --sequence, --bit-levels, --seed, \
+pub const NO_EXPERIMENTS: &str = "this build has no experiments: --arithmetic, --order, --sequence, \
+    --bit-levels, --seed, \
     --check-signs and --timed need a build with `cargo build --release --features experiments`";
 
 /// Which arithmetic decides.

@@ -1,8 +1,8 @@
-//! Fuzz targets: functions of any bytes that panic if something is wrong. libFuzzer calls them, and so does the
-//! seeded driver of this crate.
+//! Fuzz targets: functions of any bytes that panic if something is wrong. libFuzzer calls them, and so does
+//! the seeded driver of this crate.
 //!
-//! Readers must end with an error or with the whole input, without a panic, and in memory that follows from the bytes
-//! that are there. Kernels must give what independent exact arithmetic proves.
+//! Readers must end with an error or with the whole input, without a panic, and in memory that follows from
+//! the bytes that are there. Kernels must give what independent exact arithmetic proves.
 
 mod files;
 mod kernels;

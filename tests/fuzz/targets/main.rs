@@ -1,5 +1,5 @@
-//! Tries the inputs of a seed, one after the other, for a time. An input that fails is written to a file, made smaller,
-//! and written again.
+//! Tries the inputs of a seed, one after the other, for a time. An input that fails is written to a file,
+//! made smaller, and written again.
 
 use std::fs;
 use std::panic::{self, AssertUnwindSafe};
@@ -14,8 +14,8 @@ use spmesh_fuzz::{TARGETS, Target, target};
 
 /// Fuzzes readers and kernels with mutants of sample files.
 ///
-/// The same seed gives the same inputs. Kernels also have generators of degenerate sets of their own: the examples
-/// fuzz3 and fuzz4.
+/// The same seed gives the same inputs. Kernels also have generators of degenerate sets of their own: the
+/// examples fuzz3 and fuzz4.
 #[derive(Debug, Parser)]
 #[command(name = "scripts/fuzz")]
 struct Flags {
@@ -47,7 +47,8 @@ struct Flags {
     list: bool,
 }
 
-/// When the input that is being tried began, in milliseconds since the start of the program; 0 between inputs.
+/// When the input that is being tried began, in milliseconds since the start of the program; 0 between
+/// inputs.
 static BEGAN_MS: AtomicU64 = AtomicU64::new(0);
 
 fn main() -> ExitCode {

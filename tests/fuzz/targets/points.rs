@@ -2,8 +2,8 @@
 
 /// The points that bytes say, at most `count` of them, finite.
 ///
-/// The first byte says how coordinates are read: as numbers of 2, 4 or 8 bits (cocircular and repeated points), as
-/// i16, as i32 beside a large offset, as multiples of 0.1, or as any f64.
+/// The first byte says how coordinates are read: as numbers of 2, 4 or 8 bits (cocircular and repeated
+/// points), as i16, as i32 beside a large offset, as multiples of 0.1, or as any f64.
 pub fn points<const D: usize>(bytes: &[u8], count: usize) -> Vec<[f64; D]> {
     let Some((&mode, rest)) = bytes.split_first() else { return Vec::new() };
     let coordinates: Vec<f64> = match mode % 7 {

@@ -4,7 +4,8 @@ use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_reference::space::{Claim, Point, Space, distinct};
 use spmesh_reference::tetrahedra::as_set;
 
-/// Proves that `mesh` is the canonical tetrahedralization of `points`, with all that goes with it, or says what is wrong.
+/// Proves that `mesh` is the canonical tetrahedralization of `points`, with all that goes with it, or says
+/// what is wrong.
 pub fn prove(points: &[Point], mesh: &Tetrahedralization) -> Result<(), String> {
     let vertices = prove_vertices(points, mesh)?;
     let claims: Vec<Claim> = mesh

@@ -54,7 +54,8 @@ pub(in crate::diagram4) type Sphere<C> = [C; 6];
 
 /// Bound on the rounding errors of values, if coordinates differ by at most 1.
 ///
-/// The sum of magnitudes of all terms that a value expands to is at most 480, and of each at most 47 factors 1 + e,
+/// The sum of magnitudes of all terms that a value expands to is at most 480, and of each at most 47 factors
+/// 1 + e,
 /// |e| <= 2^-53, deviate: 480 * 47 < 2^15. Of hyperplanes it is less.
 const ROUNDING: f64 = 1.0 / (1u64 << 38) as f64;
 

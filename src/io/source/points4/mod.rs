@@ -140,7 +140,8 @@ fn read(mut supply: Supply, request: &Request, name: String, warnings: Vec<Strin
     Ok(Selected4 { name, ..points })
 }
 
-const ROUNDED: &str = "coordinates in world units are rounded: sites that are cospherical in the grid may be so no \
+const ROUNDED: &str = "coordinates in world units are rounded: sites that are cospherical in the grid may be \
+    so no \
     more, or coincide; cells are those of the rounded points";
 
 /// An error of usage that says that something is too much.

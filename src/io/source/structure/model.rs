@@ -9,8 +9,8 @@ use spmesh_stream::Coordinates;
 pub struct Structure {
     /// What messages call it: the path of the file, or "stdin".
     pub name: String,
-    /// How the points of all models are stored: integers in units of 0.001 Å (or of a smaller power of ten that
-    /// all coordinates of the input are multiples of) in 32 bits, or else the numbers themselves.
+    /// How the points of all models are stored: integers in units of 0.001 Å (or of a smaller power of ten
+    /// that all coordinates of the input are multiples of) in 32 bits, or else the numbers themselves.
     pub coordinates: Coordinates,
     /// The models that have atoms, one or more, in the order of the file; a file that names none has one of
     /// number 1.

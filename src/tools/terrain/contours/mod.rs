@@ -198,7 +198,8 @@ impl Tracer {
         let count = levels.end().abs_diff(*levels.start()) + 1;
         if count > CONTOURS_PER_TRIANGLE_MAX {
             return Err(Error::usage(format!(
-                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} may: take a larger \
+                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} may: take a \
+                 larger \
                  distance"
             )));
         }

@@ -65,7 +65,8 @@ impl TileCache {
         let count = across as u64 * down as u64;
         if count > RASTER_TILES_MAX {
             return Err(Error::usage(format!(
-                "{} by {} cells of size {} are {count} tiles, at most {RASTER_TILES_MAX} are possible: take larger \
+                "{} by {} cells of size {} are {count} tiles, at most {RASTER_TILES_MAX} are possible: take \
+                 larger \
                  cells, or a part with --bounds",
                 grid.columns, grid.rows, grid.step
             )));

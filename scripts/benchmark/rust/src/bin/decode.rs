@@ -1,5 +1,5 @@
-//! Decodes a LAZ file once with the `laz` crate, on as many threads as are said: `decode FILE THREADS`. The records
-//! are dropped.
+//! Decodes a LAZ file once with the `laz` crate, on as many threads as are said: `decode FILE THREADS`. The
+//! records are dropped.
 
 use std::fs::File;
 use std::io::{Error, Result};

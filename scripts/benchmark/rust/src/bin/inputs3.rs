@@ -70,9 +70,9 @@ fn grid(side: usize, of_cell: &[[u32; 3]], step: u32, mut random: Random) -> imp
     })
 }
 
-/// Points of a cube in random order, like atoms of a protein or the water around it: in integers of 0.001 angstrom, of
-/// about 0.1 per cubic angstrom, none nearer to another than `NEAREST`. Random points are taken unless an earlier one
-/// is too near (random sequential adsorption).
+/// Points of a cube in random order, like atoms of a protein or the water around it: in integers of 0.001
+/// angstrom, of about 0.1 per cubic angstrom, none nearer to another than `NEAREST`. Random points are taken
+/// unless an earlier one is too near (random sequential adsorption).
 fn packed(count: usize, mut random: Random) -> Vec<[i32; 3]> {
     const NEAREST: i64 = 1400;
     const ROOM: f64 = 10.0e9;
@@ -93,7 +93,8 @@ fn packed(count: usize, mut random: Random) -> Vec<[i32; 3]> {
     points
 }
 
-/// Whether a point is nearer than `nearest` to one of `points`; cells that may have such a one are two away at most.
+/// Whether a point is nearer than `nearest` to one of `points`; cells that may have such a one are two away
+/// at most.
 fn near(
     points: &[[i32; 3]],
     index: &[u32],
