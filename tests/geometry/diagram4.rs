@@ -6,21 +6,20 @@ use spmesh_core::error::ErrorKind;
 use spmesh_geometry::diagram4::diagram;
 use spmesh_model::cells4::Point4;
 
-use spmesh_reference::diagram4::{self as reference, Point};
+use spmesh_reference::diagram4::{self as reference, Cell, Point};
 use spmesh_reference::sets::Random;
 use spmesh_reference::sets4::{cells4, families, floats, grid, random_points};
 
 const SEED: u64 = 20_260_405;
 
-/// Asserts that the engine finds the cells that brute force finds, for the points where `place` puts them.
-fn assert_agrees(random: &mut Random, points: &[Point], place: impl Fn(i64) -> f64) {
-    let expected = reference::diagram(points);
+/// Asserts that the engine finds the cells `expected` for the points where `place` puts them.
+fn assert_finds(random: &mut Random, expected: &[Cell], points: &[Point], place: impl Fn(i64) -> f64) {
     let placed: Vec<Point4> = points.iter().map(|point| point.map(&place)).collect();
     let mut input: Vec<Point4> = placed.iter().chain(placed.iter().step_by(3)).copied().collect();
     random.shuffle(&mut input);
     match diagram(input, None) {
         Ok((found, _)) => {
-            assert_eq!(found.cells, cells4(&expected), "{placed:?}");
+            assert_eq!(found.cells, cells4(expected), "{placed:?}");
             assert_eq!((&found.points, found.merged), (&placed, points.len().div_ceil(3) as u64));
         }
         Err(error) => {
@@ -37,7 +36,7 @@ fn brute_force_finds_the_same() {
     let sets: Vec<Vec<Point>> = (0..10).flat_map(|_| families(&mut random)).collect();
     assert!(sets.len() >= 200);
     for points in sets {
-        assert_agrees(&mut random, &points, |x| x as f64);
+        assert_finds(&mut random, &reference::diagram(&points), &points, |x| x as f64);
     }
 }
 
@@ -46,13 +45,14 @@ fn brute_force_finds_the_same() {
 fn size_and_place_do_not_matter() {
     let mut random = Random::new(SEED + 1);
     for points in families(&mut random) {
+        let expected = reference::diagram(&points);
         for scale in [5e-324, 2f64.powi(-660), 2f64.powi(500), 3.0 * 2f64.powi(18), 2f64.powi(40) + 1.0] {
-            assert_agrees(&mut random, &points, |x| x as f64 * scale);
+            assert_finds(&mut random, &expected, &points, |x| x as f64 * scale);
         }
         for offset in [1e6, -1e9, 2f64.powi(50)] {
-            assert_agrees(&mut random, &points, |x| x as f64 + offset);
+            assert_finds(&mut random, &expected, &points, |x| x as f64 + offset);
         }
-        assert_agrees(&mut random, &points, |x| 1e6 + x as f64 / 64.0);
+        assert_finds(&mut random, &expected, &points, |x| 1e6 + x as f64 / 64.0);
     }
 }
 
@@ -68,7 +68,7 @@ fn assert_proved(random: &mut Random, mut points: Vec<Point4>, what: &str) {
 #[test]
 fn large_sets_are_proved() {
     let mut random = Random::new(SEED + 2);
-    let uniform: Vec<Point4> = (0..800).map(|_| [(); 4].map(|()| random.unit())).collect();
+    let uniform: Vec<Point4> = (0..300).map(|_| [(); 4].map(|()| random.unit())).collect();
     for scale in [1.0, 1e-200, 1e150, 1e-310] {
         let points = uniform.iter().map(|point| point.map(|x| x * scale)).collect();
         assert_proved(&mut random, points, &format!("uniform, times {scale}"));
