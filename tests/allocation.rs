@@ -13,11 +13,11 @@ struct Recorder;
 static RECORDER: Recorder = Recorder;
 
 fn record(bytes: usize) {
-    // A thread that is being torn down has no cell any more, and nothing to prove.
+    // A thread that is being torn down has no thread-local any more, and no maximum left to prove.
     let _ = LARGEST.try_with(|largest| largest.set(largest.get().max(bytes)));
 }
 
-// SAFETY: every call goes to the system's allocator as it came; recording does not allocate.
+// SAFETY: every call is passed unchanged to the system's allocator; recording does not allocate.
 unsafe impl GlobalAlloc for Recorder {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         record(layout.size());

@@ -1,4 +1,4 @@
-//! The audit: it passes correct streams and names the fault of every other.
+//! The audit: it passes correct streams and names the fault of every wrong one.
 
 #[path = "audit/census.rs"]
 mod census;
@@ -48,7 +48,7 @@ use spmesh_core::error::ErrorKind;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamReader, StreamWriter};
 
-/// Audits a whole stream; the violation of one that is not even well formed has no vertices.
+/// Audits a whole stream. A malformed stream gives the reader's message instead of a violation.
 fn audit(stream: &[u8], standard: Standard, given: Option<PointSet>) -> Result<Report, Verdict> {
     let mut reader = StreamReader::new(stream, "test").map_err(|e| Verdict::Malformed(e.to_string()))?;
     let header = reader.header().clone();
@@ -89,7 +89,7 @@ impl Mesh {
         Mesh { points: points.to_vec(), triangles: triangles.to_vec(), patch_len: 2, merged: 0 }
     }
 
-    /// The canonical triangulation, by trying every triangle.
+    /// The canonical triangulation, found by trying every triangle.
     fn canonical(points: &[[i32; 2]]) -> Self {
         Mesh::new(points, &reference::canonical_triangulation(points))
     }

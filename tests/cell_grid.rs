@@ -1,4 +1,4 @@
-//! Cells computed for batches are those computed for single points, on borders too.
+//! A batch of points gets the same cells as its points one by one, on borders of cells, too.
 
 use spmesh_finalize::cell_grid::CellGrid;
 use spmesh_model::bounds::{Bounds, Point};
@@ -21,7 +21,7 @@ impl Random {
     }
 }
 
-/// Boxes of all sizes and places, as far as there are trees around them.
+/// Boxes of all sizes and places for which a tree exists.
 const EXTENTS: [[f64; 2]; 13] = [
     [0.0, 1.0],
     [-1.0, 1.0],
@@ -47,7 +47,7 @@ fn coordinates(tree: &CellTree, axis: usize, level: u8, random: &mut Random) -> 
     for _ in 0..40 {
         let border = low + (random.unit() * cells).floor() * (side / cells);
         values.extend([border, border.next_down(), border.next_up(), low + random.unit() * side]);
-        // Differences to the origin that are rounded up to a border.
+        // The differences of these values to the origin are rounded up to a border.
         values.push(border - f64::from_bits(1));
         values.push(border - border.abs() * f64::EPSILON / 4.0);
     }
@@ -107,7 +107,7 @@ fn numbers_stay_in_the_table_wherever_the_point_is() {
 fn levels_beyond_the_depth_have_no_grid() {
     let tree = CellTree::new(2, 4, [0.0; 3], 16.0).expect("a tree");
     assert!(CellGrid::new(&tree, 4).is_some() && CellGrid::new(&tree, 5).is_none());
-    // No cube around points is so small, but a tree can be: its reciprocal is infinite.
+    // No tree around points is as small as this one, whose cell side has an infinite reciprocal.
     let tiny = CellTree::new(2, 31, [0.0; 3], 2f64.powi(-1000)).expect("a tree");
     assert!(CellGrid::new(&tiny, 31).is_none());
 }

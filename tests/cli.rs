@@ -41,7 +41,7 @@ fn examples_are_indented_and_paragraphs_are_wrapped_once() {
         let (_, end) = text.split_once("Examples:\n").unwrap();
         let (examples, notes) = end.split_once("\n\n").unwrap();
         assert!(examples.lines().all(|line| line.starts_with("  ")), "{name}: {examples}");
-        // A line break in the text plus the wrapping would leave a short line in the middle.
+        // A line break inside a paragraph would become a short line when clap wraps the text.
         for paragraph in notes.trim().split("\n\n") {
             let lines: Vec<&str> = paragraph.lines().collect();
             let short = lines[..lines.len() - 1].iter().find(|line| line.len() < 60);

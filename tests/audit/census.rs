@@ -1,4 +1,5 @@
-//! Faults of tetrahedral meshes, counted: against counts by hand, and against the verdict of the audit.
+//! Faults of tetrahedral meshes are counted: the counts are compared with counts by hand and with the verdict
+//! of the audit.
 
 use num_bigint::BigInt;
 use serde_json::Value;
@@ -23,7 +24,7 @@ fn census(mesh: &Solid) -> Counts {
     *census.counts()
 }
 
-/// Whether the counts say that the mesh is right, Euler's relation aside, which follows from the others.
+/// Whether the counts call the mesh correct, without Euler's relation, which follows from the other counts.
 fn is_clean_but_for_euler(counts: &Counts) -> bool {
     Counts { euler: 1, ..*counts }.is_clean(Standard::Canonical)
 }
@@ -57,7 +58,7 @@ fn each_fault_is_counted() {
     let flat = counts(&[[0, 1, 2, 5]]);
     assert_eq!((flat.exact.inverted, flat.exact.flat, flat.exact.inside), (0, 1, 0));
     assert!(!flat.is_hull_proved);
-    // The facet 1, 2, 3 is used by a second tetrahedron on its right side, then by a third, then by a fourth.
+    // A second, a third and a fourth tetrahedron use the facet 1, 2, 3 on its right side.
     let crowded = counts(&[[0, 1, 2, 3], [1, 2, 3, 4], [0, 1, 2, 3], [5, 1, 2, 3]]);
     assert_eq!(crowded.crowded_facets, 3 + 1 + 1);
     let torn = counts(&[[0, 1, 2, 3], [0, 1, 5, 3]]);
@@ -77,9 +78,9 @@ fn wrong_ties_are_a_matter_of_the_standard() {
     assert!(counts.is_clean(Standard::Delaunay) && !counts.is_clean(Standard::Canonical));
 }
 
-/// Whatever the mesh: nothing panics, the counts are those of trying all pairs of tetrahedra, and a mesh is
-/// clean if and only if the audit passes it. The census knows nothing of links, so they follow from what it
-/// does know.
+/// For any mesh: the census does not panic, its counts are those found by trying all pairs of tetrahedra, and
+/// a mesh is clean if and only if the audit passes it. The census does not check links of vertices; the
+/// agreement shows that its other counts imply them.
 #[test]
 fn counts_agree_with_all_pairs_and_with_the_audit() {
     let (mut clean, mut wrong) = (0, 0);
@@ -116,7 +117,7 @@ fn counts_agree_with_all_pairs_and_with_the_audit() {
     assert!(clean > 300 && wrong > 1_500, "{clean} clean, {wrong} wrong");
 }
 
-/// The same for every set of tetrahedra over a few points.
+/// Every set of tetrahedra over a few points is clean if and only if the audit passes it.
 #[test]
 fn one_of_all_sets_of_tetrahedra_is_clean() {
     let mut random = Random::new(SEED);
@@ -134,7 +135,7 @@ fn one_of_all_sets_of_tetrahedra_is_clean() {
     }
 }
 
-/// Trying all pairs of tetrahedra.
+/// The faults found by trying all pairs of tetrahedra.
 fn faults_of(mesh: &Solid) -> Faults {
     let exact = exact_points(&mesh.points.iter().map(position).collect::<Vec<_>>());
     let at = |v: usize| &exact[v];
@@ -159,8 +160,9 @@ fn faults_of(mesh: &Solid) -> Faults {
     faults
 }
 
-/// The apex of `other` if both have a facet in opposite directions: if replacing the apex of one by a new
-/// vertex in the place of that of the other takes an odd permutation.
+/// The apex of `other`, if both tetrahedra have a facet in opposite directions: if replacing the apex of
+/// `one` by a new vertex, and ordering the result like `other` with its apex replaced, takes an odd
+/// permutation.
 fn beyond(one: &[usize; 4], other: &[usize; 4]) -> Option<usize> {
     let shared: Vec<usize> = one.iter().copied().filter(|v| other.contains(v)).collect();
     let [p, q, r] = shared[..] else {
@@ -178,7 +180,7 @@ fn parity(order: &[usize; 4]) -> bool {
     pairs.filter(|&(j, i)| order[j] > order[i]).count() % 2 == 1
 }
 
-/// Coordinates of 27 bits: plain arithmetic does not see what is exactly so.
+/// Coordinates of 27 bits: floating-point arithmetic rounds where the exact determinant is zero.
 #[test]
 fn plain_arithmetic_errs() {
     let side = 100_000_007;

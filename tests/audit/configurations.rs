@@ -10,7 +10,7 @@ use crate::programs::{outcome, run};
 use crate::vectors::load;
 use spmesh_reference::sets::Random;
 
-/// Knots on a small grid: on lines, on circles, and some at one place.
+/// Knots on a small grid, so that some are collinear, some cocircular and some coincide.
 fn knots(random: &mut Random, count: usize, side: i64) -> Knots {
     let point = |_| [random.integer(0, side - 1) as f64, random.integer(0, side - 1) as f64];
     let mut points: Vec<[f64; 2]> = (0..count).map(point).collect();
@@ -35,7 +35,7 @@ fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
     bytes
 }
 
-/// The same configurations with one boundary replaced, or left out.
+/// The configurations with one boundary replaced or left out.
 fn changed(of: &Configurations, at: usize, replacement: Option<[u32; 3]>) -> Configurations {
     let mut result = Configurations::new(of.degree(), of.claim());
     let mut number = 0;

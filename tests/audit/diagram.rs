@@ -1,4 +1,4 @@
-//! The audit of 4D diagrams: what brute force finds passes, at every size of coordinates.
+//! The audit of 4D diagrams: it passes the diagrams that brute force finds, at every size of coordinates.
 
 use spmesh_audit::diagram::{Claim, Proof, Violation, check, check_simplices};
 use spmesh_model::cells4::Point4;
@@ -54,7 +54,8 @@ fn faces_of_cubes_are_counted() {
     }
 }
 
-/// Coordinates of all sizes, and far from the origin: 128 bits, the filter, and integers without limit.
+/// Coordinates of all sizes, and far from the origin, so that the audit decides with 128-bit integers, with
+/// the floating-point filter, and with arbitrary precision.
 #[test]
 fn size_and_place_do_not_matter() {
     let mut random = Random::new(SEED + 1);
@@ -73,7 +74,8 @@ fn size_and_place_do_not_matter() {
     assert!(exactly > 0, "integers without limit were never asked");
 }
 
-/// The box with these sides is one cell, and is not after any of its corners has moved by a bit.
+/// A box with these sides is one cell. It is none once the last coordinate of any corner has moved by one
+/// unit in the last place.
 #[test]
 fn sides_of_all_sizes_fit_together() {
     for sides in [[1.0; 4], [2f64.powi(70), 1.0, 2f64.powi(-40), 3.0], [1e-300, 1e150, 5e-324, 0.1]] {
@@ -103,7 +105,8 @@ fn points_without_a_volume_have_no_cells() {
     assert_eq!(check_simplices(&floats(&grid([2; 4])), &[]).unwrap_err().claim, Claim::Covering);
 }
 
-/// The simplices along the paths from corner to corner of a cube, and in pieces of a grid.
+/// The Kuhn triangulation of a grid: in each cube, the simplices along the monotone paths between two
+/// opposite corners.
 fn kuhn(counts: [i64; 4]) -> (Vec<Point>, Vec<[u32; 5]>) {
     let points = grid(counts);
     let number = |point: Point| points.binary_search(&point).ok().map(|i| i as u32);
@@ -160,8 +163,8 @@ fn simplices_with_ties_pass_and_nothing_may_be_amiss() {
     check_simplices(&points[..16], &apart).unwrap();
 }
 
-/// Every set of positive simplices over six points: that of the diagram passes and nothing else; none of a
-/// diagram with larger cells but those that split them.
+/// Tries every set of positive simplices over six points. If all cells are simplices, only the set of the
+/// diagram passes; otherwise only the two sets that split the larger cell pass.
 #[test]
 fn one_of_all_sets_of_simplices_passes() {
     let mut random = Random::new(SEED + 2);

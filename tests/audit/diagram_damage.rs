@@ -1,4 +1,4 @@
-//! Diagrams that are wrong: each is refused, and what passes is the diagram of its points.
+//! Wrong diagrams are refused: a diagram passes only if it is the diagram of its points.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,8 @@ use spmesh_reference::sets4::{cells4, families, floats, grid, random_points};
 
 const SEED: u64 = 20_260_405;
 
-/// The cells in canonical order, with lists in order, after some were removed (`None`).
+/// The remaining cells (`None` marks a removed one) in canonical order, with neighbours renumbered and
+/// sorted.
 fn renumbered(cells: Vec<Option<Cell>>) -> Vec<Cell> {
     let key = |i: &usize| cells[*i].as_ref().map(|(is_infinite, vertices, _)| (*is_infinite, vertices));
     let mut order: Vec<usize> = (0..cells.len()).filter(|&i| cells[i].is_some()).collect();
@@ -27,7 +28,7 @@ fn renumbered(cells: Vec<Option<Cell>>) -> Vec<Cell> {
     rewritten.collect()
 }
 
-/// Cell `i` takes all that cell `j` has.
+/// The cells after `j` is merged into `i`.
 fn merge(cells: &[Cell], i: usize, j: usize) -> Vec<Cell> {
     let mut merged = cells[i].clone();
     merged.1.extend(&cells[j].1);
@@ -69,7 +70,7 @@ fn merged_and_missing_cells_are_refused() {
     }
 }
 
-/// Hull facets of the two cubes that lie in one hyperplane are two infinite cells, not one.
+/// Hull facets of the two cubes that lie in one hyperplane are two infinite cells.
 #[test]
 fn coplanar_facets_of_different_cells_stay_apart() {
     let points = grid([3, 2, 2, 2]);
@@ -95,8 +96,8 @@ fn coplanar_facets_of_different_cells_stay_apart() {
     assert_eq!(merges, 6);
 }
 
-/// The points on a grid 20 times as fine, moved a little. What agrees in the first coordinates still does,
-/// which keeps the order.
+/// The points on a grid 20 times as fine, each moved a little. Points that agree in their first coordinates
+/// still agree in them, so their order does not change.
 fn nudge(points: &[Point], random: &mut Random) -> Vec<Point> {
     let mut steps: BTreeMap<&[i64], i64> = BTreeMap::new();
     let moved = points.iter().map(|point| {
@@ -106,7 +107,8 @@ fn nudge(points: &[Point], random: &mut Random) -> Vec<Point> {
     moved.collect()
 }
 
-/// A cube cut as if its corners had moved a little is consistent, but its pieces share a sphere.
+/// A cube that is cut as if its corners had moved a little gives a consistent diagram, but its pieces share a
+/// sphere.
 #[test]
 fn diagrams_of_other_points_are_refused() {
     let mut random = Random::new(SEED + 1);
@@ -177,7 +179,7 @@ fn every_mutation_is_refused() {
     }
 }
 
-/// Points that moved: the cells pass if they are still the diagram.
+/// One point moves: the old cells pass only if they are still the diagram.
 #[test]
 fn moved_points_are_refused_unless_the_diagram_is_theirs() {
     let mut random = Random::new(SEED + 3);
@@ -252,7 +254,7 @@ fn mutate(cells: &mut Vec<Cell>, points: usize, random: &mut Random) {
         _ if cells.len() > 1 => *cells = merge_or_drop(cells, i, j),
         _ => (),
     }
-    // What may be mutated again has cells with vertices.
+    // Further mutations need a cell, and cells with vertices.
     cells.retain(|cell| !cell.1.is_empty());
     if cells.is_empty() {
         cells.push((false, vec![0], vec![0]));

@@ -7,7 +7,7 @@ use super::reference::{Random, canonical_triangulation, orient};
 
 const SEED: u64 = 7;
 
-/// Points may coincide; then nothing may pass.
+/// Points may coincide; then no set may pass.
 #[test]
 fn one_of_all_sets_of_triangles_passes() {
     let mut random = Random::new(SEED);
@@ -26,7 +26,7 @@ fn one_of_all_sets_of_triangles_passes() {
     }
 }
 
-/// In the order of the reference: smallest index first, then by the two others.
+/// The triangles in the order of the reference: by smallest index first, then by the two others.
 fn counterclockwise_triangles(points: &[[i32; 2]]) -> Vec<[usize; 3]> {
     let mut triangles = Vec::new();
     for a in 0..points.len() {

@@ -1,14 +1,14 @@
-//! Configurations of the library, as the audit holds them.
+//! Conversion of the library's configurations to the types of the audit.
 
 use spmesh_audit::configurations as audit;
 use spmesh_geometry::configurations::{Configurations, Knots};
 
-/// The same knots; the audit counts ranks itself.
+/// The knots as the audit holds them; it computes their ranks itself.
 pub fn knots(knots: &Knots) -> audit::Knots {
     audit::Knots::new(knots.points().to_vec()).expect("finite points")
 }
 
-/// The same configurations.
+/// The configurations as the audit holds them.
 pub fn configurations(of: &Configurations) -> audit::Configurations {
     let mut held = audit::Configurations::new(of.degree(), of.claim());
     for group in of.groups() {

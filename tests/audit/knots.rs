@@ -1,4 +1,5 @@
-//! The audit of configurations of repeated knots, against those that a brute-force reference finds.
+//! The audit of configurations of repeated knots, against the configurations that a brute-force reference
+//! finds.
 
 use std::collections::BTreeMap;
 
@@ -36,7 +37,7 @@ fn verdict(points: &[[f64; 2]], degrees: &[Boundaries], claim: Claim) -> Result<
     check(&ConfigurationSet { knots: Knots::new(points.to_vec()).unwrap(), degrees })
 }
 
-/// Knots on a grid of 4 by 4 places, many of which are taken more than once. Zeros have either sign.
+/// Knots on a grid of 4 by 4 places, several of them at one place. Zeros have either sign.
 fn repeated(random: &mut Random) -> Vec<[f64; 2]> {
     let count = random.integer(3, 9);
     let mut points: Vec<[f64; 2]> =
@@ -48,7 +49,7 @@ fn repeated(random: &mut Random) -> Vec<[f64; 2]> {
     points
 }
 
-/// The configurations after two knots have changed their ids.
+/// The configurations after two knots have exchanged their ids.
 fn exchanged(degrees: &[Boundaries], [a, b]: [u32; 2]) -> Vec<Boundaries> {
     let id = |id: u32| {
         if id == a {
@@ -104,8 +105,8 @@ fn configurations_by_definition_pass() {
     }
 }
 
-/// Copies of a knot that take each other's rank are other configurations, which only ranks tell from the
-/// right ones.
+/// Exchanging the ranks of two copies of a knot gives other configurations, which differ from the right ones
+/// in nothing but the ranks.
 #[test]
 fn configurations_with_other_ranks_are_refused() {
     let mut refused = 0;
@@ -119,7 +120,8 @@ fn configurations_with_other_ranks_are_refused() {
             }
             let violation = verdict(&points, &other, Claim::Delaunay).expect_err("the ranks are wrong");
             assert_eq!(violation.claim, "circles", "seed {seed}, {pair:?}: {violation:?}");
-            // A boundary that has both copies turns the other way; what has them by any rule is not planar.
+            // A boundary with both copies changes its orientation, so a set with such a boundary fails
+            // without circles, too.
             refused += usize::from(verdict(&points, &other, Claim::Any).is_err());
         }
     }

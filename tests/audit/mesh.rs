@@ -277,7 +277,7 @@ fn bounds_must_hold_the_vertices() {
     }
 }
 
-/// Coordinates at the end of the range of i32, where differences have 33 bits, and f64 without any grid.
+/// Coordinates at the ends of the range of i32, whose differences have 33 bits, and f64 without a grid.
 #[test]
 fn extreme_coordinates() {
     let (low, high) = (i32::MIN, i32::MAX);
@@ -301,7 +301,7 @@ fn extreme_coordinates() {
     }
 }
 
-/// A long strip, written row by row, is audited in memory of a row.
+/// Auditing a long strip that is written row by row takes only the memory of a row.
 #[test]
 fn memory_is_the_width_of_the_stream() {
     let (rows, columns) = (200, 8);

@@ -1,4 +1,4 @@
-//! Correct meshes changed at random: whatever changes the set of triangles is refused.
+//! Correct meshes changed at random: every change of the set of triangles is refused.
 
 use super::reference::{Random, canonical_triangulation};
 use super::{Mesh, Verdict};
@@ -36,7 +36,7 @@ fn every_mutation_of_the_set_is_refused() {
     assert!(refused > 8_000, "only {refused} mutations changed anything");
 }
 
-/// The points are not given: what passes is then the canonical triangulation of its own vertices.
+/// Without given points, a mesh passes only if it is the canonical triangulation of its own vertices.
 #[test]
 fn what_passes_is_the_triangulation_of_its_vertices() {
     for round in 0..400 {
@@ -96,7 +96,7 @@ fn flip(mesh: &mut Mesh, i: usize, j: usize) {
     }
 }
 
-/// Positions of the corners of every triangle, the smallest first, in order.
+/// Positions of the corners of every triangle, the smallest first; the triangles are sorted.
 fn triangle_set(mesh: &Mesh) -> Vec<[[i32; 2]; 3]> {
     let mut set: Vec<[[i32; 2]; 3]> = mesh
         .triangles
@@ -112,7 +112,7 @@ fn triangle_set(mesh: &Mesh) -> Vec<[[i32; 2]; 3]> {
     set
 }
 
-/// Neither writer nor reader let such a triangle pass.
+/// Whether a triangle repeats a vertex; neither the writer nor the reader accepts one.
 fn has_repeated_vertex(mesh: &Mesh) -> bool {
     mesh.triangles.iter().any(|&[a, b, c]| a == b || b == c || c == a)
 }

@@ -20,8 +20,8 @@ struct Partial<const D: usize> {
     input_points: u64,
 }
 
-/// A grid of 6 x 6 points whose triangles within the inner 4 x 4 are final. Those inner points are the
-/// vertices 0 to 15; 16 to 35 are the rim, which is written as residual points without ids.
+/// A grid of 6 x 6 points whose triangles within the inner 4 x 4 are final. The inner points are the vertices
+/// 0 to 15. The points 16 to 35, the rim, are written as residual points without ids.
 fn plane() -> Partial<2> {
     let is_inner = |p: &[i32; 2]| p.iter().all(|c| (1..5).contains(c));
     let all = (0..36).map(|i| [i % 6, i / 6]);
@@ -35,8 +35,8 @@ fn plane() -> Partial<2> {
     Partial::of(points, 16, last.concat(), &open, region)
 }
 
-/// A lattice of 3 x 3 x 3 points in which the tetrahedra around the one amid it are final. It is the vertex
-/// 0.
+/// A lattice of 3 x 3 x 3 points in which the tetrahedra around the central point are final. The central
+/// point is vertex 0.
 fn space() -> Partial<3> {
     let cube = cubic(3);
     let star: Vec<[usize; 4]> =
@@ -62,7 +62,7 @@ fn point<const D: usize>(at: &[i32; D]) -> Point {
 }
 
 impl<const D: usize> Partial<D> {
-    /// The first `vertices` points are written, with the simplices, around which the facets `open` are walls.
+    /// Writes the first `vertices` points and the simplices, and makes the facets `open` around them walls.
     fn of(
         points: Vec<[i32; D]>,
         vertices: usize,
@@ -99,7 +99,7 @@ impl<const D: usize> Partial<D> {
         Some(set.finish(&grid()).unwrap())
     }
 
-    /// Ids of the corners of a wall, as they are.
+    /// Ids of the corners of a wall, in its order.
     fn ids(&self, wall: &[u32; D]) -> [u64; D] {
         wall.map(|corner| self.residual[corner as usize].0.unwrap())
     }
@@ -112,7 +112,7 @@ impl<const D: usize> Partial<D> {
         writer.end(self.input_points, self.merged).unwrap()
     }
 
-    /// Gives the parts to the audit directly, past the reader, which refuses some faults itself.
+    /// Passes the parts directly to the audit, because the reader refuses some faults itself.
     fn audit(&self) -> Result<Report, Verdict> {
         let mut audit = Audit::new(&self.header(), Standard::Canonical, None).unwrap();
         let totals = Totals { points: self.input_points, merged: self.merged, ..Totals::default() };
@@ -162,7 +162,7 @@ fn check_walls<const D: usize>(partial: Partial<D>) {
     let wall = missing.walls.pop().unwrap();
     let mut ids = missing.ids(&wall);
     if D == 3 {
-        // The facet that is left open is named from its least corner on.
+        // The audit names the open facet from its least corner on.
         let least = (0..D).min_by_key(|&i| ids[i]).unwrap();
         ids.rotate_left(least);
     }
@@ -230,7 +230,7 @@ fn check_orientation<const D: usize>(mut partial: Partial<D>) {
     assert!(matches!(partial.audit(), Err(Verdict::Violation(v)) if v.check == Check::Orientation));
 }
 
-/// Elevation is no geometry: two points of the plane coincide whatever it is.
+/// Two points of the plane coincide if they agree in x and y, whatever their elevations.
 #[test]
 fn residual_points_of_the_plane_differ_in_x_or_y() {
     let mut partial = plane();

@@ -7,7 +7,7 @@ use spmesh_stream::{Coordinates, Event, Header, Kind, StreamWriter, Totals};
 
 use super::{Verdict, assert_violates, audit};
 
-/// Points, then the cells that are tagged after them.
+/// Points, and the cells that are tagged after them.
 type Chunk<'a> = (&'a [Point], &'a [u64]);
 
 fn audit_chunks(header: &Header, chunks: &[Chunk]) -> Result<Report, Verdict> {
@@ -21,7 +21,7 @@ fn audit_chunks(header: &Header, chunks: &[Chunk]) -> Result<Report, Verdict> {
     audit(&writer.end(0, 0).unwrap(), Standard::Canonical, None)
 }
 
-/// Gives the chunks to the audit directly, past the reader, which has a check of its own for some faults.
+/// Passes the chunks directly to the audit, because the reader refuses some faults itself.
 fn audit_events(header: &Header, chunks: &[Chunk]) -> Result<(), Violation> {
     let mut audit = Audit::new(header, Standard::Canonical, None).unwrap();
     for (points, cells) in chunks {
@@ -93,7 +93,7 @@ fn chunk_without_its_tag() {
     assert_no_chunk(&[(&LOWER_LEFT, &[4]), (&UPPER_RIGHT, &[])]);
 }
 
-/// The tags of a chunk may fill several blocks, and the tagged cell may be final in part.
+/// The tags after a chunk may span several blocks, and part of a tagged cell may be final already.
 #[test]
 fn chunk_before_a_run_of_tags() {
     let header = Header { bounds: None, ..header(true) };

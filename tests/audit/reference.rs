@@ -1,11 +1,13 @@
-//! The canonical triangulation by definition: every triangle whose raised circle holds no other point.
+//! The canonical triangulation by definition: every triangle above whose plane all other lifted points lie.
 
 use num_bigint::BigInt;
 
-/// Indices of the counterclockwise triangles, each starting with its smallest index, in order.
+/// Indices of the counterclockwise triangles, each starting with its smallest index, in increasing order.
 ///
-/// The perturbation is made real: with `n` points and a base that no coefficient reaches, the lift of the
-/// point of rank `r` is `(x² + y²) base^n + base^r`. Points must be distinct and below 1000 in magnitude.
+/// The perturbation is carried out in integers: with `n` points and a base greater than all coefficients, the
+/// lift of the point of rank `r` is `(x² + y²) base^n + base^r`.
+///
+/// Domain: distinct points with coordinates below 1000 in magnitude.
 pub fn canonical_triangulation(points: &[[i32; 2]]) -> Vec<[usize; 3]> {
     let base = BigInt::from(1u64 << 26);
     let mut ranks: Vec<usize> = (0..points.len()).collect();
@@ -45,7 +47,7 @@ fn lies_above(triangle: [Lifted; 3], d: Lifted) -> bool {
     a.2.clone() * minor(&b, &c) + b.2.clone() * minor(&c, &a) + c.2.clone() * minor(&a, &b) < BigInt::ZERO
 }
 
-/// A small generator of numbers, the same on every machine (xorshift64*).
+/// A small random number generator with the same sequence on every machine (xorshift64*).
 pub struct Random(u64);
 
 impl Random {

@@ -7,10 +7,10 @@ use spmesh_stream::{Coordinates, Header, Kind, Patch, StreamWriter};
 use super::{Verdict, audit};
 use spmesh_reference::tetrahedra;
 
-/// Two tetrahedra on a triangle, whose apexes see each other through it.
+/// Two tetrahedra on opposite sides of a triangle; the segment between their apexes crosses the triangle.
 pub const BIPYRAMID: [[i32; 3]; 5] = [[0, 0, -30], [20, 0, 0], [-10, 17, 0], [-10, -17, 0], [0, 1, 31]];
 
-/// Its Delaunay tetrahedralization.
+/// The Delaunay tetrahedralization of `BIPYRAMID`.
 pub const TWO: [[usize; 4]; 2] = [[0, 1, 2, 3], [1, 2, 3, 4]];
 
 /// A mesh to be written as a stream: vertex `i` gets the id `i`.
@@ -30,7 +30,7 @@ impl Solid {
         Solid { points, tetrahedra, patch_len: 3, merged: 0, labels: Vec::new() }
     }
 
-    /// The canonical tetrahedralization, by trying every tetrahedron.
+    /// The canonical tetrahedralization, found by trying every tetrahedron.
     pub fn canonical(points: &[[i32; 3]]) -> Self {
         let found = tetrahedra::tetrahedra(&points.iter().map(position).collect::<Vec<_>>());
         Solid::new(points, &found.iter().map(|t| t.map(|v| v as usize)).collect::<Vec<_>>())

@@ -12,7 +12,7 @@ use super::solid::solid_header;
 use super::{Verdict, audit, mesh_header};
 use spmesh_reference::tetrahedra::tetrahedra;
 
-/// Points in D dimensions and simplices of N = D + 1 corners, as numbers of points.
+/// Points in D dimensions, and simplices with N = D + 1 corners given as indices of points.
 #[derive(Debug, Clone)]
 pub struct Streamed<const D: usize, const N: usize> {
     pub points: Vec<[i32; D]>,
@@ -29,7 +29,7 @@ impl<const D: usize, const N: usize> Streamed<D, N> {
         Streamed { points: points.to_vec(), simplices: simplices.to_vec(), patch_len: 2 }
     }
 
-    /// The canonical simplices of distinct points, by trying all.
+    /// The canonical simplices of distinct points, found by trying all.
     pub fn canonical(points: &[[i32; D]]) -> Self {
         let positions: Vec<Point> = points.iter().map(position).collect();
         let widened = |found: &[usize]| std::array::from_fn(|corner| found[corner]);
@@ -42,7 +42,7 @@ impl<const D: usize, const N: usize> Streamed<D, N> {
         Streamed::new(points, &simplices)
     }
 
-    /// Patches of `patch_len` simplices, and one of the vertices that no simplex has.
+    /// Patches of `patch_len` simplices, and one patch of the vertices that no simplex uses.
     pub fn patches(&self) -> Vec<Patch> {
         let mut ids: BTreeMap<usize, u64> = BTreeMap::new();
         let chunks: Vec<&[[usize; N]]> = self.simplices.chunks(self.patch_len).collect();
@@ -79,7 +79,8 @@ impl<const D: usize, const N: usize> Streamed<D, N> {
         audit_patches::<D>(&self.patches())
     }
 
-    /// The corners of the simplices in increasing order, but for even permutations; sorted.
+    /// The simplices as a sorted set: each has its corners in increasing order, up to the exchange that keeps
+    /// its orientation.
     pub fn set(&self) -> Vec<[usize; N]> {
         let mut set: Vec<[usize; N]> = self.simplices.iter().map(|simplex| ordered(*simplex)).collect();
         set.sort_unstable();

@@ -1,5 +1,5 @@
-//! Streams that are damaged, in the plane and in space: the audit refuses them if and only if what is left is
-//! not the canonical triangulation of distinct points, found by trying all simplices.
+//! Damaged streams, in the plane and in space: the audit refuses a stream if and only if its mesh is not the
+//! canonical triangulation of distinct points, which is found by trying all simplices.
 
 use spmesh_audit::{Check, Report};
 use spmesh_stream::Patch;
@@ -12,7 +12,7 @@ use super::{Mesh, Verdict};
 
 const SEED: u64 = 20_261_122;
 
-/// What can happen to a mesh.
+/// A way to damage a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Damage {
     LeftOut,
@@ -64,7 +64,7 @@ fn damage_to_tetrahedra_is_found() {
     });
 }
 
-/// Every damage to sets of points that `choose` makes, and some of them one upon the other.
+/// Applies every kind of damage, sometimes followed by a second one, to sets of points from `choose`.
 fn refuses_what_is_wrong<const D: usize, const N: usize>(
     rounds: u64,
     choose: impl Fn(&mut Random) -> Vec<[i32; D]>,
@@ -105,7 +105,7 @@ fn is_canonical<const D: usize, const N: usize>(mesh: &Streamed<D, N>) -> bool {
     is_distinct && mesh.set() == Streamed::<D, N>::canonical(points).set()
 }
 
-/// Neither writer nor reader let such a simplex pass.
+/// Whether a simplex repeats a corner; neither the writer nor the reader accepts one.
 fn has_repeated_corner<const D: usize, const N: usize>(mesh: &Streamed<D, N>) -> bool {
     mesh.simplices.iter().any(|simplex| (1..N).any(|i| simplex[..i].contains(&simplex[i])))
 }
@@ -154,8 +154,8 @@ fn damage<const D: usize, const N: usize>(mesh: &mut Streamed<D, N>, damage: Dam
     }
 }
 
-/// Replaces two simplices on a facet by those around the edge between their apexes: flips an edge, or makes
-/// three tetrahedra of two.
+/// Replaces two simplices with a common facet by the simplices around the edge between their apexes: flips an
+/// edge, or makes three tetrahedra of two.
 fn flip<const D: usize, const N: usize>(mesh: &mut Streamed<D, N>, i: usize) {
     let one = mesh.simplices[i];
     let is_next = |other: &[usize; N]| other.iter().filter(|vertex| one.contains(vertex)).count() == D;
@@ -195,7 +195,7 @@ fn sets_that_are_degenerate_pass() {
     }
 }
 
-/// Duplicates of the input are counted as merged; as vertices of their own they are refused.
+/// Duplicates of the input are counted as merged; a duplicate that is a vertex of its own is refused.
 #[test]
 fn duplicates_are_no_vertices() {
     for points in [vec![[0, 0], [9, 3], [3, 1]], vec![[0, 0], [9, 3], [3, 2], [4, 7]]] {
@@ -215,7 +215,8 @@ fn a_vertex_that_is_finalized_too_early_or_never_is_found() {
     finalizations_are_checked::<3>(&Solid::canonical(&points).patches());
 }
 
-/// Every vertex that two patches have, finalized by the first; and every finalization left out.
+/// Finalizes each vertex of several patches too early, once for each patch that keeps it; then leaves out
+/// each finalization in turn.
 fn finalizations_are_checked<const D: usize>(patches: &[Patch]) {
     audit_patches::<D>(patches).unwrap();
     let (mut early, mut never) = (0, 0);
@@ -231,7 +232,8 @@ fn finalizations_are_checked<const D: usize>(patches: &[Patch]) {
                 let ids: Vec<u64> = (0..later.vertices() as u32).map(|local| later.id(local)).collect();
                 later.finalized.retain(|&local| ids[local as usize] != id);
             }
-            // Not complete, unless it looks as on the hull; then it is missed when it is used.
+            // Either the star of the vertex is incomplete when it is finalized, or it looks like a vertex on
+            // the hull and a later patch uses it.
             let check = check_of(audit_patches::<D>(&damaged));
             assert!([Check::Finalization, Check::Vertices].contains(&check), "{check:?}");
             early += 1;
@@ -246,7 +248,7 @@ fn finalizations_are_checked<const D: usize>(patches: &[Patch]) {
     assert!(early > 5 && never > 5, "{early} too early, {never} never");
 }
 
-/// All vertices are kept until the end: right, if wasteful.
+/// Keeping all vertices until the end is valid, though it wastes memory.
 #[test]
 fn vertices_may_be_finalized_late() {
     let mut patches = Solid::canonical(&distinct(&mut Random::new(SEED), 10, 5)).patches();

@@ -95,7 +95,7 @@ fn overlapping_tetrahedra_on_one_facet() {
     assert_violates(mesh.audit(CANONICAL), Check::Facets, &[1, 0, 2, 3, 4]);
 }
 
-/// The tetrahedra that have an inner vertex are away, and the vertex with them.
+/// All tetrahedra around an inner vertex are missing, then the vertex, too.
 #[test]
 fn cavity_inside() {
     let points = cubic(3);
@@ -109,7 +109,7 @@ fn cavity_inside() {
     assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Vertices, "links are rings");
 }
 
-/// A tetrahedron far from the hull is away: its four facets are open, all around it is right.
+/// A tetrahedron far from the hull is missing: its four facets are open, and all other simplices are right.
 #[test]
 fn hole_of_one_tetrahedron() {
     let points: Vec<[i32; 3]> = distinct(3, 22, 60);
@@ -127,7 +127,7 @@ fn hole_of_one_tetrahedron() {
     let inner = correct.tetrahedra.iter().position(|t| t.iter().all(|v| !boundary.contains(v)));
     let mut mesh = correct.clone();
     mesh.tetrahedra.remove(inner.expect("a tetrahedron inside"));
-    // A ball less a ball inside of it: the links of the four vertices are disks.
+    // The links of its four vertices are disks, as on a hull, so only the check of the hull finds the cavity.
     assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Hull);
 }
 
@@ -176,7 +176,7 @@ fn two_components() {
     assert!(violation.message.contains("not one convex surface"), "{violation:?}");
 }
 
-/// The second copy is at the same place: every point is covered twice.
+/// The second copy lies on the first: every point is covered twice.
 #[test]
 fn the_same_mesh_twice() {
     let mut tetrahedra = TWO.to_vec();
@@ -190,8 +190,7 @@ fn the_same_mesh_twice() {
     assert!(violation.message.contains("goes around 2 times"), "{violation:?}");
 }
 
-/// Every tetrahedron, every facet and the link of every vertex is right, but the mesh goes around its axis
-/// twice.
+/// Every tetrahedron, every facet and every link is right, but the mesh goes around its axis twice.
 #[test]
 fn double_cover() {
     let ring = [[100, 0, 0], [-50, 87, 0], [-50, -87, 0]];
@@ -206,7 +205,7 @@ fn double_cover() {
 
 #[test]
 fn facet_that_is_not_delaunay() {
-    // The three tetrahedra around the axis, where the two on both sides of the triangle are right.
+    // Three tetrahedra around the axis, although the two on both sides of the triangle are Delaunay.
     let mesh = Solid::new(&BIPYRAMID, &[[0, 1, 2, 4], [0, 2, 3, 4], [0, 3, 1, 4]]);
     assert_eq!(check_of(mesh.audit(Standard::Delaunay)), Check::Delaunay);
     let flat = BIPYRAMID.map(|[x, y, z]| [x, y, z / 10]);
@@ -214,13 +213,13 @@ fn facet_that_is_not_delaunay() {
     Solid::new(&flat, &[[0, 1, 2, 4], [0, 2, 3, 4], [0, 3, 1, 4]]).audit(CANONICAL).unwrap();
 }
 
-/// The cube has tetrahedralizations that are all Delaunay; one of them is canonical.
+/// The cube has several Delaunay tetrahedralizations; one of them is canonical.
 #[test]
 fn cube_that_is_not_canonical() {
     let cube = cubic(2);
     let canonical = Solid::canonical(&cube);
     canonical.audit(CANONICAL).unwrap();
-    // Five tetrahedra around an inner one, of either kind.
+    // The two divisions into five tetrahedra, one of them in the middle.
     let five = [[0, 1, 2, 4], [3, 2, 1, 7], [5, 1, 4, 7], [6, 4, 2, 7], [1, 2, 4, 7]];
     let mirrored = five.map(|[a, b, c, d]| [a ^ 1, c ^ 1, b ^ 1, d ^ 1]);
     for tetrahedra in [five, mirrored] {
@@ -228,7 +227,7 @@ fn cube_that_is_not_canonical() {
         mesh.audit(Standard::Delaunay).unwrap();
         assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Canonical);
     }
-    // The mirror image.
+    // The mirror image of the canonical tetrahedralization.
     let turned: Vec<[usize; 4]> =
         canonical.tetrahedra.iter().map(|&[a, b, c, d]| [a ^ 1, c ^ 1, b ^ 1, d ^ 1]).collect();
     let mesh = Solid::new(&cube, &turned);
@@ -236,7 +235,7 @@ fn cube_that_is_not_canonical() {
     assert_eq!(check_of(mesh.audit(CANONICAL)), Check::Canonical);
 }
 
-/// Two triangulations of the flat bottom of a pyramid.
+/// The two triangulations of the flat bottom of a pyramid.
 #[test]
 fn flat_hull_that_is_not_canonical() {
     let points = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [5, 5, 30]];
@@ -251,7 +250,7 @@ fn flat_hull_that_is_not_canonical() {
     }
 }
 
-/// A point in the middle of a flat side, and of an edge, that the mesh goes past.
+/// The mesh ignores a point inside a hull facet and a point inside a hull edge.
 #[test]
 fn vertex_inside_of_a_hull_facet() {
     let points = [[0, 0, 0], [12, 0, 0], [0, 12, 0], [0, 0, 12], [3, 3, 0], [6, 0, 0]];

@@ -1,4 +1,4 @@
-//! Correct tetrahedral meshes changed at random: whatever changes the set of tetrahedra is refused.
+//! Correct tetrahedral meshes changed at random: every change of the set of tetrahedra is refused.
 
 use spmesh_audit::{Check, Standard};
 
@@ -45,7 +45,7 @@ fn every_mutation_of_the_set_is_refused() {
     }
 }
 
-/// The points are not given: what passes is then the tetrahedralization of its own vertices.
+/// Without given points, a mesh passes only if it is the tetrahedralization of its own vertices.
 #[test]
 fn what_passes_is_the_tetrahedralization_of_its_vertices() {
     let mut passed = 0;
@@ -65,8 +65,8 @@ fn what_passes_is_the_tetrahedralization_of_its_vertices() {
     assert!(passed > 10);
 }
 
-/// Every set of positive tetrahedra over five or six points: the canonical one passes and nothing else.
-/// Points may coincide; then nothing may pass.
+/// Every set of positive tetrahedra over five or six points: only the canonical one passes. Points may
+/// coincide; then no set may pass.
 #[test]
 fn one_of_all_sets_of_tetrahedra_passes() {
     let mut random = Random::new(SEED);
@@ -188,7 +188,7 @@ fn volume([a, b, c, d]: [[i32; 3]; 4]) -> i64 {
         + u[2] * (v[0] * w[1] - v[1] * w[0])
 }
 
-/// Neither writer nor reader let such a tetrahedron pass.
+/// Whether a tetrahedron repeats a vertex; neither the writer nor the reader accepts one.
 pub fn has_repeated_vertex(mesh: &Solid) -> bool {
     mesh.tetrahedra.iter().any(|t| (1..4).any(|i| t[..i].contains(&t[i])))
 }

@@ -1,4 +1,4 @@
-//! What a stream of tetrahedra promises besides its geometry: finalization, points, labels, counts, memory.
+//! The rules of a stream of tetrahedra besides its geometry: finalization, points, labels, counts, memory.
 
 use spmesh_audit::{Audit, Check, PointSet, Standard};
 use spmesh_model::bounds::Bounds;
@@ -35,7 +35,7 @@ fn given_points_must_match() {
     let more = assert_violates(mesh.audit_with(&[&BIPYRAMID[..], &[[3, 3, 4]]].concat()), Check::Points, &[]);
     assert_eq!(more.vertices, [(None, [3.0, 3.0, 4.0])]);
     assert_violates(mesh.audit_with(&BIPYRAMID[..4]), Check::Points, &[4]);
-    // The same x and y are not enough.
+    // A vertex must match a given point in z as well as in x and y.
     let lower = BIPYRAMID.map(|[x, y, z]| [x, y, z - i32::from(z > 30)]);
     assert_violates(mesh.audit_with(&lower), Check::Points, &[4]);
 }
@@ -65,7 +65,7 @@ fn labels_are_for_all_vertices_or_none() {
     assert!(report.lines.iter().any(|line| line.check == Check::Labels && line.tests == 5));
 }
 
-/// Past the reader, which has checks of its own for these faults.
+/// Passes events directly to the audit, because the reader refuses these faults itself.
 #[test]
 fn labels_follow_their_vertices() {
     let new: Vec<_> = BIPYRAMID.iter().map(position).collect();
@@ -107,7 +107,7 @@ fn bounds_and_counts_must_hold() {
     }
 }
 
-/// Coordinates at the end of the range of i32, and f64 without any grid.
+/// Coordinates at the ends of the range of i32, and f64 without a grid.
 #[test]
 fn extreme_coordinates() {
     let (low, high) = (i32::MIN, i32::MAX);
@@ -127,7 +127,7 @@ fn extreme_coordinates() {
     }
 }
 
-/// A long bar of cubes, written slice by slice, is audited in memory of a slice.
+/// Auditing a long bar of cubes that is written slice by slice takes only the memory of a slice.
 #[test]
 fn memory_is_the_width_of_the_stream() {
     let (slices, side) = (400_u64, 3_u64);
@@ -142,7 +142,7 @@ fn memory_is_the_width_of_the_stream() {
         for corner in (0..layer).filter(|i| x > 0 && i % side < side - 1 && i / side < side - 1) {
             let local = |v: usize| {
                 let at = corner + (v as u64 >> 1 & 1) + (v as u64 >> 2) * side;
-                // New vertices first, and these have the greater x.
+                // A patch numbers its new vertices first; they have the greater x.
                 (if v & 1 == 1 { at } else { layer + at }) as u32
             };
             simplices.extend(cube.iter().flatten().map(|&v| local(v)));

@@ -1,5 +1,5 @@
-//! What the kernel makes passes, of every kind of point set; and no audit of it depends on the order of the
-//! patches.
+//! The kernel's tetrahedralizations of every kind of point set pass the audit, and the verdict does not
+//! depend on the order of the patches.
 
 use std::borrow::Cow;
 

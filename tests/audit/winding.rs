@@ -1,11 +1,12 @@
-//! Vertices whose simplices go around them twice: found when they are finalized, wherever the boundary is.
+//! Vertices whose simplices go around them twice: the audit finds them when they are finalized, on the
+//! boundary and off it.
 
 use spmesh_audit::Check;
 
 use super::assert_violates;
 use super::streamed::{Flat, Solid};
 
-/// A fan of triangles around the vertex 0, that closes.
+/// A closed fan of triangles around the vertex 0.
 fn fan(ring: &[usize]) -> impl Iterator<Item = [usize; 3]> {
     (0..ring.len()).map(|i| [0, ring[i], ring[(i + 1) % ring.len()]])
 }
@@ -21,7 +22,7 @@ fn branch_point_in_the_plane() {
     assert!(violation.message.contains("go around it 2 times"), "{violation:?}");
 }
 
-/// Two fans close at the same vertex, each of which would be right alone.
+/// Two closed fans share a vertex; each would be right alone.
 #[test]
 fn two_sheets_at_a_vertex_of_the_plane() {
     let points = [&[[0, 0]][..], &TRIANGLE, &TRIANGLE.map(|p| p.map(|c| -c))].concat();
@@ -32,8 +33,8 @@ fn two_sheets_at_a_vertex_of_the_plane() {
     assert!(violation.message.contains("go around it 2 times"), "{violation:?}");
 }
 
-/// A vertex on the boundary with a closed fan more: one open edge in, one out, and half of its directions
-/// twice.
+/// A vertex on the boundary with an additional closed fan: it has one incoming and one outgoing open edge,
+/// but half of the directions around it are covered twice.
 #[test]
 fn fan_behind_a_vertex_of_the_hull() {
     let points = [&[[0, 0]][..], &TRIANGLE, &[[9, 9], [-9, 9]]].concat();
@@ -42,19 +43,21 @@ fn fan_behind_a_vertex_of_the_hull() {
     assert!(violation.message.contains("cover a direction 2 times"), "{violation:?}");
 }
 
-/// Tetrahedra between the vertex 0 and the triangles of a closed surface around it.
+/// The tetrahedra between the vertex 0 and the triangles of a closed surface around it.
 fn star(surface: &[[usize; 3]]) -> Vec<[usize; 4]> {
-    // Seen from the vertex the triangles are clockwise.
+    // Seen from the vertex, the triangles are clockwise.
     surface.iter().map(|&[a, b, c]| [a, c, b, 0]).collect()
 }
 
-/// A double pyramid over a ring, counterclockwise seen from outside: with the vertices `bottom` and `top`.
+/// The surface of a double pyramid over a ring, counterclockwise seen from outside, with the apexes `bottom`
+/// and `top`.
 fn pyramids(ring: &[usize], bottom: usize, top: usize) -> Vec<[usize; 3]> {
     let next = |i: usize| ring[(i + 1) % ring.len()];
     (0..ring.len()).flat_map(|i| [[ring[i], next(i), top], [next(i), ring[i], bottom]]).collect()
 }
 
-/// A ring around the origin, vertices 1 to 3, and twice; below and above it 7 and 8.
+/// The origin, a ring around it (vertices 1 to 3) and a copy of the ring, and vertices 7 and 8 below and
+/// above.
 fn solid_points() -> Vec<[i32; 3]> {
     let ring = TRIANGLE.map(|[x, y]| [x, y, 0]);
     [&[[0, 0, 0]][..], &ring, &ring, &[[0, 0, -9], [0, 0, 10]]].concat()
@@ -71,7 +74,7 @@ fn branch_line_in_space() {
     assert!(violation.message.contains("go around it 2 times"), "{violation:?}");
 }
 
-/// Two spheres around the vertex 0: Euler's relation tells.
+/// The surface around the vertex 0 is two spheres; Euler's relation finds them.
 #[test]
 fn two_sheets_at_a_vertex_of_space() {
     let mut points = solid_points();
