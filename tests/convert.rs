@@ -1,4 +1,4 @@
-//! Conversion between formats: what goes round comes back, and what is damaged is refused.
+//! Conversion between formats: round trips restore the stream, and damaged input is refused.
 
 mod command;
 mod corruption;
@@ -17,7 +17,7 @@ use spmesh_core::error::{ErrorKind, Result};
 
 use crate::vectors::load;
 
-/// `input`, of format `from`, as `to`.
+/// `input` converted from one format to another.
 pub fn converted(input: &[u8], from: Format, to: Format) -> Result<Vec<u8>> {
     with_notices(input, from, to).map(|(output, _)| output)
 }
@@ -33,8 +33,8 @@ pub fn text_of(stream: &[u8]) -> String {
     String::from_utf8(converted(stream, Format::Spm, Format::Text).unwrap()).unwrap()
 }
 
-/// Asserts that a text twin in which `found` is `replaced` is refused, with the line and `expected` in the
-/// message.
+/// Asserts that a text twin is refused after `found` is replaced by `replaced`, and that the message has the
+/// line number and `expected`.
 pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
     assert!(text.contains(found), "{found} in {text}");
     let damaged = text.replacen(found, replaced, 1);
@@ -44,7 +44,7 @@ pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
     assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
 }
 
-/// Asserts that a text twin cannot be cut anywhere, but for its last line feed.
+/// Asserts that a text twin is refused when cut anywhere but before its last line feed.
 pub fn assert_cuts_are_refused(text: &str) {
     for end in 0..text.len() - 1 {
         let error = converted(&text.as_bytes()[..end], Format::Text, Format::Spm).expect_err("cut");
@@ -52,7 +52,7 @@ pub fn assert_cuts_are_refused(text: &str) {
     }
 }
 
-/// The same of the twins of all vectors with such names.
+/// Asserts this for the twins of all vectors whose names are meant.
 pub fn assert_cut_vectors_are_refused(is_meant: impl Fn(&str) -> bool) {
     let vectors: Vec<_> = load("pass", "txt").into_iter().filter(|vector| is_meant(&vector.name)).collect();
     assert!(!vectors.is_empty());

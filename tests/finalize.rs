@@ -63,7 +63,7 @@ fn every_promise_holds_with_leaves_chosen_from_the_counts() {
 
 #[test]
 fn leaves_hold_at_most_cell_points_and_their_parents_hold_more() {
-    // Sets with many equal points, or with many points in a cell of the deepest level, cannot be divided.
+    // Sets with many equal points, or with many points in one cell of the deepest level, cannot be divided.
     let cannot_be_divided = ["all equal", "f64 all equal", "f64 tiny", "duplicates", "space clustered"];
     for set in sets().iter().filter(|set| !cannot_be_divided.contains(&set.name)) {
         let options = options(collapsed(100), Order::Chunked);
@@ -110,7 +110,7 @@ fn the_memory_budget_is_kept_and_does_not_show_in_the_result() {
                 let (stream, stats) = finalize(&set, &Options { budget, ..plenty.clone() });
                 assert!(stats.buffered_bytes_max <= bytes);
                 assert!(stats.spilled_points > 0 && stats.spilled_bytes > 0, "{name} does not spill");
-                // Little memory for counters may mean other leaves, but nothing else may differ.
+                // With little memory for counters the leaves may differ, but nothing else.
                 let decoded = check(&set, &plenty, &stream);
                 if codes(&decoded) == codes(&decode(&expected)) {
                     assert!(stream == expected, "{name}: spilling shows in the result");
@@ -234,7 +234,7 @@ fn requests_that_cannot_be_met_are_refused() {
     assert!(error.to_string().contains("/nonexistent/folder"), "{error}");
 }
 
-/// Text of points whose order has no coherence, more than the least memory holds.
+/// Points as text, in an order without coherence, and more than the smallest memory holds.
 fn incoherent_text() -> String {
     integer_points(40_000, 8, 1_000_000).iter().map(|[x, y, z]| format!("{x}.5 {y} {z}\n")).collect()
 }

@@ -1,5 +1,5 @@
-//! Formats, plain and compressed, through every tool that reads several: one table of formats, one gzip
-//! layer.
+//! Every tool that reads several formats, with plain and compressed files: all use one table of formats and
+//! one gzip layer.
 
 use std::io::Write;
 
@@ -18,7 +18,7 @@ fn gzip(content: &[u8]) -> Vec<u8> {
     [member(first), member(second)].concat()
 }
 
-/// What a tool writes; it must succeed.
+/// The output of a tool, which must succeed.
 fn output(tool: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run(tool, arguments, input);
     assert!(output.status.success(), "{tool} {arguments:?}: {:?}", outcome(&output));
@@ -39,7 +39,7 @@ fn arguments(tool: &str) -> &'static [&'static str] {
     }
 }
 
-/// Small files of all formats that hold points of space, with their names.
+/// Small files of all formats that hold points in space, with their names.
 fn point_files() -> Vec<(&'static str, Vec<u8>)> {
     let text = cloud(300).into_bytes();
     let stream = output("spfinalize", &["-"], &text);
@@ -61,8 +61,7 @@ fn point_files() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-/// Runs a tool on a file, plain and compressed, by its name and through a pipe: what it writes must be the
-/// same.
+/// Runs a tool on a file, plain and compressed, by name and through a pipe. All outputs must be equal.
 fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: &[u8]) {
     let folder = Folder::new();
     let compressed = gzip(content);
@@ -77,7 +76,7 @@ fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: 
 fn compressed_points_are_read_as_plain_ones() {
     for (name, content) in point_files() {
         assert_reads_compressed("spfinalize", &[], name, &content);
-        // A file on stdin has no name that would tell SPA from OBJ.
+        // A file on stdin has no name to tell SPA from OBJ.
         assert_reads_compressed("spconvert", arguments("spconvert"), name, &content);
         let is_2d = ["p.txt", "p.spm"].contains(&name);
         if !is_2d {
@@ -141,7 +140,7 @@ fn damaged_gzip_data_is_named_with_its_place() {
     }
 }
 
-/// The start of a file of each format, as far as it is told by that.
+/// The first bytes of a file of each format that is detected by its content.
 fn start_of(format: Format) -> Vec<u8> {
     let mut nifti = vec![0; 400];
     nifti[..4].copy_from_slice(&348u32.to_le_bytes());
@@ -202,7 +201,7 @@ fn formats_that_a_tool_does_not_read_are_named_with_those_it_reads() {
         let reader = READERS.iter().find(|reader| reader.tool == *tool).expect("a reader");
         for format in Format::all().filter(|&format| !reader.reads(format)) {
             let bytes = start_of(format);
-            // The outer layer of compression is no format to the tools.
+            // To the tools, the outer layer of compression is not a format.
             let bytes = if format == Format::Gzip { gzip(&bytes) } else { bytes };
             let path = folder.write("input", bytes);
             let found = if format == Format::Binary {
@@ -228,7 +227,7 @@ fn points_of_any_source_are_converted() {
     let twin = String::from_utf8(output("spconvert", &["--to", "text", &path], &[])).expect("text");
     let through_pipe = output("spconvert", &["--to", "text"], &std::fs::read(&path).expect("a sample"));
     assert_eq!(twin.as_bytes(), through_pipe);
-    // The points of a stream without tags, in the order and the coordinates of the file.
+    // A stream without tags has the points in the order and the coordinates of the file.
     let preserved = output("spfinalize", &["--preserve", &path], &[]);
     let preserved = String::from_utf8(converted(&preserved, "text")).expect("text");
     let points = |text: &str| -> Vec<String> {

@@ -1,4 +1,4 @@
-//! `configgen`: knots in, centroid triangulations and counts out, against definitions.
+//! `configgen`: centroid triangulations and counts for given knots, against definitions.
 
 mod failures;
 mod special;
@@ -10,14 +10,14 @@ use crate::programs::{outcome, run};
 use spmesh_reference::configurations::by_definition;
 use spmesh_reference::sets::{self, Random};
 
-/// What `configgen` writes; it must succeed.
+/// The output of `configgen`, which must succeed.
 fn output(arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run("configgen", arguments, input);
     assert!(output.status.success(), "{arguments:?}: {:?}", outcome(&output));
     output.stdout
 }
 
-/// What it counts.
+/// The counts that `configgen` reports.
 fn counts(arguments: &[&str], input: &[u8]) -> Value {
     let all = [&["--stats=json", "--centroids", "-q"], arguments].concat();
     let output = run("configgen", &all, input);
@@ -37,7 +37,7 @@ fn plane(stream: &[u8]) -> Vec<Vec<Vec<f64>>> {
     all
 }
 
-/// The same, times the order, in integers.
+/// The triangles of `plane` with coordinates times the order, which are integers.
 fn sums(stream: &[u8], order: usize) -> Vec<Vec<Vec<f64>>> {
     let mut all = plane(stream);
     for x in all.iter_mut().flatten().flatten() {
@@ -86,8 +86,8 @@ fn scattered(seed: u64, count: usize) -> Vec<[i64; 2]> {
     sets::uniform(&mut Random::new(seed), count, 1 << 20)
 }
 
-/// Triangles of sums of knots, by the definition of configurations; sums, which are centroids times the
-/// order.
+/// The triangles of the centroid triangulation by the definition of configurations. Corners are sums of
+/// knots: centroids times the order.
 fn sums_by_definition(points: &[[i64; 2]], order: usize) -> Vec<Vec<Vec<f64>>> {
     let degrees = by_definition(&sets::as_floats(points), order - 1);
     let sum = |sets: [&[u32]; 2]| -> Vec<f64> {
@@ -166,8 +166,8 @@ fn counts_obey_the_identity_of_degrees() {
             assert_eq!(both, 2 * (k as u64 + 1) * (n as u64 - 2 - k as u64), "n = {n}, k = {k}");
             assert_eq!(total(&counts, k, "flat"), 0);
         }
-        // Each line through two knots, in both directions, but for the hull's with all other knots to the
-        // left.
+        // The infinite configurations of all degrees are the directed lines through two knots, but not those
+        // with all n - 2 other knots on the left. These are the reversed lines of degree 0.
         let lines: u64 = (0..=n - 3).map(|k| total(&counts, k, "infinite")).sum();
         assert_eq!(lines + total(&counts, 0, "infinite"), (n * (n - 1)) as u64, "n = {n}");
     }
@@ -175,7 +175,8 @@ fn counts_obey_the_identity_of_degrees() {
 
 #[test]
 fn links_of_degree_0_are_those_of_knots() {
-    // A hexagon around a knot: one bounded link, of six vertices, and six that are not bounded.
+    // A hexagon around a knot: the link of the knot is bounded and has six vertices; the six other links are
+    // unbounded.
     let hexagon = b"0 0\n4 0\n2 4\n-2 4\n-4 1\n-2 -4\n3 -4\n";
     let counts = counts(&["--degree", "1"], hexagon);
     let of = |key: &str| total(&counts, 0, key);
@@ -258,7 +259,7 @@ fn weights_are_in_world_units() {
     let mut random = Random::new(7);
     let mut near = |site: i64| 1000 * site + random.integer(-200, 200);
     let mut points: Vec<[i64; 3]> = (0..36).map(|i| [near(i % 6), near(i / 6), 0]).collect();
-    // Less than the square of any distance, so that no knot is hidden.
+    // Weights are below the square of any distance, so that no knot is hidden.
     points.iter_mut().for_each(|point| point[2] = 4 * random.integer(0, 80_000));
     let arguments = ["--centroids", "--degree", "0", "--rule", "lifted:weights"];
     let expected = plane(&output(&arguments, &lines(&points)));
@@ -269,15 +270,15 @@ fn weights_are_in_world_units() {
 
 #[test]
 fn edges_follow_level_lines() {
-    // A square with its values along one diagonal: that one is taken, whichever is Delaunay.
+    // A square with extreme values along one diagonal: the rule takes that diagonal, whichever is Delaunay.
     let around = "0 9 0\n9 -9 0\n-9 -9 0\n";
     for (level, values) in [("--rule=data", [1, 5, 1, 8]), ("--rule=data", [1, 5, 7, 5])] {
         let square = [[1, 0], [0, 1], [-1, 0], [0, -1]];
         let corners: String = square.iter().zip(values).map(|([x, y], z)| format!("{x} {y} {z}\n")).collect();
         let input = format!("0 0 4\n{corners}{around}");
         let stream = output(&["--centroids", "--degree", "1", level], input.as_bytes());
-        // The link of the centre is the square; with the centre, its triangles have doubled corners of the
-        // square.
+        // The link of the centre is the square. Its triangles, averaged with the centre, have corners at half
+        // of the square's corners.
         let has = |p: [f64; 2], q: [f64; 2]| {
             let half = |corner: &Vec<f64>, p: [f64; 2]| [corner[0] * 2.0, corner[1] * 2.0] == p;
             triangles(&stream).iter().any(|corners| {

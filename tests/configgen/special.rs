@@ -3,13 +3,13 @@
 use super::{counts, lines, output, plane, scattered, text, total};
 use crate::programs::{Folder, outcome, run};
 
-/// Knots of the integer grid, with third coordinates.
+/// Knots on the integer grid, with third coordinates.
 fn grid(columns: i64, rows: i64) -> Vec<u8> {
     let at = |site: i64| [site % columns, site / columns, 10 * (site % columns)];
     lines(&(0..columns * rows).map(at).collect::<Vec<_>>())
 }
 
-/// A stream that the audit passes.
+/// The output of `configgen`, after it has passed the audit.
 fn audited(arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let stream = output(arguments, input);
     let audit = run("spinfo", &["--audit", "-"], &stream);
@@ -17,7 +17,7 @@ fn audited(arguments: &[&str], input: &[u8]) -> Vec<u8> {
     stream
 }
 
-/// The knots that the twin of a stream has.
+/// The knots in the text twin of a stream.
 fn knots(stream: &[u8]) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split(' ').skip(1).map(|word| word.parse().unwrap()).collect();
     text(stream).lines().filter(|line| line.starts_with("v ")).map(numbers).collect()
@@ -33,11 +33,11 @@ fn squares_amid_squares_have_box_splines() {
     for split in ["zp", "zp:falling", "zp:upright", "zp:falling:upright"] {
         let arguments = ["--box", split, "--degree", "1"];
         let counted = counts(&arguments, &grid(8, 6));
-        // Of 7 by 5 squares, 5 by 3 have no side on the border; of their vertical and horizontal sides each
-        // is in two of them, or half a function remains.
+        // Of 7 by 5 squares, 5 by 3 have no side on the border. No half function is left over: each vertical
+        // or horizontal side of these belongs to two box splines.
         assert_eq!(functions(&counted)[4], 15, "{split}");
         assert_eq!(functions(&counted)[1..4], [0; 3], "{split}");
-        // Pairs on the diagonals of inner squares have null links.
+        // Pairs of knots on the diagonals of inner squares have null links.
         assert!(total(&counted, 1, "null_links") > 15, "{split}");
         for degree in ["1", "3"] {
             audited(&["--box", split, "--degree", degree], &grid(8, 6));
@@ -59,7 +59,7 @@ fn stored_grids_are_looked_at_in_their_units() {
 fn grids_that_meet_are_stitched() {
     let folder = Folder::new();
     let patches = folder.write("grids.txt", "# two\n0 0  1 0  0 1  6 5\n6 0, 1 1, 0 1, 6 5\n");
-    // Nothing is read from stdin.
+    // configgen does not read stdin.
     let counted = counts(&["--patches", &patches, "--degree", "2"], b"not a number");
     assert_eq!(counted["points"], 0);
     assert_eq!(counted["knots"], 2 * 7 * 6 - 6);
@@ -106,7 +106,7 @@ fn centroids_of_repeated_knots_are_no_flat_triangles() {
             let mesh = output(&arguments, &grid(5, 4));
             let areas = areas(&mesh);
             assert!(areas.iter().all(|&area| area > 1e-3), "{arguments:?}");
-            // What is there is one polygon with every edge inside of it twice: its border has the rest.
+            // The triangles form one polygon: an inner edge has two of them, an edge on the border one.
             let mut edges = std::collections::HashMap::new();
             for corners in plane(&mesh) {
                 for (p, q) in [(0, 1), (1, 2), (0, 2)] {
@@ -164,7 +164,7 @@ fn streams_have_the_functions() {
         assert_eq!(of(arguments), counted, "{arguments:?}");
         assert!(counted[0] > 10, "{counted:?}");
     }
-    // All on the border have a tent, and all edges between them.
+    // All knots on the border and all edges between them have a tent.
     assert_eq!(of(&["--boundary", "pulled-apart"])[1], 18);
     assert_eq!((of(&[]), of(&["--boundary", "pulled-apart", "--degree", "0"])), ([0; 5], [0; 5]));
 }

@@ -3,7 +3,7 @@
 use super::{counts, lines, output, plane, scattered, total, triangles};
 use crate::programs::{outcome, run, sample};
 
-/// The mesh of points, made by the other programs.
+/// The mesh of points, made by spfinalize and spdelaunay2d.
 fn mesh(input: &[u8]) -> Vec<u8> {
     let points = run("spfinalize", &["-"], input);
     assert!(points.status.success(), "{:?}", outcome(&points));
@@ -12,7 +12,7 @@ fn mesh(input: &[u8]) -> Vec<u8> {
     mesh.stdout
 }
 
-/// A mesh of text in the format of OBJ.
+/// The stream of a mesh in OBJ text.
 fn mesh_of_obj(text: &str) -> Vec<u8> {
     let mesh = run("spconvert", &["--from", "obj", "--to", "spm"], text.as_bytes());
     assert!(mesh.status.success(), "{:?}", outcome(&mesh));

@@ -6,7 +6,7 @@ use spmesh_terrain::contours::Options;
 use super::{Line, WHOLE, lines, options, try_lines};
 use crate::dem::Mesh;
 
-/// A square grid of vertices with given elevations, cut from the lower left to the upper right.
+/// A square grid of vertices with given elevations; each square is cut from lower left to upper right.
 fn grid(side: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {
     let vertex = |x: u32, y: u32| y * side + x;
     let points =
@@ -25,7 +25,8 @@ fn ring(elevation: f64, points: &[[f64; 2]]) -> Line {
 
 #[test]
 fn plateaus_on_a_level_have_a_line_where_the_ground_falls() {
-    // In steps of 0.01, 57 steps are 0.57, as are three times 0.19; neither product in f64 is.
+    // The elevation is 57 steps of 0.01, the level 3 x 0.19: both are exactly 0.57, but neither product is in
+    // f64.
     let coordinates = Coordinates::I32 { scale: [1.0, 1.0, 0.01], offset: [0.0; 3] };
     let is_inside = |x: u32, y: u32| (1..=3).contains(&x) && (1..=3).contains(&y);
     let around =
@@ -35,11 +36,11 @@ fn plateaus_on_a_level_have_a_line_where_the_ground_falls() {
         .to_vec();
     // Higher ground on the left: counterclockwise.
     assert_eq!(lines(&around(56.0), &options(0.19, 0.0)), [ring(0.57, &border)]);
-    // A lake has no line at its own level, and one on its shore above.
+    // A lake gives no line at its own level; a slightly higher level gives a line around its shore.
     assert_eq!(lines(&around(58.0), &options(0.19, 0.0)), []);
     let mut shore = border;
     shore[1..].reverse();
-    // Nearer to it than a hundredth of a step.
+    // The line is nearer to the shore than a hundredth of a step.
     assert_eq!(lines(&around(100.0), &options(10.0, 0.57001)), [ring(0.57001, &shore)]);
 }
 
@@ -78,7 +79,7 @@ fn triangles_with_long_edges_end_lines() {
     };
     assert_eq!(count(&mesh, Some(2f64.sqrt())), (2, 10, 0));
     assert_eq!(count(&mesh, Some(1.4)), (0, 0, 8));
-    // The vertex in the middle of the left side, moved to the left.
+    // Move the vertex in the middle of the left side to the left.
     mesh.points[3][0] = -2.0;
     assert_eq!(count(&mesh, None), (2, 10, 0));
     assert_eq!(count(&mesh, Some(1.5)), (2, 7, 3));

@@ -1,6 +1,6 @@
-//! Lines of small meshes against lines made from all triangles and all levels in integers.
+//! Lines of small meshes against lines that are made from all triangles and all levels in integers.
 //!
-//! Coordinates are multiples of a number that all differences of elevations divide, so lines pass edges at
+//! Coordinates are multiples of a number that every difference of elevations divides, so lines cross edges at
 //! integer coordinates.
 
 use std::collections::{BTreeMap, HashMap};
@@ -13,10 +13,10 @@ use spmesh_reference::sets::{Random, degenerate, uniform};
 /// Twice the least common multiple of the numbers up to 12.
 const UNIT: i64 = 2 * 27_720;
 
-/// Elevations are from 0 to this.
+/// Elevations are from 0 to this integer.
 const HIGHEST: i64 = 12;
 
-/// The Delaunay triangulation of some points with given elevations, far enough apart.
+/// The Delaunay triangulation of points with given elevations. Coordinates are multiplied by `UNIT`.
 fn mesh(points: &[[i64; 2]], elevation: impl FnMut([i64; 2]) -> i64) -> Mesh {
     let elevations = points.iter().copied().map(elevation).collect::<Vec<i64>>();
     let vertices = points.iter().zip(elevations);
@@ -51,7 +51,7 @@ fn meshes(random: &mut Random) -> Vec<Mesh> {
     meshes
 }
 
-/// A place on an edge at an elevation of `level` halves.
+/// The point of an edge at an elevation of `level` halves.
 fn place(p: [f64; 3], q: [f64; 3], level: i64) -> [i64; 2] {
     let [p, q] = [p, q].map(|point| point.map(|value| value as i64));
     let (numerator, denominator) = (level - 2 * p[2], 2 * (q[2] - p[2]));
@@ -70,8 +70,8 @@ fn turn([p, q, r]: [[i64; 2]; 3]) -> i128 {
 
 type Edge = [u32; 2];
 
-/// The edges where the line of a level enters and leaves a triangle. The corners below the level are on its
-/// right.
+/// The edges where the line of a level enters and leaves a triangle. The corners below the level are on the
+/// right of the line.
 fn passage(mesh: &Mesh, triangle: [u32; 3], level: i64) -> Option<[Edge; 2]> {
     let at = |vertex: u32| mesh.points[vertex as usize];
     let is_above = |vertex: &u32| 2 * at(*vertex)[2] as i64 >= level;
@@ -79,7 +79,7 @@ fn passage(mesh: &Mesh, triangle: [u32; 3], level: i64) -> Option<[Edge; 2]> {
     let edges: Vec<Edge> =
         above.iter().flat_map(|&a| below.iter().map(move |&b| [a.min(b), a.max(b)])).collect();
     let [p, q] = edges.try_into().ok()?;
-    // The places themselves may be one; the middles of edges are on the same sides.
+    // Both crossings may be at one point, so the sides are found with the midpoints of the edges.
     let middle = |[u, v]: Edge| [0, 1].map(|axis| ((at(u)[axis] + at(v)[axis]) / 2.0) as i64);
     let corner = |vertex: u32| [0, 1].map(|axis| at(vertex)[axis] as i64);
     let side = turn([middle(p), middle(q), corner(below[0])]);
@@ -87,7 +87,8 @@ fn passage(mesh: &Mesh, triangle: [u32; 3], level: i64) -> Option<[Edge; 2]> {
     Some(if side < 0 { [p, q] } else { [q, p] })
 }
 
-/// All lines, in integer halves of elevation; each is traced from crossing to crossing.
+/// All lines. Levels are integers, in units of half an elevation; each line is traced from crossing to
+/// crossing.
 fn expected(mesh: &Mesh, levels: impl Iterator<Item = i64>) -> Vec<Line> {
     let mut all = Vec::new();
     for level in levels {
@@ -108,7 +109,7 @@ fn expected(mesh: &Mesh, levels: impl Iterator<Item = i64>) -> Vec<Line> {
     all
 }
 
-/// Takes the line that starts at an edge; `None` if it is a single point.
+/// Removes the line that starts at an edge from `next`; `None` if the line is a single point.
 fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge) -> Option<Line> {
     let (mut edges, mut is_closed) = (vec![start], false);
     while let Some(edge) = next.remove(edges.last().unwrap()) {
@@ -130,7 +131,7 @@ fn follow(mesh: &Mesh, level: i64, next: &mut BTreeMap<Edge, Edge>, start: Edge)
     Some(Line { elevation: level as f64 / 2.0, is_closed, points })
 }
 
-/// Intervals and bases of levels, and the halves of elevation that they are at.
+/// Intervals and bases of levels, and the levels in units of half an elevation.
 fn choices() -> [([f64; 2], Vec<i64>); 4] {
     let at = |first: usize, step: usize| {
         (first..=2 * HIGHEST as usize).step_by(step).map(|level| level as i64).collect()
@@ -157,7 +158,7 @@ fn lines_are_those_of_whole_numbers() {
 fn lines_do_not_depend_on_the_order_of_triangles() {
     let mut random = Random::new(2);
     for mesh in meshes(&mut random) {
-        // Thirds are rounded.
+        // The levels are multiples of 1/3, which are rounded.
         let options = options(1.0 / 3.0, 0.1);
         let expected = lines(&mesh.stream(WHOLE), &options);
         for _ in 0..4 {
@@ -183,7 +184,7 @@ fn lines_that_are_cut_have_the_same_segments() {
             let options = spmesh_terrain::contours::Options { points: Some(points), ..options(1.0, 0.5) };
             let parts = lines(&stream, &options);
             assert_eq!(sorted(&parts), whole);
-            // Two lines with one point less may meet.
+            // Two pieces of up to `points` points may be joined.
             assert!(parts.iter().all(|line| line.points.len() <= 2 * points), "{points}");
         }
     }

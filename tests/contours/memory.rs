@@ -6,7 +6,7 @@ use super::{WHOLE, options, try_lines};
 use crate::dem::Mesh;
 use spmesh_reference::sets::Random;
 
-/// Two rows of vertices, one step apart, of which the upper one is higher; from left to right.
+/// Two rows of vertices, one step apart, from left to right.
 fn strip(columns: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {
     let points =
         (0..2 * columns).map(|i| [f64::from(i / 2), f64::from(i % 2), elevation(i / 2, i % 2)]).collect();
@@ -16,7 +16,8 @@ fn strip(columns: u32, elevation: impl Fn(u32, u32) -> f64) -> Mesh {
 
 #[test]
 fn lines_that_are_over_are_not_held() {
-    // Each column but the first has two levels before it, and each line ends on both sides of the strip.
+    // The elevation rises by two per column, so each square has two levels, and each line ends on both sides
+    // of the strip.
     let stream = strip(60_000, |x, _| f64::from(2 * x)).stream(WHOLE);
     let (lines, stats) = try_lines(&stream, &options(1.0, 0.5)).unwrap();
     assert_eq!((lines.len(), stats.points), (2 * 59_999, 3 * 2 * 59_999));
@@ -28,9 +29,9 @@ fn pieces_are_joined_in_any_order() {
     let mesh = strip(20_000, |_, y| f64::from(y)).shuffled(&mut Random::new(5));
     let (lines, stats) = try_lines(&mesh.stream(WHOLE), &options(1.0, 0.5)).unwrap();
     assert_eq!((lines.len(), stats.points), (1, 2 * 19_999 + 1));
-    // Higher ground on the left: to the right, above which the upper row is.
+    // Higher ground is on the left and the upper row is higher, so the line runs to the right.
     assert_eq!([lines[0].points[0], lines[0].points[39_998]], [[0.0, 0.5], [19_999.0, 0.5]]);
-    // Every second triangle first: nothing can be joined, and then all of it.
+    // With every second triangle first, no pieces can be joined until the other triangles arrive.
     let mut mesh = strip(20_000, |_, y| f64::from(y));
     let every_second = |from: usize| mesh.triangles.iter().copied().skip(from).step_by(2);
     mesh.triangles = every_second(0).chain(every_second(1)).collect();

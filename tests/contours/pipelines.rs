@@ -9,14 +9,14 @@ use super::{Line, parse};
 use crate::dem::pipelines::{mesh, triangles};
 use crate::programs::{Folder, outcome, run};
 
-/// Coordinates are rounded to a ten-thousandth, each by half of it.
+/// Coordinates are rounded to multiples of 1e-4, which moves a point by less than this.
 const ROUNDING: f64 = 1.1e-4;
 
 fn length([p, q]: [[f64; 2]; 2]) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// The piece of a level in a triangle, by plain arithmetic: higher ground is on the left.
+/// The segment of a level in a triangle, in f64; higher ground is on the left.
 fn segment(triangle: [[f64; 3]; 3], level: f64) -> Option<[[f64; 2]; 2]> {
     let (mut from, mut to) = (None, None);
     for i in 0..3 {
@@ -60,7 +60,7 @@ fn a_real_tile_has_the_segments_of_its_triangles() {
         let total = |segments: &[[[f64; 2]; 2]]| segments.iter().copied().map(length).sum::<f64>();
         let difference = (total(&expected) - total(&found)).abs();
         assert!(difference < ROUNDING * expected.len() as f64, "{level}: {difference}");
-        // Each one is there, except those that rounding makes a point.
+        // Each expected segment is found, except segments that rounding turns into a point.
         let cell = |[p, _]: [[f64; 2]; 2]| p.map(|value| (value * 100.0).round() as i64);
         let mut places: HashMap<[i64; 2], Vec<[[f64; 2]; 2]>> = HashMap::new();
         found.iter().for_each(|&segment| places.entry(cell(segment)).or_default().push(segment));
@@ -95,7 +95,7 @@ fn files_say_where_they_are() {
         }
     }
     assert!(all[0] == all[1] && all[0].iter().all(|line| line.elevation % 10.0 == 0.0));
-    // Coordinates of the tile are multiples of 0.01; lines have two digits more, and no others.
+    // Coordinates of the tile are multiples of 0.01; lines have at most two digits more.
     let has_digits =
         |value: f64| format!("{value}").split_once('.').is_none_or(|(_, digits)| digits.len() <= 4);
     assert!(all[0].iter().flat_map(|line| line.points.iter().flatten()).all(|&value| has_digits(value)));
@@ -109,7 +109,7 @@ fn one_stream_has_one_file_and_another_order_the_same_lines() {
     let file = |mesh: &[u8]| run("spdem", &arguments, mesh).stdout;
     let text = file(&mesh);
     assert_eq!(file(&mesh), text);
-    // OBJ does not finalize vertices, and its coordinates are those of the world.
+    // OBJ does not finalize vertices, and has world coordinates.
     let obj = run("spconvert", &["--to", "obj"], &mesh).stdout;
     let other = file(&run("spconvert", &["--to", "spm"], &obj).stdout);
     let summary = |text: &[u8]| {
@@ -121,7 +121,7 @@ fn one_stream_has_one_file_and_another_order_the_same_lines() {
     };
     let (ours, others) = (summary(&text), summary(&other));
     assert_eq!(ours.keys().collect::<Vec<_>>(), others.keys().collect::<Vec<_>>());
-    // Rounding makes small rings points in one of the two.
+    // Rounding may turn a small ring into a point in one of the two files.
     for (level, [lines, rings]) in ours {
         let [other_lines, other_rings] = others[&level];
         assert_eq!(lines - rings, other_lines - other_rings, "{level}");

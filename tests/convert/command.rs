@@ -1,4 +1,4 @@
-//! The tool as its users meet it: exit codes, messages, and files that are whole or not there.
+//! The program on the command line: exit codes, messages, and output files that are complete or absent.
 
 use std::path::Path;
 use std::process::Output;

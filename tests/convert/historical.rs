@@ -40,7 +40,8 @@ fn integer_points_survive_and_their_tags_stay_true() {
     }
 }
 
-/// Halves the box of an SPA text as its programs did, and checks that no point follows the tag of its cell.
+/// Halves the box of an SPA text as the historical programs did, and checks that no point follows the tag of
+/// its cell.
 fn check_tags(spa: &str, dims: usize) {
     let numbers = |line: &str| -> Vec<f64> { line.split(' ').filter_map(|word| word.parse().ok()).collect() };
     let corner = |name: &str| numbers(spa.lines().find(|line| line.contains(name)).unwrap());
@@ -100,7 +101,8 @@ fn meshes_and_finalization_survive_sma() {
         let first = String::from_utf8(converted(&stream, Format::Spm, Format::Sma).unwrap()).unwrap();
         let (soup, finals) = sma(&first);
         assert_eq!(soup, obj(&text_of(&stream)));
-        // All rows but the last are final with their last triangle; the last row has x lines.
+        // The vertices of all rows but the last are final with their last triangle. The last row is finalized
+        // by x lines.
         assert_eq!(finals.len() as u64, samples::SIDE * (samples::SIDE - 1));
         let back = converted(first.as_bytes(), Format::Sma, Format::Spm).unwrap();
         let again = String::from_utf8(converted(&back, Format::Spm, Format::Sma).unwrap()).unwrap();
@@ -124,10 +126,11 @@ fn meshes_survive_smb_but_for_what_it_says() {
     assert!(finals.len() as u64 >= samples::SIDE * (samples::SIDE - 1));
 }
 
-/// Bytes of a number in one of the byte orders.
+/// Converts a word to bytes in one of the two byte orders.
 type BytesOf = fn(u32) -> [u8; 4];
 
-/// Two triangles in SMB by hand: four vertices, f 1 -3 -2 after the third, f -4 -2 -1 at the end.
+/// An SMB file by hand, with four vertices and two triangles: f 1 -3 -2 after the third vertex, f -4 -2 -1 at
+/// the end.
 fn smb_by_hand(flag: u8, bytes_of: BytesOf) -> Vec<u8> {
     let point = |x: f32, y: f32| [x.to_bits(), y.to_bits(), 250f32.to_bits()];
     let triangle = |corners: [i32; 3]| corners.map(|corner| corner as u32);
@@ -159,7 +162,8 @@ fn smb_is_read_in_either_byte_order_whatever_its_flag() {
 
 #[test]
 fn post_order_and_compact_sma_are_read() {
-    // The same mesh: faces before their vertices; vertices between the faces that use them.
+    // The same mesh twice: with all faces before the vertices, and with vertices between the faces that use
+    // them.
     let post = "# nverts 4\n# nfaces 2\nf 2 3 1\nf 4 2 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\n";
     let pre = "v 0 0 0\nv 1 0 0\n# in between\nv 0 1 0\nf 2 -1 1\nv 5 5 5\nf -1 2 1\nx -4\nx 2\n";
     for text in [post, pre] {

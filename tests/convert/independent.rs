@@ -11,7 +11,7 @@ pub struct Soup {
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// `v` and `f` lines of plain OBJ; of a text twin too, which is legal OBJ.
+/// `v` and `f` lines of plain OBJ. A text twin is legal OBJ, too.
 pub fn obj(text: &str) -> Soup {
     let mut soup = Soup { vertices: vec![], triangles: vec![] };
     for line in text.lines() {
@@ -62,7 +62,7 @@ pub fn ply(bytes: &[u8]) -> Soup {
     soup
 }
 
-/// The mesh of an SMA text, and after how many triangles each vertex is final, where it says so.
+/// The mesh of an SMA text, and for each vertex that it finalizes the number of triangles before that.
 pub fn sma(text: &str) -> (Soup, BTreeMap<usize, usize>) {
     let mut soup = Soup { vertices: vec![], triangles: vec![] };
     let mut finals = BTreeMap::new();
@@ -95,7 +95,7 @@ pub struct Volume {
     pub labels: Vec<u64>,
 }
 
-/// VTU with raw appended arrays; the type of a cell must be that of its number of vertices.
+/// VTU with raw appended arrays; the type of each cell must match its number of vertices.
 pub fn vtu(bytes: &[u8]) -> Volume {
     let marker = b"<AppendedData encoding=\"raw\">\n_";
     let split = bytes.windows(marker.len()).position(|window| window == marker).unwrap();

@@ -1,4 +1,4 @@
-//! OBJ and PLY hold the mesh, and kinds that a format cannot hold are refused.
+//! OBJ and PLY keep the mesh; a kind of stream that a format cannot hold is refused.
 
 use std::io::Cursor;
 

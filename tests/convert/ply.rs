@@ -1,4 +1,4 @@
-//! PLY as others write it: three encodings, properties of any type and order, polygons, points.
+//! PLY as other programs write it: three encodings, properties of any type and order, polygons, points.
 
 use spmesh_convert::Format;
 use spmesh_core::error::ErrorKind;
@@ -6,7 +6,7 @@ use spmesh_core::error::ErrorKind;
 use super::independent::obj;
 use super::{converted, samples, text_of};
 
-/// A square of two triangles and a quadrilateral beside it, with properties that do not matter.
+/// A square of two triangles and a quadrilateral beside it, with properties that readers ignore.
 const TEXT: &str = "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 6\nproperty uchar red\n\
     property float y\nproperty double x\nproperty short z\nelement edge 1\nproperty int from\n\
     property int to\nelement face 3\nproperty list uchar int vertex_indices\n\

@@ -6,7 +6,7 @@ use spmesh_stream::{Coordinates, Crs, Header, Kind, Patch, StreamWriter};
 
 pub const SIDE: u64 = 12;
 
-/// Grids that are hard for decimals: a northing in millimetres, tiny steps, steps that are no power of two.
+/// Grids that are hard for decimals: a northing in millimetres, tiny steps, steps other than powers of two.
 pub fn grids() -> Vec<Coordinates> {
     let grid = |scale: f64, offset: [f64; 3]| Coordinates::I32 { scale: [scale; 3], offset };
     vec![
@@ -41,8 +41,8 @@ fn point(coordinates: &Coordinates, x: u64, y: u64, random: &mut Random) -> Poin
     }
 }
 
-/// A mesh of `SIDE` squared vertices, one patch per row; vertices are final after the row above theirs. The
-/// last row is finalized by a patch without triangles.
+/// A mesh of `SIDE` squared vertices, one patch per row. Vertices are final after the next row. A patch
+/// without triangles finalizes the last row.
 pub fn mesh(coordinates: Coordinates) -> Vec<u8> {
     let mut random = Random(7);
     let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
@@ -89,7 +89,7 @@ pub fn points(dims: u8, has_elevation: bool, is_i32: bool) -> Vec<u8> {
     let first = 1u64 << (2 * dims);
     for code in first..2 * first {
         let (min, _) = tree.corners(CellCode(code));
-        // Corners of cells are the points that a rounded border would lose.
+        // Points on corners of cells, which would leave their cell if its border was rounded.
         let mut inside = vec![min];
         for _ in 0..random.below(5) {
             let mut step = |axis: usize| min[axis] + random.below(32) as f64;
@@ -125,7 +125,7 @@ pub fn partial() -> Vec<u8> {
     writer.end(4, 0).unwrap()
 }
 
-/// The same in space.
+/// A partial tetrahedral mesh with a residual.
 pub fn partial_space() -> Vec<u8> {
     let mut header = Header::new(Kind::PartialTetrahedralMesh, Coordinates::F64, 3, false);
     header.region = Some(Region { min: [f64::NEG_INFINITY, 0.0, -1.0], max: [8.0, f64::INFINITY, 8.0] });
@@ -140,8 +140,8 @@ pub fn partial_space() -> Vec<u8> {
     writer.end(6, 1).unwrap()
 }
 
-/// A box of `LAYERS` layers of cubes, five tetrahedra in each, one patch per layer of vertices; vertices are
-/// final after the layer above theirs. Labels, where there are any, come behind every other patch.
+/// A box of `LAYERS` layers of cubes, with five tetrahedra per cube and one patch per layer of vertices.
+/// Vertices are final after the next layer. Labels, if any, follow every second patch.
 pub fn tetrahedra(coordinates: Coordinates, has_labels: bool) -> Vec<u8> {
     const SIDE: u64 = 4;
     const LAYERS: u64 = 3;
@@ -174,8 +174,8 @@ pub fn label(id: u64) -> u64 {
     1000 - 7 * id
 }
 
-/// Local indices of the five tetrahedra of a cube whose upper side is new, and whose lower one is imported.
-/// Neighbours are mirror images, so that diagonals meet.
+/// Local indices of the five tetrahedra of a cube whose upper side is new and whose lower side is imported.
+/// Neighbouring cubes are mirror images, so that their diagonals agree.
 fn cube(x: u64, y: u64, layer: u64, side: u64) -> Vec<u32> {
     let corner = |i: u64| {
         let lower = if i & 4 == 0 { side * side } else { 0 };

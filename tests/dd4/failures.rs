@@ -110,7 +110,7 @@ fn a_full_disk_is_an_error_with_its_reason() {
 #[test]
 fn too_little_memory_has_its_exit_code() {
     let dd4 = env!("CARGO_BIN_EXE_dd4");
-    // In units of 1024 bytes of addresses, not all of which are ever used.
+    // `ulimit -v` counts address space in units of 1024 bytes, including pages that are never used.
     let limited = format!("ulimit -v 150000 || exit 99; exec '{dd4}' --grid 30x30x30x30 -o /dev/null");
     let mut shell = Command::new("sh");
     let output = shell.args(["-c", &limited]).env("RUST_BACKTRACE", "0").output().unwrap();

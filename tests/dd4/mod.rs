@@ -11,14 +11,14 @@ use serde_json::Value;
 use crate::programs::{outcome, run, sample};
 use spmesh_reference::sets::Random;
 
-/// What `dd4` writes of an input; it must succeed.
+/// The output of `dd4`, which must succeed.
 fn diagram(arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run("dd4", arguments, input);
     assert!(output.status.success(), "{arguments:?}: {:?}", outcome(&output));
     output.stdout
 }
 
-/// What `spinfo` proves of a stream; it must pass.
+/// The proof that `spinfo` prints for a stream, which must pass.
 fn proof(stream: &[u8]) -> Value {
     let output = run("spinfo", &["--audit", "--json", "-"], stream);
     assert!(output.status.success(), "{:?}", outcome(&output));
@@ -137,7 +137,7 @@ fn statistics_are_text_or_json() {
     let (code, message) = outcome(&run("dd4", &["--grid", "5x4x3x3", "--stats", "json", "-o", &file], &[]));
     assert_eq!(code, Some(0), "{message}");
     let stats: Value = serde_json::from_str(&message).unwrap();
-    // Facets of 48 cubes, and ridges of the hull.
+    // The statistics also count facets between infinite cells, one for each ridge of the hull.
     let proof = proof(&fs::read(&file).unwrap());
     let [facets, hull] = ["facets", "hull_facets"].map(|key| proof[key].as_u64().unwrap());
     assert_eq!(stats["facets"].as_u64().unwrap(), facets + 6 * hull / 2);

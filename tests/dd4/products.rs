@@ -1,4 +1,4 @@
-//! What is made of a diagram: simplices, values, slices, surfaces.
+//! Products of a diagram: simplices, values, slices, surfaces.
 
 use std::os::fd::OwnedFd;
 use std::process::Stdio;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::{as_text, diagram, proof};
 use crate::programs::{Folder, outcome, run, tool};
 
-/// A grid of 3 sites along each axis with a value that is linear.
+/// A grid of 3 sites along each axis with a linear value.
 fn linear() -> String {
     let site = |i: i32| [i % 3, i / 3 % 3, i / 9 % 3, i / 27];
     let line = |[x, y, z, t]: [i32; 4]| format!("{x} {y} {z} {t} {}\n", 2 * x - y + 4 * t);

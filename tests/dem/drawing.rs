@@ -1,4 +1,4 @@
-//! Each cell against all triangles, in integers: the triangle that contains its centre, and the value there.
+//! Each cell against all triangles, in integers: which triangle contains its centre, and the value there.
 
 use spmesh_io::raster::{Cells, Grid, RasterFormat, Window};
 use spmesh_stream::Coordinates;
@@ -8,7 +8,7 @@ use super::{Mesh, file, is_same, options, raster, values};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};
 use spmesh_reference::{exhaustive, incremental};
 
-/// A number in units of a power of two; it must be a multiple of the unit.
+/// A value in units of 2^-bits; it must be a multiple of the unit.
 fn units(value: f64, bits: i32) -> i128 {
     let scaled = value * 2f64.powi(bits);
     assert!(scaled == scaled.trunc() && scaled.abs() < 2f64.powi(61), "{value} in units of 2^-{bits}");
@@ -22,8 +22,9 @@ fn area(a: Exact, b: Exact, c: Exact) -> i128 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// Whether a point is on the left of an edge, or on it; and whether it is on the left after an infinitesimal
-/// move to the right and by its square up. The sign of a polynomial is that of its first nonzero coefficient.
+/// Whether a point is on the left of an edge or on it, and whether it is on the left after it moves by an
+/// infinitesimal to the right and by the square of that up. The sign of a polynomial in the infinitesimal is
+/// the sign of its first nonzero coefficient.
 fn sides([a, b]: [Exact; 2], p: Exact) -> [bool; 2] {
     let coefficients = [area(a, b, p), a[1] - b[1], b[0] - a[0]];
     let first = coefficients.into_iter().find(|&coefficient| coefficient != 0).expect("an edge has a length");
@@ -41,7 +42,8 @@ impl Reference<'_> {
         triangle.map(|vertex| self.places[vertex as usize])
     }
 
-    /// The triangles whose closure contains a point, and the one that contains it after the move.
+    /// The triangles whose closure contains a point, and the triangle that contains it after the
+    /// infinitesimal move.
     fn around(&self, p: Exact) -> (Vec<[u32; 3]>, Option<[u32; 3]>) {
         let holds = |triangle: &[u32; 3], which: usize| {
             let [a, b, c] = self.corners(*triangle);
@@ -60,7 +62,7 @@ impl Reference<'_> {
         sum as f64 / area(a, b, c) as f64
     }
 
-    /// The slope in degrees, if the unit is `scale` times that of the world.
+    /// The slope in degrees; an integer step is `unit` in the world.
     fn slope(&self, triangle: [u32; 3], unit: f64) -> f64 {
         let [a, b, c] = self.corners(triangle);
         let z = triangle.map(|vertex| self.mesh.points[vertex as usize][2] as i128);
@@ -72,9 +74,9 @@ impl Reference<'_> {
     }
 }
 
-/// Compares rasters of slopes and of elevations with the reference; `bits` make all coordinates and centres
-/// whole, and a stored step is `scale` in the world, from `offset` on. How many centres are on borders of
-/// triangles, and how many have no triangle.
+/// Compares rasters of slopes and of elevations with the reference. In units of 2^-bits all coordinates and
+/// centres are integers. A stored step is `scale` in the world, counted from `offset`. Returns the number of
+/// centres on borders of triangles and of centres without a triangle.
 fn check(mesh: &Mesh, grid: &Grid, bits: i32, [scale, offset]: [f64; 2]) -> [usize; 2] {
     let coordinates = match scale {
         1.0 => Coordinates::F64,
@@ -125,7 +127,7 @@ fn random_points_of_a_small_square_have_centres_everywhere() {
             continue;
         }
         let mesh = Mesh::of(&mut random, &points);
-        // Centres between the points of the lattice, and on them.
+        // Centres between the points of the lattice and on them.
         for (min, max, step) in [(-2.0, 14.0, 1.0), (-1.0, 13.0, 0.5), (-3.0, 15.0, 2.0), (-3.0, 15.0, 0.75)]
         {
             ties += check(&mesh, &grid(min, max, step), 4, [1.0, 0.0])[0];
@@ -148,7 +150,7 @@ fn degenerate_points_have_no_gaps_and_no_doubles() {
         });
         let window = Window { min, max };
         let side = (max[0] - min[0]).max(max[1] - min[1]);
-        // Steps of two and more put centres on integers.
+        // The even step puts centres on integers, the odd one between them.
         let step = (side / 40.0).ceil() * 2.0;
         for step in [step, step + 1.0] {
             check(&mesh, &Grid::of(window, Cells::Step { step, anchor: [0.0; 2] }).unwrap(), 4, [1.0, 0.0]);
@@ -244,7 +246,7 @@ fn long_edges_leave_holes() {
         let (text, stats) =
             file(&mesh.stream(Coordinates::F64), RasterFormat::Ascii, &grid, &limited).unwrap();
         assert_eq!(stats.killed, killed);
-        // The other triangles are drawn as if these had not been there.
+        // The other triangles are drawn as if the mesh had no long ones.
         let mut short = mesh.clone();
         short.triangles.retain(is_short);
         if let Some(expected) = short.without_unused() {

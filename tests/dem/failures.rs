@@ -105,7 +105,7 @@ fn what_is_no_mesh_in_the_plane_is_malformed() {
     assert_eq!(of(&[[0, 1, 3], [0, 3, 2]]).map(|(code, _)| code), [0, 0]);
     is(of(&[[0, 3, 1], [0, 3, 2]]), "is clockwise");
     is(of(&[[0, 1, 3], [0, 1, 2], [0, 3, 2]]), "triangles overlap");
-    // The tile was complete before.
+    // Here the tile is complete before the overlapping triangle arrives.
     is(of(&[[0, 1, 3], [0, 3, 2], [0, 1, 2]]), "triangles overlap");
 }
 

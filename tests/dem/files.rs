@@ -10,7 +10,7 @@ use super::tiles::{mesh_and_grid, tiff_values};
 use super::{file, is_same, options, raster, values};
 use crate::programs::{Folder, cloud, outcome, run};
 
-/// The mean, by inverse distance, of the nearest data in eight directions, each within reach.
+/// The mean of the nearest values in eight directions within reach, weighted by inverse distance.
 fn filled(values: &[f32], columns: usize, at: [usize; 2], reach: i64) -> f32 {
     let rows = values.len() / columns;
     let cell = |[x, y]: [i64; 2]| {
@@ -61,7 +61,7 @@ fn holes_are_filled_from_what_is_near() {
 
 #[test]
 fn complete_tiles_are_sources_for_their_neighbours() {
-    // A square that covers the first of two tiles in a row, and a bit of the second one.
+    // A square that covers the first of two tiles in a row and a small part of the second.
     let points = vec![[0.0, 0.0, 5.0], [300.0, 0.0, 5.0], [300.0, 256.0, 5.0], [0.0, 256.0, 5.0]];
     let mesh = super::Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
     let stream = mesh.stream(spmesh_stream::Coordinates::F64);
@@ -114,7 +114,7 @@ fn grids_fit_those_of_other_files() {
     let (again, same) = raster("b.tif", &["--like", &path]);
     assert_eq!(again, grid);
     assert!(same == bytes);
-    // Through a pipe, tiles come in rows; cells are the same.
+    // Through a pipe, tiles are written in rows; the cells do not change.
     let piped = run("spdem", &["--like", &path], &mesh).stdout;
     assert!(is_same(&tiff_values(&piped, &grid), &tiff_values(&bytes, &grid)));
 }

@@ -33,7 +33,7 @@ impl Mesh {
         Mesh { points: points.iter().map(point).collect(), triangles }
     }
 
-    /// The same with triangles in random order, each starting with any of its corners.
+    /// The mesh with triangles in random order, each starting with a random corner.
     pub fn shuffled(&self, random: &mut Random) -> Mesh {
         let mut mesh = self.clone();
         random.shuffle(&mut mesh.triangles);
@@ -54,7 +54,7 @@ fn options(attribute: Attribute) -> Options {
     Options { attribute, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default() }
 }
 
-/// A raster as a file.
+/// The bytes of a raster file.
 fn file(stream: &[u8], format: RasterFormat, grid: &Grid, options: &Options) -> Result<(Vec<u8>, Stats)> {
     let mut reader = StreamReader::new(stream, "mesh")?;
     let mut output = Cursor::new(Vec::new());

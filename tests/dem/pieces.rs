@@ -1,4 +1,4 @@
-//! Rasters of pieces: meshes made in parts, or from several files, have no seams.
+//! Rasters of meshes that are made in parts or from several files have no seams.
 
 use super::values;
 use crate::programs::{Folder, outcome, run};

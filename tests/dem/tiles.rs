@@ -28,7 +28,7 @@ pub(super) fn mesh_and_grid() -> (Vec<u8>, Grid) {
     (mesh.stream(Coordinates::F64), grid)
 }
 
-/// The values of a GeoTIFF, tile by tile; missing tiles have no data.
+/// The values of a GeoTIFF. Missing tiles have no data.
 pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (grid.columns, grid.rows));
@@ -53,7 +53,7 @@ fn tiles_are_those_of_the_whole() {
     for attribute in [Attribute::Elevation, Attribute::Aspect] {
         let whole = raster(&stream, &grid, &options(attribute));
         assert!(whole.iter().any(|value| value.is_nan()) && whole.iter().any(|value| !value.is_nan()));
-        // Each cell by itself is a raster, too.
+        // A raster of a single cell has the value of that cell.
         for cell in (0..whole.len()).step_by(4_001) {
             let [column, row] =
                 [cell % grid.columns as usize, cell / grid.columns as usize].map(|n| n as u32);
@@ -92,7 +92,8 @@ fn memory_and_formats_change_nothing() {
 
 #[test]
 fn tiles_that_are_full_leave_memory() {
-    // Squares from left to right, or back: of 20 tiles in a row, few are open at a time.
+    // Squares from left to right, or from right to left: of the 20 tiles in a row, only a few are open at a
+    // time.
     let points: Vec<[i64; 2]> = (0..=500).flat_map(|x| [[10 * x, 0], [10 * x, 240]]).collect();
     let corner = |x: u32, y: u32| 2 * x + y;
     let square = |x| {
@@ -107,7 +108,8 @@ fn tiles_that_are_full_leave_memory() {
         if is_back {
             mesh.triangles.reverse();
         }
-        // Centres off the borders of squares, and on them: then triangles touch cells of tiles that are full.
+        // Centres off the borders of squares, and on them. In the second case triangles touch cells of
+        // complete tiles.
         for shift in [0.0, 0.5] {
             let grid = Grid { left: -shift, top: 240.0 - shift, step: 1.0, columns: 5_000, rows: 239 };
             let stream = mesh.stream(Coordinates::F64);
@@ -125,7 +127,7 @@ fn huge_rasters_of_small_meshes_are_small() {
     let mesh =
         Mesh::of(&mut Random::new(2), &[[0, 0], [300, 0], [0, 300], [59_000, 58_000], [59_000, 58_300]]);
     let mut small = mesh.clone();
-    // The long triangles between would touch many tiles.
+    // Without the long triangles, which would touch many tiles.
     small.triangles.retain(|triangle| triangle.iter().all(|&vertex| vertex < 3));
     small.points.truncate(3);
     let grid = Grid { left: 0.0, top: 60_000.0, step: 1.0, columns: 60_000, rows: 60_000 };
@@ -134,6 +136,6 @@ fn huge_rasters_of_small_meshes_are_small() {
             .unwrap();
     assert_eq!((stats.cells, stats.known), (3_600_000_000, 300 * 299 / 2 + 300));
     assert!(bytes.len() < 2_000_000, "{}", bytes.len());
-    // A file without tiles is BigTIFF if the full file would need that.
+    // A sparse file is BigTIFF if the full file would need it.
     assert_eq!(bytes[..4], *b"II+\0");
 }

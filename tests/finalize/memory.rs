@@ -10,7 +10,7 @@ use spmesh_stream::Crs;
 
 use super::sets::Set;
 
-/// Points in memory as an input; `changed` are what later passes see instead.
+/// Points in memory as an input; passes after the second read `changed`, if it is set.
 pub(super) struct Memory {
     pub(super) description: Description,
     pub(super) points: Vec<Point>,

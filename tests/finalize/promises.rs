@@ -1,5 +1,5 @@
-//! Checks every promise of a finalized stream. Cells come from location codes and header alone; no code is
-//! shared with the engine.
+//! Checks every promise of a finalized stream. Boxes of cells are computed from location codes and the header
+//! alone; no code is shared with the engine.
 
 use spmesh_finalize::{Options, Order};
 use spmesh_model::bounds::{Bounds, Point};
@@ -35,7 +35,7 @@ impl Tagged {
     }
 }
 
-/// What a stream holds, in order.
+/// The contents of a stream, in order.
 pub(super) struct Decoded {
     pub(super) header: Header,
     pub(super) points: Vec<Point>,

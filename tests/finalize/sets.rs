@@ -3,7 +3,7 @@
 use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
 
-/// A seeded generator (xorshift64*).
+/// A seeded random number generator (xorshift64*).
 pub(super) struct Random(pub(super) u64);
 
 impl Random {
@@ -42,7 +42,7 @@ pub(super) fn integer_points(n: usize, seed: u64, extent: u64) -> Vec<Point> {
     (0..n).map(|_| [0; 3].map(|_: u8| random.below(extent) as f64 - 1000.0)).collect()
 }
 
-/// Two thirds of the points in a few spots of a wide area.
+/// Two thirds of the points are in a few small clusters; the others are spread over a wide area.
 pub(super) fn clustered(n: usize, seed: u64) -> Vec<Point> {
     let mut random = Random(seed);
     let cluster = |random: &mut Random| {
@@ -53,7 +53,7 @@ pub(super) fn clustered(n: usize, seed: u64) -> Vec<Point> {
     (0..n).map(|i| if i % 3 > 0 { cluster(&mut random) } else { anywhere(&mut random) }).collect()
 }
 
-/// Strips that are walked to and fro, as a plane does.
+/// Strips flown back and forth, as in an aerial survey.
 pub(super) fn swaths(n: usize) -> Vec<Point> {
     let mut random = Random(5);
     let along = |i: usize| if (i / 500).is_multiple_of(2) { i % 500 } else { 499 - i % 500 };

@@ -1,4 +1,5 @@
-//! Points kept for later passes do not show in the result, and never cost a run that could do without.
+//! Spooling points for later passes does not change the result, and a run that can do without a spool does
+//! not fail with it.
 
 use std::process::{Command, Output};
 

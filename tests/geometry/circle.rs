@@ -5,7 +5,8 @@ use spmesh_model::bounds::Region;
 
 use spmesh_reference::sets::Random;
 
-/// Whether the disk through the triangle lies left of `x = side`, all relative to the first corner: exact.
+/// Whether the disk through the triangle lies left of `x = side`, exactly. Coordinates are relative to the
+/// first corner.
 fn is_left_of(b: [i128; 2], c: [i128; 2], side: i128) -> bool {
     let (p, q) = (b[0] * b[0] + b[1] * b[1], c[0] * c[0] + c[1] * c[1]);
     let d = b[0] * c[1] - b[1] * c[0];
@@ -14,7 +15,7 @@ fn is_left_of(b: [i128; 2], c: [i128; 2], side: i128) -> bool {
     gap > 0 && gap * gap > m_x * m_x + m_y * m_y
 }
 
-/// The four sides as rotations of the right one.
+/// The triangle, turned so that each side of its box becomes the right side.
 fn rotations(b: [i128; 2], c: [i128; 2]) -> [([i128; 2], [i128; 2]); 4] {
     let turn = |p: [i128; 2]| [p[1], -p[0]];
     let (b1, c1) = (turn(b), turn(c));
@@ -22,8 +23,8 @@ fn rotations(b: [i128; 2], c: [i128; 2]) -> [([i128; 2], [i128; 2]); 4] {
     [(b, c), (b1, c1), (b2, c2), (turn(b2), turn(c2))]
 }
 
-/// Tests boxes with one finite side around the border of the disk; returns how many were answered
-/// (true, exactly inside) and panics on a wrong claim.
+/// Tests boxes with one finite side near the border of the disk. Returns how many disks are claimed to be
+/// inside, and how many are inside exactly. Panics on a wrong claim.
 fn check(a: [i64; 2], b: [i64; 2], c: [i64; 2], bounds: CircleBounds) -> (u32, u32) {
     let relative = |p: [i64; 2]| [i128::from(p[0] - a[0]), i128::from(p[1] - a[1])];
     let float = |p: [i64; 2]| [p[0] as f64, p[1] as f64];
@@ -45,7 +46,7 @@ fn check(a: [i64; 2], b: [i64; 2], c: [i64; 2], bounds: CircleBounds) -> (u32, u
                 2 => region.min[0] = a[0] as f64 - s,
                 _ => region.min[1] = a[1] as f64 - s,
             }
-            // Turning a point clockwise brings its top, left and bottom side to the right in turn.
+            // Clockwise turns bring the top, left and bottom side to the right, in this order.
             let claim = bounds.disk_inside(float(a), float(b), float(c), &region);
             assert!(!claim || side >= high, "{a:?} {b:?} {c:?}: turn {turn}, side {side} of {high}");
             claimed += u32::from(claim);
@@ -73,7 +74,7 @@ fn no_disk_is_claimed_inside_that_is_not() {
             inside += exact;
         }
     }
-    // Conservative, but not useless: nearly every disk that is inside by a unit is recognised.
+    // Conservative, but useful: nearly every disk that is inside by a unit is recognised.
     assert!(f64::from(claimed) > 0.95 * f64::from(inside), "{claimed} of {inside}");
 }
 

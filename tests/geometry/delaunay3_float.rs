@@ -1,4 +1,4 @@
-//! The floating-point 3D program: right where nothing is rounded, and in one piece whatever is.
+//! The floating-point 3D program: correct where no operation rounds, and structurally valid in any case.
 
 use robust::{Coord3D, insphere, orient3d};
 use spmesh_geometry::delaunay3::{Corner, Tetrahedralization};
@@ -9,11 +9,11 @@ use std::collections::{HashMap, HashSet};
 
 type Point = [f64; 3];
 
-/// Corners of the facet opposite to each corner, such that the corner followed by these is positively
+/// For each corner, the opposite facet, ordered so that the corner followed by the facet is positively
 /// oriented.
 const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// Every way to run it, with signs checked.
+/// Every combination of options, with signs checked.
 fn all_options() -> Vec<Options> {
     let passes = Curve::ALL.into_iter().map(|curve| (curve, Sequence::Pass));
     let sequences = [Sequence::Rounds, Sequence::Random { seed: 3 }];
@@ -46,8 +46,8 @@ fn in_sphere(corners: [Point; 4], e: Point) -> f64 {
     -insphere(a, b, c, d, coord(e))
 }
 
-/// Checks all that holds whatever was rounded: the tetrahedra fit together; distinct points are vertices or
-/// missing.
+/// Checks what must hold in spite of rounding: the tetrahedra fit together, and each distinct point is a
+/// vertex or missing.
 fn check_structure(points: &[Point], mesh: &Tetrahedralization, stats: &Stats) {
     let distinct: HashSet<[u64; 3]> = points.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
     assert_eq!(mesh.vertices().len(), distinct.len());
@@ -108,7 +108,7 @@ fn check_delaunay(mesh: &Tetrahedralization) {
     }
 }
 
-/// Runs all options on points of which nothing is rounded.
+/// Runs all options on points for which no operation rounds.
 fn check_exact(points: &[Point]) {
     for options in all_options() {
         let (mesh, stats) = triangulate(points, &options).expect("finite points");
@@ -173,7 +173,7 @@ fn ties_of_every_kind() {
     check_exact(&points);
 }
 
-/// The tetrahedra with empty spheres of points of which no five are on a sphere, by trying all.
+/// The tetrahedra with empty spheres, found by trying all. Domain: no five points on a sphere.
 fn exhaustive(points: &[Point]) -> HashSet<[u32; 4]> {
     let n = points.len();
     let mut found = HashSet::new();
@@ -255,7 +255,7 @@ fn equal_points_are_one_vertex() {
 fn rounding_breaks_nothing() {
     let mut random = Random::new(6);
     let mut sets: Vec<Vec<Point>> = Vec::new();
-    // Grids, turned: all ties are rounded, at random.
+    // Turned grids: rounding breaks all ties at random.
     let (sin, cos) = 0.3f64.sin_cos();
     for points in [grid(9), grid(9)[..81].to_vec()] {
         sets.push(
@@ -266,7 +266,7 @@ fn rounding_breaks_nothing() {
         );
     }
     sets.push(grid(8).iter().map(|p| p.map(|x| x * 0.1)).collect());
-    // Points of a sphere.
+    // Points on a sphere.
     sets.push(
         (0..500)
             .map(|_| {
@@ -276,12 +276,12 @@ fn rounding_breaks_nothing() {
             })
             .collect(),
     );
-    // Coordinates of few different bits, far away.
+    // Coordinates far from the origin that differ in a few bits only.
     sets.push((0..500).map(|_| [(); 3].map(|()| 1e15 + random.integer(0, 8) as f64 * 0.125)).collect());
     sets.push(
         (0..500).map(|_| [random.unit(), 1.0 + random.unit() * 1e-15, 3.0 + random.unit() * 1e-15]).collect(),
     );
-    // Over- and underflow, and all magnitudes together.
+    // Overflow and underflow; then all magnitudes together.
     for scale in [1e-320, 1e-200, 1e-70, 1e-63, 1e-60, 1e60, 1e63, 1e70, 1e200, 1e308] {
         sets.push((0..150).map(|_| [(); 3].map(|()| (random.unit() - 0.5) * scale)).collect());
     }

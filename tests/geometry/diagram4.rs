@@ -1,5 +1,4 @@
-//! The engine of 4D diagrams: what brute force finds, and what the audit proves, at every size of
-//! coordinates.
+//! The 4D diagram engine against brute force and the audit, at every size of coordinates.
 
 use spmesh_audit::diagram::check;
 use spmesh_core::error::ErrorKind;
@@ -12,7 +11,7 @@ use spmesh_reference::sets4::{cells4, families, floats, grid, random_points};
 
 const SEED: u64 = 20_260_405;
 
-/// Asserts that the engine finds the cells `expected` for the points where `place` puts them.
+/// Asserts that the engine finds the cells `expected` after `place` has mapped every coordinate.
 fn assert_finds(random: &mut Random, expected: &[Cell], points: &[Point], place: impl Fn(i64) -> f64) {
     let placed: Vec<Point4> = points.iter().map(|point| point.map(&place)).collect();
     let mut input: Vec<Point4> = placed.iter().chain(placed.iter().step_by(3)).copied().collect();
@@ -40,7 +39,7 @@ fn brute_force_finds_the_same() {
     }
 }
 
-/// All arithmetics of the engine: small integers, those of 128 bits, and integers without limit.
+/// All arithmetics of the engine: small integers, 128-bit integers, and arbitrary precision.
 #[test]
 fn size_and_place_do_not_matter() {
     let mut random = Random::new(SEED + 1);
@@ -56,7 +55,7 @@ fn size_and_place_do_not_matter() {
     }
 }
 
-/// Asserts that the diagram of the points passes the audit, and is that of the same points in another order.
+/// Asserts that the diagram passes the audit and does not depend on the order of the points.
 fn assert_proved(random: &mut Random, mut points: Vec<Point4>, what: &str) {
     let (found, _) = diagram(points.clone(), None).unwrap_or_else(|e| panic!("{what}: {e}"));
     let proof = check(&found.points, &found.cells).unwrap_or_else(|e| panic!("{what}: {e}"));
@@ -84,7 +83,7 @@ fn large_sets_are_proved() {
     assert_proved(&mut random, tenths, "multiples of 0.1, rounded");
 }
 
-/// Points that are on a sphere but for rounding: every decision is close.
+/// Points on a sphere up to rounding: every decision is close.
 #[test]
 fn rounded_spheres_are_proved() {
     let mut random = Random::new(SEED + 3);

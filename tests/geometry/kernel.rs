@@ -9,7 +9,7 @@ fn triangles(mesh: &Triangles) -> impl Iterator<Item = [u32; 3]> + '_ {
     mesh.triangles().iter().map(|triangle| triangle.vertices)
 }
 
-/// Checks everything that [`Triangles`] promises but the Delaunay property; returns the set of triangles.
+/// Checks every promise of [`Triangles`] except the Delaunay property; returns the set of triangles.
 fn checked(points: &[[f64; 2]], mesh: &Triangles) -> Vec<[u32; 3]> {
     let dropped: HashSet<u32> = mesh.duplicates.iter().map(|pair| pair[0]).collect();
     let vertices = points.len() - dropped.len();
@@ -134,7 +134,7 @@ fn huge_and_tiny_coordinates() {
     }
 }
 
-/// The points without later ones that equal them.
+/// The points without later duplicates.
 fn first_of_each(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let representatives = distinct(points);
     (0..).zip(points).filter(|&(i, _)| representatives[i as usize] == i).map(|(_, &point)| point).collect()
@@ -192,7 +192,7 @@ fn many_points_in_a_tiny_extent_and_too_many() {
     kernel.triangulate(&points, &mut mesh).expect("finite points");
     checked(&points, &mesh);
 
-    // Never touched: the number alone is refused.
+    // The memory is never touched: the kernel refuses the number of points alone.
     let too_many = vec![[0.0; 2]; spmesh_geometry::delaunay2::MAX_POINTS + 1];
     let error = kernel.triangulate(&too_many, &mut Triangles::default()).expect_err("too many");
     assert!(error.to_string().contains("at most"), "{error}");

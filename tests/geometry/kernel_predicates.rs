@@ -1,4 +1,4 @@
-//! Every arithmetic of the predicates against arbitrary precision, inside its domain and at the edge of it.
+//! Every arithmetic of the predicates against arbitrary precision, inside its domain and at its limits.
 
 use spmesh_geometry::predicates::{Arithmetic, Extent, PredicateCounts, Predicates2, Sign, WithPredicates2};
 use spmesh_reference::exact;
@@ -48,7 +48,7 @@ fn compare(points: &[[f64; 2]], expected: Arithmetic) -> PredicateCounts {
     counts
 }
 
-/// Quadruples near the corners of a square of side `d`: largest determinants, smallest and zero ones.
+/// Quadruples near the corners of a square of side `d`, with the largest, the smallest and zero determinants.
 fn extreme_quadruples(random: &mut Random, d: i64, offset: i64) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for _ in 0..500 {
@@ -62,7 +62,7 @@ fn extreme_quadruples(random: &mut Random, d: i64, offset: i64) -> Vec<[f64; 2]>
             points.push([x as f64, y as f64]);
         }
     }
-    // The extremes themselves, so that the extent is what it is meant to be.
+    // The corners themselves, so that the extent is exactly `d`.
     points.extend([[0, 0], [d, 0], [d, d], [0, d]].map(|p| p.map(|c| (offset + c) as f64)));
     points
 }
@@ -105,7 +105,7 @@ fn random_integers_of_every_size() {
     }
 }
 
-/// Nearly cocircular and nearly collinear quadruples: what a filter cannot decide.
+/// Nearly cocircular and nearly collinear quadruples, which a filter cannot decide.
 fn near_degenerate(random: &mut Random, scale: f64) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for quadruple in 0..150 {

@@ -1,11 +1,10 @@
-//! Every arithmetic of the predicates of space against arbitrary precision, inside its domain and at the edge
-//! of it.
+//! Every arithmetic of the 3D predicates against arbitrary precision, inside its domain and at its limits.
 
 use spmesh_geometry::predicates::{Arithmetic3, Extent, PredicateCounts, Predicates3, Sign, WithPredicates3};
 use spmesh_reference::exact3;
 use spmesh_reference::sets::Random;
 
-/// Compares all predicates on each five of the points, in the arithmetic chosen for them.
+/// Compares all predicates on every five of the points, in the arithmetic chosen for them.
 struct Compare<'a>(&'a [[f64; 3]]);
 
 impl WithPredicates3 for Compare<'_> {
@@ -52,7 +51,7 @@ fn compare(points: &[[f64; 3]], expected: Arithmetic3) -> PredicateCounts {
     counts
 }
 
-/// Fives near the corners of a cube of side `d`: largest determinants, smallest and zero ones.
+/// Quintuples near the corners of a cube of side `d`, with the largest, the smallest and zero determinants.
 fn extreme_fives(random: &mut Random, d: i64, offset: i64) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for _ in 0..400 {
@@ -64,7 +63,7 @@ fn extreme_fives(random: &mut Random, d: i64, offset: i64) -> Vec<[f64; 3]> {
             }));
         }
     }
-    // The extremes themselves, so that the extent is what it is meant to be.
+    // The corners themselves, so that the extent is exactly `d`.
     points.extend(
         [[0, 0, 0], [d, d, 0], [d, 0, d], [0, d, d], [d, d, d]].map(|p| p.map(|c| (offset + c) as f64)),
     );
@@ -127,7 +126,7 @@ fn lattice_points_of_spheres_planes_and_lines() {
     }
 }
 
-/// Nearly cospherical and nearly coplanar fives: what a filter cannot decide.
+/// Nearly cospherical and nearly coplanar quintuples, which a filter cannot decide.
 fn near_degenerate(random: &mut Random, scale: f64) -> Vec<[f64; 3]> {
     let mut points = Vec::new();
     for five in 0..100 {

@@ -1,4 +1,4 @@
-//! Predicates, orders and kernels, held against slow and plain ones.
+//! Predicates, orders and kernels against slow and plain references.
 
 mod circle;
 mod configurations;

@@ -1,4 +1,4 @@
-//! Orders of points along curves, and sequences of insertion.
+//! Orders of points along curves, and insertion sequences.
 
 use spmesh_geometry::order::{BIT_LEVEL_MAX, BitLevels, Curve, Sequence, SpatialOrder, Suffixes};
 use spmesh_geometry::predicates::Extent;
@@ -9,7 +9,7 @@ fn order<const D: usize>(points: &[[f64; D]], curve: Curve) -> Vec<u32> {
     SpatialOrder::default().sort(points, &Extent::of(points), curve).collect()
 }
 
-/// Checks what every order promises.
+/// Checks the promises of every order.
 fn check<const D: usize>(points: &[[f64; D]], curve: Curve) {
     let indices = order(points, curve);
     let mut sorted = indices.clone();
@@ -36,7 +36,7 @@ fn uniform<const D: usize>(count: usize) -> Vec<[f64; D]> {
 fn clusters<const D: usize>() -> Vec<[f64; D]> {
     let cluster = |(i, point): (usize, [f64; D])| {
         let size = 1e-5f64.powi(i as i32 % 40);
-        // Every seventh has an equal.
+        // Every seventh point has copies.
         let point = if i % 7 == 0 { [0.25; D] } else { point };
         point.map(|c| c * size)
     };
@@ -85,8 +85,9 @@ fn many_points_of_space_in_extents_of_every_size() {
 
 #[test]
 fn flat_and_thin_sets_are_as_coherent_as_others() {
-    // How far apart neighbours in the order may be, in distances of neighbours in a lattice of as many axes.
-    // The curve of space does not follow a line from one end to the other.
+    // The mean distance of neighbours in the order is at most `distances` times the spacing of a lattice of
+    // as many points along `axes` axes. On a line the bound is larger, because the curve of space does not
+    // run straight along it.
     for (sides, axes, distances) in [
         ([1e3, 1e3, 1e3], 3, 1.3),
         ([1e3, 1e3, 1.0], 2, 1.3),
@@ -160,7 +161,7 @@ fn levels_by_zeros_are_counts_of_trailing_zeros() {
     let points = [[1.0, 0.0, 0.0], [2.0, -4.0, 8.0], [4.0, 12.0, -4.0], [0.0; 3], [512.0, -256.0, 1024.0]];
     let expected = [0, 1, 2, BIT_LEVEL_MAX, BIT_LEVEL_MAX];
     assert_eq!(levels(&points, Suffixes::Zeros), expected);
-    // The unit is a power of two that all are multiples of, be it large, small, or the least there is.
+    // The unit is a power of two that divides all coordinates; it may be large, small, or the least f64.
     for unit in [2f64.powi(900), 0.125, 2f64.powi(-1022), 5e-324] {
         assert_eq!(levels(&points.map(|p| p.map(|c| c * unit)), Suffixes::Zeros), expected, "{unit:e}");
     }
@@ -172,7 +173,7 @@ fn levels_by_the_most_common_suffix() {
     // x: 5 of 6 end with 1, 4 of those with 01, 3 of those with 101. y: 5 end with 0, all of them with 10; -2
     // and 6 end with 110, but -6 and 2 (twice) with 010.
     assert_eq!(levels(&points, Suffixes::MostCommon), [2, 2, 2, 1, 0, 0]);
-    // Numbers need not end with zeros to have their last bits in common.
+    // Numbers can have their last bits in common without ending in zeros.
     let uniform: Vec<[f64; 2]> =
         uniform(1000).iter().map(|p: &[f64; 2]| p.map(|c| (c * 1e3).floor() * 16.0)).collect();
     let shifted: Vec<[f64; 2]> = uniform.iter().map(|&[x, y]| [x + 3.0, y - 5.0]).collect();
@@ -182,7 +183,7 @@ fn levels_by_the_most_common_suffix() {
 
 #[test]
 fn levels_of_floats_are_by_their_significands() {
-    // 1e300 and 3 are no integers of 53 bits of the same unit.
+    // 1e300 and 3 have no common unit in which both are integers of 53 bits.
     let points = [[1e300, 3.0], [1.5, 2f64.powi(-30)], [1.0 + 2f64.powi(-48), -0.0]];
     for suffixes in [Suffixes::MostCommon, Suffixes::Zeros] {
         let zeros = (1e300f64.to_bits().trailing_zeros()).min(BIT_LEVEL_MAX);

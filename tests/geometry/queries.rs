@@ -1,11 +1,11 @@
-//! Questions to triangulations, answered a second time by looking at all simplices.
+//! Queries to triangulations, answered again by a search of all simplices.
 
 use spmesh_geometry::Location;
 use spmesh_geometry::{delaunay2, delaunay3};
 use spmesh_reference::sets::Random;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Coordinates below this, all even, so that odd targets fall between points.
+/// Coordinates are even integers below this, so that odd targets fall between points.
 const SIDE: i64 = 8;
 
 fn points<const D: usize>(random: &mut Random, count: i64, side: i64) -> Vec<[f64; D]> {
@@ -18,7 +18,7 @@ fn targets<const D: usize>() -> impl Iterator<Item = [f64; D]> {
         .map(move |i| std::array::from_fn(|axis| (i / side.pow(axis as u32) % side - 1) as f64))
 }
 
-/// Determinant of the differences of `N` points to the first one.
+/// Determinant of the differences of the other `N - 1` points to the first one.
 fn orientation<const N: usize, const D: usize>(points: [[f64; D]; N]) -> i64 {
     fn determinant(rows: &[Vec<i64>]) -> i64 {
         let Some((first, rest)) = rows.split_first() else { return 1 };
@@ -31,8 +31,8 @@ fn orientation<const N: usize, const D: usize>(points: [[f64; D]; N]) -> i64 {
     determinant(&points[1..].iter().map(row).collect::<Vec<Vec<i64>>>())
 }
 
-/// The vertices of a simplex whose replacement by the target leaves a positive volume; `None` if one becomes
-/// negative.
+/// The smallest face of a simplex that contains the target: the vertices whose replacement by the target
+/// leaves a positive volume. `None` if a volume becomes negative: the target is outside.
 fn face<const N: usize, const D: usize>(
     points: &[[f64; D]],
     simplex: [u32; N],
@@ -51,7 +51,7 @@ fn face<const N: usize, const D: usize>(
     Some(face)
 }
 
-/// The location by looking at all simplices.
+/// The location found by a search of all simplices.
 fn expected<const N: usize, const D: usize>(
     points: &[[f64; D]],
     simplices: &[[u32; N]],
@@ -109,8 +109,8 @@ fn check<const N: usize, const F: usize, const D: usize>(
         for &point in points {
             let mut corners = [point; N];
             facet.iter().enumerate().for_each(|(i, &v)| corners[i] = points[v as usize]);
-            // A counterclockwise edge of the plane has all points on its left, a facet of space on its inner
-            // side.
+            // All points lie on the left of a counterclockwise edge of the hull, or on the inner side of a
+            // facet.
             let side = orientation(corners);
             assert!(if D == 2 { side >= 0 } else { side <= 0 }, "{facet:?}");
         }

@@ -17,7 +17,8 @@ fn dot(p: &[BigInt; 3], q: &[BigInt; 3]) -> BigInt {
     &p[0] * &q[0] + &p[1] * &q[1] + &p[2] * &q[2]
 }
 
-/// Centre `m / 2v` of the sphere relative to the first corner, as m and v > 0; `None` for a flat tetrahedron.
+/// The centre of the sphere relative to the first corner is `m / 2v`, with v > 0; returns m and v. `None` for
+/// a flat tetrahedron.
 fn centre(corners: [Corner; 4]) -> Option<([BigInt; 3], BigInt)> {
     let [a, b, c, d] = corners;
     let [b, c, d] = [b, c, d].map(|p| [0, 1, 2].map(|axis| BigInt::from(p[axis]) - a[axis]));
@@ -28,14 +29,14 @@ fn centre(corners: [Corner; 4]) -> Option<([BigInt; 3], BigInt)> {
     (volume != BigInt::ZERO).then(|| (m, volume.abs()))
 }
 
-/// Whether the ball lies strictly on the near side of a plane at `side` from the first corner, towards `sign`
-/// of `axis`.
+/// Whether the ball lies strictly inside a plane at distance `side` from the first corner, in the direction
+/// `sign` of `axis`.
 fn is_within(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64, side: &BigInt) -> bool {
     let gap: BigInt = volume * side * 2 - &m[axis] * sign;
     gap.is_positive() && &gap * &gap > dot(m, m)
 }
 
-/// The least integer distance of a plane beyond the ball.
+/// The least integer distance of a plane that has the ball strictly inside.
 fn tightest(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64) -> BigInt {
     let (mut low, mut high) = (BigInt::from(-1), BigInt::from(1));
     while !is_within(m, volume, axis, sign, &high) {
@@ -48,8 +49,8 @@ fn tightest(m: &[BigInt; 3], volume: &BigInt, axis: usize, sign: i64) -> BigInt 
     high
 }
 
-/// Tests boxes with one finite side around the border of the ball, which is `tightest` away: counts claims,
-/// and balls inside.
+/// Tests boxes with one finite side near the border of the ball, at `tightest` and around it. Counts the
+/// claims and the balls that are inside.
 fn check(corners: [Corner; 4], bounds: SphereBounds, counts: &mut (u32, u32)) {
     let Some((m, volume)) = centre(corners) else { return };
     for axis in 0..3 {
@@ -91,12 +92,12 @@ fn no_ball_is_claimed_inside_that_is_not() {
             check(corners, bounds, &mut counts);
         }
     }
-    // Conservative, but not useless: nearly every ball that is inside by a unit is recognised.
+    // Conservative, but useful: nearly every ball that is inside by a unit is recognised.
     let (claimed, inside) = counts;
     assert!(f64::from(claimed) > 0.95 * f64::from(inside), "{claimed} of {inside}");
 }
 
-/// Corners hardly off a plane, with spheres far larger than they are.
+/// Nearly coplanar corners, whose spheres are much larger than their distances.
 #[test]
 fn slivers_are_not_claimed_by_mistake() {
     let mut random = Random::new(13);

@@ -12,7 +12,7 @@ use spmesh_io::source::{
 };
 use tempfile::TempDir;
 
-/// Points after which a pass over damaged input ends.
+/// Most points of a pass over damaged input; then the pass ends.
 const POINTS_MAX: usize = 1 << 20;
 
 /// Points of any format, in the plane and in space.
@@ -62,17 +62,17 @@ fn drain(events: &mut dyn EventSource) {
     while let Ok(Some(_)) = events.next_event() {}
 }
 
-/// PDB, whatever it looks like.
+/// PDB.
 pub fn pdb(bytes: &[u8]) {
     structure(bytes, Some(Format::Pdb));
 }
 
-/// mmCIF, whatever it looks like.
+/// mmCIF.
 pub fn mmcif(bytes: &[u8]) {
     structure(bytes, Some(Format::Mmcif));
 }
 
-/// XYZ, OFF, and what the content tells.
+/// XYZ, OFF, and formats that are detected by content.
 pub fn molecule(bytes: &[u8]) {
     structure(bytes, Some(Format::Xyz));
     structure(bytes, Some(Format::Off));
@@ -109,7 +109,7 @@ pub fn condition(bytes: &[u8]) {
     drop(String::from_utf8_lossy(bytes).parse::<Condition>());
 }
 
-/// A file that holds the bytes; the next one of this thread replaces it.
+/// A file with the bytes; the next call of this thread replaces it.
 fn file(bytes: &[u8]) -> PathBuf {
     thread_local! {
         static FOLDER: OnceCell<TempDir> = const { OnceCell::new() };

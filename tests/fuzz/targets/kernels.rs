@@ -1,4 +1,4 @@
-//! Kernels: what they make of any points must be provable.
+//! Kernels: their results must be provable for any points.
 
 use std::borrow::Cow;
 
@@ -36,11 +36,11 @@ pub fn kernel2(bytes: &[u8]) {
     }
 }
 
-/// The tetrahedra pass an independent proof.
+/// The tetrahedra pass a proof that shares no code with the kernel.
 pub fn kernel3(bytes: &[u8]) {
     let points = points::<3>(bytes, 120);
     let mut kernel = delaunay3::Kernel::new();
-    // The bytes choose the order of insertion, too: the usual one for half of them.
+    // The bytes choose the order of insertion, too. Half of the inputs use the default order.
     let choice = bytes.iter().fold(0u8, |sum, &b| sum.wrapping_mul(31).wrapping_add(b));
     if choice & 1 == 1 {
         kernel.curve = Curve::ALL[usize::from(choice >> 1 & 3)];
@@ -56,7 +56,7 @@ pub fn kernel3(bytes: &[u8]) {
     }
 }
 
-/// Both routes agree, and an audit proves what they say.
+/// Both routes give the same diagram, and an audit proves it.
 pub fn diagram4(bytes: &[u8]) {
     let points = moderate::<4>(bytes, 40);
     let by = |route| -> Option<Diagram4> {
@@ -98,7 +98,7 @@ pub fn configurations(bytes: &[u8]) {
     let degree = usize::from(choice >> 6).min(knots.len().saturating_sub(3));
     let all = match generate(&knots, start, rule, degree) {
         Ok(all) => all,
-        // A link of another rule need not be simple.
+        // Under other rules, links need not be simple.
         Err(error) if *rule != Rule::Delaunay => {
             return assert!(matches!(error.kind(), ErrorKind::Audit | ErrorKind::Usage), "{error}");
         }

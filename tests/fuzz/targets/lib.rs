@@ -1,14 +1,14 @@
-//! Fuzz targets: functions of any bytes that panic if something is wrong. libFuzzer calls them, and so does
-//! the seeded driver of this crate.
+//! Fuzz targets: functions that take any bytes and panic if something is wrong. libFuzzer and the seeded
+//! driver of this crate call them.
 //!
-//! Readers must end with an error or with the whole input, without a panic, and in memory that follows from
-//! the bytes that are there. Kernels must give what independent exact arithmetic proves.
+//! Readers must read the whole input or return an error, without a panic, in memory bounded by the size of
+//! the input, whatever sizes it states. The results of kernels must pass independent exact proofs.
 
 mod files;
 mod kernels;
 pub mod mutation;
 mod points;
-// Shared with the tests of the kernel, which need more of it.
+// The tests of the kernel use more of this module.
 #[allow(dead_code)]
 #[path = "../../geometry/kernel3/promises.rs"]
 mod promises;
@@ -17,17 +17,17 @@ mod streams;
 
 use samples::Samples;
 
-/// A target by its name.
+/// A named target.
 #[derive(Clone, Copy)]
 pub struct Target {
     /// Name of the target, and of its file in `fuzz_targets`.
     pub name: &'static str,
-    /// Tries some bytes.
+    /// Runs the target on some bytes.
     ///
     /// # Panics
-    /// If they show a fault.
+    /// If the bytes reveal a fault.
     pub run: fn(&[u8]),
-    /// Inputs to begin with.
+    /// The initial inputs.
     pub samples: Samples,
 }
 
@@ -54,7 +54,7 @@ pub const TARGETS: [Target; 19] = [
     Target { name: "configurations", run: kernels::configurations, samples: Samples::Points },
 ];
 
-/// The target of a name.
+/// The target with a name.
 #[must_use]
 pub fn target(name: &str) -> Option<Target> {
     TARGETS.into_iter().find(|target| target.name == name)
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
     use mutation::Inputs;
 
-    /// A few inputs of every target, the samples among them: what a fuzzer does for hours, for a second.
+    /// A short fuzzing run: a few inputs of every target, including the samples.
     #[test]
     fn every_target_passes_a_few_inputs() {
         for target in TARGETS {

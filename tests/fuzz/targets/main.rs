@@ -1,5 +1,5 @@
-//! Tries the inputs of a seed, one after the other, for a time. An input that fails is written to a file,
-//! made smaller, and written again.
+//! Tries the inputs of a seed one after the other, for a given time. Writes an input that fails to a file,
+//! shrinks it, and writes the result, too.
 
 use std::fs;
 use std::panic::{self, AssertUnwindSafe};
@@ -14,8 +14,8 @@ use spmesh_fuzz::{TARGETS, Target, target};
 
 /// Fuzzes readers and kernels with mutants of sample files.
 ///
-/// The same seed gives the same inputs. Kernels also have generators of degenerate sets of their own: the
-/// examples fuzz3 and fuzz4.
+/// The same seed gives the same inputs. Kernels also have fuzzers that generate degenerate sets: the examples
+/// fuzz3 and fuzz4.
 #[derive(Debug, Parser)]
 #[command(name = "scripts/fuzz")]
 struct Flags {
@@ -33,7 +33,7 @@ struct Flags {
     /// Tries this file only.
     #[arg(long, value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Seconds after which an input is said to hang.
+    /// Seconds after which an input counts as hanging.
     #[arg(long, default_value_t = 60, value_name = "N")]
     limit: u64,
     /// Most memory, in MiB; an input that needs more ends the program.
@@ -47,8 +47,7 @@ struct Flags {
     list: bool,
 }
 
-/// When the input that is being tried began, in milliseconds since the start of the program; 0 between
-/// inputs.
+/// Start of the current input, in milliseconds since the start of the program; 0 between inputs.
 static BEGAN_MS: AtomicU64 = AtomicU64::new(0);
 
 fn main() -> ExitCode {
@@ -82,7 +81,7 @@ fn main() -> ExitCode {
     if is_fine { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Whether a target takes bytes without a panic.
+/// Whether the target handles the bytes without a panic.
 fn passes(target: &Target, bytes: &[u8]) -> bool {
     panic::catch_unwind(AssertUnwindSafe(|| (target.run)(bytes))).is_ok()
 }
@@ -94,7 +93,7 @@ fn fuzz(target: &Target, flags: &Flags, started: Instant) -> bool {
     let (end, mut number) = (Instant::now() + Duration::from_secs(flags.seconds), flags.first);
     while Instant::now() < end {
         let bytes = inputs.input(number);
-        // Kept for the case that the program is ended: by the watch, or for want of memory.
+        // The file remains if the process ends: by the watchdog, or because memory ran out.
         fs::write(&current, &bytes).expect("a writable folder");
         BEGAN_MS.store(started.elapsed().as_millis() as u64 + 1, Ordering::Relaxed);
         let is_fine = passes(target, &bytes);
@@ -111,7 +110,7 @@ fn fuzz(target: &Target, flags: &Flags, started: Instant) -> bool {
     true
 }
 
-/// Writes an input that fails, and the smallest one found.
+/// Writes a failing input and the smallest failing input found.
 fn report(target: &Target, bytes: Vec<u8>, path: &Path) {
     fs::write(path, &bytes).expect("a writable folder");
     let hook = panic::take_hook();
@@ -123,7 +122,7 @@ fn report(target: &Target, bytes: Vec<u8>, path: &Path) {
     println!("written to {} and, {} bytes of it, to {}", path.display(), small.len(), small_path.display());
 }
 
-/// Leaves pieces out as long as the input fails.
+/// Removes pieces as long as the input fails.
 fn shrunk(target: &Target, mut bytes: Vec<u8>) -> Vec<u8> {
     let mut piece = bytes.len() / 2;
     while piece > 0 {
@@ -156,7 +155,7 @@ fn watch(started: Instant, limit: u64) {
     });
 }
 
-/// Makes allocations fail that take the program above a number of MiB.
+/// Limits the address space of the program, so that allocations beyond it fail. Units: MiB.
 fn bound_memory(mebibytes: u64) {
     let bytes = mebibytes << 20;
     let limit = libc::rlimit { rlim_cur: bytes, rlim_max: bytes };

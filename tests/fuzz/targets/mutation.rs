@@ -1,4 +1,4 @@
-//! Inputs by number: the samples, then mutants of them. A seed and a number fix the bytes.
+//! Inputs by number: first the samples, then mutants of them. Seed and number determine the bytes.
 
 use crate::samples::Samples;
 use spmesh_reference::sets::Random;
@@ -8,7 +8,7 @@ const INPUT_MAX: usize = 1 << 17;
 /// Bytes of random points.
 const POINTS_MAX: i64 = 1200;
 
-/// Integers where readers are most often wrong.
+/// Integers that readers often handle wrongly.
 const INTEGERS: [i64; 14] =
     [0, 1, -1, 2, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fff_ffff, 0xffff_ffff, 1 << 32, i64::MAX, i64::MIN];
 /// Numbers as text.
@@ -38,13 +38,13 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Inputs that begin with these samples.
+    /// Inputs of a seed that start with these samples.
     #[must_use]
     pub fn new(samples: Samples, seed: u64) -> Self {
         Inputs { samples: samples.load(), seed }
     }
 
-    /// Input of a number: a sample, or a mutant of one.
+    /// The input with a number: a sample, or a mutant of one.
     #[must_use]
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random =
@@ -112,7 +112,7 @@ fn overwrite(bytes: &mut [u8], at: usize, random: &mut Random) {
     }
 }
 
-/// Writes another number in the place of the first one of a text behind `at`.
+/// Replaces the first number of a text at or after `at`.
 fn replace_number(bytes: &mut Vec<u8>, at: usize, random: &mut Random) {
     let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+');
     let Some(start) = bytes[at..].iter().position(is_digit).map(|from| at + from) else { return };

@@ -1,9 +1,9 @@
-//! Points from bytes: the fewer bits a coordinate has, the more degenerate the set.
+//! Points from bytes: the fewer bits a coordinate has, the more degenerate is the set.
 
-/// The points that bytes say, at most `count` of them, finite.
+/// Decodes at most `count` points, all of them finite.
 ///
-/// The first byte says how coordinates are read: as numbers of 2, 4 or 8 bits (cocircular and repeated
-/// points), as i16, as i32 beside a large offset, as multiples of 0.1, or as any f64.
+/// The first byte selects the coordinates: integers of 2, 4 or 8 bits (cocircular and repeated points), i16,
+/// i32 plus a large offset, multiples of 0.1, or any f64.
 pub fn points<const D: usize>(bytes: &[u8], count: usize) -> Vec<[f64; D]> {
     let Some((&mode, rest)) = bytes.split_first() else { return Vec::new() };
     let coordinates: Vec<f64> = match mode % 7 {
@@ -18,7 +18,7 @@ pub fn points<const D: usize>(bytes: &[u8], count: usize) -> Vec<[f64; D]> {
     coordinates.as_chunks().0.iter().take(count).copied().collect()
 }
 
-/// As [`points`], but none is of arbitrary f64: integers of up to 33 bits, and multiples of 0.1.
+/// As [`points`], but without arbitrary f64: integers of up to 33 bits, and multiples of 0.1.
 pub fn moderate<const D: usize>(bytes: &[u8], count: usize) -> Vec<[f64; D]> {
     let mut bytes = bytes.to_vec();
     if let Some(mode) = bytes.first_mut() {

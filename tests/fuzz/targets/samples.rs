@@ -1,15 +1,15 @@
-//! Inputs to begin with: files of the tests, test vectors of the formats, short texts, and random bytes.
+//! Initial inputs: files of the tests, test vectors of the formats, short texts, and random bytes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Bytes that are taken of a sample: more make a fuzzer slow, and are more of the same.
+/// Most bytes taken from a sample: more would slow the fuzzer down and add little variety.
 const SAMPLE_MAX: usize = 1 << 16;
 
 /// Where samples come from.
 #[derive(Debug, Clone, Copy)]
 pub enum Samples {
-    /// Streams: `formats/vectors`, those that must pass and those that must fail.
+    /// The streams of `formats/vectors`, valid and invalid.
     Vectors,
     /// Text twins of streams.
     Twins,

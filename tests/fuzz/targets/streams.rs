@@ -11,7 +11,7 @@ const HEAD: usize = 16;
 /// Bytes of a block before its payload.
 const FRAME: usize = 16;
 
-/// Reads bytes as they are, and with checksums that are right.
+/// Reads the bytes as they are, and again with corrected checksums.
 pub fn stream(bytes: &[u8]) {
     read_stream(bytes);
     let mut sealed = bytes.to_vec();
@@ -24,7 +24,7 @@ fn read_stream(bytes: &[u8]) {
     let Ok(mut reader) = StreamReader::new(bytes, "fuzz") else { return };
     let Some((header, events)) = read(&mut reader) else { return };
     examine(&header, &events);
-    // All that a stream says, its text says.
+    // The text twin of a valid stream can be read.
     let mut text = Vec::new();
     let mut sink = TwinSink::new(&mut text, &header).expect("memory takes the header");
     events.iter().try_for_each(|event| sink.event(event)).expect("memory takes the events");
@@ -38,7 +38,7 @@ fn read_stream(bytes: &[u8]) {
     }
 }
 
-/// Reads a text twin, and all that its events say.
+/// Reads a text twin and examines its events.
 pub fn twin(bytes: &[u8]) {
     let Ok(mut twin) = TwinSource::new(bytes, "fuzz") else { return };
     if let Some((header, events)) = read(&mut twin) {
@@ -46,7 +46,7 @@ pub fn twin(bytes: &[u8]) {
     }
 }
 
-/// Header and events, if the input is without fault up to its end.
+/// Header and events, if the whole input is well-formed.
 fn read(source: &mut impl EventSource) -> Option<(Header, Vec<Event>)> {
     let mut events = Vec::new();
     loop {
@@ -66,7 +66,7 @@ fn end_of(events: &[Event]) -> Option<Totals> {
     }
 }
 
-/// Gives events to all that take them. A stream may well claim what is wrong, so that errors are fine.
+/// Passes events to every consumer. A well-formed stream may make false claims, so errors are accepted.
 fn examine(header: &Header, events: &[Event]) {
     let mut inventory = Inventory::new(header);
     let _ = events.iter().try_for_each(|event| inventory.event(event));
@@ -100,7 +100,7 @@ fn examine(header: &Header, events: &[Event]) {
     }
 }
 
-/// Makes checksums right as far as the header and blocks go; `None` if there is no header.
+/// Corrects the checksums of the header and of all complete blocks; `None` if there is no header.
 fn seal(bytes: &mut [u8]) -> Option<()> {
     let length = |bytes: &[u8], at: usize| -> Option<usize> {
         let field = bytes.get(at..at + 4)?.try_into().expect("four bytes");

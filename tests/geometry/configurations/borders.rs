@@ -1,4 +1,4 @@
-//! Repeated knots on the border, seen by what they are for: splines that sum to one.
+//! Repeated knots on the border, checked by their purpose: the splines sum to one.
 
 use super::knots;
 use super::spline::{b_spline, sum_at};
@@ -77,7 +77,7 @@ fn links_of_pulled_apart_knots_are_fans() {
             let group = degree_1.groups().find(|group| group.interior == [knot]).expect("its link");
             assert!(group.triangles.iter().all(|triangle| triangle.contains(&copy)), "{rule:?}: {group:?}");
         }
-        // Splines of degree 2 at the place: the link of both goes once around it.
+        // A spline of degree 2 at the place: the link of both copies goes around it once.
         let links = configurations::links(&apart, &degree_1).expect("links");
         let both = links.link(links.find(&[12, 26]).expect("an edge"));
         let around: HashSet<[u64; 2]> =

@@ -21,8 +21,8 @@ fn area(points: &[[i64; 2]], mesh: &CentroidMesh, triangle: [u32; 3]) -> i64 {
     (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 }
 
-/// A planar triangulation: positive triangles, every edge with its opposite but for one closed border, which
-/// goes around once; and their areas add up to that of the border.
+/// Asserts a planar triangulation: triangles are positive; every edge has its opposite, except on one closed
+/// convex border that goes around once; and the areas add up to the area within the border.
 fn assert_planar(points: &[[i64; 2]], mesh: &CentroidMesh) {
     let mut edges: HashSet<[u32; 2]> = HashSet::new();
     let mut total = 0;

@@ -1,4 +1,4 @@
-//! The rule `delaunay` and the direct definition.
+//! The rule `delaunay` and the definition of Delaunay configurations.
 
 use super::{check_circles, delaunay, knots, listed};
 use spmesh_core::error::ErrorKind;

@@ -1,10 +1,10 @@
-//! Links with many vertices, by their definition: a knot that is near to all others, places with many copies.
+//! Links with many vertices, against the definition: a knot near all others, places with many copies.
 
 use super::{check_circles, check_facets, delaunay, knots, listed};
 use spmesh_geometry::configurations;
 use spmesh_reference::configurations::by_definition;
 
-/// Compares degrees up to 2, and returns the number of vertices of the largest link on the way.
+/// Compares degrees up to 2, and returns the number of vertices of the largest link.
 fn assert_definition(points: &[[f64; 2]]) -> usize {
     let (knots, all) = (knots(points), delaunay(points, 2));
     let expected = by_definition(points, 2);
@@ -15,7 +15,7 @@ fn assert_definition(points: &[[f64; 2]]) -> usize {
     links.map(|links| links.iter().map(|link| link.polygon.len()).max().unwrap_or(0)).max().unwrap_or(0)
 }
 
-/// The whole points of a circle: 32 with the squared radius 1105.
+/// The integer points of a circle: 32 points with the squared radius 1105.
 fn whole_circle() -> Vec<[f64; 2]> {
     let places = (-34..35).flat_map(|x| (-34..35).map(move |y| [x, y]));
     places.filter(|[x, y]| x * x + y * y == 1105).map(|place| place.map(f64::from)).collect()

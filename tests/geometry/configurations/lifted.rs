@@ -8,7 +8,7 @@ use spmesh_reference::sets::Random;
 
 type Point = [i64; 3];
 
-/// Side of d against the plane of a, b, c: positive if they are clockwise seen from d.
+/// The side of the plane of a, b, c where d lies: positive if a, b, c are clockwise seen from d.
 fn side([a, b, c, d]: [Point; 4]) -> i128 {
     let [p, q, r] = [a, b, c].map(|v| [0, 1, 2].map(|axis| i128::from(v[axis] - d[axis])));
     p[0] * (q[1] * r[2] - q[2] * r[1]) - p[1] * (q[0] * r[2] - q[2] * r[0])
@@ -16,7 +16,8 @@ fn side([a, b, c, d]: [Point; 4]) -> i128 {
 }
 
 /// All boundary-interior configurations of degree k (thesis 7.1): planes through three points with k points
-/// on one side. Seen from that side, the triple is clockwise. Those whose side is below come first.
+/// on one side. Seen from that side, the triple is clockwise. Returns the configurations whose side is below,
+/// and the number of the others.
 fn by_definition(points: &[Point], k: usize) -> (Vec<Configuration>, usize) {
     let count = points.len() as u32;
     let at = |id: u32| points[id as usize];
@@ -52,7 +53,8 @@ fn random_points(random: &mut Random, count: usize) -> Vec<[i64; 2]> {
     (0..count).map(|_| [random.integer(-500, 500), random.integer(-500, 500)]).collect()
 }
 
-/// Compares projective configurations with the definition, and all of the convex set with the formula.
+/// Compares projective configurations with the definition, and the number of all configurations of the convex
+/// set with the formula.
 fn assert_projective(points: &[[i64; 2]], heights: &[i64], lift: Lift) {
     let knots = knots(&points.iter().map(|p| p.map(|c| c as f64)).collect::<Vec<_>>());
     let lifted: Vec<Point> = points.iter().zip(heights).map(|(p, &h)| [p[0], p[1], h]).collect();

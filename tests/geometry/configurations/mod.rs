@@ -19,7 +19,7 @@ use spmesh_geometry::configurations::{self, Configurations, Knots, Rule};
 use spmesh_reference::configurations::Configuration;
 use spmesh_reference::normalised;
 
-/// Knots that must be fine.
+/// The knots at the points, which must be valid.
 fn knots(points: &[[f64; 2]]) -> Knots {
     Knots::new(points.to_vec()).expect("finite points")
 }

@@ -1,4 +1,4 @@
-//! Link triangulation by every rule, from any triangulation: assertions hold, and facets match.
+//! Link triangulation by every rule, from any triangulation: assertions hold and facets match.
 
 use super::{check_circles, check_facets, knots};
 use spmesh_audit::configurations::FacetCounts;
@@ -6,7 +6,7 @@ use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 use spmesh_reference::configurations::lines;
 use spmesh_reference::sets::Random;
 
-/// What one run went through.
+/// Statistics of one run.
 #[derive(Debug, Default)]
 struct Tally {
     links: usize,
@@ -46,7 +46,7 @@ fn random_knots(random: &mut Random) -> Vec<[f64; 2]> {
     points
 }
 
-/// Goes to `degree` with a rule of its own for each, and checks everything on the way.
+/// Runs up to `degree` with a random rule for each degree, and checks every step.
 fn run(seed: u64, degree: usize, tally: &mut Tally) {
     let mut random = Random::new(seed);
     let points = random_knots(&mut random);
@@ -81,7 +81,7 @@ fn infinite(configurations: &Configurations) -> Vec<([u32; 2], Vec<u32>)> {
     all
 }
 
-/// Links against configurations and facets.
+/// Compares the counts of links with configurations and facets.
 fn check_counts(
     knots: &Knots,
     lower: &Configurations,
@@ -105,12 +105,12 @@ fn check_counts(
     tally.configurations += upper.len();
 }
 
-/// Runs of one test: a quarter of all, so that processors share them.
+/// Runs of each of the four long tests, which run in parallel.
 const RUNS: u64 = 500;
 const RUNS_QUICK: u64 = 12;
 
-/// Runs with `count` seeds from `first` on. Their links must be varied: at least `null_min` null links in
-/// each run on average.
+/// Runs `count` seeds, starting with `first`. The links must be varied: more than `null_min` null links per
+/// run on average.
 fn any_rule(first: u64, count: u64, null_min: u64) {
     let mut tally = Tally::default();
     (first..first + count).for_each(|seed| run(seed, 6, &mut tally));

@@ -13,8 +13,8 @@ const SPLITS: [ZpSplit; 4] = [
     ZpSplit { is_falling: true, is_upright: true },
 ];
 
-/// A box spline of integral one, by its recurrence (de Boor and Höllig, 1982), from the coordinates in the
-/// first two directions.
+/// A box spline of integral one, by its recurrence (de Boor and Höllig, 1982), on coordinates along the first
+/// two directions.
 fn box_spline(x: [f64; 2], directions: &[[f64; 2]]) -> f64 {
     let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
     let pairs = (0..directions.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
@@ -61,7 +61,7 @@ fn face_functions(functions: &[Function]) -> Vec<([u32; 4], &Function)> {
 #[test]
 fn box_splines_have_known_values() {
     let directions = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]];
-    // The ZP element is 1/2 amid its support, and its translates sum to one (Zwart, 1973).
+    // The ZP element is 1/2 at the middle of its support, and its translates sum to one (Zwart, 1973).
     assert!((box_spline([1.5, 0.5 + 1e-12], &directions) - 0.5).abs() < 1e-9);
     let x = [0.317, 0.291];
     let translates = (-4..5).flat_map(|i| (-4..5).map(move |j| [x[0] + f64::from(i), x[1] + f64::from(j)]));
@@ -86,7 +86,7 @@ fn half_the_sides_of_a_face_are_a_box_spline() {
             for _ in 0..200 {
                 let [u, v] = [random.unit() * 4.0 - 1.5, random.unit() * 4.0 - 1.5];
                 let found = value(&zp, &links, function, [at[0] + u, at[1] + v]);
-                // Of this box spline, the face at the centre has its lower left corner at (1, 0).
+                // The lower left corner of the centre face is at (1, 0) in this box spline.
                 let expected = box_spline([u + 1.0, v], &directions);
                 assert!((found - expected).abs() < 1e-14, "{split:?} {face:?} {u} {v}: {found} {expected}");
             }
@@ -138,7 +138,7 @@ fn shares_of_b_splines_sum_to_one() {
 fn patches_are_stitched() {
     let square = |origin, cells| Patch { origin, steps: [[1.0, 0.0], [0.0, 1.0]], cells };
     let slanted = Patch { origin: [0.0, 8.0], steps: [[1.0, 0.5], [-0.5, 1.0]], cells: [5, 4] };
-    // One above the other with T-junctions, one beside them with a gap, and one that is turned.
+    // One on top of the other with T-junctions, one beside them with a gap, and a slanted one.
     let all = [
         square([0.0, 0.0], [4, 4]),
         Patch { origin: [0.0, 4.0], steps: [[0.5, 0.0], [0.0, 0.5]], cells: [8, 5] },
@@ -151,7 +151,7 @@ fn patches_are_stitched() {
     let links = links_of(&stitched, &Rule::Delaunay);
     let functions = stitched.functions(&links).expect("pairs");
     let faces = face_functions(&functions);
-    // The upper cells of the first patch have knots on their sides.
+    // T-junctions take one row of cells from the first patch: its upper cells have knots on their sides.
     let inner = |cells: [usize; 2]| (cells[0] - 2) * (cells[1] - 2);
     assert_eq!(faces.len(), inner([4, 3]) + inner([8, 5]) + inner([5, 4]) + inner([5, 4]));
     let directions = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]];

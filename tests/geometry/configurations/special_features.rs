@@ -15,7 +15,7 @@ fn scattered(seed: u64, count: usize) -> Vec<[f64; 2]> {
     corners.into_iter().chain((0..count).map(|_| point())).collect()
 }
 
-/// A special set-up with its functions.
+/// A special triangulation with its links and functions.
 struct Built {
     special: Special,
     links: Links,
@@ -38,7 +38,7 @@ impl Built {
         function.terms.iter().map(|(set, factor)| factor * b_spline(&self.special.knots, link(set), x)).sum()
     }
 
-    /// The functions without those that need a special place.
+    /// The sum of all functions at a point.
     fn sum(&self, x: [f64; 2]) -> f64 {
         self.functions.iter().map(|function| self.value(function, x)).sum()
     }
@@ -48,14 +48,15 @@ impl Built {
     }
 }
 
-/// Triangles of the start by places, without flat ones.
+/// Triangles of the start as corner positions, without flat triangles.
 fn faces(special: &Special) -> Vec<[[f64; 2]; 3]> {
     let start = special.start.configurations();
     let faces = start.iter().map(|(triangle, _)| triangle.map(|id| special.knots.at(id)));
     faces.filter(|&[a, b, c]| area(a, b, c) != 0.0).collect()
 }
 
-/// The share of corner `v` of the triangle at `x`; zero if it is none.
+/// The barycentric coordinate of corner `v` in the triangle that contains `x`; zero if `v` is not a corner of
+/// it.
 fn share(faces: &[[[f64; 2]; 3]], v: [f64; 2], x: [f64; 2]) -> f64 {
     for &[a, b, c] in faces {
         let size = area(a, b, c);
@@ -112,7 +113,7 @@ fn splines_interpolate_at_sharp_corners() {
 #[test]
 fn linear_elements_are_interpolated() {
     let points = scattered(7, 40);
-    // A long polyline, and a triangle around nothing.
+    // A polyline of three knots, and a closed one around an empty triangle.
     let line = vec![4, 9, 14];
     let triangle = empty_triangle(&points, &line);
     let features = Features { lines: vec![line.clone(), triangle.clone()], ..Features::default() };
@@ -121,7 +122,7 @@ fn linear_elements_are_interpolated() {
     let spline = |x: [f64; 2]| -> f64 {
         let term = |function: &Function| match function.kind {
             FunctionKind::Vertex(v) => height(v) * built.value(function, x),
-            // All else may have any coefficients.
+            // All other functions may have any coefficients.
             _ => 1e3 * built.value(function, x),
         };
         built.functions.iter().map(term).sum()
@@ -140,7 +141,7 @@ fn linear_elements_are_interpolated() {
     assert!((spline(centre) - mean).abs() < 1e-9, "{} {mean}", spline(centre));
 }
 
-/// A closed polyline around a Delaunay triangle that shares no knot with a line, and lies off it.
+/// A closed polyline around a Delaunay triangle off the line; it shares no knot with the line.
 fn empty_triangle(points: &[[f64; 2]], line: &[u32]) -> Vec<u32> {
     let lines = Features { lines: vec![line.to_vec()], ..Features::default() };
     let special = special::features(&knots(points), &lines).expect("a line");
@@ -150,7 +151,7 @@ fn empty_triangle(points: &[[f64; 2]], line: &[u32]) -> Vec<u32> {
     vec![a, b, c, a]
 }
 
-/// How much the gradient of a function jumps across the middle parts of a segment, at most.
+/// The greatest jump of a function's gradient across a segment, at four places away from the ends.
 fn jump(built: &Built, function: &Function, [p, q]: [[f64; 2]; 2]) -> f64 {
     let (along, step) = ([q[0] - p[0], q[1] - p[1]], 1e-5);
     let at = |t: f64, side: f64| {
@@ -161,7 +162,7 @@ fn jump(built: &Built, function: &Function, [p, q]: [[f64; 2]; 2]) -> f64 {
     [0.21, 0.43, 0.67, 0.83].iter().map(|&t| second(t).abs()).fold(0.0, f64::max)
 }
 
-/// An edge between knots amid others.
+/// An edge between two inner knots.
 fn inner_edge(points: &[[f64; 2]]) -> [u32; 2] {
     let start = configurations::delaunay(&knots(points)).expect("triangles");
     let off = |v: u32| {
@@ -173,7 +174,7 @@ fn inner_edge(points: &[[f64; 2]]) -> [u32; 2] {
     [a, b]
 }
 
-/// Scattered points, an edge between them, and what is built with a crease along it.
+/// Scattered points, an inner edge, and the set-up with a crease along it.
 fn with_crease(has_sharp_ends: bool, rule: &Rule) -> (Vec<[f64; 2]>, [u32; 2], Built) {
     let points = scattered(3, 60);
     let edge = inner_edge(&points);
@@ -264,7 +265,8 @@ fn random_segments_are_edges_or_cross() {
     assert!(fine > 20 && crossed > 10 && through > 10, "{fine} {crossed} {through}");
 }
 
-/// Segments are edges of a triangulation of the hull with all knots, which `of_triangles` checks on its own.
+/// Asserts that the segments are edges of a triangulation. `of_triangles` checks that it covers the hull and
+/// has all knots.
 fn assert_edges(special: &Special, segments: &[[u32; 2]]) {
     let start = special.start.configurations();
     let triangles: Vec<[u32; 3]> = start.iter().map(|(triangle, _)| triangle).collect();
@@ -286,8 +288,7 @@ fn constrained_triangulations_are_delaunay_elsewhere() {
     let delaunay = configurations::delaunay(&plain).expect("triangles");
     let is_old = |triangle: &[u32; 3]| delaunay.iter().any(|(other, _)| other == *triangle);
     let new: Vec<[u32; 3]> = start.iter().map(|(triangle, _)| triangle).filter(|t| !is_old(t)).collect();
-    // What is new is all around the segment: each new triangle has a vertex on each of its sides, or is at
-    // it.
+    // Fewer than half of the triangles are new, and no triangle crosses the segment.
     let (p, q) = (points[4], points[5]);
     let sides = |t: &[u32; 3]| t.map(|v| area(p, q, special.knots.at(v)));
     assert!(!new.is_empty() && new.len() < start.len() / 2, "{} of {}", new.len(), start.len());
@@ -297,7 +298,7 @@ fn constrained_triangulations_are_delaunay_elsewhere() {
     }));
 }
 
-/// Whether a triangle has points of the segment inside, by samples.
+/// Whether sampled points of the segment are inside the triangle.
 fn meets_inside(special: &Special, triangle: &[u32; 3], [p, q]: [[f64; 2]; 2]) -> bool {
     let [a, b, c] = triangle.map(|v| special.knots.at(v));
     (1..400).any(|i| {

@@ -6,8 +6,8 @@ pub fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0
 }
 
-/// Simplex spline by the recurrence of Micchelli, at a point in general position; from the triple of largest
-/// area.
+/// Simplex spline by Micchelli's recurrence on the triple of knots with the largest area. Domain: points in
+/// general position.
 pub fn simplex_spline(x: [f64; 2], knots: &[[f64; 2]]) -> f64 {
     let count = knots.len();
     let mut best = (0.0, [0, 0, 0]);
@@ -45,7 +45,8 @@ pub fn sum_at(knots: &Knots, configurations: &configurations::Configurations, x:
     terms.sum()
 }
 
-/// A B-spline of the degree of the link's set, collected from the link (equation 8.1 of the thesis).
+/// The B-spline of a link, a sum over its edges (equation 8.1 of the thesis). Its degree is the size of the
+/// link's set.
 pub fn b_spline(knots: &Knots, link: configurations::Link<'_>, x: [f64; 2]) -> f64 {
     let edges = link.edges().filter(|edge| !edge.contains(&FARAWAY));
     let terms = edges.map(|edge| {

@@ -1,4 +1,4 @@
-//! Sets of thousands of points, and what must not make a difference.
+//! Sets of thousands of points, and changes of the input that must not change the result.
 
 use super::promises::tetrahedra;
 use super::proved;
@@ -39,13 +39,13 @@ fn lattices() {
         let before = kernel.counts().perturbed;
         proved(&mut kernel, &points);
         assert!(kernel.counts().perturbed - before > points.len() as u64, "lattices are full of ties");
-        // With rounded coordinates, nearly.
+        // Rounded coordinates turn ties into near ties.
         let decimal: Vec<Point> = points.iter().map(|p| p.map(|c| c * 0.1 + 431.7)).collect();
         proved(&mut kernel, &decimal[..decimal.len() / 4]);
     }
 }
 
-/// A new point whose cavity is all there is, and points that are neighbours of all others.
+/// A point whose cavity is the whole mesh, and points that are all neighbours of each other.
 #[test]
 fn large_cavities() {
     let mut kernel = Kernel::new();
@@ -63,7 +63,7 @@ fn large_cavities() {
     let lines = (0..90).map(f64::from).flat_map(|t| [[t, 0.0, 0.0], [45.0, t - 45.0, 7.0]]);
     assert_eq!(proved(&mut kernel, &lines.clone().collect::<Vec<_>>()).tetrahedra().len(), 89 * 89);
     proved(&mut kernel, &lines.map(|p| p.map(|c| c * 0.1)).collect::<Vec<_>>());
-    // All are neighbours: a cyclic polytope.
+    // A cyclic polytope: all points are neighbours.
     let curve = clouds::of(&mut Random::new(1), Family::MomentCurve, 120);
     assert_eq!(proved(&mut kernel, &curve).tetrahedra().len(), 117 * 118 / 2);
     proved(&mut kernel, &clouds::of(&mut Random::new(1), Family::Paraboloid, 1_000));
@@ -107,7 +107,7 @@ fn the_order_of_insertion_makes_no_difference() {
     }
 }
 
-/// Tetrahedra as coordinates of their vertices.
+/// Tetrahedra as the sorted coordinates of their vertices.
 fn by_coordinates(points: &[Point], tetrahedra: &[[u32; 4]]) -> Vec<[[u64; 3]; 4]> {
     let mut set: Vec<[[u64; 3]; 4]> = tetrahedra
         .iter()
@@ -121,7 +121,7 @@ fn by_coordinates(points: &[Point], tetrahedra: &[[u32; 4]]) -> Vec<[[u64; 3]; 4
     set
 }
 
-/// What scales and offsets change is the arithmetic: integers of each width, floats, and any finite numbers.
+/// Scales and offsets select the arithmetic: integers of each width, floats, or any finite numbers.
 #[test]
 fn exact_scales_and_offsets_make_no_difference() {
     let mut kernel = Kernel::new();
@@ -143,7 +143,7 @@ fn exact_scales_and_offsets_make_no_difference() {
     }
 }
 
-/// The same tetrahedra, inserted in another order.
+/// Another order of insertion gives the same tetrahedra.
 #[test]
 fn symmetries_keep_the_tetrahedra_of_points_in_general_position() {
     let mut kernel = Kernel::new();

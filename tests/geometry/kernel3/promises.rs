@@ -1,10 +1,10 @@
-//! What the 3D kernel promises of its result, all of it proved by independent code.
+//! Proofs of all promises of the 3D kernel, by code that shares nothing with it.
 
 use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_reference::space::{Claim, Point, Space, distinct};
 use spmesh_reference::tetrahedra::as_set;
 
-/// Proves that `mesh` is the canonical tetrahedralization of `points`, with all that goes with it, or says
+/// Proves that `mesh` is the canonical tetrahedralization of `points` and keeps all other promises, or says
 /// what is wrong.
 pub fn prove(points: &[Point], mesh: &Tetrahedralization) -> Result<(), String> {
     let vertices = prove_vertices(points, mesh)?;
@@ -25,7 +25,8 @@ pub fn prove(points: &[Point], mesh: &Tetrahedralization) -> Result<(), String> 
     Space::new(&vertices).prove(&claims)
 }
 
-/// Vertices are the distinct points, each the first of its equals; duplicates are the others.
+/// Proves that the vertices are the distinct points, each the first of its equals, and the duplicates all
+/// others.
 fn prove_vertices(points: &[Point], mesh: &Tetrahedralization) -> Result<Vec<Point>, String> {
     let (_, first) = distinct(points);
     let mut is_vertex = vec![false; points.len()];

@@ -9,14 +9,14 @@ use spmesh_reference::space::{Point, Space, distinct};
 use spmesh_reference::tetrahedra as by_definition;
 use std::borrow::Cow;
 
-/// Tetrahedralizes, proves, and compares with what `reference` says of the distinct points.
+/// Tetrahedralizes, proves, and compares with the `reference` for the distinct points.
 fn assert_tetrahedra(kernel: &mut Kernel, points: &[Point], reference: impl Fn(&[Point]) -> Vec<[u32; 4]>) {
     let found = tetrahedra(&proved(kernel, points));
     let (kept, first) = distinct(points);
     let indices: Vec<u32> =
         (0..).zip(&first).filter(|&(i, &first)| i == first).map(|(i, _)| i as u32).collect();
     let expected = reference(&kept).into_iter().map(|t| t.map(|v| indices[v as usize]));
-    // Indices keep their order, so that the set does.
+    // The map of indices is monotonic, so the set stays sorted.
     assert_eq!(found, expected.collect::<Vec<_>>(), "let points = vec!{points:?};");
 }
 
@@ -51,7 +51,7 @@ fn every_family() {
     let mut kernel = Kernel::new();
     let sizes = [4, 6, 9, 12, 15, 18, 22, 26, 30];
     for (family, size) in FAMILIES.into_iter().flat_map(|family| sizes.map(move |size| (family, size))) {
-        // Decisions about numbers of all sizes are slow, and so are those that no filter makes.
+        // Exact decisions are slow for coordinates of all magnitudes, and where the filter rarely decides.
         let is_slow = matches!(family, Family::Wild | Family::RoundedSphere | Family::Cluster);
         let mut random = Random::new(size as u64);
         let mut points = clouds::of(&mut random, family, size);
@@ -128,7 +128,7 @@ fn points_in_a_plane_have_no_tetrahedra() {
     for flat in [vec![], equal, line, grid, wall] {
         let mesh = proved(&mut kernel, &flat);
         assert!(mesh.tetrahedra().is_empty() && mesh.hull_facets == 0);
-        // A single point aside sees all of them.
+        // One point off the plane sees all of them.
         let mut aside = flat.clone();
         aside.push([7.0, 1e-3, 100.0]);
         proved(&mut kernel, &aside);
