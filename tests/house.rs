@@ -1,4 +1,4 @@
-//! The rules of the house: which crate may use which, and how large files may become.
+//! Rules of the project: which crate may use which, and how large files may become.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,20 +18,20 @@ const ARROWS: [(&str, &[&str]); 9] = [
     ("cli", &["audit", "core", "geometry", "io", "model", "splines", "stream", "view"]),
 ];
 
-/// Crates of the workspace that a tool may use: never another tool.
+/// Crates of the workspace that any tool may use. No tool may use another.
 const OF_TOOLS: &[&str] = &["io", "geometry", "stream", "model", "core"];
-/// Crates beyond these, by tool.
+/// Additional crates, by tool.
 const OF_TOOL: [(&str, &[&str]); 1] = [("splinefit", &["splines"])];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
 const PACKAGES: [(&str, &str); 4] =
     [("clap", "cli"), ("anyhow", "cli"), ("faer", "splines"), ("resvg", "view")];
 
-/// Lines of a source file, at most.
+/// Most lines of a source file.
 const LINES_MAX: usize = 450;
-/// Source files that may be longer, and why.
+/// Source files that may be longer, with the reason.
 const LONGER: [(&str, &str); 1] = [("src/io/source/twin.rs", "one grammar, read by one state machine")];
-/// Endings of the names of source files.
+/// Extensions of source files.
 const SOURCES: [&str; 4] = ["rs", "js", "css", "html"];
 
 /// Documents of limited length. Units: bytes.
@@ -91,7 +91,7 @@ fn dependencies(manifest: &str) -> Vec<String> {
     for line in manifest.lines().map(str::trim) {
         if let Some(table) = line.strip_prefix('[') {
             let table = table.trim_end_matches(']');
-            // A table of its own for one dependency: `[dependencies.name]`.
+            // A separate table for one dependency: `[dependencies.name]`.
             found.extend(table.strip_prefix("dependencies.").map(str::to_string));
             is_inside = table == "dependencies" || table.ends_with(".dependencies");
         } else if is_inside && !line.is_empty() && !line.starts_with('#') {

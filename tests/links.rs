@@ -39,7 +39,7 @@ fn collect(folder: &Path, documents: &mut Vec<PathBuf>) {
     }
 }
 
-/// Why a link leads nowhere, if so.
+/// What is wrong with a link, if anything.
 fn fault(document: &Path, target: &str) -> Option<String> {
     if target.contains("://") || target.starts_with("mailto:") {
         return None;
@@ -68,8 +68,7 @@ fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
     text.lines().zip(1..).filter_map(move |(line, number)| {
         let is_fence = line.trim_start().starts_with("```") || line.trim_start().starts_with("~~~");
         is_fenced ^= is_fence;
-        // Four spaces start a block of code after a blank line only; elsewhere they continue a paragraph or a
-        // list.
+        // After a blank line, four spaces start a code block; elsewhere they continue a paragraph or a list.
         is_indented = line.starts_with("    ") && (was_blank || is_indented);
         was_blank = line.trim().is_empty();
         (!is_fence && !is_fenced && !is_indented).then_some((number, line))
@@ -119,7 +118,7 @@ fn anchors(text: &str) -> Vec<String> {
 
 /// The anchor of a heading: lower case, without punctuation, with hyphens for spaces.
 fn anchor_of(title: &str) -> String {
-    // Of a link in a heading, the text counts.
+    // Of a link in a heading, the anchor has only the text.
     let mut text = String::new();
     let mut rest = title.trim();
     while let Some((before, after)) = rest.split_once("](") {

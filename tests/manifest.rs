@@ -1,4 +1,4 @@
-//! What the manifests promise.
+//! Promises of the manifests.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ fn packages() -> Vec<Value> {
     let version = Command::new("rustc").arg("-vV").output().expect("rustc runs");
     let version = String::from_utf8(version.stdout).expect("text");
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
-    // Only what this platform needs was downloaded to build the tests.
+    // `--filter-platform`: building the tests has downloaded only the packages of this platform.
     let flags = ["--offline", "--locked", "--all-features", "--format-version=1", "--filter-platform", host];
     let metadata = Command::new(env!("CARGO"))
         .arg("metadata")
@@ -61,7 +61,7 @@ fn no_example_in_documentation_goes_untested() {
     }
 }
 
-/// Rust files below a folder, but for those of other packages.
+/// Adds the Rust files below a folder, except the files of nested packages.
 fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).expect("a folder") {
         let path = entry.expect("an entry").path();
@@ -75,7 +75,7 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Whether a doc comment has a block of code that is not plain text.
+/// Whether a doc comment has a code block that is not plain text.
 fn has_example(text: &str) -> bool {
     let doc = |line: &'_ str| -> Option<String> {
         let line = line.trim_start();

@@ -1,4 +1,4 @@
-//! Files are complete or not there.
+//! Output files are complete or absent.
 
 use std::fs;
 use std::io::Write;

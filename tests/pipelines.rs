@@ -7,10 +7,10 @@ use std::process::Stdio;
 use crate::programs::{assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
 use crate::vectors::run_python;
 
-/// The streaming triangulators, and the flags of spfinalize for them.
+/// The streaming triangulators, and their flags for spfinalize.
 const TRIANGULATORS: [(&str, &[&str]); 2] = [("spdelaunay2d", &[]), ("spdelaunay3d", &["--octree"])];
 
-/// A chunked stream of a cloud that is much longer than a pipe holds.
+/// A chunked stream of a cloud, much longer than the capacity of a pipe.
 fn long_stream(arguments: &[&str]) -> Vec<u8> {
     let arguments = [arguments, &["--cell-points", "2000", "-"]].concat();
     let output = run("spfinalize", &arguments, cloud(60_000).as_bytes());
@@ -75,7 +75,7 @@ fn the_python_reader_accepts_what_the_pipeline_writes() {
     }
 }
 
-/// The triangles of a mesh by their coordinates, sorted, from its text twin.
+/// The triangles of a mesh as coordinates, sorted, from its text twin.
 fn triangles(mesh: &[u8]) -> Vec<[String; 3]> {
     let output = run("spconvert", &["--to", "text"], mesh);
     assert!(output.status.success(), "{:?}", outcome(&output));
@@ -144,7 +144,7 @@ fn tiles_of_a_real_file_merge_to_the_whole() {
     assert!(run("spinfo", &["--audit", "-"], &merged).status.success());
 }
 
-/// The tetrahedra of a mesh by their coordinates, sorted, from its text twin.
+/// The tetrahedra of a mesh as coordinates, sorted, from its text twin.
 fn tetrahedra(mesh: &[u8]) -> Vec<[String; 4]> {
     let output = run("spconvert", &["--to", "text"], mesh);
     assert!(output.status.success(), "{:?}", outcome(&output));
@@ -233,7 +233,7 @@ fn a_killed_producer_leaves_no_result() {
         let mesh = folder.path().join("mesh.spm");
         delaunay.args(["-o", mesh.to_str().unwrap()]).stdin(Stdio::piped());
         let mut delaunay = delaunay.spawn().unwrap();
-        // Forward a part of the stream; the finalizer then waits with the rest until it is killed.
+        // Forward a part of the stream. The finalizer then blocks on the rest until it is killed.
         let mut part = vec![0; 300_000];
         finalize.stdout.as_mut().unwrap().read_exact(&mut part).unwrap();
         std::io::Write::write_all(delaunay.stdin.as_mut().unwrap(), &part).unwrap();

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
-/// A command for a tool of this crate.
+/// A command for a tool of the project.
 pub fn tool(name: &str) -> Command {
     let path = match name {
         "spfinalize" => env!("CARGO_BIN_EXE_spfinalize"),
@@ -31,7 +31,7 @@ pub fn run(name: &str, arguments: &[&str], input: &[u8]) -> Output {
     let mut child = tool(name).args(arguments).stdin(Stdio::piped()).spawn().expect("the tool starts");
     let mut stdin = child.stdin.take().expect("stdin is piped");
     let input = input.to_vec();
-    // A program may stop reading early; that is not a failure of the test.
+    // The program may stop reading early; that does not fail the test.
     let feeder = std::thread::spawn(move || drop(stdin.write_all(&input)));
     let output = child.wait_with_output().expect("the tool ends");
     feeder.join().expect("the feeder ends");
@@ -64,8 +64,8 @@ pub fn assert_outcome(name: &str, arguments: &[&str], input: &[u8], code: i32, p
     assert!(message.contains(part) && !message.contains("panicked"), "{arguments:?}: {message}");
 }
 
-/// Asserts that a tool refuses a stream that is cut or damaged anywhere, and leaves neither a new file nor a
-/// change in an old one; `names` are those of an old and a new output.
+/// Asserts that a tool refuses a stream that is cut or damaged anywhere, leaves no new file, and does not
+/// change an old one. `names` are a new and an old output.
 pub fn assert_damage_leaves_no_file(name: &str, arguments: &[&str], names: [&str; 2], stream: &[u8]) {
     let folder = Folder::new();
     folder.file(names[0], "old");
@@ -93,7 +93,7 @@ pub fn sample(name: &str) -> String {
     path.to_str().expect("the path is UTF-8").to_string()
 }
 
-/// Lines of a scattered cloud of `count` points, each different in x and y.
+/// Lines of a scattered cloud of `count` points; no two share an x or a y.
 pub fn cloud(count: u64) -> String {
     let point = |i: u64| (i * 7919 % 100_003, i * 104_729 % 99_991, i % 97);
     (0..count).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()
@@ -107,7 +107,7 @@ pub fn mesh_of_cloud(count: u64) -> Vec<u8> {
     mesh.stdout
 }
 
-/// A temporary folder that lasts as long as a test.
+/// A temporary folder that is removed at the end of a test.
 pub struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -123,7 +123,7 @@ impl Folder {
         self.root().join(name).to_str().expect("the path is UTF-8").to_string()
     }
 
-    /// Writes a file, in folders that are made for it.
+    /// Writes a file and creates the folders for it.
     pub fn file(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
         let path = self.root().join(name);
         fs::create_dir_all(path.parent().expect("a folder")).expect("a temporary folder");
@@ -133,7 +133,7 @@ impl Folder {
         path
     }
 
-    /// As [`Folder::file`], with the path as an argument of a tool.
+    /// As [`Folder::file`]; returns the path as a tool's argument.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) -> String {
         self.file(name, content);
         self.path(name)

@@ -1,4 +1,4 @@
-//! Rasters are what other programs read.
+//! Other programs can read the rasters.
 
 use std::io::Cursor;
 
@@ -11,7 +11,7 @@ use tiff::tags::Tag;
 
 const GRID: Grid = Grid { left: 10.0, top: 250.0, step: 0.5, columns: 700, rows: 300 };
 
-/// The value of a cell: smooth, rough, not known, or extreme.
+/// The value of a cell: smooth, rough, missing, or extreme.
 fn value(column: u32, row: u32) -> f32 {
     let x = f64::from(column);
     match row % 4 {
@@ -28,7 +28,7 @@ fn row(number: u32, values: &mut [f32]) -> spmesh_core::error::Result<()> {
     Ok(())
 }
 
-/// What is expected in a file.
+/// The expected value in a file.
 fn stored(column: u32, row: u32) -> f32 {
     let value = value(column, row);
     if value.is_nan() { -9999.0 } else { value }
@@ -141,7 +141,7 @@ fn failures_stop_the_file() {
 /// An image of a file: the numbers of its columns and rows, and its values.
 type Image = ([u32; 2], Vec<f32>);
 
-/// All images of a file, in order, and where the first byte of the data of each is.
+/// All images of a file in order, and the offset of the first data byte of each.
 fn images(bytes: &[u8]) -> (Vec<Image>, Vec<u64>) {
     let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap().with_limits(Limits::unlimited());
     let (mut images, mut starts) = (Vec::new(), Vec::new());
@@ -158,7 +158,8 @@ fn images(bytes: &[u8]) -> (Vec<Image>, Vec<u64>) {
     }
 }
 
-/// An image with half as many cells along each axis: the means of four cells, or the first one of these.
+/// An image with half as many cells along each axis. Each cell is the mean of the known values among four
+/// cells, or the first of these.
 fn halved(([columns, rows], values): &Image, reduction: Reduction) -> Image {
     let size = [columns.div_ceil(2), rows.div_ceil(2)];
     let cell = |x: u32, y: u32| {
@@ -188,7 +189,7 @@ fn overviews_are_halves_and_stand_before_the_image() {
             let mut output = Cursor::new(Vec::new());
             let smooth = |number: u32, values: &mut [f32]| {
                 row(number, values)?;
-                // A hole that is larger than a cell of the first overviews.
+                // A hole that covers whole cells of the first overviews.
                 let hole = values.len() / 3..values.len() / 2;
                 values[hole].iter_mut().filter(|_| number > 8).for_each(|value| *value = f32::NAN);
                 Ok(())
@@ -212,7 +213,7 @@ fn staged_files_have_the_same_cells_in_rows() {
     write_tiles(&mut output, &staged, |tiles| {
         let mut values = vec![0.0; TILE * TILE];
         for (column, row) in [(2, 1), (0, 0), (1, 0)] {
-            // The number for cells without data is kept apart from such as have it by chance.
+            // Values that equal the no-data value by chance are kept apart from missing ones.
             tiles.tile(column, row, &vec![7.0; TILE * TILE])?;
             assert!(tiles.read(column, row, &mut values)?);
             assert!(values.iter().all(|value| (*value - 7.0).abs() < 1e-5), "{column} {row}");
@@ -234,7 +235,7 @@ fn grids_are_read_from_files() {
     let folder = crate::programs::Folder::new();
     let path = folder.write("a.tif", file(&GRID, RasterFormat::GeoTiff));
     assert_eq!(Grid::of_file(path.as_ref()).unwrap(), GRID);
-    // The same with the place of a centre instead of a corner.
+    // The file again, with the position of a cell's centre instead of its corner.
     let mut bytes = file(&GRID, RasterFormat::GeoTiff);
     let key = [1025u16, 0, 1, 1].map(u16::to_le_bytes);
     let place = bytes.windows(8).position(|window| window == key.as_flattened()).unwrap();

@@ -35,7 +35,7 @@ fn exactly_the_share_is_chosen_and_the_seed_decides() {
     assert_eq!(read(Share::Count(26214), 7).points, points.points);
     let number = |[x, y, z, t]: [f64; 4]| ((t * 16.0 + z) * 16.0 + y) * 16.0 + x;
     assert!(points.points.is_sorted_by(|a, b| number(*a) < number(*b)));
-    // About as many in each half of t: six standard deviations are 480.
+    // Each half of t has about as many points: six standard deviations are 480.
     let late = points.points.iter().filter(|point| point[3] >= 8.0).count();
     assert!(late.abs_diff(13107) < 480, "{late}");
     assert_eq!(read(Share::Part(1.0), 1).points.len(), 65536);
@@ -54,7 +54,7 @@ fn conditions_and_shares_go_together() {
 
 #[test]
 fn a_share_of_a_huge_grid_needs_no_more_than_itself() {
-    // 2^40 sites: going over them would take hours, and holding them 35 terabytes.
+    // 2^40 sites: iterating over them would take hours, and storing them 35 terabytes.
     let points = read_points4(&chosen([1024; 4], Share::Count(1000), 3)).unwrap();
     assert_eq!((points.points.len(), points.sites), (1000, 1 << 40));
     assert!(points.points.iter().flatten().all(|coordinate| (0.0..1024.0).contains(coordinate)));

@@ -1,4 +1,4 @@
-//! Points of four dimensions: every point of the input that is wanted, or an error that says what is wrong
+//! Points of four dimensions: every selected point of the input, or an error that says what is wrong and
 //! where.
 
 mod grids;
@@ -23,7 +23,7 @@ fn all(from: From4) -> Request {
     Request { from, spacing: Spacing::Index, selection: Selection::default(), temp_dir: None }
 }
 
-/// As `all`, of which those are wanted that fulfil a condition.
+/// A request for the points that fulfil a condition.
 fn with_condition(from: From4, condition: &str) -> Request {
     let condition = Some(condition.parse().expect("a condition"));
     Request { selection: Selection { condition, ..Selection::default() }, ..all(from) }

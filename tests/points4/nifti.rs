@@ -6,14 +6,14 @@ use spmesh_io::source::points4::{From4, Request, Selected4, Spacing, read_points
 use super::{all, assert_fails, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;
 
-/// A header of NIfTI-1 with numbers in one byte order.
+/// A NIfTI-1 header in one of the two byte orders.
 struct Header {
     bytes: Vec<u8>,
     is_big: bool,
 }
 
 impl Header {
-    /// That of a volume of 2 x 1 x 1 x 2 values of 16 bits.
+    /// The header of a volume of 2 x 1 x 1 x 2 values of 16 bits.
     fn new(is_big: bool) -> Header {
         let mut header = Header { bytes: vec![0; 352], is_big };
         header.bytes[344..348].copy_from_slice(b"n+1\0");
@@ -41,7 +41,7 @@ impl Header {
         self
     }
 
-    /// The file with the values 1, 2, 3 and -4.
+    /// The file: the header and the values 1, 2, 3 and -4.
     fn file(mut self) -> Vec<u8> {
         for number in [1i16, 2, 3, -4] {
             self.bytes.extend(if self.is_big { number.to_be_bytes() } else { number.to_le_bytes() });

@@ -6,14 +6,14 @@ use spmesh_io::source::points4::{From4, Request, Selected4, Spacing, read_points
 use super::{all, gzip, read, sample, value_at, with_condition};
 use crate::programs::Folder;
 
-/// A volume of 2 x 2 x 1 x 2 bytes from 1 to 8, with more fields.
+/// A volume of 2 x 2 x 1 x 2 bytes from 1 to 8, with additional header fields.
 fn small(fields: &str) -> Vec<u8> {
     let mut file = format!("NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\n{fields}\n");
     file.extend('\u{1}'..='\u{8}');
     file.into_bytes()
 }
 
-/// As `read`, in world units.
+/// As `read`, with coordinates in world units.
 fn read_world(content: &[u8]) -> Result<Selected4> {
     let folder = Folder::new();
     let from = From4::File(folder.file("input", content));
@@ -104,7 +104,7 @@ fn all_encodings_and_byte_orders_give_the_same_values() {
     );
     let skipped = [b"a\n", &gzip(&[b"abc", &be[..]].concat())[..]].concat();
     assert_eq!(volume("encoding: gz\r\nendian: big\r\nlineskip: 1\r\nbyte skip: 3", &skipped), expected);
-    // Bytes behind the values are nobody's.
+    // Bytes after the values are ignored.
     assert_eq!(volume("encoding: raw\r\nendian: little", &[&le[..], b"more"].concat()), expected);
 }
 
@@ -120,7 +120,7 @@ fn a_volume_that_is_compressed_as_a_whole_is_read() {
     assert_eq!(values(read(gzip(&small(""))).unwrap())[7], 8.0);
 }
 
-/// Points of a detached header in a folder of its own, with these data files beside it.
+/// Points of a detached header in a new folder, beside these data files.
 fn detached(field: &str, files: &[(&str, &[u8])]) -> Result<Selected4> {
     let folder = Folder::new();
     files.iter().for_each(|(name, content)| drop(folder.file(name, content)));

@@ -1,4 +1,4 @@
-//! NRRD headers and data that are not right.
+//! Damaged NRRD headers and data.
 
 use spmesh_core::error::ErrorKind;
 use spmesh_io::source::points4::{From4, read_points4};
@@ -100,7 +100,7 @@ fn truncated_values_are_counted() {
 fn compressed_values_are_read_no_further_than_their_size() {
     let header = GOOD.split("raw\n\n").next().unwrap();
     let volume = |data: &[u8]| [header.as_bytes(), b"gzip\n\n", data].concat();
-    // 64 MB of zeros; the cut is behind the first 8.
+    // 64 MB of zeros in gzip; even when cut, the data has the 8 bytes that the volume needs.
     let bomb = gzip(&vec![0; 1 << 26]);
     assert_eq!(read(volume(&bomb[..1000])).unwrap().points.len(), 8);
     assert_fails(read(volume(&gzip(b"1234"))), ErrorKind::Malformed, &["found 4 of 8 values"]);

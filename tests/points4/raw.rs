@@ -1,4 +1,4 @@
-//! Volumes that are nothing but numbers.
+//! Volumes of raw numbers without a header.
 
 use spmesh_core::error::{ErrorKind, Result};
 use spmesh_io::source::points4::{From4, RawLayout, Selected4, parse_sizes, read_points4};
@@ -55,7 +55,7 @@ fn sizes_that_do_not_fit_the_file_are_refused() {
 fn a_compressed_volume_is_told_by_its_name() {
     let bytes = gzip(&[1, 2, 3, 4]);
     assert_eq!(read("volume.raw.gz", &bytes, "4x1x1x1:u8").unwrap().values.unwrap(), [1.0, 2.0, 3.0, 4.0]);
-    // What starts like gzip data may be numbers.
+    // Raw data may start like gzip data.
     let plain = read("volume.raw", &bytes, &format!("{}x1x1x1:u8", bytes.len())).unwrap();
     assert_eq!(plain.values.unwrap()[..2], [31.0, 139.0]);
 }

@@ -1,4 +1,4 @@
-//! Points of volumes that are chosen by their values and at random.
+//! Points of volumes, selected by their values and at random.
 
 use spmesh_io::source::points4::{From4, Share, read_points4};
 
@@ -17,7 +17,8 @@ fn values_decide_and_go_with_their_points() {
     let folder = Folder::new();
     let points = read_points4(&with_condition(volume(&folder), "value >= 0.5 and x != 3")).unwrap();
     let values = points.values.unwrap();
-    // Of 1024 numbers 102 end with 9; an eighth has x = 3, of which 25 end with 9 (1059 and every 40th).
+    // Of the 1024 values from 0.5 on, 102 are missing. Of the 128 with x = 3, 25 are missing (number 1059 and
+    // every 40th after it).
     assert_eq!((points.points.len(), values.len()), (1024 - 102 - (128 - 25), 819));
     for ([x, y, z, t], value) in points.points.iter().zip(values) {
         assert_eq!((x + 8.0 * (y + 8.0 * (z + 8.0 * t))) / 2048.0, value);

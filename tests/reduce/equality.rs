@@ -1,4 +1,4 @@
-//! One set of triangles, however the input comes.
+//! The set of triangles is the same however the input comes.
 
 use spmesh_model::bounds::{Point, Region};
 use spmesh_reduce::{Options, Part};
@@ -75,7 +75,7 @@ fn degenerate_sets_do_not_depend_on_cells() {
     }
 }
 
-/// A hundred sets of each sort, cut up at random, against the independent reference.
+/// Compares a hundred sets from `make`, cut up at random, with the independent reference.
 fn assert_hundred_sets(make: impl Fn(&mut Random, usize, usize) -> Vec<[i64; 2]>) {
     for set in 0..100 {
         let mut random = Random::new(9000 + set as u64);

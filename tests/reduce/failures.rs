@@ -1,4 +1,4 @@
-//! Runs that fail: with any number of threads they end, with the kind of error that fits, and without END.
+//! Runs that fail end with any number of threads, with a fitting error kind, and without an END block.
 
 use std::io::{self, Cursor, Read, Write};
 use std::sync::mpsc::{Receiver, channel};
@@ -21,7 +21,7 @@ fn points() -> Vec<u8> {
     stream(&points, GRID, Tagging::Chunked(4), &mut random)
 }
 
-/// Takes so many bytes and then fails, or panics if there is no error to fail with.
+/// Accepts `room` bytes, then fails with `error`, or panics if there is none.
 struct Failing {
     room: usize,
     error: Option<io::ErrorKind>,
@@ -41,7 +41,7 @@ impl Write for Failing {
     }
 }
 
-/// An input that says nothing more after its bytes: it waits for as long as the test holds the other end.
+/// An input that blocks after its bytes, for as long as the test holds the other end of the channel.
 struct Silent(Cursor<Vec<u8>>, Receiver<()>);
 
 impl Read for Silent {

@@ -1,4 +1,4 @@
-//! The reduction gives the same simplices whatever the cells, the order, the threads and the tiles.
+//! The reduction gives the same simplices for any cells, order, threads and tiles.
 
 mod equality;
 mod failures;

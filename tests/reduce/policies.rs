@@ -168,7 +168,7 @@ fn merge(parts: &[&[u8]]) -> spmesh_core::error::Result<Vec<u8>> {
 
 #[test]
 fn a_point_on_a_border_belongs_to_the_upper_tile() {
-    // -2345602.11 / 0.01 is not the integer it should be.
+    // -2345602.11 / 0.01 is not exactly an integer.
     let scale = [0.01; 3];
     let grid = Coordinates::I32 { scale, offset: [0.0; 3] };
     let x = -234_560_211.0;

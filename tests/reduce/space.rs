@@ -1,4 +1,4 @@
-//! One set of tetrahedra, however the input comes: that of the kernel over all points at once.
+//! The set of tetrahedra is that of the kernel over all points at once, however the input comes.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -29,7 +29,7 @@ const TAGGINGS: [Tagging; 9] = [
     Tagging::Forgetful(2),
 ];
 
-/// Options under which also small nodes are triangulated.
+/// Options under which small nodes are triangulated, too.
 fn every_node(threads: usize) -> Options<3> {
     Options { threads, every_node: true, ..Options::default() }
 }
@@ -48,7 +48,7 @@ fn sorted(mut corners: Corners) -> Corners {
     corners
 }
 
-/// What the kernel makes of all points at once.
+/// The kernel's tetrahedra of all points at once.
 pub fn expected(points: &[Point]) -> Vec<Corners> {
     let mut mesh = Tetrahedralization::default();
     Kernel::new().triangulate(Cow::Borrowed(points), &mut mesh).unwrap();
@@ -58,7 +58,7 @@ pub fn expected(points: &[Point]) -> Vec<Corners> {
     set
 }
 
-/// The tetrahedra of a mesh stream and its number of vertices, after checking that each is used only while it
+/// The tetrahedra of a mesh stream and its number of vertices. Checks that each vertex is used only while it
 /// is live.
 pub fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
     let mut reader = StreamReader::new(bytes, "mesh").unwrap();
@@ -80,7 +80,7 @@ pub fn read_mesh(bytes: &[u8]) -> (Vec<Corners>, usize) {
     (set, vertices)
 }
 
-/// The exact audit, which uses neither predicates nor kernels.
+/// Runs the exact audit, which uses neither the predicates nor the kernels.
 fn assert_proven(mesh: &[u8], points: &[Point], coordinates: Coordinates) {
     let mut given = PointSet::new(coordinates, 3);
     given.extend(points);

@@ -1,4 +1,4 @@
-//! Partial meshes of space that are damaged or do not go together are refused.
+//! Merging refuses partial meshes of space that are damaged or do not fit together.
 
 use spmesh_core::error::ErrorKind;
 use spmesh_model::bounds::{Point, Region};
@@ -71,7 +71,7 @@ impl Pieces {
     }
 }
 
-/// The error of merging the pieces with the other half.
+/// Asserts that merging the pieces with the other half fails as malformed, with these words.
 #[track_caller]
 fn assert_malformed(pieces: &Pieces, other: &[u8], words: &str) {
     let error = merge(&[pieces.stream(), other.to_vec()], None).map(drop).unwrap_err();
@@ -118,7 +118,7 @@ fn walls_must_close_around_what_is_final() {
     assert_malformed(&lost, &right, "are not the border");
 }
 
-/// Walls with other corners are an error, or the set is the same.
+/// Changing corners of walls gives an error or does not change the mesh.
 #[test]
 fn changed_walls_make_no_other_mesh() {
     let points = points();

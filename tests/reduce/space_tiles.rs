@@ -1,4 +1,5 @@
-//! Tiles of space: parts of one input, triangulated alone and merged, are what one run over all of it is.
+//! Tiles of space: merging separately triangulated parts of an input gives the mesh of one run over all of
+//! it.
 
 use spmesh_audit::{Audit, PointSet, Standard};
 use spmesh_core::error::Result;
@@ -13,7 +14,7 @@ use spmesh_reference::sets::Random;
 
 const INF: f64 = f64::INFINITY;
 
-/// The part of a run, audited, with what the run says.
+/// A part of the input, triangulated and audited, and the statistics of the run.
 pub fn partial(input: &[u8], part: Part<3>, options: &Options<3>) -> (Vec<u8>, Stats) {
     let (bytes, stats) = run(input, part, options);
     assert_proven(&bytes, None);
@@ -24,8 +25,7 @@ fn run(input: &[u8], part: Part<3>, options: &Options<3>) -> (Vec<u8>, Stats) {
     tetrahedralize(input, &Options { part: Some(part), ..*options }).unwrap()
 }
 
-/// The exact audit, which shares nothing with the reduction; with the points that there must be, if they are
-/// given.
+/// Runs the exact audit, which shares no code with the reduction, against `points` if they are given.
 fn assert_proven(bytes: &[u8], points: Option<&[Point]>) {
     let mut reader = StreamReader::new(bytes, "part").unwrap();
     let coordinates = reader.header().coordinates;
@@ -55,8 +55,7 @@ struct Tiler<'a> {
 }
 
 impl Tiler<'_> {
-    /// Partial meshes that cover `region`, which is cut `depth` times: through points, through nothing, or
-    /// beyond all.
+    /// Partial meshes that cover `region`, cut `depth` times at random: at a point, or beyond all points.
     fn parts(&mut self, region: Region<3>, depth: usize) -> Vec<Vec<u8>> {
         let Some([lower, upper]) = (depth > 0).then(|| self.cut(region)).flatten() else {
             return vec![self.tile(region)];
@@ -97,12 +96,12 @@ impl Tiler<'_> {
     }
 }
 
-/// Coordinates that hold the points.
+/// Coordinates that can store the points.
 fn coordinates_of(points: &[Point]) -> Coordinates {
     if fits_a_grid(points) { GRID } else { Coordinates::F64 }
 }
 
-/// How a run is made: tags, threads, merging in stages, and triangulating every node.
+/// Variants of a run: tags, threads, merging in stages, and triangulating every node.
 type Run = (Tagging, usize, bool, bool);
 
 const RUNS: [Run; 3] = [
@@ -137,7 +136,7 @@ fn no_family_depends_on_tiles() {
         for count in [20, 90] {
             let mut random = Random::new((number * 1000 + count) as u64);
             let mut points = of(&mut random, family, count);
-            // Some points come twice.
+            // Some points are repeated.
             points.extend_from_within(..count.min(points.len()) / 9);
             random.shuffle(&mut points);
             for run in RUNS {
@@ -169,7 +168,7 @@ fn few_points_in_many_tiles_are_one_mesh() {
     }
 }
 
-/// Halves, octants, and slabs of very different size.
+/// Halves, octants, and slabs of very different sizes.
 fn grids(points: &[Point]) -> [[Vec<f64>; 3]; 3] {
     let at = |axis: usize, part: usize| {
         let mut values: Vec<f64> = points.iter().map(|point| point[axis]).collect();
@@ -236,7 +235,7 @@ fn cells_of_the_octree_are_tiles_too() {
     }
 }
 
-/// Most of what fills space is final in its tile, and what waits lies near the border.
+/// Most tetrahedra are final in their tile, and the points that wait lie near the border.
 #[test]
 fn a_tile_finishes_what_lies_inside() {
     let mut random = Random::new(5);

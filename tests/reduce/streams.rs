@@ -10,7 +10,7 @@ use spmesh_stream::{Coordinates, Event, Header, Kind, LiveVertices, StreamReader
 
 use spmesh_reference::sets::Random;
 
-/// Unit grid, as LAS files have it.
+/// The unit grid, with integer coordinates as in LAS files.
 pub const GRID: Coordinates = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
 
 /// How the points of a stream are cut into cells, and when the cells are tagged.
@@ -20,22 +20,22 @@ pub enum Tagging {
     None,
     /// A tree, but no tags.
     Never,
-    /// Cells of one level in random order, the points of each right before its tag.
+    /// Cells of one level in random order; the points of each come right before its tag.
     Chunked(u8),
-    /// Cells of random levels, chunked, parents sometimes tagged after some of their children.
+    /// Chunked cells of random levels; parents are sometimes tagged after some of their children.
     Ragged,
-    /// Points in given order, each deepest cell tagged after its last point.
+    /// Points in the given order; each deepest cell is tagged after its last point.
     Preserved(u8),
     /// Like `Preserved`, but some cells are never tagged.
     Forgetful(u8),
 }
 
-/// A stream of `points` of the plane with the given cells.
+/// A stream of points in the plane with the given cells.
 pub fn stream(points: &[Point], coordinates: Coordinates, tagging: Tagging, random: &mut Random) -> Vec<u8> {
     stream_of(2, points, coordinates, tagging, random)
 }
 
-/// A stream of `points` of two or three dimensions with the given cells.
+/// A stream of points in two or three dimensions with the given cells.
 pub fn stream_of(
     dims: u8,
     points: &[Point],
@@ -90,7 +90,7 @@ fn write_cell(writer: &mut StreamWriter<Vec<u8>>, tree: &CellTree, points: &[Poi
     writer.cells(&[cell]).unwrap();
 }
 
-/// Tags `cell` in random pieces: itself at once, its children, or some children and then itself.
+/// Tags `cell` in random pieces: the cell at once, only its children, or some children and then the cell.
 fn ragged(
     writer: &mut StreamWriter<Vec<u8>>,
     tree: &CellTree,
@@ -133,7 +133,7 @@ fn preserved(
     writer.cells(&empty).unwrap();
 }
 
-/// A mesh read back: its vertices, and its triangles by coordinates.
+/// The contents of a mesh stream: its vertices, and its triangles as coordinates.
 #[derive(Debug, PartialEq)]
 pub struct Mesh {
     pub vertices: Vec<Point>,

@@ -1,14 +1,14 @@
-//! Point sets of space to try: seeded, as degenerate as can be thought of.
+//! Seeded point sets in space, as degenerate as possible.
 
 use super::sets::Random;
 use super::space::Point;
 
-/// What sets are made of.
+/// Families of point sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
-    /// Floats of a cube.
+    /// Random floats in a cube.
     Uniform,
-    /// Integers of a small cube.
+    /// Integers in a small cube.
     Integers,
     /// Integers of 10, 20, 23, 26 or 40 bits.
     WideIntegers,
@@ -18,33 +18,33 @@ pub enum Family {
     FaceCentered,
     /// A piece of the body-centered cubic lattice.
     BodyCentered,
-    /// All integer points of a sphere.
+    /// All integer points on a sphere.
     IntegerSphere,
-    /// Points of a sphere, rounded.
+    /// Rounded points on a sphere.
     RoundedSphere,
-    /// Corners of a polyhedron with all symmetries of the cube.
+    /// The images of a point under all symmetries of the cube.
     Orbit,
-    /// Integer points of one plane.
+    /// Integer points in one plane.
     Plane,
-    /// Integer points of a line.
+    /// Integer points on a line.
     Line,
-    /// Points of two lines that do not meet: as many tetrahedra as pairs of segments.
+    /// Points on two skew lines, with one tetrahedron for each pair of segments.
     SkewLines,
-    /// Points (t, t^2, t^3), all neighbours of each other.
+    /// Points (t, t^2, t^3), which are all neighbours of each other.
     MomentCurve,
-    /// Points of a paraboloid.
+    /// Points on a paraboloid.
     Paraboloid,
-    /// Integer points of a circle, repeated along the axis of a cylinder.
+    /// Integer points on a circle, repeated along the axis of a cylinder.
     Cylinder,
     /// Steps of a walk on a grid of thousandths, like atoms of a protein.
     Chain,
-    /// Far smaller than its distance to the others.
+    /// A cluster far smaller than its distance to the other points.
     Cluster,
-    /// Every coordinate of any size.
+    /// Coordinates of any magnitude.
     Wild,
 }
 
-/// All of them.
+/// All families.
 pub const FAMILIES: [Family; 18] = [
     Family::Uniform,
     Family::Integers,
@@ -86,13 +86,13 @@ fn floats(point: [i64; 3]) -> Point {
     point.map(|c| c as f64)
 }
 
-/// Points `i u + j v + k w` for small integers below the given counts.
+/// Points of a cubic lattice of spacing `step`, with these counts along the axes.
 fn lattice(counts: [i64; 3], step: i64) -> impl Iterator<Item = [i64; 3]> {
     let [l, m, n] = counts;
     (0..l * m * n).map(move |i| [i % l * step, i / l % m * step, i / (l * m) * step])
 }
 
-/// Counts of a box of lattice points of about `count`, of any shape.
+/// Counts along the axes of a box of any shape with about `count` lattice points.
 fn box_of(random: &mut Random, count: usize) -> [i64; 3] {
     let side = (count as f64).cbrt().ceil() as i64;
     let mut counts = [side, (side * random.integer(1, 2)).max(1), 1];
@@ -101,7 +101,7 @@ fn box_of(random: &mut Random, count: usize) -> [i64; 3] {
     counts
 }
 
-/// Integer points of the sphere of squared radius `square`.
+/// Integer points on the sphere of squared radius `square`.
 fn sphere(square: i64) -> Vec<[i64; 3]> {
     let side = (square as f64).sqrt() as i64;
     lattice([2 * side + 1; 3], 1)
@@ -110,7 +110,7 @@ fn sphere(square: i64) -> Vec<[i64; 3]> {
         .collect()
 }
 
-/// A point of the unit sphere, but for rounding.
+/// A point on the unit sphere, up to rounding.
 fn direction(random: &mut Random) -> Point {
     loop {
         let p = [(); 3].map(|()| signed_unit(random));
@@ -221,14 +221,14 @@ fn orbit(random: &mut Random) -> Vec<Point> {
     rows.iter().flat_map(|row| (0..8).map(move |i| floats([0, 1, 2].map(|k| row[k] * signs(i)[k])))).collect()
 }
 
-/// A random set of families, moved, scaled and mixed, with points made of others and copies among them: of
-/// about `count` points. All are finite.
+/// A random mixture of about `count` points: families that are moved and scaled, points constructed from
+/// other points, and copies. All are finite.
 pub fn mixture(random: &mut Random, count: usize) -> Vec<Point> {
     let mut points = Vec::new();
     let parts = pick(random, &[1, 1, 1, 2, 2, 3, 5]);
     for _ in 0..parts {
         let family = pick(random, &FAMILIES);
-        // Of these all pairs are neighbours.
+        // In these families all pairs of points, or about half of them, are neighbours.
         let is_dense = matches!(family, Family::SkewLines | Family::MomentCurve);
         let size = if is_dense { (count / parts).min(150) } else { count / parts };
         let mut part = of(random, family, size.max(1));
@@ -250,7 +250,7 @@ pub fn mixture(random: &mut Random, count: usize) -> Vec<Point> {
     points
 }
 
-/// Moves a part of a set somewhere, in integers or not, and makes it smaller or larger.
+/// Moves a part of a set, by integers or not, and scales it.
 fn place(random: &mut Random, part: &mut [Point]) {
     let scale = pick(random, &[1.0, 1.0, 1.0, 2.0, 3.0, 0.5, 0.001, 1e-9, 1e6]);
     let offset = match random.integer(0, 3) {
@@ -262,7 +262,7 @@ fn place(random: &mut Random, part: &mut [Point]) {
     part.iter_mut().for_each(|p| *p = [0, 1, 2].map(|axis| p[axis] * scale + offset[axis]));
 }
 
-/// A point made of others.
+/// A point constructed from other points.
 fn mutant(random: &mut Random, points: &[Point]) -> Point {
     let [p, q, r, s] = [(); 4].map(|()| pick(random, points));
     let axis = random.integer(0, 2) as usize;
@@ -280,12 +280,12 @@ fn mutant(random: &mut Random, points: &[Point]) -> Point {
         9 => mutant[axis] = 0.0,
         10 => mutant[axis] = -0.0,
         11 => mutant.swap(axis, (axis + 1) % 3),
-        // In a plane of others, nearly.
+        // Nearly in a plane with three others.
         12 => {
             let (t, u) = (random.unit(), random.unit());
             mutant = [0, 1, 2].map(|i| p[i] + t * (q[i] - p[i]) + u * (r[i] - p[i]));
         }
-        // On a line of others, nearly.
+        // Nearly on a line with two others.
         _ => {
             let t = 3.0 * signed_unit(random);
             mutant = [0, 1, 2].map(|i| p[i] + t * (q[i] - p[i]));
@@ -317,15 +317,15 @@ fn transform(random: &mut Random, points: &mut [Point]) {
             points.iter_mut().for_each(|p| p[axis] *= scale);
         }
         6 => points.as_flattened_mut().iter_mut().for_each(|c| *c = c.round()),
-        // By one unit in the last place, here and there.
+        // Change some coordinates by one unit in the last place.
         7 => points.as_flattened_mut().iter_mut().for_each(|c| match random.integer(0, 5) {
             0 => *c = c.next_up(),
             1 => *c = c.next_down(),
             _ => {}
         }),
-        // Sheared, in integers if they are.
+        // Shear by integer factors.
         8 => points.iter_mut().for_each(|p| p[axis] += 2.0 * p[(axis + 1) % 3] - p[(axis + 2) % 3]),
-        // Turned by about 37 degrees: what was cospherical is so but for rounding.
+        // Rotate by about 37 degrees: cospherical points stay cospherical up to rounding.
         _ => points.iter_mut().for_each(|p| {
             let (x, y) = (p[axis], p[(axis + 1) % 3]);
             (p[axis], p[(axis + 1) % 3]) = (0.8 * x - 0.6 * y, 0.6 * x + 0.8 * y);

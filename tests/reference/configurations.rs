@@ -9,8 +9,8 @@ pub type Configuration = ([u32; 3], Vec<u32>);
 
 /// Configurations of all degrees up to `degree_max`, each degree sorted by interior set, then by boundary.
 ///
-/// Knots at one place are told apart by numbers, not symbols: the j-th is moved by e (j, j²) for an e so
-/// small that no sign of different places depends on it. Cost: O(n⁴).
+/// Knots at one place are told apart by a numeric displacement: the j-th is moved by e (j, j²), for an e so
+/// small that it changes no sign between different places. Cost: O(n⁴).
 pub fn by_definition(points: &[[f64; 2]], degree_max: usize) -> Vec<Vec<Configuration>> {
     let points = moved(points);
     let count = points.len() as u32;
@@ -48,14 +48,15 @@ fn configuration(points: &[ExactPoint], [a, b, c]: [u32; 3], degree_max: usize) 
     Some((normalised(boundary), interior))
 }
 
-/// Exact positions, all of them different.
+/// Exact positions, all distinct.
 pub fn moved(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     let exact = exact_points(points);
     let rank = |id: usize| BigInt::from(exact[..id].iter().filter(|p| **p == exact[id]).count());
     if (0..exact.len()).all(|id| rank(id) == BigInt::ZERO) {
         return exact;
     }
-    // Determinants of degree 4 of coordinates below 2^2100, and of ranks: coefficients are below 2^9000.
+    // e is 2^-9000. Determinants have degree 4 in coordinates below 2^2100 and in ranks, so coefficients of
+    // powers of e are below 2^9000.
     let moved = (0..exact.len()).map(|id| {
         let [x, y] = &exact[id];
         [(x << 9000) + rank(id), (y << 9000) + &rank(id) * &rank(id)]
@@ -63,8 +64,8 @@ pub fn moved(points: &[[f64; 2]]) -> Vec<ExactPoint> {
     moved.collect()
 }
 
-/// Number of directed lines through two points with `degree` points to the left, those between the two
-/// included.
+/// The directed lines through two points that have `degree` points to the left or between the two, each with
+/// these points.
 pub fn lines(points: &[[f64; 2]], degree: usize) -> Vec<([u32; 2], Vec<u32>)> {
     let points = moved(points);
     let count = points.len() as u32;

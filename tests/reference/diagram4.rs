@@ -1,15 +1,15 @@
-//! Delaunay diagrams of four dimensions by definition: every five points, tried against all others, in
-//! integers of 128 bits. Shares no code with the library.
+//! Delaunay diagrams in four dimensions by definition: every five points, tried against all others, in
+//! 128-bit integers. Shares no code with the library.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A point of small integers.
+/// A point with small integer coordinates.
 pub type Point = [i64; 4];
 
 /// Whether the cell is infinite, its vertices, and its neighbours.
 pub type Cell = (bool, Vec<u32>, Vec<u32>);
 
-/// The points in lexicographic order, without repetitions.
+/// The points in lexicographic order, without duplicates.
 pub fn sorted(mut points: Vec<Point>) -> Vec<Point> {
     points.sort_unstable();
     points.dedup();
@@ -28,8 +28,8 @@ fn determinant(rows: &[Vec<i128>]) -> i128 {
         .sum()
 }
 
-/// The signed minors of one row less than columns: their product with a row is the determinant with it as
-/// first row.
+/// The signed minors of a matrix with one more column than rows. Their dot product with a row is the
+/// determinant of the matrix with that row put first.
 fn complement(rows: &[Vec<i128>]) -> Vec<i128> {
     let minor = |column: usize| -> Vec<Vec<i128>> {
         rows.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
@@ -37,7 +37,7 @@ fn complement(rows: &[Vec<i128>]) -> Vec<i128> {
     (0..=rows.len()).map(|c| determinant(&minor(c)) * if c % 2 == 0 { 1 } else { -1 }).collect()
 }
 
-/// (1, x, y, z, t), and the lift where `is_lifted`.
+/// The row (1, x, y, z, t), followed by the lift if `is_lifted`.
 fn row(point: &Point, is_lifted: bool) -> Vec<i128> {
     let point = point.map(i128::from);
     let lift = point.iter().map(|x| x * x).sum();
@@ -65,7 +65,7 @@ fn dimension(points: &[Point]) -> usize {
     rank - 1
 }
 
-/// Subsets of `size` of 0..len.
+/// All subsets of 0..len with `size` elements.
 fn subsets(len: usize, size: usize) -> Vec<Vec<usize>> {
     let mut subsets = vec![Vec::new()];
     for _ in 0..size {
@@ -80,8 +80,7 @@ fn subsets(len: usize, size: usize) -> Vec<Vec<usize>> {
     subsets
 }
 
-/// The rows on each hyperplane through rows that has none below, or where `both`, that has none on one of its
-/// sides.
+/// The rows on each hyperplane through rows that has no row below, or if `both`, no row on one of its sides.
 fn supported(rows: &[Vec<i128>], both: bool) -> BTreeSet<Vec<u32>> {
     let mut found = BTreeSet::new();
     let Some(size) = rows.first().map(Vec::len) else { return found };
@@ -121,7 +120,7 @@ fn facets(points: &[Point], cell: &[u32]) -> Vec<Vec<u32>> {
     places.into_iter().map(|list| list.into_iter().map(|i| cell[i as usize]).collect()).collect()
 }
 
-/// Ridges of a facet, which is one of all facets of a cell.
+/// Ridges of a facet of a cell, of which `facets` lists all.
 fn ridges(points: &[Point], facet: &[u32], facets: &[Vec<u32>]) -> BTreeSet<Vec<u32>> {
     let others = facets.iter().filter(|other| *other != facet);
     let shared =
@@ -138,10 +137,11 @@ pub fn orientation(simplex: [Point; 5]) -> i128 {
     determinant(&simplex.map(|point| row(&point, false)))
 }
 
-/// The diagram of distinct points in lexicographic order: finite cells by their vertices, then infinite cells
-/// by theirs, with the numbers of their neighbours. None if all points lie in a hyperplane.
+/// The diagram of distinct points in lexicographic order: finite cells sorted by vertices, then infinite
+/// cells by facets of finite ones, each with the indices of its neighbours. No cells if all points lie in a
+/// hyperplane.
 ///
-/// Domain: coordinates below 1000 in magnitude, and up to about 30 points: O(n^6).
+/// Domain: coordinates below 1000 in magnitude. Cost: O(n^6), for up to about 30 points.
 pub fn diagram(points: &[Point]) -> Vec<Cell> {
     let finite = finite_cells(points);
     let facets: Vec<Vec<Vec<u32>>> = finite.iter().map(|cell| facets(points, cell)).collect();
@@ -178,7 +178,7 @@ pub fn diagram(points: &[Point]) -> Vec<Cell> {
     cells
 }
 
-/// The corners of the unit cube are one cell with eight facets, and one more point at the centre makes eight
+/// The corners of the unit cube form one cell with eight facets; a point at the centre divides it into eight
 /// pyramids.
 #[test]
 fn diagrams_of_cubes_are_known() {

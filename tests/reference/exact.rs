@@ -2,7 +2,7 @@
 
 use num_bigint::{BigInt, Sign};
 
-/// An exact point: all points of a set are scaled by the same power of two.
+/// An exact point. All points of a set are scaled by the same power of two.
 pub type ExactPoint = [BigInt; 2];
 
 /// The points as integers: times 2^1074, which makes every finite `f64` an integer.
@@ -41,8 +41,8 @@ pub fn orientation(p: &ExactPoint, q: &ExactPoint, r: &ExactPoint) -> i32 {
     sign(&area(p, q, r))
 }
 
-/// Coefficients of the four lifts in the determinant of rows (x, y, lift, 1), times the sign that makes it
-/// positive where the fourth point is inside the circle of the others, counterclockwise.
+/// Coefficients of the four lifts in the determinant of rows (x, y, lift, 1), with the sign that makes the
+/// determinant positive where the fourth point is inside the counterclockwise circle of the others.
 fn cofactors(points: [&ExactPoint; 4]) -> [BigInt; 4] {
     let [a, b, c, d] = points;
     [area(b, c, d), -area(a, c, d), area(a, b, d), -area(a, b, c)]
@@ -54,8 +54,8 @@ pub fn incircle(points: [&ExactPoint; 4]) -> i32 {
     sign(&cofactors(points).iter().zip(&lifts).map(|(cofactor, lift)| cofactor * lift).sum())
 }
 
-/// Sign of the determinant whose lifts are lift + epsilon^(n - rank): the determinant is a polynomial in
-/// infinitesimals of falling size, and its sign is that of its first coefficient that is not zero.
+/// Sign of the determinant whose lifts are lift + epsilon^(n - rank). The determinant is a polynomial in
+/// infinitesimals of decreasing size; its sign is the sign of its first nonzero coefficient.
 pub fn incircle_perturbed(points: [&ExactPoint; 4]) -> i32 {
     let unperturbed = incircle(points);
     if unperturbed != 0 {

@@ -1,10 +1,10 @@
-//! Determinants of lifted points of space in arbitrary precision, by cofactors, with the perturbation written
+//! Determinants of lifted points in space in arbitrary precision, by cofactors, with the perturbation written
 //! out.
 
 use super::exact::{sign, times_2_1074};
 use num_bigint::BigInt;
 
-/// An exact point: all points of a set are scaled by the same power of two.
+/// An exact point. All points of a set are scaled by the same power of two.
 pub type ExactPoint = [BigInt; 3];
 
 /// The points as integers: times 2^1074, which makes every finite `f64` an integer.
@@ -40,8 +40,8 @@ pub fn orientation(points: [&ExactPoint; 4]) -> i32 {
     sign(&volume(points))
 }
 
-/// Coefficients of the five lifts in the determinant of rows (1, x, y, z, lift), times the sign that makes it
-/// positive where the fifth point is inside the sphere of the others, positively oriented.
+/// Coefficients of the five lifts in the determinant of rows (1, x, y, z, lift), with the sign that makes the
+/// determinant positive where the fifth point is inside the sphere of the positively oriented others.
 fn cofactors(points: [&ExactPoint; 5]) -> [BigInt; 5] {
     let [a, b, c, d, e] = points;
     [
@@ -59,8 +59,8 @@ pub fn insphere(points: [&ExactPoint; 5]) -> i32 {
     sign(&cofactors(points).iter().zip(&lifts).map(|(cofactor, lift)| cofactor * lift).sum())
 }
 
-/// Sign of the determinant whose lifts are lift + epsilon^(n - rank): the determinant is a polynomial in
-/// infinitesimals of falling size, and its sign is that of its first coefficient that is not zero.
+/// Sign of the determinant whose lifts are lift + epsilon^(n - rank). The determinant is a polynomial in
+/// infinitesimals of decreasing size; its sign is the sign of its first nonzero coefficient.
 pub fn insphere_perturbed(points: [&ExactPoint; 5]) -> i32 {
     let unperturbed = insphere(points);
     if unperturbed != 0 {

@@ -1,9 +1,9 @@
-//! Every triangle of the set, tried against every point: the definition, in O(n^4).
+//! The definition: every triangle of the set is tried against every point. Cost: O(n^4).
 
 use super::as_set;
 use super::exact::{exact_points, incircle_perturbed, orientation};
 
-/// Canonical Delaunay triangles of distinct points. For n up to about 40.
+/// Canonical Delaunay triangles of distinct points. Domain: up to about 40 points.
 pub fn triangles(points: &[[f64; 2]]) -> Vec<[u32; 3]> {
     let exact = exact_points(points);
     let count = points.len();

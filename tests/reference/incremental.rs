@@ -1,6 +1,6 @@
 //! Incremental insertion (Bowyer and Watson) over integer points, with a ghost vertex at infinity, in `i128`.
 //!
-//! Every triangle is tested against every new point: O(n^2), but too plain to go wrong.
+//! Every new point is tested against every triangle: O(n^2), and simple.
 
 use super::as_set;
 use std::collections::HashMap;
@@ -66,7 +66,7 @@ fn area(p: IntegerPoint, q: IntegerPoint, r: IntegerPoint) -> i128 {
 fn perturbed_incircle(points: [IntegerPoint; 4]) -> bool {
     let [a, b, c, d] = points;
     let cofactors = [area(b, c, d), -area(a, c, d), area(a, b, d), -area(a, b, c)];
-    // Lifts around a, so that they fit: the determinant does not change under translation.
+    // Lifts relative to a, so that they fit in i128; translation does not change the determinant.
     let lift = |p: IntegerPoint| {
         let [x, y] = [0, 1].map(|i| i128::from(p[i] - a[i]));
         x * x + y * y

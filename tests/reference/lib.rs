@@ -1,4 +1,4 @@
-//! Independent canonical Delaunay triangulations, slow and plain. They share no code with the library.
+//! Independent canonical Delaunay triangulations, slow and simple. They share no code with the library.
 
 pub mod clouds;
 pub mod configurations;

@@ -1,12 +1,12 @@
-//! Point sets to try: seeded, distinct.
+//! Seeded sets of distinct points.
 
 use std::collections::HashSet;
 
-/// A small generator (SplitMix64): the sequence is fixed by the seed, on every platform.
+/// A small random number generator (SplitMix64); the seed determines the sequence on every platform.
 pub struct Random(u64);
 
 impl Random {
-    /// Generator of the sequence of `seed`.
+    /// The generator with this seed.
     pub fn new(seed: u64) -> Random {
         Random(seed)
     }
@@ -25,7 +25,7 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Uniform in low..=high.
+    /// Uniform in low..=high, up to a negligible bias.
     pub fn integer(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
@@ -38,7 +38,7 @@ impl Random {
     }
 }
 
-/// The points without repetitions, shuffled.
+/// The points without duplicates, shuffled.
 pub fn distinct(random: &mut Random, mut points: Vec<[i64; 2]>) -> Vec<[i64; 2]> {
     let mut seen = HashSet::new();
     points.retain(|p| seen.insert(*p));
@@ -51,13 +51,13 @@ pub fn as_floats(points: &[[i64; 2]]) -> Vec<[f64; 2]> {
     points.iter().map(|p| p.map(|c| c as f64)).collect()
 }
 
-/// Uniform random points of a square of the given side.
+/// Uniform random points in a square of the given side.
 pub fn uniform(random: &mut Random, count: usize, side: i64) -> Vec<[i64; 2]> {
     let points = (0..count).map(|_| [random.integer(0, side), random.integer(0, side)]).collect();
     distinct(random, points)
 }
 
-/// Number of families of [`degenerate`].
+/// Number of families in [`degenerate`].
 pub const DEGENERATE_FAMILIES: usize = 10;
 
 /// A degenerate set of about `count` points with coordinates below 2^30.
@@ -75,7 +75,7 @@ pub fn degenerate(random: &mut Random, family: usize, count: usize) -> Vec<[i64;
         // Lattice points of one circle, of concentric circles.
         2 => circle(5 * 13 * 17 * 29),
         3 => [25, 65, 325, 1105, 5525].iter().flat_map(|&r| circle(r)).take(count).collect(),
-        // All on one line: axis-parallel, and not.
+        // All on one line: axis-parallel, and slanted.
         4 => (0..n).map(|_| [random.integer(0, 4 * n), 17]).collect(),
         5 => (0..n).map(|_| random.integer(-n, 4 * n)).map(|t| [7 * t, -3 * t]).collect(),
         // Two parallel lines.
@@ -89,7 +89,7 @@ pub fn degenerate(random: &mut Random, family: usize, count: usize) -> Vec<[i64;
             .map(|_| (random.integer(0, 5), random.integer(0, 6), random.integer(0, 6)))
             .map(|(k, i, j)| [(k * k * 7919 % 101) * 10_000_000 + i, (k * 31 % 97) * 10_000_000 + j])
             .collect(),
-        // The border of a square, with its diagonals.
+        // The border of a square and its diagonals.
         _ => (0..n)
             .map(|t| (t % 6, t / 6))
             .map(|(k, t)| [[t, 0], [0, t], [t, n / 6], [n / 6, t], [t, t], [t, n / 6 - t]][k as usize])

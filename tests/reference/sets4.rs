@@ -1,11 +1,11 @@
-//! Sets of points of four dimensions, and diagrams of the reference in the library's form.
+//! Sets of points in four dimensions, and reference diagrams in the library's types.
 
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 
 use crate::diagram4::{Cell, Point, sorted};
 use crate::sets::Random;
 
-/// Cells in the library's form.
+/// Converts cells to the library's type.
 pub fn cells4(cells: &[Cell]) -> Cells4 {
     let mut all = Cells4::default();
     for (is_infinite, vertices, neighbours) in cells {
@@ -14,12 +14,12 @@ pub fn cells4(cells: &[Cell]) -> Cells4 {
     all
 }
 
-/// Points in floating point.
+/// Converts points to f64.
 pub fn floats(points: &[Point]) -> Vec<Point4> {
     points.iter().map(|point| point.map(|x| x as f64)).collect()
 }
 
-/// Corners of a grid with so many points along each axis.
+/// Points of a grid with so many points along each axis.
 pub fn grid(counts: [i64; 4]) -> Vec<Point> {
     let mut points = vec![[0; 4]];
     for (axis, &count) in counts.iter().enumerate() {
@@ -34,7 +34,7 @@ pub fn grid(counts: [i64; 4]) -> Vec<Point> {
     points
 }
 
-/// Up to `count` random points of a grid of this side.
+/// Up to `count` random points of a grid with this side.
 pub fn random_points(random: &mut Random, count: usize, side: i64) -> Vec<Point> {
     sorted((0..count).map(|_| [(); 4].map(|()| random.integer(0, side - 1))).collect())
 }

@@ -1,8 +1,8 @@
-//! Exact decisions about the points of one set in space, fast enough for hundreds of sets, and the proof that
+//! Exact predicates for the points of one set in space, fast enough for hundreds of sets, and a proof that
 //! tetrahedra are the canonical ones. Shares no code with the library.
 //!
-//! A decision is made in `f64` where the error bound allows, in 128 bits where the points are small integers
-//! times a power of two, and in integers without limit where neither is so.
+//! Predicates are evaluated in `f64` if the error bound allows. Otherwise they use 128-bit integers if the
+//! points are small integers times a power of two, and arbitrary precision if not.
 
 use super::exact::{sign, times_2_1074};
 use super::exact3::ExactPoint;
@@ -12,26 +12,26 @@ use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::ops::{Add, Mul, Sub};
 
-/// A point of space.
+/// A point in space.
 pub type Point = [f64; 3];
 
-/// A corner of a tetrahedron: its number and 0, 1, 2 or 3.
+/// A corner of a tetrahedron: the index of the tetrahedron, and 0, 1, 2 or 3.
 pub type Corner = (usize, usize);
 
-/// A tetrahedron to be proved: indices of its points, and the corners that are across from its own.
+/// A tetrahedron to be proved: indices of its points, and the neighbours' corners opposite to its own.
 pub type Claim = ([usize; 4], [Option<Corner>; 4]);
 
 /// Distinct points.
 pub struct Space {
-    /// Times a power of two.
+    /// The points, scaled by a power of two.
     points: Vec<Point>,
-    /// Differences to the first point, times a power of two.
+    /// Differences to the first point, scaled to integers.
     small: Option<Vec<[i128; 3]>>,
     exact: OnceCell<Vec<ExactPoint>>,
 }
 
-/// Largest difference of integers whose in-sphere determinant fits in 128 bits: with squares of lengths up to
-/// 3 * 2^48 and volumes up to 6 * 2^72, the sum of four products is below 2^127.
+/// Largest difference of integers for which the in-sphere determinant fits in 128 bits: squared lengths are
+/// at most 3 * 2^48 and volumes at most 6 * 2^72, so the sum of four products is below 2^127.
 const SMALL: i128 = 1 << 24;
 
 trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
@@ -57,7 +57,7 @@ fn orientation<T: Number>([a, b, c, d]: [&[T; 3]; 4]) -> T {
     dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
 }
 
-/// The in-sphere determinant, positive if e is inside of the positive tetrahedron abcd.
+/// The in-sphere determinant, positive if e is inside the sphere of the positive tetrahedron abcd.
 fn insphere<T: Number>([a, b, c, d, e]: [&[T; 3]; 5]) -> T {
     let [a, b, c, d] = [a, b, c, d].map(|p| minus(p, e));
     let (ab, cd) = (cross(&a, &b), cross(&c, &d));
@@ -65,18 +65,18 @@ fn insphere<T: Number>([a, b, c, d, e]: [&[T; 3]; 5]) -> T {
         + (dot(&c, &c) * dot(&d, &ab) - dot(&d, &d) * dot(&c, &ab))
 }
 
-/// Where neither products nor their errors over- or underflow.
+/// Whether neither products with this squared length nor their errors overflow or underflow.
 fn is_ordinary(square: f64) -> bool {
     (1e-100..1e100).contains(&square)
 }
 
-/// The sign of a value that errs by at most `error`.
+/// The sign of a value whose error is at most `error`, unless it is uncertain.
 fn certain(value: f64, error: f64) -> Option<i32> {
     (value.abs() > error).then_some(if value > 0.0 { 1 } else { -1 })
 }
 
-/// The sum of the magnitudes of the products is at most 2/sqrt(3) times the product of the lengths, and 8
-/// roundings of 2^-53 each go into every one: 1.1e-15 times the lengths.
+/// The magnitudes of the products sum to at most 2/sqrt(3) times the product of the lengths, and each product
+/// has 8 roundings of 2^-53, so the error is at most 1.1e-15 times the product of the lengths.
 fn filtered_orientation(points: [&Point; 4]) -> Option<i32> {
     let [a, b, c, d] = points;
     let squares = [b, c, d].map(|p| minus(p, a)).map(|p| dot(&p, &p));
@@ -84,7 +84,8 @@ fn filtered_orientation(points: [&Point; 4]) -> Option<i32> {
     certain(orientation(points), 3e-15 * (squares[0].sqrt() * squares[1].sqrt() * squares[2].sqrt()))
 }
 
-/// As for the orientation, four volumes, each times a square: 17 roundings, 8/sqrt(3), 9e-15.
+/// As for the orientation, with four volumes times a squared length each: 17 roundings and 8/sqrt(3) give
+/// 9e-15.
 fn filtered_insphere(points: [&Point; 5]) -> Option<i32> {
     let [a, b, c, d, e] = points;
     let squares = [a, b, c, d].map(|p| minus(p, e)).map(|p| dot(&p, &p));
@@ -94,7 +95,7 @@ fn filtered_insphere(points: [&Point; 5]) -> Option<i32> {
 }
 
 impl Space {
-    /// Decisions about `points`, which are finite.
+    /// Predicates for `points`, which must be finite.
     pub fn new(points: &[Point]) -> Space {
         let points = ordinary(points);
         Space { small: small(&points), points, exact: OnceCell::new() }
@@ -115,8 +116,8 @@ impl Space {
         }
     }
 
-    /// Sign of the in-sphere determinant, positive if e is inside of the positive tetrahedron abcd; never
-    /// zero for distinct points, by the canonical perturbation.
+    /// Sign of the in-sphere determinant, positive if e is inside the sphere of the positive tetrahedron
+    /// abcd. The canonical perturbation makes it nonzero for distinct points.
     pub fn insphere(&self, corners: [usize; 4], e: usize) -> i32 {
         let [a, b, c, d] = corners;
         let five = [a, b, c, d, e];
@@ -130,7 +131,8 @@ impl Space {
         if unperturbed == 0 { self.tie(corners, e) } else { unperturbed }
     }
 
-    /// Of the points by descending rank the first decides whose lift makes a difference.
+    /// The sign for a zero determinant: the first point by descending rank whose lift has a nonzero
+    /// coefficient decides.
     fn tie(&self, corners: [usize; 4], e: usize) -> i32 {
         let [a, b, c, d] = corners;
         let mut ranked = [a, b, c, d, e];
@@ -146,8 +148,8 @@ impl Space {
         ranked.into_iter().map(coefficient).find(|&sign| sign != 0).unwrap_or(0)
     }
 
-    /// The canonical Delaunay tetrahedra by definition, as [`as_set`] has them: every four points, tried
-    /// against every fifth. None if all points lie in a plane.
+    /// The canonical Delaunay tetrahedra by definition, in the form of [`as_set`]: every four points, tried
+    /// against every fifth. No tetrahedra if all points lie in a plane.
     pub fn tetrahedra(&self) -> Vec<[u32; 4]> {
         let count = self.points.len();
         let mut found = Vec::new();
@@ -172,13 +174,14 @@ impl Space {
     }
 
     /// Proves that the claimed tetrahedra are the canonical Delaunay tetrahedra of the points, or says why
-    /// not. In O(n + h^2) for h facets of the hull.
+    /// not. Cost: O(n + h^2) for h facets of the hull.
     ///
-    /// All are positive, and what is across from each other has its facet in common: so the number of
-    /// tetrahedra around a place changes only at open facets. These have all of their own vertices on their
-    /// inner side, so they are on the hull of these: the number is 0 outside of it, and all points are
-    /// inside. Within it is 1, because it is 1 at one place. So they fill the hull. Neighbours are locally
-    /// Delaunay: the lifted points are convex across all facets, hence convex.
+    /// All tetrahedra are positive, and neighbours share a facet. So the number of tetrahedra that cover a
+    /// place changes only at open facets. All vertices of open facets lie on the inner side of every open
+    /// facet, so these facets form the convex hull of their vertices. Outside of it the number is 0, so all
+    /// points are inside. Inside of it the number is constant, and it is 1 because it is 1 at one place. So
+    /// the tetrahedra fill the hull. Neighbours are locally Delaunay: the lifted points are convex across
+    /// every facet, hence convex.
     pub fn prove(&self, claims: &[Claim]) -> Result<(), String> {
         if claims.is_empty() {
             return if self.is_flat() { Ok(()) } else { Err("there are no tetrahedra".into()) };
@@ -248,8 +251,9 @@ impl Space {
         Ok(())
     }
 
-    /// Whether the center of tetrahedron `of` is in a tetrahedron. If it is in the plane of a facet, an
-    /// infinitesimal step towards corner 0 of `of` decides, then one towards corner 1, then corner 2.
+    /// Whether a tetrahedron contains the centre of tetrahedron `of`. If the centre is in the plane of a
+    /// facet, an infinitesimal step towards corner 0 of `of` decides, then a step towards corner 1, then
+    /// corner 2.
     fn is_around_center(&self, corners: [usize; 4], of: [usize; 4]) -> bool {
         let is_apart = |axis: usize| {
             let [p, q] = [corners, of].map(|corners| corners.map(|i| self.points[i][axis]));
@@ -301,7 +305,7 @@ fn vertices_of_open_facets(claims: &[Claim]) -> Vec<usize> {
     vertices
 }
 
-/// The points times a power of two that makes the greatest coordinate about 1, unless that takes bits away.
+/// The points times a power of two that makes the greatest coordinate about 1, unless the scaling is inexact.
 fn ordinary(points: &[Point]) -> Vec<Point> {
     let greatest = points.as_flattened().iter().fold(0.0, |greatest: f64, c| greatest.max(c.abs()));
     let exponent = if greatest > 0.0 { greatest.log2() as i32 } else { 0 };
@@ -313,11 +317,11 @@ fn ordinary(points: &[Point]) -> Vec<Point> {
     if is_exact { ordinary } else { points.to_vec() }
 }
 
-/// The points as integers relative to the first, if they are small.
+/// The points as integers relative to the first point, if these are small.
 fn small(points: &[Point]) -> Option<Vec<[i128; 3]>> {
     let numbers = points.as_flattened();
     let least = numbers.iter().filter(|c| **c != 0.0).map(|c| exponent_of_last_bit(*c)).min().unwrap_or(0);
-    // Cheap to see, and almost always so if they are not small: coordinates above 2^60 units.
+    // A cheap test that finds almost all sets that are not small: coordinates above 2^60 units.
     if numbers.iter().any(|c| c.abs() / 2f64.powi(60) > 2f64.powi(least)) || least < -1000 {
         return None;
     }
@@ -326,7 +330,7 @@ fn small(points: &[Point]) -> Option<Vec<[i128; 3]>> {
     let first = integers.first().copied().unwrap_or_default();
     let differences: Vec<[i128; 3]> =
         integers.iter().map(|p| [0, 1, 2].map(|axis| p[axis] - first[axis])).collect();
-    // Differences of two differences are twice as large.
+    // The differences between these differences can be twice as large.
     differences.as_flattened().iter().all(|d| d.abs() <= SMALL / 2).then_some(differences)
 }
 
@@ -379,7 +383,7 @@ mod tests {
         assert!(decided.iter().all(|&count| count > 500), "{decided:?}");
     }
 
-    /// The tetrahedra by definition, each facet with what is across.
+    /// The tetrahedra by definition, with the neighbour's corner across each facet.
     fn claims(points: &[Point]) -> Vec<Claim> {
         let tetrahedra = Space::new(points).tetrahedra();
         let facet = |t: usize, side: usize| {
@@ -437,8 +441,8 @@ mod tests {
         }
     }
 
-    /// Lifts of other points are no Delaunay tetrahedra of these: but for ties, of five points there are two
-    /// ways.
+    /// Five points in general position have two triangulations; one is Delaunay, and the proof refuses the
+    /// other.
     #[test]
     fn the_other_tetrahedra_of_five_points_are_refused() {
         let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 3.0], [1.0, 1.0, -3.0]];

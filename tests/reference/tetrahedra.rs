@@ -1,17 +1,17 @@
 //! The canonical Delaunay tetrahedralization by definition: every four points, tried against every fifth, in
-//! O(n^5) and in integers without limit. For up to about 60 points. Shares no code with the library.
+//! arbitrary precision. Shares no code with the library. Cost: O(n^5), for up to about 60 points.
 //!
 //! The perturbation is written out: the lift of the point of rank r in lexicographic order is raised by
-//! epsilon^(n - r). The in-sphere determinant is then a polynomial in infinitesimals of falling size, whose
-//! sign is that of its first coefficient that is not zero: the determinant itself, or the cofactor of the
-//! lift of the largest point that has one.
+//! epsilon^(n - r). The in-sphere determinant is then a polynomial in infinitesimals of decreasing size. Its
+//! sign is the sign of its first nonzero coefficient: the determinant itself, or the cofactor of the lift of
+//! the largest point whose cofactor is nonzero.
 
 use num_bigint::BigInt;
 
 use super::exact::sign;
 use super::exact3::{self, ExactPoint, orientation};
 
-/// The points as integers that are not all even: times a power of two.
+/// The points as integers, scaled by the power of two that makes at least one coordinate odd.
 pub fn exact_points(points: &[[f64; 3]]) -> Vec<ExactPoint> {
     let integers = exact3::exact_points(points);
     let zeros = integers.as_flattened().iter().filter_map(BigInt::trailing_zeros).min().unwrap_or(0);
@@ -35,8 +35,8 @@ fn volume([a, b, c, d]: [&ExactPoint; 4]) -> BigInt {
     dot(&minus(b, a), &cross(&minus(c, a), &minus(d, a)))
 }
 
-/// The sphere of a positive tetrahedron: a point is inside, on it or outside as `side` is positive, zero or
-/// negative.
+/// The sphere of a positive tetrahedron. A point is inside, on or outside the sphere if `side` is positive,
+/// zero or negative.
 struct Sphere<'a> {
     origin: &'a ExactPoint,
     normal: ExactPoint,
@@ -59,7 +59,7 @@ impl<'a> Sphere<'a> {
     }
 }
 
-/// The side of e if it is on the sphere: the sign of the first cofactor by descending rank.
+/// The side of e if it is on the sphere: the sign of the first nonzero cofactor by descending rank.
 fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
     let mut cofactors = [
         (a, volume([e, b, c, d])),
@@ -72,8 +72,8 @@ fn tie([a, b, c, d, e]: [&ExactPoint; 5]) -> i32 {
     cofactors.iter().map(|(_, cofactor)| sign(cofactor)).find(|&sign| sign != 0).unwrap_or(0)
 }
 
-/// Canonical Delaunay tetrahedra of distinct points, as [`as_set`] has them. None if all points lie in a
-/// plane.
+/// Canonical Delaunay tetrahedra of distinct points, in the form of [`as_set`]. No tetrahedra if all points
+/// lie in a plane.
 pub fn tetrahedra(points: &[[f64; 3]]) -> Vec<[u32; 4]> {
     let exact = exact_points(points);
     let count = points.len();
@@ -110,8 +110,8 @@ fn is_empty(points: &[ExactPoint], tetrahedron: [usize; 4]) -> bool {
     })
 }
 
-/// A tetrahedron as its vertex indices: in increasing order, but for the last two if that keeps the
-/// orientation.
+/// A tetrahedron as vertex indices in increasing order, with the last two exchanged if the orientation
+/// requires it.
 pub fn normalised(tetrahedron: [u32; 4]) -> [u32; 4] {
     let mut sorted = tetrahedron;
     let mut is_odd = false;
@@ -136,8 +136,8 @@ pub fn as_set(tetrahedra: impl IntoIterator<Item = [u32; 4]>) -> Vec<[u32; 4]> {
     set
 }
 
-/// The perturbation made real: with a base that no coefficient reaches, the lift of the point of rank r is
-/// `|p|^2 * base^n + base^r`, and no five lifts are in a hyperplane.
+/// The perturbation carried out in integers: with a base greater than all coefficients, the lift of the point
+/// of rank r is `|p|^2 * base^n + base^r`, and no five lifts are in a hyperplane.
 #[test]
 fn the_perturbation_is_that_of_real_lifts() {
     let mut random = super::sets::Random::new(5);
