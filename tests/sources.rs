@@ -1,4 +1,4 @@
-//! Point files of other programs: every point of theirs, exactly, or an error that says what is wrong where.
+//! Point files of other programs: every point exactly, or an error that says what is wrong and where.
 
 mod damage;
 mod grids;
@@ -24,7 +24,7 @@ use spmesh_model::bounds::Point;
 
 use crate::programs::Folder;
 
-/// Options for two dimensions and nothing else.
+/// Default options for two dimensions.
 fn flat() -> SourceOptions {
     SourceOptions { dims: 2, ..SourceOptions::default() }
 }
@@ -47,7 +47,7 @@ fn pass(input: &Input) -> Result<Vec<Point>> {
     }
 }
 
-/// All points of `paths`, the same in two passes.
+/// All points of `paths`, after checking that two passes give the same.
 fn points(paths: &[PathBuf], options: &SourceOptions) -> Result<Vec<Point>> {
     let input = Input::open(paths, options)?;
     let first = pass(&input)?;
@@ -61,7 +61,7 @@ fn points_of(content: impl AsRef<[u8]>) -> Result<Vec<Point>> {
     points(&[folder.file("points", content)], &flat())
 }
 
-/// The bits of all coordinates, which tell zeros from each other.
+/// The bits of all coordinates, which distinguish 0.0 from -0.0.
 fn bits(points: &[Point]) -> Vec<u64> {
     points.as_flattened().iter().map(|x| x.to_bits()).collect()
 }

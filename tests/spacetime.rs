@@ -1,4 +1,4 @@
-//! What diagrams of space and time are for: simplices, values, slices and surfaces.
+//! Products of 4D diagrams: simplices, values, slices and surfaces.
 
 mod meshes;
 mod simplices;
@@ -10,13 +10,13 @@ use spmesh_model::diagram4::Diagram4;
 
 use spmesh_reference::sets::Random;
 
-/// The diagram of points with values.
+/// The diagram of points with values given by a function.
 pub fn with_values(points: Vec<Point4>, value: impl Fn(Point4) -> f64) -> Diagram4 {
     let values = points.iter().map(|&point| value(point)).collect();
     diagram(points, Some(values)).expect("points span space").0
 }
 
-/// Integer points of a grid; `share` of them, and all corners, so that the hull is a box.
+/// A random `share` of the integer points of a grid, and all corners, so that the hull is a box.
 pub fn sampled(random: &mut Random, counts: [i64; 4], share: f64) -> Vec<Point4> {
     let site = |number: i64| {
         let mut rest = number;
@@ -43,8 +43,8 @@ pub fn determinant(rows: &[Vec<i128>]) -> i128 {
     (0..first.len()).map(|column| sign(column) * first[column] * determinant(&without(column))).sum()
 }
 
-/// The determinant of a simplex: its volume times the factorial of the dimension, in units of `1 / scale` per
-/// axis.
+/// The determinant of a simplex: its volume times the factorial of the dimension, with coordinates in units
+/// of `1 / scale`.
 pub fn volume<const D: usize>(points: &[[f64; D]], simplex: &[u32], scale: f64) -> i128 {
     let at = |vertex: u32| points[vertex as usize].map(|x| exact(x * scale));
     let origin = at(simplex[0]);

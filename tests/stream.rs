@@ -1,4 +1,4 @@
-//! The reader believes nothing and the writer loses nothing.
+//! The reader trusts no input, and the writer loses nothing.
 
 mod configurations;
 mod four;
@@ -33,7 +33,7 @@ impl Random {
     }
 }
 
-/// Writes events as a stream. Residual and points blocks may come out cut differently.
+/// Writes events as a stream. Residual and points blocks may be cut differently.
 fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
     let mut writer = StreamWriter::new(Vec::new(), header.clone())?;
     for event in events {
@@ -56,7 +56,7 @@ fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
     panic!("events without END")
 }
 
-/// Joins neighbours of a kind and drops empty ones, which is all that writing may change.
+/// Joins adjacent events of a kind and drops empty ones: writing may change nothing else.
 fn joined(events: Vec<Event>) -> Vec<Event> {
     let mut result: Vec<Event> = Vec::new();
     for event in events {
@@ -152,7 +152,7 @@ fn every_changed_byte_of_a_tetrahedral_mesh_is_malformed() {
     }
 }
 
-/// Start and end of header and blocks, checksums included.
+/// Ranges of the header and of the blocks, checksums included.
 fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
     let mut frames = Vec::new();
@@ -165,7 +165,7 @@ fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     frames
 }
 
-/// Puts sequence numbers, lengths and checksums right, so that damage reaches the checks behind them.
+/// Corrects sequence numbers, lengths and checksums, so that damage reaches later checks.
 fn seal(mut frames: Vec<Vec<u8>>) -> Vec<u8> {
     let header = &mut frames[0];
     let body_end = header.len() - 4;
@@ -292,7 +292,7 @@ fn no_length_makes_the_reader_allocate_beyond_the_stated_maximum() {
     }
 }
 
-/// A header with random parts, and coordinates that fit all of them.
+/// A header with random fields, and coordinates that suit all of them.
 fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
     let dims = match kind {
         Kind::TetrahedralMesh | Kind::PartialTetrahedralMesh => 3,
@@ -333,7 +333,7 @@ fn random_point(random: &mut Random, header: &Header) -> Point {
     point
 }
 
-/// Points in random order; cells of the deepest level are tagged once no point of them is left.
+/// Points in random order; a cell of the deepest level is tagged once it has no further points.
 fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<Event> {
     let mut points: Vec<Point> = (0..random.below(300)).map(|_| random_point(random, header)).collect();
     let mut events = Vec::new();
@@ -349,7 +349,7 @@ fn random_points(random: &mut Random, header: &Header, tree: &CellTree) -> Vec<E
     events
 }
 
-/// Patches with random imports and finalization, then a residual of what is live. A tetrahedral mesh has
+/// Patches with random imports and finalization, then a residual of the live vertices. A tetrahedral mesh has
 /// labels that lag behind its vertices, or none.
 fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
     let mut live: Vec<(u64, Point)> = Vec::new();
@@ -399,7 +399,7 @@ fn random_mesh(random: &mut Random, header: &Header) -> Vec<Event> {
     events
 }
 
-/// A stream with random content, whole and well-formed.
+/// A complete and well-formed stream with random content.
 fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
     let mut random = Random(seed);
     let kinds = [

@@ -1,4 +1,4 @@
-//! Pipes are widened where the system allows it, and nothing else is touched.
+//! Pipes are widened where the system allows it; other files stay as they are.
 
 use std::fs::File;
 use std::io::{Read, Write};
@@ -14,8 +14,8 @@ fn pipe_len(file: &impl AsFd) -> Option<usize> {
     rustix::pipe::fcntl_getpipe_size(file).ok()
 }
 
-/// 1 MiB if the system lets another pipe hold that much, and otherwise what `pipe` holds: a user who has many
-/// pipes may be refused.
+/// 1 MiB if the system grants another pipe that capacity, and otherwise the capacity of `pipe`: the system
+/// may refuse a user with many pipes.
 #[cfg(target_os = "linux")]
 fn widest(pipe: &impl AsFd) -> Option<usize> {
     let (_reader, probe) = std::io::pipe().expect("a pipe");
@@ -62,7 +62,7 @@ fn every_tool_widens_the_pipe_that_it_reads_from() {
     ];
     for (name, arguments) in cases {
         let (reader, mut writer) = std::io::pipe().expect("a pipe");
-        // This end lets the pipe live on when the tool has ended.
+        // Keeps the pipe open after the tool has ended.
         let kept = reader.try_clone().expect("a second end");
         let child = start(name, arguments, reader.into());
         writer.write_all(&points).expect("written");

@@ -1,4 +1,4 @@
-//! The vectors of `formats/vectors`: read by this crate and by the Python reader, with the same outcome.
+//! The vectors of `formats/vectors`: this crate and the Python reader must accept and refuse the same ones.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, StreamReader};
 
-/// One vector: its name, its bytes, and what is expected (text twin, or words of the error).
+/// One vector: its name, its bytes, and the expected text twin or words of the error.
 pub struct Vector {
     pub name: String,
     pub bytes: Vec<u8>,
@@ -42,7 +42,7 @@ fn parse_hex(text: &str) -> Vec<u8> {
     data.flat_map(str::split_whitespace).map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// Reads a whole stream and checks every rule, those included that need a memory of cells and vertices.
+/// Reads a whole stream and checks every rule, including the rules that need to remember cells and vertices.
 pub fn verify(bytes: &[u8]) -> Result<(Header, Vec<Event>)> {
     let mut reader = StreamReader::new(bytes, "vector")?;
     let header = reader.header().clone();
@@ -72,7 +72,8 @@ fn remember(cells: &mut Option<FinalizedCells>, live: &mut LiveVertices<Point>, 
     }
 }
 
-/// Runs a script of this repository with `input` on stdin; `None`, said on stderr, where there is no Python.
+/// Runs a script of this repository with `input` on stdin. Without Python, prints a note to stderr and
+/// returns `None`.
 pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Output> {
     let spawned = Command::new("python3")
         .arg(repository(script))
@@ -82,7 +83,7 @@ pub fn run_python(script: &str, arguments: &[&str], input: &[u8]) -> Option<Outp
         .stderr(Stdio::piped())
         .spawn();
     let Ok(mut child) = spawned else {
-        // Not eprintln!, which the test harness keeps to itself.
+        // The test harness captures eprintln!, so write to stderr directly.
         let mut stderr = std::io::stderr();
         writeln!(stderr, "SKIPPED: python3 is missing, {script} was not run").unwrap();
         return None;

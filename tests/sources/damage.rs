@@ -1,4 +1,4 @@
-//! Damaged files: whatever byte is wrong, reading ends with points or an error, within bounded memory.
+//! Damaged files: whichever byte is wrong, reading ends with points or an error, within bounded memory.
 
 use super::{flat, sample};
 use crate::allocation::largest_during;
@@ -9,7 +9,7 @@ use spmesh_io::source::Input;
 /// Largest single allocation that a damaged small file may cause: a group of chunks.
 const ALLOCATION_MAX: usize = 65 << 20;
 
-/// Reads all points of `content`, whatever comes of it.
+/// Reads all points of `content` and checks only the memory that this takes.
 fn try_read(folder: &Folder, content: &[u8]) {
     let path = folder.file("damaged", content);
     let read = || -> spmesh_core::error::Result<()> {
@@ -30,14 +30,14 @@ fn try_read(folder: &Folder, content: &[u8]) {
     assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
 }
 
-/// Damages each byte of the first `until` of a sample, of the last 64, and one of 29 between.
+/// Damages bytes of a sample one at a time: the first `until`, the last 64, and every 29th between.
 fn damage(name: &str, until: usize) {
     let whole = std::fs::read(sample(name)).unwrap();
     let is_chosen = |&at: &usize| at < until || at + 64 > whole.len() || at % 29 == 0;
     damage_bytes(&whole, (0..whole.len()).filter(is_chosen));
 }
 
-/// Damages the bytes at `places` of a file in several ways, one at a time.
+/// Damages the bytes at `places` of a file one at a time, each in several ways.
 pub fn damage_bytes(whole: &[u8], places: impl Iterator<Item = usize>) {
     let folder = Folder::new();
     for at in places {
@@ -77,7 +77,7 @@ fn files_cut_anywhere_are_errors() {
         let whole_points = super::points(&[sample(name)], &flat()).unwrap();
         for len in (0..whole.len()).step_by(7) {
             let path = folder.file("cut", &whole[..len]);
-            // What follows the points may be missing; a point never is.
+            // The end of the file after the points may be missing, but no point may.
             if let Ok(found) = super::points(&[path], &flat()) {
                 assert_eq!(found, whole_points, "{name} cut at {len}");
             }
@@ -89,7 +89,7 @@ fn files_cut_anywhere_are_errors() {
 fn points_in_the_header_are_refused() {
     let folder = Folder::new();
     let whole = std::fs::read(sample("hextest.las")).unwrap();
-    // Offset to point data at byte 96, length of the header at byte 94.
+    // The offset of the point data is at byte 96, the length of the header at byte 94.
     for (at, value) in [(96, 0u32), (96, 100), (96, 226)] {
         let mut damaged = whole.clone();
         damaged[at..at + 4].copy_from_slice(&value.to_le_bytes());

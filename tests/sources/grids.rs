@@ -157,7 +157,7 @@ fn text_twins_are_streams_too() {
     let mesh = run("spdelaunay2d", &[stream.to_str().unwrap()], &[]).stdout;
     let converted = |format: &str| folder.file("mesh", run("spconvert", &["--to", format], &mesh).stdout);
     assert_fails(points(&[converted("text")], &flat()), ErrorKind::Usage, &["mesh: is a"]);
-    // Of meshes of other programs, the vertices are points.
+    // The points of a mesh file are its vertices.
     for format in ["obj", "sma", "ply"] {
         assert_eq!(points(&[converted(format)], &flat()).unwrap().len(), 8, "{format}");
     }

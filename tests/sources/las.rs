@@ -56,7 +56,7 @@ fn integers_stay_what_they_are_in_the_file() {
 #[test]
 fn filters_keep_classes_and_returns() {
     let record = |x, class, number, of| Record { position: [x, 0, 0], class, number, of };
-    // A number of 0 is no number: neither first_only nor last_only may drop it.
+    // A return number of 0 means unknown, so neither first_only nor last_only may drop the point.
     let records = vec![record(0, 2, 1, 2), record(1, 2, 2, 2), record(2, 5, 1, 1), record(3, 9, 0, 0)];
     for format in [1, 6] {
         let las = LasFile { format, records: records.clone(), ..LasFile::of(&[]) };

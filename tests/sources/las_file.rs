@@ -1,17 +1,17 @@
-//! Writes small LAS files by hand, after the standard and not after the reader.
+//! Writes small LAS files according to the standard, independently of the reader.
 
-/// What a test wants to vary.
+/// The parts of a file that tests vary.
 #[derive(Clone)]
 pub struct LasFile {
     pub scale: [f64; 3],
     pub offset: [f64; 3],
     pub format: u8,
     pub records: Vec<Record>,
-    /// Records of "LASF_Projection": number and content.
+    /// VLRs of "LASF_Projection": record id and content.
     pub projection: Vec<(u16, Vec<u8>)>,
 }
 
-/// The fields of a point that matter.
+/// The fields of a point that tests vary.
 #[derive(Clone, Copy, Default)]
 pub struct Record {
     pub position: [i32; 3],
@@ -21,7 +21,7 @@ pub struct Record {
 }
 
 impl LasFile {
-    /// Format 1 with centimeters, and only returns of class 2.
+    /// Format 1 with a scale of 0.01; all points are single returns of class 2.
     pub fn of(positions: &[[i32; 3]]) -> LasFile {
         let record = |&position: &[i32; 3]| Record { position, class: 2, number: 1, of: 1 };
         LasFile {
@@ -104,7 +104,7 @@ impl Record {
     }
 }
 
-/// GeoTIFF keys of one projected system.
+/// GeoTIFF keys of a projected coordinate system.
 pub fn geo_keys(epsg: u16) -> (u16, Vec<u8>) {
     let keys: [u16; 8] = [1, 1, 0, 1, 3072, 0, 1, epsg];
     (34735, keys.iter().flat_map(|key| key.to_le_bytes()).collect())

@@ -1,4 +1,4 @@
-//! Points that are nothing but numbers.
+//! Points of raw numbers.
 
 use spmesh_core::error::{ErrorKind, Result};
 use spmesh_io::source::{Input, RawType, SourceOptions};
@@ -37,7 +37,7 @@ fn triples_are_points_in_either_byte_order() {
     }
     assert_eq!(points_of([255, 0, 7], "i8").unwrap(), [[-1.0, 0.0, 7.0]]);
     assert_eq!(points_of([255, 254, 0, 1, 0, 7], "u16be").unwrap(), [[65534.0, 1.0, 7.0]]);
-    // What another format starts with is no matter.
+    // The data may start like a file of another format.
     assert_eq!(points_of(b"LASF\x89SPM#vtk", "u32be").unwrap().len(), 1);
 }
 

@@ -1,11 +1,11 @@
-//! SPA and SPB, from bytes put together by hand after `formats/historical.md`.
+//! SPA and SPB, from bytes assembled by hand according to `formats/historical.md`.
 
 use spmesh_core::error::{ErrorKind, Result};
 use spmesh_io::source::{SpDatatype, SpEvent, SpFinalization, SpReader, SpaReader, SpbReader};
 
 use super::{assert_fails, points_of};
 
-/// How an SPB file is written: byte order of the data, and what the flag claims.
+/// Byte order of the data of an SPB file, and the byte order that the flag claims.
 #[derive(Clone, Copy, Debug)]
 struct Order {
     big: bool,
@@ -54,7 +54,7 @@ impl Writer {
     }
 }
 
-/// An SPB file with these elements; `stated` is the number of points, -1 if unknown.
+/// An SPB file with these elements; `stated` is the number of points in the header, -1 if unknown.
 fn spb(
     order: Order,
     datatype: u8,

@@ -1,4 +1,5 @@
-//! Structures and points in space: formats told by their content, places exactly as they are written.
+//! Structures and points in space: formats are detected by content, and coordinates are stored exactly as
+//! written.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -12,13 +13,13 @@ use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 use super::{assert_fails, sample};
 use crate::programs::Folder;
 
-/// The structure with this content, which messages call "input".
+/// Reads a structure from memory; messages call it "input".
 pub fn read(content: impl AsRef<[u8]>) -> Result<Structure> {
     read_structure_from(Cursor::new(content.as_ref().to_vec()), "input", None)
 }
 
-/// All atoms with their texts and stored places: `model serial name element altloc chain residue number+code
-/// occupancy x y z`, "-" for what is empty, and "*" behind the name of HETATM records.
+/// All atoms with their texts and stored coordinates: `model serial name element altloc chain residue
+/// number+code occupancy x y z`, with "-" for an empty field, and "*" after the name in HETATM records.
 pub fn atoms(structure: &Structure) -> Vec<String> {
     let all = Selection { models: Models::All, altlocs: Altlocs::All, ..Selection::default() };
     let selected = structure.select(&all).expect("all atoms can be selected");
@@ -43,7 +44,7 @@ pub fn atoms(structure: &Structure) -> Vec<String> {
     (0..selected.points().len()).map(line).collect()
 }
 
-/// Stored places of the first model.
+/// Stored coordinates of the first model.
 fn points(structure: &Structure) -> &[[f64; 3]] {
     &structure.models[0].points
 }
@@ -71,7 +72,7 @@ fn pdb_and_mmcif_of_one_entry_are_the_same() {
     let (pdb, cif) = (read_structure(&pdb, None).unwrap(), read_structure(&cif, None).unwrap());
     assert_eq!((scale(&pdb), scale(&cif)), (Some(0.001), Some(0.001)));
     assert_eq!(points(&pdb), points(&cif));
-    // The TER record of PDB has a serial number of its own.
+    // The TER record of PDB takes a serial number.
     let without_serial = |structure: &Structure| -> Vec<String> {
         let rest = |atom: String| atom.splitn(3, ' ').nth(2).unwrap().to_string();
         atoms(structure).into_iter().map(rest).collect()
@@ -168,7 +169,7 @@ fn compression_is_told_by_the_content() {
     let expected = atoms(&read(&whole).unwrap());
     let path = folder.file("structure.pdb", gzip(&whole));
     assert_eq!(atoms(&read_structure(&path, None).unwrap()), expected);
-    // Members one behind the other are one file.
+    // Concatenated gzip members form one file.
     let halves = [gzip(&whole[..5000]), gzip(&[]), gzip(&whole[5000..])].concat();
     assert_eq!(atoms(&read(halves).unwrap()), expected);
     let text = gzip(b"1 2 3\n4 5 6\n");
@@ -214,7 +215,7 @@ fn points_are_read_as_elsewhere() {
     }
 }
 
-/// A column of numbers before the coordinates is taken for x, which nobody wants and only a warning can tell.
+/// A column of numbers before the coordinates is taken for x; only a warning can tell the user.
 #[test]
 fn points_that_are_numbered_are_warned_of() {
     let order = [3, 1, 8, 2, 6, 7, 5, 4];

@@ -1,4 +1,4 @@
-//! Damaged structures: whatever byte is wrong, reading ends with atoms or an error, within bounded memory.
+//! Damaged structures: whichever byte is wrong, reading ends with atoms or an error, within bounded memory.
 
 use super::sample;
 use super::structure::{atoms, gzip, read};
@@ -34,7 +34,7 @@ fn every_truncation_keeps_a_part_of_the_atoms_or_is_refused() {
             continue;
         }
         let expected = atoms(&read(&whole).unwrap());
-        // Every length of small samples, and of the end of large ones.
+        // Every length of small samples and of the end of large ones; every 11th length of the rest.
         let (sparse, dense) =
             (0..whole.len().saturating_sub(4000), whole.len().saturating_sub(4000)..whole.len());
         for len in sparse.step_by(11).chain(dense) {
@@ -45,7 +45,7 @@ fn every_truncation_keeps_a_part_of_the_atoms_or_is_refused() {
                     continue;
                 }
             };
-            // The line of the last atom may have lost what follows the place; that is said.
+            // The last atom's line may be cut after the coordinates; then a warning says so.
             let found = atoms(&structure);
             let is_told = structure.warnings.iter().any(|warning| warning.contains("cut off"));
             let sure = found.len() - usize::from(is_told);

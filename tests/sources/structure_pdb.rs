@@ -5,12 +5,12 @@ use spmesh_core::error::ErrorKind;
 use super::assert_fails;
 use super::structure::{atoms, read};
 
-/// The line of an atom: columns 1 to 30 and the coordinates, which are the same for all.
+/// The line of an atom: columns 1 to 30 as given, and fixed coordinates.
 fn atom(start: &str) -> String {
     format!("{start:30}   1.000   2.000   3.000  1.00  0.00           C  \n")
 }
 
-/// The first atom of a file with this line, as `atoms` has it, without the place.
+/// The first atom of a file with this line, as `atoms` prints it, without the coordinates.
 fn first(line: &str) -> String {
     let found = atoms(&read(line).unwrap_or_else(|error| panic!("{error}: {line:?}")));
     found[0].strip_suffix(" 1000 2000 3000").expect("the usual place").to_string()
@@ -28,7 +28,7 @@ fn columns_are_read_whatever_ends_the_line() {
         (whole[..59].to_string() + "\n", "1 7 HG21 - A B ILE -5C 0.2"),
         (whole[..77].to_string() + "\n", "1 7 HG21 - A B ILE -5C 0.25"),
         (whole[..78].to_string() + "\n", "1 7 HG21 H A B ILE -5C 0.25"),
-        // Column 73 to 80 of files of the nineties: code of the entry and number of the line.
+        // Columns 73 to 80 in files of the 1990s: the code of the entry and the number of the line.
         (whole[..66].to_string() + "      1ABC  87\n", "1 7 HG21 - A B ILE -5C 0.25"),
         ("\u{feff}".to_string() + whole, "1 7 HG21 H A B ILE -5C 0.25"),
     ];
@@ -129,7 +129,7 @@ fn places_that_are_not_certain_are_refused() {
         ("   1.000   2.000********", &["\"********\"", "z in columns 47 to 54"]),
         ("   1.000           3.000", &["\"        \"", "y in columns 39 to 46"]),
         ("   1.000   2.000   3,000", &["z in columns"]),
-        // One column too far to the right, and two.
+        // Coordinates one column too far to the right, and two.
         ("     1.000   2.000   3.000", &["y in columns"]),
         ("   26.981  53.977  40.085", &["y in columns"]),
         ("   1.000   2.000   3.00", &["ends after column 53", "z in columns 47 to 54"]),

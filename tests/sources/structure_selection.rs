@@ -1,4 +1,4 @@
-//! Selections: which atoms are left, and what the points are labelled with.
+//! Selections: which atoms are kept, and how the points are labelled.
 
 use spmesh_core::error::ErrorKind;
 use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selection, Structure, read_structure};
@@ -6,7 +6,7 @@ use spmesh_io::source::structure::{Altlocs, Atoms, Models, Selection, Structure,
 use super::structure::read;
 use super::{assert_fails, sample};
 
-/// Labels of the selected atoms.
+/// Labels of the selected atoms, which must be their serial numbers.
 fn labels(structure: &Structure, selection: &Selection) -> Vec<u64> {
     let selected = structure.select(selection).unwrap_or_else(|error| panic!("{error}"));
     let labels: Vec<u64> = (0..selected.points().len()).map(|index| selected.label(index)).collect();
@@ -17,8 +17,8 @@ fn labels(structure: &Structure, selection: &Selection) -> Vec<u64> {
     labels
 }
 
-/// Atoms `serial name element altloc residue chain number occupancy` as a structure, HETATM if the residue is
-/// not one of three small letters.
+/// A structure of atoms `serial name element altloc residue chain number occupancy`; a line that ends with
+/// HET is a HETATM record.
 fn structure(atoms: &[&str]) -> Structure {
     let tags = "id auth_atom_id type_symbol label_alt_id auth_comp_id auth_asym_id auth_seq_id occupancy \
                 group_PDB Cartn_x \
@@ -87,13 +87,13 @@ fn one_conformer_is_whole() {
         "3 CA C B SER A 1 0.6",
         "4 CB C A SER A 1 0.4",
         "5 CB C B SER A 1 0.6",
-        // The best conformer has no OG: the one that is occupied most takes its place.
+        // Conformer B, the best, has no OG: the OG with the highest occupancy takes its place.
         "6 OG O A SER A 1 0.1",
         "7 OG O C SER A 1 0.2",
-        // Occupied alike: the first.
+        // Equal occupancy: the first one counts.
         "8 O O B HOH A 2 0.5 HET",
         "9 O O A HOH A 2 0.5 HET",
-        // The residue itself is another, and comes in turns.
+        // The alternate locations are different residues.
         "10 CA C A GLU A 3 0.3",
         "11 CA C B THR A 3 0.7",
         "12 CG C A GLU A 3 0.3",

@@ -1,4 +1,4 @@
-//! Text: xyz, csv and their kin.
+//! Text: xyz, csv and similar formats.
 
 use spmesh_core::error::ErrorKind;
 use spmesh_io::source::{Input, SourceOptions};

@@ -1,4 +1,4 @@
-//! Files of VTK, written as "VTK file formats" says, by code that shares nothing with the reader.
+//! Writes VTK files according to "VTK file formats", by code that shares nothing with the reader.
 
 use std::io::Write;
 
@@ -35,7 +35,7 @@ pub struct VtkXml {
 }
 
 impl VtkXml {
-    /// Uncompressed doubles behind the elements, as this project writes them.
+    /// Uncompressed appended doubles, as this project writes them.
     pub fn of(pieces: Vec<Vec<Point>>) -> Self {
         VtkXml {
             form: Form::AppendedRaw,
@@ -48,7 +48,7 @@ impl VtkXml {
         }
     }
 
-    /// Another array stands before that of the points, and one behind it.
+    /// The file. One array stands before the points, and one after them.
     pub fn bytes(&self) -> Vec<u8> {
         let order = if self.is_big { "BigEndian" } else { "LittleEndian" };
         let lengths = if self.is_wide { "UInt64" } else { "UInt32" };
@@ -130,7 +130,7 @@ impl VtkXml {
         let blocks: Vec<Vec<u8>> = bytes.chunks(self.block_len).map(|block| self.compressed(block)).collect();
         let mut lengths = [blocks.len(), self.block_len, bytes.len() % self.block_len].map(length).concat();
         blocks.iter().for_each(|block| lengths.extend(length(block.len())));
-        // The lengths are encoded apart from the data.
+        // The lengths are encoded separately from the data.
         [encoded(&lengths), encoded(&blocks.concat())].concat()
     }
 
@@ -144,8 +144,8 @@ impl VtkXml {
     }
 }
 
-/// A block of LZ4 that is nothing but one run of literals: 15 in the high half of the token says that bytes
-/// follow to be added, up to the first that is less than 255.
+/// An LZ4 block that is one run of literals. The high half of the token is 15, so the length goes on in the
+/// following bytes, up to and including the first that is less than 255.
 fn lz4(literals: &[u8]) -> Vec<u8> {
     if literals.len() < 15 {
         return [&[(literals.len() as u8) << 4], literals].concat();

@@ -48,8 +48,8 @@ fn points_of_bytes_are_big_endian() {
     assert_eq!(points_of(binary("float", b"", &floats)).unwrap(), THREE);
     let integers: Vec<u8> = [1i32, -2, 3].iter().flat_map(|x| x.to_be_bytes()).collect();
     assert_eq!(points_of(binary("int", b"", &integers)).unwrap(), [[1.0, -2.0, 3.0]]);
-    // Texts have a length of one byte, or more, before them; and all of them may hold words and ends of
-    // lines.
+    // Strings come after their length, in one byte or more. Both strings and bits may contain keywords and
+    // line feeds.
     let mut field = b"FIELD FieldData 3\nt 1 1 double\n\nPOINTS\n\nwho 1 3 string\n\xc7POINTS\n".to_vec();
     field.extend([&[0x80, 70][..], &[b'\n'; 70], &[0x40, 0, 0, 2], b"\n\n"].concat());
     field.extend(b"\nbits 1 9 bit\n\n\n\n");
@@ -93,10 +93,10 @@ fn damage_is_survived_and_no_cut_passes_for_a_whole_file() {
     for whole in [binary("double", field, &doubles()), ascii.into_bytes()] {
         damage::damage_bytes(&whole, 0..whole.len());
         let expected = points_of(&whole).unwrap();
-        // What is shorter than its first words is of another format.
+        // A file shorter than its first words is not detected as VTK.
         for len in 14..whole.len() {
             let found: Result<Vec<Point>> = points_of(&whole[..len]);
-            // A number that is text may be cut to another; all else is missed.
+            // Cutting a number in text may give another number; all other cuts are noticed.
             if let Ok(found) = found {
                 let is_last = whole[..len].ends_with(b"-1") || whole[..len].ends_with(b"-1.");
                 assert!(found == expected || (is_last && found[..2] == expected[..2]), "cut at {len}");

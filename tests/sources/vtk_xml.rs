@@ -11,7 +11,7 @@ use crate::programs::{Folder, outcome, run};
 const FORMS: [Form; 4] = [Form::Ascii, Form::Binary, Form::AppendedRaw, Form::AppendedBase64];
 const PACKINGS: [Packing; 3] = [Packing::Plain, Packing::Zlib, Packing::Lz4];
 
-/// Points whose coordinates a float holds, among them the least and the greatest.
+/// Points whose coordinates fit a float, including the least and the greatest ones.
 fn cloud(count: u32) -> Vec<Point> {
     let odd = [-0.0, f64::from(f32::MAX), f64::from(f32::from_bits(1)), -1.5];
     let value = |i: u32| match i {
@@ -21,7 +21,7 @@ fn cloud(count: u32) -> Vec<Point> {
     (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2].map(value).map(|x| f64::from(x as f32))).collect()
 }
 
-/// A file for each way to write one.
+/// A file for each way to write the arrays.
 fn files(pieces: &[Vec<Point>]) -> Vec<VtkXml> {
     let mut files = Vec::new();
     for number in 0..96 {
@@ -141,7 +141,7 @@ fn bounds_and_grids_hold_for_them_as_for_others() {
     assert_eq!(points(&[path], &options).unwrap(), [[14.0, 4.0, 25.0]]);
 }
 
-/// A whole file in which `from`, which it must have, is `to` instead.
+/// A whole file in which `to` replaces `from`, which the file must contain.
 fn changed(file: &VtkXml, from: &str, to: &str) -> Vec<u8> {
     let bytes = file.bytes();
     let at = bytes.windows(from.len()).position(|window| window == from.as_bytes());
@@ -225,11 +225,12 @@ fn hostile_blocks_are_refused_within_bounded_memory() {
     for packing in [Packing::Zlib, Packing::Lz4] {
         let whole =
             VtkXml { packing, block_len: 24_000, is_wide: false, ..VtkXml::of(zeros.clone()) }.bytes();
-        // The points have the second of three arrays, which all state the length of blocks.
+        // The points are the second of three arrays, each of which states the length of blocks.
         let mut lengths =
             whole.windows(4).enumerate().filter(|(_, window)| *window == 24_000u32.to_le_bytes());
         let (at, _) = lengths.nth(1).unwrap();
-        // Number of blocks, length of a block, of the last, and its compressed length.
+        // The number of blocks, the length of a block, the length of the last block, and its compressed
+        // length.
         for (place, value) in
             [(at - 4, u32::MAX), (at, u32::MAX), (at, 1), (at + 4, 5), (at + 8, 3), (at + 8, u32::MAX)]
         {
@@ -255,7 +256,7 @@ fn damage_is_survived_and_no_cut_passes_for_a_whole_file() {
     ] {
         let whole = VtkXml { form, packing, block_len: 50, ..VtkXml::of(vec![cloud(7)]) }.bytes();
         damage::damage_bytes(&whole, (0..whole.len()).step_by(5));
-        // What follows the last element is nothing but the end of its line.
+        // Only a line feed follows the last element, so every shorter file is incomplete.
         for len in (1..whole.len() - 1).step_by(3) {
             let path = folder.file("cut", &whole[..len]);
             assert!(points(&[path], &flat()).is_err(), "{form:?} {packing:?} cut at {len}");

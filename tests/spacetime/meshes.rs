@@ -10,7 +10,7 @@ use spmesh_model::cells4::Point4;
 use super::{sampled, scattered, volume, with_values};
 use spmesh_reference::sets::Random;
 
-/// Facets of tetrahedra that belong to one only; none belongs to more than two.
+/// Facets that belong to one tetrahedron; no facet may belong to more than two.
 fn border(slice: &Slice) -> HashSet<[u32; 3]> {
     let mut counts: HashMap<[u32; 3], usize> = HashMap::new();
     for &[a, b, c, d] in &slice.tetrahedra {
@@ -37,7 +37,7 @@ fn is_on_box(slice: &Slice, facet: &[u32; 3], sides: [f64; 3]) -> bool {
 #[test]
 fn slices_of_full_grids_are_exact() {
     let diagram = with_values(sampled(&mut Random::new(31), [4, 3, 3, 4], 1.0), |p| p[0] + 2.0 * p[3]);
-    // At 0.25 edges to the middle of a cube are cut in half.
+    // At 0.25, edges to the centre of a cube are cut in half.
     for time in [0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 2.75, 3.0] {
         let slice = slice(&diagram, time).unwrap();
         let sum: i128 = slice.tetrahedra.iter().map(|t| volume(&slice.points, t, 4.0)).sum();
@@ -110,7 +110,7 @@ fn squared([x, y, z, _]: Point4) -> f64 {
 fn balls_are_closed_and_face_outwards() {
     let mut random = Random::new(33);
     for share in [1.0, 0.5] {
-        // Values fall outwards.
+        // Values decrease outwards.
         let diagram = with_values(sampled(&mut random, [7, 7, 7, 3], share), |p| -squared(p));
         for (time, level) in [(0.5, -4.5), (1.0, -5.3), (1.0, -4.0), (1.25, -1.0), (2.0, -5.0), (0.0, -2.0)] {
             let surface = isosurface(&slice(&diagram, time).unwrap(), level).unwrap();
@@ -141,7 +141,7 @@ fn surfaces_end_at_the_border_only() {
 #[test]
 fn first_last_and_other_times() {
     let mut random = Random::new(35);
-    // In the first and last moment there is one point.
+    // The first and the last moment have one point each.
     let mut points = scattered(&mut random, 40, 9);
     points.extend([[4.0, 4.0, 4.0, -3.0], [5.0, 4.0, 3.0, 12.0]]);
     let diagram = with_values(points, |p| p[0]);

@@ -15,7 +15,7 @@ fn parts(diagram: &Diagram4, rule: Rule) -> Subdivision {
     subdivide(&diagram.points, diagram.values.as_deref(), &diagram.cells, rule, |_| true).unwrap()
 }
 
-/// Every facet belongs to two simplices or to one; returns how many belong to one.
+/// Checks that every facet belongs to one or two simplices; returns how many belong to one.
 fn border(simplices: &[[u32; 5]]) -> usize {
     let mut counts: HashMap<Vec<u32>, usize> = HashMap::new();
     for simplex in simplices {
@@ -51,10 +51,10 @@ fn barycentric_simplices_of_full_cubes_fit_together() {
     let (cubes, _) = diagram(sampled(&mut random, [3, 3, 2, 2], 1.0), None).unwrap();
     let parts = parts(&cubes, Rule::Barycentric);
     assert_eq!(parts.simplices.len(), 4 * 192);
-    // Barycentres are multiples of a half.
+    // Coordinates of barycentres are multiples of a half.
     let sum: i128 = parts.simplices.iter().map(|simplex| volume(&parts.points, simplex, 2.0)).sum();
     assert_eq!((sum, parts.flat), (24 * 4 * 16, 0));
-    // On the border are 2 * (2 + 2 + 4 + 4) facets of cubes, each of 24 tetrahedra.
+    // The border has 2 * (2 + 2 + 4 + 4) facets of cubes, each divided into 24 tetrahedra.
     assert_eq!(border(&parts.simplices), 24 * 24);
 }
 
@@ -64,7 +64,8 @@ fn barycentric_simplices_of_scattered_points_fit_together() {
     for side in [3, 4, 6] {
         let (diagram, _) = diagram(scattered(&mut random, 60, side), None).unwrap();
         let [pulled, parts] = [Rule::Pulled, Rule::Barycentric].map(|rule| parts(&diagram, rule));
-        // Coordinates are rounded only where a face has 5, 6, 7, ... vertices: compare with the sum in f64.
+        // The barycentre of a face with 5, 6, 7 or more vertices may be rounded, so the sum of volumes is
+        // compared in f64.
         let sum: f64 = parts.simplices.iter().map(|s| float_volume(&parts, s)).sum();
         let whole: i128 = pulled.simplices.iter().map(|s| volume(&pulled.points, s, 1.0)).sum();
         assert!((sum - whole as f64).abs() < 1e-9 * whole as f64, "{sum} {whole}");
@@ -75,7 +76,7 @@ fn barycentric_simplices_of_scattered_points_fit_together() {
 }
 
 fn float_volume(parts: &Subdivision, simplex: &[u32; 5]) -> f64 {
-    // Units of 2^-26, in which determinants are integers of 128 bits.
+    // Units of 2^-26 keep determinants within 128-bit integers.
     let rounded: Vec<[f64; 4]> =
         simplex.iter().map(|&v| parts.points[v as usize].map(|x| (x * 67_108_864.0).round())).collect();
     volume(&rounded, &[0, 1, 2, 3, 4], 1.0) as f64 / 2f64.powi(104)

@@ -43,8 +43,7 @@ fn values_are_continuous_across_cells() {
     let diagram =
         with_values(sampled(&mut random, [4, 4, 4, 4], 0.5), |p| p.iter().map(|x| (x * 2.3).sin()).sum());
     let mut interpolator = Interpolator::new(&diagram).unwrap();
-    // Slopes are a few units at most, so nearby sites have nearby values; sites on facets of cubes are among
-    // them.
+    // Slopes are at most a few units, so nearby sites have nearby values. Some sites lie on facets of cubes.
     for _ in 0..300 {
         let site = [(); 4].map(|()| random.integer(0, 12) as f64 / 4.0);
         let here = interpolator.value(site).unwrap().unwrap();

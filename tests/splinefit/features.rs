@@ -8,7 +8,7 @@ fn roof(x: f64, y: f64) -> f64 {
     20.0 - 0.5 * (x - 43.0).abs() + 0.1 * y
 }
 
-/// Greatest deviation from the roof near to its ridge, at places off it, and the step of the slope there.
+/// Greatest deviation from the roof near its ridge, and the least step of the slope across the ridge.
 fn at_ridge(spline: &[u8]) -> (f64, f64) {
     let folder = Folder::new();
     let beside = |by: f64| (1..40).map(move |y| [43.0 + by, 2.0 * f64::from(y)]);
@@ -38,7 +38,7 @@ fn roofs_have_sharp_ridges() {
         for knots in [&["--knots", &knots][..], &["--max-knots", "60"]] {
             let spline = output(&[&["fit", "--features", features, &points], knots].concat(), &[]);
             let (off, step) = at_ridge(&spline);
-            // Points at random leave gaps at the border of the box, which are bridged.
+            // Random points leave gaps at the border of the box, which smoothing bridges.
             assert!(off < 0.02 && (0.9..1.1).contains(&step), "{features} {knots:?}: {off}, {step}");
             let audit = run("spinfo", &["--audit", "-"], &spline);
             assert!(audit.status.success(), "{:?}", outcome(&audit));
@@ -56,7 +56,7 @@ fn creases_can_end_smoothly_and_corners_stand_alone() {
     let twin = String::from_utf8(run("spconvert", &["--to", "text"], &spline).stdout).unwrap();
     let count = |kind: &str| twin.lines().filter(|line| line.starts_with(kind)).count();
     assert!(count("function crease") > 1);
-    // The border, the corner, and the ends of the parts of the line.
+    // The knots of the border, the corner, and the ends of the linear element.
     assert!(count("function vertex") >= 20 + 1 + 2);
 }
 

@@ -1,4 +1,4 @@
-//! What is said of splines, and control meshes.
+//! The output of `splinefit info`, and control meshes.
 
 use serde_json::Value;
 
@@ -9,7 +9,7 @@ fn info(arguments: &[&str], input: &[u8]) -> Value {
     serde_json::from_slice(&output(&[&["info", "--json"], arguments].concat(), input)).unwrap()
 }
 
-/// A grid over a square; knots inside are off it or not.
+/// A grid over a square; inner knots are moved off it by up to `moved` along each axis.
 fn grid(moved: f64) -> String {
     let by = |i: i32, j: i32, seed: i32| moved * f64::from((i * 7 + j * 13 + seed * 5) % 11 - 5) / 5.0;
     let at = |i: i32, j: i32| match (1..5).contains(&i) && (1..5).contains(&j) {
@@ -32,7 +32,7 @@ fn splines_are_described() {
     assert_eq!(said["knots"], 36 + 20);
     assert_eq!(said["domain"], serde_json::json!([0.0, 0.0, 100.0, 80.0]));
     assert_eq!((&said["residuals"]["count"], &said["residuals"]["outside"]), (&3_001.into(), &1.into()));
-    // All points are on the spline but for one.
+    // All points but one are on the spline.
     let off = (2.5 - bowl(50.0, 40.0)).abs();
     assert!((said["residuals"]["max"].as_f64().unwrap() - off).abs() < 1e-8);
     assert_eq!(said["residuals"]["worst"], serde_json::json!([50.0, 40.0]));
@@ -60,7 +60,7 @@ fn conditions_are_those_of_the_thesis() {
     assert_eq!(said["functions"], 96);
     let condition = said["condition"]["value"].as_f64().unwrap();
     assert!((6.4..7.0).contains(&condition), "{condition}");
-    // Knots that are not pulled apart leave functions with one site only where none coincide.
+    // A small basis has the exact condition, in the 2-norm; estimates are in the 1-norm.
     assert_eq!(said["condition"]["norm"], 2);
 }
 
@@ -72,10 +72,10 @@ fn folds_are_where_knots_are_on_lines() {
         assert_eq!(said["order"], 1);
         (said["candidates"].as_array().unwrap().clone(), said["folds"].as_array().unwrap().clone())
     };
-    // On a grid single functions have edges along its lines.
+    // On a grid, single functions have folds along its lines.
     let (candidates, folds) = of(&grid(0.0));
     assert!(folds.len() > 20 && folds.len() <= candidates.len(), "{}", folds.len());
-    // Off it they have none, away from the border.
+    // Off the grid, folds remain only at the border.
     let (_, folds) = of(&grid(0.2));
     for fold in &folds {
         let ends = fold["ends"].as_array().unwrap();
@@ -115,7 +115,7 @@ fn control_meshes_are_drawn() {
     assert_eq!(picture.matches("<path color=").count(), expected);
     assert!(picture.contains("Control mesh of stdin"));
     assert!(picture.starts_with("<svg ") && picture.ends_with("</svg>\n") && !picture.contains("NaN"));
-    // The least elevation and the greatest have the ends of the ramp.
+    // The least and the greatest elevation have the colours at the ends of the ramp.
     assert!(picture.contains("#011959") && picture.contains("#faccfa"));
     assert_eq!(output(&["mesh", "-", "--svg"], &spline), picture.as_bytes());
 }

@@ -1,4 +1,4 @@
-//! `splinefit`: splines of points, and what they are at sites and in cells, against functions that are known.
+//! `splinefit`: splines fitted to points, and their values at sites and in cells, against known functions.
 
 mod failures;
 mod features;
@@ -12,14 +12,14 @@ use serde_json::Value;
 use crate::programs::{Folder, outcome, run};
 use spmesh_reference::sets::Random;
 
-/// Runs `splinefit`, which must succeed.
+/// The output of `splinefit`, which must succeed.
 fn output(arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run("splinefit", arguments, input);
     assert!(output.status.success(), "{arguments:?}: {:?}", outcome(&output));
     output.stdout
 }
 
-/// What a fit says of itself.
+/// The statistics of a fit.
 fn stats(arguments: &[&str], input: &[u8]) -> Value {
     let output =
         run("splinefit", &[&["fit", "--stats=json", "-q", "-o", "/dev/null"], arguments].concat(), input);
@@ -28,7 +28,7 @@ fn stats(arguments: &[&str], input: &[u8]) -> Value {
     serde_json::from_str(&message).unwrap()
 }
 
-/// Numbers of the lines of a table.
+/// The numbers in the lines of a table.
 fn rows(table: &[u8]) -> Vec<Vec<f64>> {
     let text = std::str::from_utf8(table).unwrap();
     let numbers = |line: &str| line.split(' ').map(|word| word.parse().unwrap()).collect();
@@ -47,7 +47,7 @@ fn sites(count: usize) -> String {
     points(count, 99, |_, _| 0.0)
 }
 
-/// Knots of a grid over the box, those inside off it.
+/// Knots of a grid over the box; inner knots are moved off it.
 fn knots() -> String {
     let mut random = Random::new(5);
     let mut lines = String::new();
@@ -67,13 +67,13 @@ fn bowl(x: f64, y: f64) -> f64 {
     3.0 + 0.01 * x * x - 0.02 * x * y + 0.03 * y * y - y
 }
 
-/// The greatest deviation of the spline in a stream from a function, at sites that are all in the domain.
+/// The greatest deviation of the spline in a stream from a function, at sites that must all be in the domain.
 fn deviation(spline: &[u8], f: impl Fn(f64, f64) -> f64) -> f64 {
     let greater = |greatest: f64, one: f64| if one.is_nan() { f64::INFINITY } else { greatest.max(one) };
     deviations(spline, f).into_iter().fold(0.0, greater)
 }
 
-/// The root of their mean square.
+/// The root mean square deviation.
 fn mean_deviation(spline: &[u8], f: impl Fn(f64, f64) -> f64) -> f64 {
     let all = deviations(spline, f);
     (all.iter().map(|off| off * off).sum::<f64>() / all.len() as f64).sqrt()
@@ -90,7 +90,7 @@ fn deviations(spline: &[u8], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 #[test]
 fn a_plane_is_given_back_without_any_option() {
     let spline = output(&["fit"], points(2_000, 1, plane).as_bytes());
-    // The box of the points is hardly smaller than that of the sites.
+    // The box of the points is almost as large as that of the sites.
     let folder = Folder::new();
     let sites = folder.write("sites.txt", points(300, 4, |_, _| 0.0));
     let found = rows(&output(&["eval", "-", "--at", &sites], &spline));
@@ -129,7 +129,7 @@ fn quadratics_are_given_back_over_given_knots() {
         ];
         let found = all.iter().flat_map(|rows| rows[at][2..].iter());
         for (place, (found, expected)) in found.zip(expected).enumerate() {
-            // Second derivatives lose more digits.
+            // Second derivatives lose more digits where the slope is small.
             let tolerance = if square < 1e-3 { 1e-3 } else { 1e-5 };
             assert!((found - expected).abs() < tolerance, "{place} at {x} {y}: {found}, {expected}");
         }
@@ -144,12 +144,12 @@ fn configurations_come_through_a_pipe() {
     let set = run("configgen", &["--boundary", "pulled-apart", &knots], &[]).stdout;
     let spline = output(&["fit", "--knots", "-", &points], &set);
     assert!(deviation(&spline, bowl) < 1e-9);
-    // The knots of a spline can be used again; points as knots make the same.
+    // The knots of a spline can be used again: they give the same spline.
     let again = output(&["fit", "--knots", "-", &points], &spline);
     assert_eq!(again, spline);
     let info = run("spinfo", &["--audit", "-"], &spline);
     assert!(info.status.success(), "{:?}", outcome(&info));
-    // Through the text twin, too.
+    // The text twin of a spline works, too.
     let twin = run("spconvert", &["--to", "text"], &spline).stdout;
     assert!(deviation(&twin, bowl) < 1e-9);
 }
@@ -212,7 +212,7 @@ fn smoothing_follows_cross_validation() {
         assert!(smooth < plain, "{method}: {smooth}, {plain}");
         assert!(counted["lambda"].as_f64().unwrap() > 0.0);
         assert!(counted["trials"].as_array().unwrap().len() > 10);
-        // What was chosen can be asked for.
+        // The chosen lambda can be requested.
         let (_, again) = of(&counted["lambda"].to_string());
         assert!((again - smooth).abs() < 1e-6, "{method}: {again}, {smooth}");
     }
@@ -221,7 +221,7 @@ fn smoothing_follows_cross_validation() {
 #[test]
 fn gaps_are_bridged() {
     let folder = Folder::new();
-    // Nothing is known of a quarter of the box.
+    // A quarter of the box has no points.
     let all = points(4_000, 2, plane);
     let some =
         all.lines().filter(|line| !(line.starts_with(|c| "89".contains(c)) && line.find('.') == Some(2)));
@@ -241,7 +241,7 @@ fn gaps_are_bridged() {
 #[test]
 fn values_of_triangulated_points_are_interpolated() {
     let folder = Folder::new();
-    // The triangulation of points of a plane is that plane.
+    // Linear interpolation of points in a plane gives the plane.
     let around =
         "-1 -1 500.25\n101 -1 525.75\n101 81 484.75\n-1 81 459.25\n".to_string() + &points(300, 6, plane);
     let (knots, around) = (folder.write("knots.txt", knots()), folder.write("points.txt", around));
@@ -274,7 +274,7 @@ fn knots_can_be_on_a_grid() {
     let wave = |x: f64, y: f64| (0.1 * x).sin() * (0.08 * y).cos();
     let text = points(20_000, 8, wave);
     let counted = stats(&["--step", "5"], text.as_bytes());
-    // 20 by 16 cells, and a few more so that corners are not cut off.
+    // 20 by 16 cells, and a few additional knots so that corners are not cut off.
     let knots = counted["knots"].as_u64().unwrap();
     assert!((21 * 17..=21 * 17 + 4).contains(&knots), "{knots}");
     assert!(counted["residual_max"].as_f64().unwrap() < 0.02, "{counted}");
@@ -286,7 +286,8 @@ fn knots_can_be_on_a_grid() {
 #[test]
 fn functions_that_are_zero_are_left_out() {
     let folder = Folder::new();
-    // Next to the border, the link of two of these knots goes back and forth between copies at one place.
+    // Next to the border, the link of two of these knots goes back and forth between copies at one place, so
+    // its B-spline is zero.
     let knots = "938.3889 366.3663\n953.5630 365.1613\n936.2030 431.5693\n934.7009 407.2476\n987.5798 361.0138\n\
                  996.1186 375.6824\n983.6020 385.7561\n999.9800 405.9347\n999.9800 415.8357\n991.0878 410.5905\n\
                  995.8512 415.0531\n993.2535 414.3222\n";

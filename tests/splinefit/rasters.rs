@@ -8,7 +8,7 @@ use tiff::decoder::{Decoder, DecodingResult};
 use super::{output, points, rows};
 use crate::programs::{Folder, outcome, run};
 
-/// A spline over the convex hull of a few points: a disk of knots.
+/// A spline over the convex hull of a few points: its knots lie in a disk.
 fn disk() -> Vec<u8> {
     let folder = Folder::new();
     let at = |i: usize, ring: f64| {
@@ -22,7 +22,7 @@ fn disk() -> Vec<u8> {
     output(&["fit", "--knots", &knots, &points], &[])
 }
 
-/// Columns, rows, left, bottom, step and values of an ESRI grid.
+/// Columns and rows; left, bottom and step; and values of an ESRI grid.
 fn grid(text: &[u8]) -> ([usize; 2], [f64; 3], Vec<f32>) {
     let text = std::str::from_utf8(text).unwrap();
     let lines: Vec<&str> = text.lines().collect();
@@ -44,7 +44,7 @@ fn cells_have_what_is_at_their_centres() {
         let ([columns, count], [left, bottom, step], values) =
             grid(&output(&["eval", &spline, "--step", "1.5", "--kind", kind, "--format", "asc"], &[]));
         assert_eq!(columns * count, values.len());
-        // Sides are at multiples of the step.
+        // The sides of the raster are at multiples of the step.
         assert_eq!((left / step).fract(), 0.0);
         let centre = |cell: usize| {
             let (column, row) = (cell % columns, count - 1 - cell / columns);
@@ -65,7 +65,7 @@ fn cells_have_what_is_at_their_centres() {
                 );
             }
         }
-        // Corners of the box of a disk are not in it.
+        // The corners of the box of a disk are outside of the domain.
         let part = f64::from(outside) / values.len() as f64;
         assert!((0.15..0.35).contains(&part), "{kind}: {part}");
     }
@@ -75,7 +75,7 @@ fn cells_have_what_is_at_their_centres() {
 fn formats_hold_the_same() {
     let (folder, spline) = (Folder::new(), disk());
     let spline = folder.write("spline.spm", spline);
-    // More than a tile, and more than a band.
+    // More columns than a tile has, and more rows than a band.
     let [tif, asc] = ["x.tif", "x.asc"].map(|name| folder.path(name));
     for file in [&tif, &asc] {
         let found = run("splinefit", &["eval", &spline, "--columns", "300", "-o", file], &[]);
@@ -119,6 +119,6 @@ fn windows_and_counts_say_which_cells_there_are() {
     assert_eq!(of(&["--bounds", "40,30,60,40", "--columns", "100"]).0, [100, 50]);
     let (counts, _) = of(&[]);
     assert_eq!(counts.into_iter().max(), Some(1_000));
-    // All of it outside.
+    // The window lies outside of the domain.
     assert_eq!(of(&["--bounds", "-40,-30,-20,-10", "--rows", "3"]).0, [3, 3]);
 }

@@ -3,7 +3,7 @@
 use super::{deviation, knots, output, plane, points, rows, stats};
 use crate::programs::{Folder, outcome, run};
 
-/// Points of a plane, of which every twentieth is far above.
+/// Points of a plane, every twentieth of them far above it.
 fn with_errors() -> (String, Vec<usize>) {
     let all = points(4_000, 12, plane);
     let far: Vec<usize> = (0..4_000).filter(|i| i % 20 == 7).collect();
@@ -34,7 +34,7 @@ fn gross_errors_are_rejected_and_listed() {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(rejected.len(), far.len());
         for (row, &index) in rejected.iter().zip(&far) {
-            // The same point, to the last digit.
+            // The rejected point is written with all its digits.
             assert_eq!(format!("{} {} {}", row[0], row[1], row[2]), lines[index]);
             assert!((row[3] - (row[2] - plane(row[0], row[1]))).abs() < 0.02);
         }
@@ -45,7 +45,7 @@ fn gross_errors_are_rejected_and_listed() {
 fn residuals_are_listed_in_order() {
     let folder = Folder::new();
     let (text, _) = with_errors();
-    // One point is outside of the domain.
+    // One additional point outside of the domain.
     let text = text + "500 500 0\n";
     let (knots, points) = (folder.write("knots.txt", knots()), folder.write("points.txt", &text));
     let list = folder.path("residuals.txt");

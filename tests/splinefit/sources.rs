@@ -1,4 +1,4 @@
-//! Points and knots of other formats, and coordinates that are far away.
+//! Points and knots in other formats, and coordinates far from the origin.
 
 use super::{bowl, knots, output, points, rows, stats};
 use crate::programs::{Folder, outcome, run, sample};
@@ -12,7 +12,7 @@ fn a_tile_of_lidar_becomes_a_spline() {
     let (code, message) = outcome(&found);
     assert_eq!(code, Some(0), "{message}");
     assert!(message.contains("(at most 100)"), "{message}");
-    // The spline knows where it is.
+    // The file is a stream of splines with a domain.
     let header = run("spinfo", &["--json", &spline], &[]);
     let header: serde_json::Value = serde_json::from_slice(&header.stdout).unwrap();
     assert_eq!(header["kind"], "splines");
@@ -49,7 +49,7 @@ fn stored_grids_are_the_same_as_the_world() {
             assert!(greatest < if lambda.is_empty() { 1e-7 } else { 0.5 }, "{knots} {lambda:?}: {greatest}");
         }
     }
-    // Smoothing has the units of the world.
+    // Smoothing is in world units.
     let of = |knots: &str| {
         let counted = stats(&["--knots", knots, "--lambda", "50", &points], &[]);
         ["residual_max", "residual_rms"].map(|key| counted[key].as_f64().unwrap())

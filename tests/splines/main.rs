@@ -1,4 +1,4 @@
-//! Bases of splines, and fits.
+//! Bases of splines, and spline fits.
 
 mod bases;
 mod fitting;

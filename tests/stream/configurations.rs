@@ -11,14 +11,14 @@ use super::Random;
 use crate::convert::{assert_cut_vectors_are_refused, assert_refused, converted, text_of};
 use crate::vectors::{load, run_python, verify};
 
-/// Knots on a small grid, so that some are on lines, on circles, and at one place.
+/// Knots on a small grid, so that some are collinear, cocircular or coincide.
 pub fn random_knots(random: &mut Random, count: usize) -> Knots {
     let points = (0..count).map(|_| [random.below(7) as f64, random.below(6) as f64 - 2.0]);
     let corners = [[0.0, -2.0], [6.0, -2.0], [0.0, 3.0]];
     Knots::new(points.chain(corners).collect()).unwrap()
 }
 
-/// Configurations of a random rule up to a degree.
+/// Configurations of one random rule, up to a degree.
 pub fn random_configurations(random: &mut Random, knots: &Knots, degree: usize) -> Vec<Configurations> {
     let mut start = Start::delaunay(knots).unwrap();
     let rule = match random.below(3) {
@@ -82,7 +82,7 @@ fn configurations_go_through_their_twins() {
     }
 }
 
-/// 12,000 knots, so that groups and degrees are cut over blocks.
+/// 12,000 knots, so that groups and degrees are split between blocks.
 fn large() -> (Knots, Vec<Configurations>) {
     let mut random = Random(5);
     let point = |_| [random.below(1 << 20) as f64, random.below(1 << 20) as f64];
@@ -155,7 +155,7 @@ fn the_writer_refuses_what_no_reader_accepts() {
     assert!(error.to_string().contains("does not follow"), "{error}");
 }
 
-/// Functions over random knots: some of every kind, each with random terms.
+/// Functions over random knots: several of every kind, with random terms.
 fn random_functions(random: &mut Random, knots: &Knots) -> Vec<Function> {
     let count = knots.len() as u32;
     let mut knot = || random.below(count as usize) as u32;

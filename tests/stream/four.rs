@@ -11,7 +11,7 @@ use super::{Random, joined, write};
 use crate::convert::{assert_cut_vectors_are_refused, assert_refused, converted};
 use crate::vectors::{load, run_python, verify};
 
-/// A header that knows nothing beforehand.
+/// A header without optional information.
 pub fn header(kind: Kind, has_value: bool) -> Header {
     Header::new(kind, Coordinates::F64, 4, has_value)
 }
@@ -29,7 +29,7 @@ pub fn extend(before: &mut Points4, points: Points4) {
     }
 }
 
-/// Numbers below `bound`, increasing, each with a chance of 1 in `rarity`.
+/// A random increasing subset of the numbers below `bound`; each is taken with probability 1 / `rarity`.
 fn some(random: &mut Random, bound: usize, rarity: usize) -> Vec<u32> {
     (0..bound as u32).filter(|_| random.below(rarity) == 0).collect()
 }
@@ -47,7 +47,7 @@ fn random_points(random: &mut Random, kind: Kind, has_values: bool) -> Points4 {
     Points4 { points, values }
 }
 
-/// Cells whose lists are well-formed, with whatever is in them.
+/// Cells with well-formed lists and random content.
 fn random_cells(random: &mut Random, points: usize) -> Cells4 {
     let count = if points < 5 { 0 } else { random.below(40) };
     let mut cells = Cells4::default();
@@ -174,7 +174,7 @@ fn a_whole_diagram_is_read_from_cells_and_from_points() {
     assert!(diagram.values.unwrap()[4].is_nan());
 }
 
-/// What writing to a fresh stream says.
+/// The message with which a fresh writer refuses what `write` does.
 fn refusal(
     kind: Kind,
     has_value: bool,

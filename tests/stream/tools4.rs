@@ -1,4 +1,4 @@
-//! What the tools say of streams of four dimensions.
+//! The output of the tools for streams of four dimensions.
 
 use serde_json::{Value, json};
 

@@ -1,5 +1,5 @@
-//! The alpha complex, by its definition: all spheres through a simplex that could be the smallest empty one
-//! are tried.
+//! The alpha complex by its definition: tries all spheres through a simplex that could be the smallest empty
+//! one.
 
 use super::meshes::Mesh;
 use super::molecules::{Record, Rows, cloud, pdb};
@@ -15,7 +15,7 @@ fn dot(a: Point, b: Point) -> f64 {
     (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
-/// The centre of the least sphere through points, by solving for its place among them (Gram's matrix).
+/// The centre of the smallest sphere through points, in their affine hull (from Gram's matrix).
 fn centre(points: &[Point]) -> Option<Point> {
     let vectors: Vec<Point> = points[1..].iter().map(|&p| minus(p, points[0])).collect();
     let n = vectors.len();
@@ -42,7 +42,7 @@ fn centre(points: &[Point]) -> Option<Point> {
     Some(offsets.fold(points[0], |sum, offset| std::array::from_fn(|axis| sum[axis] + offset[axis])))
 }
 
-/// Radius of the smallest empty sphere through the given ones of all points.
+/// Radius of the smallest sphere through the corners of a simplex that has no point inside.
 fn smallest_empty(all: &[Point], simplex: &[usize]) -> f64 {
     let n = all.len();
     let mut best = f64::INFINITY;
@@ -89,7 +89,7 @@ fn simplices_are_those_with_a_small_empty_sphere() {
         let mut radii: Vec<f64> = of_edges.iter().chain(&of_tetrahedra).copied().collect();
         radii.sort_unstable_by(f64::total_cmp);
         for radius in [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 1000.0] {
-            // Far from any threshold: the spheres here are rounded.
+            // Away from any threshold, because the radii here are rounded.
             let radius = radius + 1e-5;
             assert!(radii.iter().all(|r| (r - radius).abs() > 1e-6));
             let flag = format!("{radius}");
@@ -127,8 +127,8 @@ fn a_radius_on_the_threshold_is_enough_and_nothing_less_is() {
     let less = "1.4999999999999999999999999999";
     assert_eq!(table(&brick(), &["--table", "--alpha", less]).len(), 0);
     assert_eq!(table(&brick(), &["--contacts", "--alpha", less]).len(), contacts.len() - diagonals);
-    // The edges of the brick: four of length 1 and eight of length 2, all with empty spheres of half the
-    // length.
+    // The edges of the brick: four of length 1 and eight of length 2. Each has an empty sphere of half its
+    // length as radius.
     for (radius, edges) in
         [("0.5", 4), ("0.49999999999999999999", 0), ("0.99999999999999999999", 4), ("1", 12)]
     {

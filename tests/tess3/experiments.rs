@@ -1,4 +1,4 @@
-//! Flags for experiments: what they may change, and what they must not.
+//! Flags for experiments: they may change some outputs, and must not change others.
 
 use super::meshes::Mesh;
 use super::molecules::{cloud, pdb};

@@ -108,7 +108,7 @@ fn outputs_that_cannot_be_made_are_failures_of_their_files() {
     let (code, message) = outcome(&run("tess3", &["--out-dir", &in_the_way, &file], &[]));
     assert_eq!(code, Some(1), "{message}");
     assert!(message.contains("out"), "{message}");
-    // A stream of points beside its own mesh: the mesh would replace it.
+    // The mesh of a stream of points would be written in place of the stream.
     let points =
         folder.write("points.spm", run("spfinalize", &["-"], b"1 2 3\n4 5 7\n8 2 1\n3 3 9\n").stdout);
     let before = fs::read(&points).unwrap();

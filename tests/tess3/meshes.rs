@@ -1,4 +1,4 @@
-//! The mesh stream: what is in it, judged by exact tests of its own.
+//! The contents of mesh streams, checked by exact predicates that share no code with the program.
 
 use std::collections::HashMap;
 
@@ -7,20 +7,20 @@ use spmesh_stream::{Coordinates, Event, Kind, StreamReader};
 use super::molecules::{Record, cloud, models, numbers, pdb};
 use crate::programs::{Folder, outcome, run};
 
-/// A mesh as it was read.
+/// A mesh as read from a stream.
 pub struct Mesh {
     pub points: Vec<[i64; 3]>,
     pub labels: Vec<u64>,
     pub tetrahedra: Vec<[usize; 4]>,
     pub merged: u64,
     pub patches: usize,
-    /// Most vertices that are live at a time.
+    /// The greatest number of live vertices.
     pub width: usize,
     pub producer: String,
 }
 
 impl Mesh {
-    /// Reads a stream of integer coordinates; each vertex must be finalized once, and not be used thereafter.
+    /// Reads a stream of integer coordinates; each vertex must be finalized once, and not be used after that.
     pub fn read(bytes: &[u8]) -> Mesh {
         let mut reader = StreamReader::new(bytes, "mesh").unwrap();
         let header = reader.header().clone();
@@ -76,7 +76,7 @@ impl Mesh {
         mesh
     }
 
-    /// The tetrahedra by labels, each and all of them sorted.
+    /// The tetrahedra as labels, sorted.
     pub fn by_label(&self) -> Vec<[u64; 4]> {
         let sorted = |ids: &[usize; 4]| {
             let mut labels = ids.map(|id| self.labels[id]);
@@ -89,7 +89,7 @@ impl Mesh {
     }
 
     /// Proves that this is a Delaunay triangulation of its vertices: every tetrahedron is positively oriented
-    /// and has no vertex inside of its sphere, facets are shared by two, or lie on the hull.
+    /// and has no vertex inside its sphere, and every facet belongs to two tetrahedra or lies on the hull.
     pub fn prove(&self) {
         let mut facets: HashMap<[usize; 3], Vec<usize>> = HashMap::new();
         for t in &self.tetrahedra {
@@ -132,8 +132,8 @@ pub fn orientation([a, b, c, d]: [Point; 4]) -> i128 {
     determinant([b, c, d].map(|point| from(a, point)))
 }
 
-/// Positive if `e` is inside of the sphere through the corners of a positively oriented tetrahedron:
-/// cofactors of the lifts of the differences to `e`.
+/// Positive if `e` is inside the sphere of a positively oriented tetrahedron. Evaluates cofactors of the
+/// lifts of the differences to `e`.
 fn in_sphere(corners: [Point; 4], e: Point) -> i128 {
     let rows = corners.map(|point| from(e, point));
     let lift = |row: [i128; 3]| row.iter().map(|value| value * value).sum::<i128>();

@@ -1,4 +1,4 @@
-//! `tess3`: structures in, meshes and tables out.
+//! `tess3`: from structures to meshes and tables.
 
 mod alpha;
 #[cfg(feature = "experiments")]

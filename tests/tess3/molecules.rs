@@ -1,4 +1,4 @@
-//! Structures to be triangulated, as files.
+//! Structure files to triangulate.
 
 use std::fmt::Write;
 
@@ -52,7 +52,7 @@ pub fn pdb(atoms: &[Record]) -> String {
     atoms.iter().map(Record::line).collect::<String>() + "END\n"
 }
 
-/// A PDB file with a model per list of atoms, numbered from 1.
+/// A PDB file with one model per list of atoms, numbered from 1.
 pub fn models(models: &[Vec<Record>]) -> String {
     let mut text = String::new();
     for (number, atoms) in (1..).zip(models) {
@@ -72,14 +72,14 @@ pub fn numbers(seed: u64, bound: u64) -> impl FnMut() -> u64 {
     }
 }
 
-/// Carbon atoms at multiples of 0.001 Å in a cube, serial numbers 10, 20, 30, ...
+/// Carbon atoms at random multiples of 0.001 Å in a cube, with serial numbers 10, 20, 30, ...
 pub fn cloud(count: u32, side_in_steps: u64, seed: u64) -> Vec<Record> {
     let mut number = numbers(seed, side_in_steps);
     let mut coordinate = || number() as f64 / 1000.0;
     (1..=count).map(|i| Record::carbon(10 * i, [coordinate(), coordinate(), coordinate()])).collect()
 }
 
-/// The rows of a table by the names of their columns.
+/// The rows of a table, with access by column name.
 pub struct Rows {
     columns: Vec<String>,
     pub rows: Vec<Vec<String>>,
@@ -107,7 +107,7 @@ impl Rows {
         self.text(row, column).parse().unwrap()
     }
 
-    /// Row of the file whose name ends so.
+    /// The row of the file whose name ends so.
     pub fn of_file(&self, name: &str) -> usize {
         let is_it = |&row: &usize| self.text(row, "file").ends_with(name);
         (0..self.len()).find(is_it).unwrap_or_else(|| panic!("no row of {name}: {:?}", self.rows))

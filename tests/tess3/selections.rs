@@ -4,8 +4,8 @@ use super::meshes::Mesh;
 use super::molecules::{Record, cloud, pdb};
 use crate::programs::{outcome, run};
 
-/// Twelve atoms of chain A, a hydrogen among them; eight of chain B; two ions and three waters; one atom at
-/// two places.
+/// Twelve atoms of chain A, one of them a hydrogen; eight of chain B; two ions and three waters; one atom has
+/// two alternate locations.
 fn molecule() -> String {
     let mut atoms = cloud(26, 9_000, 40);
     for (i, atom) in atoms.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Many files: what comes out where, and what happens if some of them cannot be done.
+//! Many input files: where their outputs go, and what happens if some files fail.
 
 use std::fs;
 use std::time::{Duration, SystemTime};
@@ -11,7 +11,7 @@ fn summary(folder: &Folder) -> Rows {
     Rows::new(&fs::read_to_string(folder.path("out/summary.tsv")).unwrap())
 }
 
-/// A folder with three good files in two folders, and their names.
+/// A folder with three valid files in two subfolders, and their names.
 fn files() -> (Folder, Vec<String>) {
     let folder = Folder::new();
     let names = [("in/1abc.pdb", 50), ("in/2abc.ent", 60), ("more/1abc.pdb", 70)];
@@ -48,7 +48,7 @@ fn each_file_becomes_a_mesh_and_a_line() {
         assert_eq!(rows.number(row, "atoms") as usize, count);
         assert_eq!(rows.number(row, "unique_points") as usize, count);
         assert_eq!(rows.number(row, "tetrahedra") as usize, mesh.tetrahedra.len());
-        // Euler: a triangulated ball has as many facets on its hull as 2 (vertices there) - 4.
+        // Euler: the hull of a triangulated ball with v vertices on it has 2v - 4 facets.
         assert_eq!(rows.number(row, "hull_facets") as usize % 2, 0);
         assert!(rows.number(row, "seconds") > 0.0);
         let peak = rows.number(row, "peak_memory_bytes");
@@ -137,7 +137,7 @@ fn a_bad_file_does_not_stop_the_others_unless_asked_to() {
         }
         assert_eq!(folder.names("out").len(), 4);
     }
-    // The malformed file is the largest, so it comes first, and nothing comes after.
+    // The malformed file is the largest, so it comes first and ends the sweep.
     let strict = folder.path("strict");
     let arguments: Vec<&str> = ["--out-dir", &strict, "--strict", "--threads", "1"]
         .into_iter()
@@ -171,7 +171,7 @@ fn what_is_done_is_not_done_again() {
     let bad = folder.write("in/bad.pdb", "ATOM  none\n");
     files.push(bad.clone());
     assert_eq!(sweep(&folder, &[], &files).0, Some(1));
-    // Outputs of long ago, of inputs that are older.
+    // Old outputs of inputs that are older still.
     let past = |hours: u64| SystemTime::UNIX_EPOCH + Duration::from_secs(1_600_000_000 + 3600 * hours);
     files.iter().for_each(|file| set_modified(file, past(0)));
     let age = |folder: &Folder| {
@@ -187,7 +187,7 @@ fn what_is_done_is_not_done_again() {
     assert_eq!(times(&folder), before);
     assert_eq!(summary(&folder).len(), 4);
 
-    // The bad file is mended, another is new, a third one was changed, and one output was cut.
+    // The bad file is corrected, one file is new, one has changed, and one output is cut.
     folder.write("in/bad.pdb", pdb(&cloud(12, 9_000, 1)));
     files.push(folder.write("in/new.pdb", pdb(&cloud(13, 9_000, 1))));
     set_modified(&files[0], past(9));
@@ -205,7 +205,7 @@ fn what_is_done_is_not_done_again() {
     assert_eq!(modified(&folder.path("out/2abc.spm")), past(5));
     assert!(modified(&folder.path("out/in/1abc.pdb.spm")) > past(9));
 
-    // Other flags: nothing of it is what is wanted.
+    // With other flags, all outputs are outdated.
     let (code, message) = sweep(&folder, &["--resume", "--atoms", "ca"], &files);
     assert_eq!(code, Some(0), "{message}");
     assert!(message.contains("5 files done;"), "{message}");
@@ -215,7 +215,7 @@ fn what_is_done_is_not_done_again() {
 fn a_sweep_that_was_killed_goes_on() {
     let (folder, files) = files();
     assert_eq!(sweep(&folder, &[], &files).0, Some(0));
-    // As it would be left: the last line was not written to its end.
+    // As after a kill: the last line is incomplete.
     let path = folder.path("out/summary.tsv");
     let text = fs::read_to_string(&path).unwrap();
     fs::write(&path, &text[..text.len() - 10]).unwrap();
@@ -223,7 +223,7 @@ fn a_sweep_that_was_killed_goes_on() {
     assert_eq!(code, Some(0), "{message}");
     assert!(message.contains("1 files done, 2 had been done before"), "{message}");
     assert_eq!(summary(&folder).len(), 3);
-    // Without any summary all is to be done; without --resume, too.
+    // Without a summary, or without --resume, all files are done again.
     fs::remove_file(&path).unwrap();
     assert!(sweep(&folder, &["--resume"], &files).1.contains("3 files done;"));
     assert!(sweep(&folder, &[], &files).1.contains("3 files done;"));

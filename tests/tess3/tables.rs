@@ -1,4 +1,4 @@
-//! The tables, compared with values that are computed here in other ways.
+//! The tables against values that are computed here in other ways.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +16,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Volume and circumradius from the six lengths of the edges: Heron's formula for tetrahedra, and the
-/// triangle of the products of opposite edges, whose area is 6 V R.
+/// Volume and circumradius from the six edge lengths: Heron's formula for tetrahedra, and the area 6 V R of
+/// the triangle whose sides are the products of opposite edges.
 fn from_lengths(p: [[f64; 3]; 4]) -> (f64, f64) {
     let d = |i: usize, j: usize| distance(p[i], p[j]);
     let heron = |a: f64, b: f64, c: f64| {
@@ -50,7 +50,7 @@ fn volumes_and_circumradii_are_those_of_the_tetrahedra() {
             assert_eq!(rows.text(row, &format!("atom{i}")), format!("A/ALA/{}/CA", serial % 10_000));
         }
         let (volume, circumradius) = from_lengths(points);
-        // The formulas from lengths lose digits where tetrahedra are flat.
+        // The formulas lose digits for flat tetrahedra.
         let tolerance = 1e-6 * (1.0 + 1.0 / volume);
         let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < tolerance;
         assert!(close(rows.number(row, "volume"), volume), "{:?}: {volume}", rows.rows[row]);
@@ -90,8 +90,7 @@ fn contacts_are_the_edges_with_the_tetrahedra_around_them() {
 
 #[test]
 fn slivers_are_measured_to_the_last_digit() {
-    // A thousandth of the height of anything around: volume 1000 * 1000 * 0.001 / 6, the sphere almost a
-    // plane.
+    // A sliver, 0.001 high: its volume is 1000 * 1000 * 0.001 / 6.
     let corners = [[0.0, 0.0, 0.0], [1000.0, 0.0, 0.0], [0.0, 1000.0, 0.0], [1000.0, 1000.0, 0.001]];
     let atoms: Vec<Record> = (1..).zip(corners).map(|(i, at)| Record::carbon(i, at)).collect();
     let rows = table(&pdb(&atoms), &["--table"]);

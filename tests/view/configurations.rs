@@ -1,4 +1,4 @@
-//! Pictures of configurations: counts of drawn elements against the stream.
+//! Pictures of configurations: the counts of drawn elements agree with the stream.
 
 use spmesh_geometry::configurations::{CentroidMesh, Knots, links};
 use spmesh_stream::ConfigurationSet;

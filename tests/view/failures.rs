@@ -89,7 +89,7 @@ fn damaged_streams_leave_no_file() {
 
 #[test]
 fn closed_pipes_are_silent_and_full_disks_are_not() {
-    // More than a pipe holds.
+    // More data than a pipe holds.
     let (folder, mesh) = (Folder::new(), mesh_of(&grid(180)));
     let name = folder.write("mesh.spm", &mesh);
     assert_silent_without_reader("spview", &["-q", "--vector", &name]);

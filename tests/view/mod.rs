@@ -1,4 +1,4 @@
-//! `spview`: pictures against the streams that they show, and failures.
+//! `spview`: pictures against the streams that they show; failures.
 
 mod configurations;
 mod failures;
@@ -26,26 +26,26 @@ fn pictures(stream: &[u8], options: &Options, moments: Moments) -> Result<Vec<Pi
     Ok(pictures)
 }
 
-/// The picture of the end of a stream.
+/// The picture after the last event of a stream.
 fn picture(stream: &[u8], options: &Options) -> Picture {
     let mut pictures = pictures(stream, options, Moments::default()).unwrap();
     assert_eq!(pictures.len(), 1);
     pictures.remove(0)
 }
 
-/// The output of a program.
+/// The output of a program, which must succeed.
 fn output(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
     let output = run(name, arguments, input);
     assert!(output.status.success(), "{name} {arguments:?}: {:?}", outcome(&output));
     output.stdout
 }
 
-/// The mesh of lines of points.
+/// The mesh of points given as lines of text.
 fn mesh_of(points: &str) -> Vec<u8> {
     output("spdelaunay2d", &[], &output("spfinalize", &["--cell-points", "60", "-"], points.as_bytes()))
 }
 
-/// Lines of the points of a grid, jogged so that no four are cocircular.
+/// Lines of the points of a grid, moved so that no four are cocircular.
 fn grid(side: u64) -> String {
     let point = |i: u64| (i % side * 100 + i * 37 % 23, i / side * 100 + i * 53 % 29, i * 71 % 97);
     (0..side * side).map(point).map(|(x, y, z)| format!("{x} {y} {z}\n")).collect()

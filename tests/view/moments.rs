@@ -9,7 +9,7 @@ use super::svg::{named, parse, within};
 use super::{grid, mesh_of, output, pictures, triangles};
 use crate::programs::{Folder, outcome, run};
 
-/// The live vertices and the open edges after a number of triangles.
+/// The numbers of live vertices and of open edges after a number of triangles.
 fn front(stream: &[u8], at: u64) -> (usize, usize) {
     let mut reader = StreamReader::new(stream, "mesh").unwrap();
     let (mut live, mut is_final) = (HashSet::new(), HashSet::new());
@@ -66,7 +66,7 @@ fn snapshots_come_after_each_number_and_at_the_end() {
     let stream = mesh_of(&grid(12));
     let last = pictures(&stream, &Options::new("mesh"), Moments::default()).unwrap().remove(0);
     let total = triangles(&stream);
-    // If the end is a multiple, there is no second picture of it.
+    // If the last moment is the end of the stream, the end has no second picture.
     for (every, count) in [(100, total.div_ceil(100)), (total.div_ceil(2), 2), (total, 1), (total + 1, 1)] {
         let count = count as usize;
         let moments = Moments { at: None, every: Some(every) };
@@ -96,7 +96,7 @@ fn a_pipe_goes_through_unchanged() {
     let read = |name: &str| std::fs::read(folder.path(name)).unwrap();
     assert!(read("shots-003.png") == read("whole.png"));
     assert!(read("shots-002.png") != read("whole.png"));
-    // A malformed stream is passed on up to the fault, where its reader will find it.
+    // A malformed stream is passed on up to the fault, which the next reader will report.
     let half = &points[..points.len() / 2];
     let passed = run("spview", &["--tee", "-o", &whole], half);
     assert_eq!((passed.status.code(), &passed.stdout[..]), (Some(3), half));

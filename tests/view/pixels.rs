@@ -1,4 +1,4 @@
-//! Pixels against plain arithmetic on their places.
+//! Pixels against expected colours computed from their world coordinates.
 
 use resvg::tiny_skia::Pixmap;
 use spmesh_stream::Coordinates;
@@ -30,13 +30,13 @@ fn map(picture: &Picture) -> [u32; 4] {
     [x, y, x + width, y + height]
 }
 
-/// The distance to the left of a directed line.
+/// The signed distance of a point from a directed line, positive on the left.
 fn left_of([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     (along[0] * (p[1] - a[1]) - along[1] * (p[0] - a[0])) / along[0].hypot(along[1])
 }
 
-/// The distance of a place inside a counterclockwise convex polygon from its border.
+/// The distance of a point from the border of a counterclockwise convex polygon, negative outside.
 fn depth(polygon: &[[f64; 2]], p: [f64; 2]) -> f64 {
     let next = polygon.iter().cycle().skip(1);
     polygon.iter().zip(next).map(|(&a, &b)| left_of([a, b], p)).fold(f64::INFINITY, f64::min)
@@ -61,8 +61,8 @@ fn hull(mut points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     [lower, upper].concat()
 }
 
-/// Checks that pixels inside of a hull are coloured and those outside are white; those on its border may be
-/// anything.
+/// Checks that pixels inside a hull are coloured and pixels outside are white. Pixels near the border are not
+/// checked.
 fn check_cover(picture: &Picture, hull: &[[f64; 2]]) {
     let (pixmap, frame) = (pixels(picture), picture.frame.unwrap());
     let [left, upper, right, lower] = map(picture);
@@ -122,11 +122,11 @@ fn elevations_of_a_plane_are_lighter_from_side_to_side() {
 
 #[test]
 fn the_nearest_of_hidden_triangles_is_painted() {
-    // A low triangle in front of a wall that rises behind it: the wall is seen above it, not through it.
+    // Random elevations, seen obliquely, so that triangles hide others.
     let mut random = Random::new(11);
     let points = uniform(&mut random, 80, 300);
     let mesh = Mesh::of(&mut random, &points);
-    // With pictures of moments, there is room for all later triangles, in each form.
+    // With pictures of moments, both forms leave room for all triangles to come.
     let moments = Moments { at: None, every: Some(u64::MAX) };
     let of = |form| {
         let options =
@@ -135,7 +135,8 @@ fn the_nearest_of_hidden_triangles_is_painted() {
     };
     let (drawn, painted) = (of(Form::Vector), of(Form::Raster));
     assert_eq!((drawn.width(), drawn.height()), (painted.width(), painted.height()));
-    // Drawn triangles have one colour and edges, painted ones are smooth: but what is white is white in both.
+    // Drawn triangles have one colour and edges, painted ones are smooth; but both leave the same pixels
+    // white.
     let is_white =
         |pixmap: &Pixmap, at: usize| pixmap.pixels()[at].red() > 250 && pixmap.pixels()[at].green() > 250;
     let differing = (0..drawn.pixels().len()).filter(|&at| is_white(&drawn, at) != is_white(&painted, at));
@@ -180,7 +181,7 @@ fn degenerate_streams_have_pictures() {
 
 #[test]
 fn many_points_are_all_painted() {
-    // But for a square amid them.
+    // All points of a cloud except a square in its middle.
     let is_amid = |line: &&str| {
         let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().unwrap()).collect();
         numbers[..2].iter().all(|number| (30_000.0..60_000.0).contains(number))

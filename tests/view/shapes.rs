@@ -1,4 +1,4 @@
-//! Places and colours of triangles, edges, points and cells that are drawn one by one.
+//! Positions and colours of triangles, edges, points and cells that are drawn as single elements.
 
 use std::collections::HashSet;
 
@@ -78,7 +78,7 @@ fn colours_are_in_the_order_of_what_they_mean() {
         .collect();
     lights.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert!(lights.windows(2).all(|pair| pair[0].1 <= pair[1].1 + 0.9), "{lights:?}");
-    // Beyond a given range, values have the colour of its end.
+    // Values beyond the given range have the colour of its end.
     let low = Options { range: Some([-9.0, -1.0]), ..options(Fill::Elevation) };
     let elements = parse(&picture(&stream, &low).svg);
     assert!(triangles(&elements).iter().all(|path| path.attributes["color"] == "#faccfa"));
@@ -159,7 +159,7 @@ fn cells_have_the_times_of_their_points() {
     };
     let with_points = tagged.iter().filter(holds).count();
     assert!(with_points > 8 && count == 400);
-    // A border and a middle for each.
+    // Each tagged cell with points has two rectangles: a border and a middle.
     assert_eq!(rectangles.len(), 2 * with_points);
     for pair in rectangles.chunks(2) {
         assert!(

@@ -23,7 +23,7 @@ impl Element {
         self.within.iter().any(|within| within == id)
     }
 
-    /// The polygons, or lines, of a path: places of corners.
+    /// The polygons or polylines of a path, as corner positions.
     pub fn rings(&self) -> Vec<Vec<[f64; 2]>> {
         let pieces = self.attributes["d"].split('M').skip(1);
         let place = |text: &str| {

@@ -1,4 +1,5 @@
-//! What is alive at a point, against all functions one by one, by the sums of the definition.
+//! The functions that are alive at a point, against all functions evaluated one by one by their definition as
+//! sums.
 
 use super::sets::{Case, cases};
 use spmesh_geometry::configurations::{self, FARAWAY};
@@ -38,7 +39,7 @@ fn check(degree: usize, count: usize) {
                 let of = format!("{}, {:?} at {x:?}", case.name, link.set);
                 // At knots and on the border of a support, functions are alive with the value zero.
                 assert!(is_alive || value.is_none_or(|value| value.abs() < 1e-14), "{of}");
-                // Where knots are at one place, terms may cancel, and so do those of null links.
+                // Terms may cancel where knots coincide, and the terms of null links do.
                 if !case.knots.has_copies() {
                     assert_eq!(number.is_none(), link.is_null(), "{of}");
                     assert!(value.is_some() || !is_alive || link.is_null(), "{of}");

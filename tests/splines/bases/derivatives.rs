@@ -11,14 +11,14 @@ fn jet(basis: &Basis, function: u32, x: [f64; 2]) -> Jet {
     jets.iter().find(|(other, _)| *other == function).map_or(Jet::default(), |&(_, jet)| jet)
 }
 
-/// The least number that errors are measured in: what the spline may change by over a short way.
+/// The unit of errors: the greatest derivative in the jets, at least 1.
 fn scale(jets: &[Jet]) -> f64 {
     let of = |jet: &Jet| jet.gradient.iter().chain(&jet.hessian).map(|d| d.abs()).fold(1.0, f64::max);
     jets.iter().map(of).fold(1.0, f64::max)
 }
 
-/// Compares the jet at a point with differences over steps along both axes; nothing if a line through knots
-/// is between.
+/// Compares the jet at a point with difference quotients along both axes; `None` if a line through knots lies
+/// between the points.
 fn compare(case: &Case, function: u32, x: [f64; 2]) -> Option<()> {
     let here = jet(&case.basis, function, x);
     let beside = |axis: usize, sign: f64| {
@@ -31,7 +31,8 @@ fn compare(case: &Case, function: u32, x: [f64; 2]) -> Option<()> {
     let scale = scale(&all);
     // Second derivatives are constant in pieces of degree 2, and change little in those of degree 3.
     let (third, tolerance) = if case.basis.degree() > 2 { (1e3 * STEP, 1e3 * STEP) } else { (1e-9, 1e-6) };
-    // Gradients change by second derivatives times the way, and jump on lines.
+    // Over a step, gradients change by second derivatives times its length; across lines through knots they
+    // jump.
     let change = if case.basis.degree() > 1 { 4.0 * STEP } else { 1e-9 };
     let is_bent = |jet: &Jet| {
         (0..3).any(|i| (jet.hessian[i] - here.hessian[i]).abs() > third * scale)
@@ -72,7 +73,7 @@ fn derivatives_are_limits_of_differences() {
                 }
             }
         }
-        // Many of the points are on lines through knots.
+        // Many of the points are on lines through knots and are not compared.
         assert!(4 * compared > tried, "degree {degree}: {compared} of {tried}");
     }
 }

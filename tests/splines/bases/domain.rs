@@ -1,4 +1,5 @@
-//! The domain against its definition: every closed half-plane through a point has k knots.
+//! The domain against its definition: every closed half-plane with the point on its border has at least k
+//! knots.
 
 use spmesh_geometry::configurations::{self, Knots, Rule};
 use spmesh_reference::sets::{Random, as_floats};
@@ -13,7 +14,7 @@ fn depth(x: [i64; 2], knots: &[[i64; 2]]) -> usize {
     let here = knots.iter().filter(|&&knot| knot == x).count();
     let around = knots.iter().filter(|&&knot| knot != x);
     let least = around.clone().map(|&knot| {
-        // A line through the knot, turned by very little: what is on it ahead goes to one side, what is
+        // Turn the line through the knot by an infinitesimal: knots ahead on the line go to one side, knots
         // behind to the other.
         let count = |test: &dyn Fn(i64, i64) -> bool| {
             around.clone().filter(|&&p| test(cross(x, knot, p), dot(x, knot, p))).count()
@@ -70,9 +71,9 @@ fn the_domain_is_where_half_planes_have_enough_knots() {
         let mut points: Vec<[i64; 2]> =
             (0..count).map(|_| [random.integer(0, side), random.integer(0, side)]).collect();
         match round / 15 % 4 {
-            // Copies at random.
+            // Random copies.
             0 => (0..3).for_each(|_| points.push(points[random.integer(0, count - 1) as usize])),
-            // Most of them on two lines.
+            // Most points on two lines.
             1 => (0..count as usize).for_each(|at| points[at][at % 2] = side / 2),
             _ => (),
         }

@@ -1,4 +1,4 @@
-//! Splines over configurations against their theory, and against evaluations of another kind.
+//! Splines over configurations against their theory and independent evaluations.
 
 mod alive;
 mod derivatives;

@@ -1,4 +1,4 @@
-//! Rasters against single points.
+//! Rasters against evaluation at single points.
 
 use super::sets::cases;
 use spmesh_reference::sets::Random;
@@ -10,7 +10,7 @@ fn check(degree: usize, columns: usize, rows: usize) {
         let coefficients: Vec<f64> = (0..case.basis.len()).map(|_| random.unit()).collect();
         let mut scratch = Scratch::default();
         for (origin, step) in [
-            // Through many knots and lines, and beyond the knots.
+            // A raster with centres on many knots and lines, and beyond the knots.
             ([-0.125, 1.125], [1.25 / columns as f64, -1.25 / rows as f64]),
             ([0.0, 0.0], [1.0 / columns as f64, 1.0 / rows as f64]),
             ([random.unit() * 0.1, random.unit() * 0.1], [0.013, 0.0171]),

@@ -1,9 +1,9 @@
-//! Simplex splines in rational numbers, from the first three knots that will do.
+//! Simplex splines in rational numbers, by the recurrence on the first three knots that are not collinear.
 
 use num_bigint::BigInt;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-/// A quotient, not in lowest terms.
+/// A quotient, not reduced.
 #[derive(Clone)]
 pub struct Rational {
     over: BigInt,
@@ -20,7 +20,7 @@ impl Rational {
         Rational { over: &self.over * over, under: &self.under * under }
     }
 
-    /// The nearest number, but for a last bit or two.
+    /// The nearest f64, up to a bit or two.
     pub fn rounded(&self) -> f64 {
         if self.over.is_zero() {
             return 0.0;
@@ -41,7 +41,7 @@ pub fn doubled_area(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> BigInt {
     d(b[0], a[0]) * d(c[1], a[1]) - d(b[1], a[1]) * d(c[0], a[0])
 }
 
-/// M(x | knots), for an x that is on no line through two knots.
+/// M(x | knots). Panics if x is on a line through two knots.
 pub fn simplex_spline(x: [i64; 2], knots: &[[i64; 2]]) -> Rational {
     let zero = Rational { over: BigInt::zero(), under: BigInt::from(1) };
     let count = knots.len();

@@ -3,10 +3,10 @@
 use super::sets::{Case, cases, distorted};
 use spmesh_splines::bases::Scratch;
 
-/// The polar form of x^i y^j for as many points as are given: the mean of all products of i abscissae and j
-/// ordinates of different points.
+/// The polar form of x^i y^j for the given points: the mean of all products of i abscissae and j ordinates of
+/// different points.
 fn polar(points: &[[f64; 2]], i: usize, j: usize) -> f64 {
-    // The sums of products of the first points, by numbers of factors.
+    // Sums of products over the points so far, by the numbers of factors.
     let mut sums = vec![vec![0.0; j + 1]; i + 1];
     sums[0][0] = 1.0;
     for [x, y] in points {
@@ -22,7 +22,7 @@ fn polar(points: &[[f64; 2]], i: usize, j: usize) -> f64 {
     sums[i][j] / (choose(points.len(), i) * choose(points.len() - i, j))
 }
 
-/// The greatest error of all monomials up to the degree, relative to their size, at points of the domain.
+/// The greatest error of all monomials up to the degree, relative to their size, at the points.
 fn greatest_error(case: &Case, points: &[[f64; 2]]) -> (f64, String) {
     let degree = case.basis.degree();
     let mut scratch = Scratch::default();

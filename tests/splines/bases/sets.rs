@@ -1,16 +1,16 @@
-//! Knots, starts and rules to try, and points to look at.
+//! Knots, starts and rules to test, and points to evaluate at.
 
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 use spmesh_reference::sets::Random;
 use spmesh_splines::bases::Basis;
 
-/// Knots with the configurations that a basis of some degree is made of.
+/// Knots with the configurations for a basis of some degree.
 pub struct Case {
     pub name: String,
     pub knots: Knots,
     pub configurations: Configurations,
     pub basis: Basis,
-    /// Where the unit square is: constants and factors of its coordinates.
+    /// The map of the unit square: constants and factors of its coordinates.
     shape: [[f64; 3]; 2],
 }
 
@@ -65,8 +65,8 @@ impl Case {
     }
 }
 
-/// A square with knots on its sides and inside, as multiples of 2^-12, so that many lines through knots have
-/// middles that are numbers.
+/// A square with knots on its sides and inside, at multiples of 2^-12, so that midpoints of knots are exact
+/// and lie on the line through the two knots.
 pub fn square(seed: u64, inside: usize) -> Vec<[f64; 2]> {
     let mut random = Random::new(seed);
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
@@ -76,7 +76,7 @@ pub fn square(seed: u64, inside: usize) -> Vec<[f64; 2]> {
     corners.into_iter().chain(along).chain(inner).collect()
 }
 
-/// All kinds of knots and configurations for one degree.
+/// One case of every kind of knots and configurations, for one degree.
 pub fn cases(degree: usize) -> Vec<Case> {
     let knots = |points: &[[f64; 2]]| Knots::new(points.to_vec()).expect("finite points");
     let start = |knots: &Knots| Start::delaunay(knots).expect("triangles");
@@ -111,7 +111,7 @@ pub fn cases(degree: usize) -> Vec<Case> {
     cases
 }
 
-/// Knots far from the origin, and in a narrow strip at an angle, so that all triangles are flat.
+/// Knots far from the origin, and in narrow slanted strips, where all triangles are slivers.
 pub fn distorted(degree: usize) -> Vec<Case> {
     let shapes = [
         ("far", [[431_250.0, 1.0, 0.0], [4_918_000.5, 0.0, 1.0]]),

@@ -16,7 +16,7 @@ fn is_general(x: [i64; 2], knots: &[[i64; 2]]) -> bool {
     pairs.into_iter().all(|(i, j)| !rational::doubled_area(knots[i], knots[j], x).is_zero())
 }
 
-/// Knots of which all but `apart` are within `width` of a line, which is `length` long.
+/// Knots of which all but `apart` are within `width` of a line segment; `length` sets its scale.
 fn near_a_line(random: &mut Random, count: usize, apart: usize, length: i64, width: i64) -> Vec<[i64; 2]> {
     let flat = (0..count).map(|place| {
         let along = random.integer(-length, length);
@@ -34,7 +34,7 @@ fn knots_near_a_line_have_accurate_values() {
         let count = 3 + round % 4;
         let width = [3, 40, 100_000][round / 4 % 3];
         let knots = near_a_line(&mut random, count, round / 12 % 3, 1_000_000_000, width);
-        // A point of the hull, and near to the line.
+        // A point in the hull and near the line.
         let shares: Vec<i64> = knots.iter().map(|_| random.integer(1, 1000)).collect();
         let sum: i64 = shares.iter().sum();
         let mean = |axis: usize| {
@@ -97,7 +97,8 @@ fn on_a_line_through_knots_one_side_counts() {
     for (from, expected) in [([2.0, 9.0], [upper, 0.0]), ([3.0, -1e-9], [0.0, lower])] {
         let at = DirectionalLimit::new([1.5, 0.0], from);
         assert_eq!([simplex_spline(&at, &[a, b, c]), simplex_spline(&at, &[b, d, a])], expected);
-        // Towards its jet from a side, the spline of degree 1 has no jump, and its gradient has one.
+        // Towards `from`, the spline of degree 1 has no jump and agrees with the jet of that side; its
+        // gradient jumps across the line.
         let all = [a, b, c, d];
         let jet = simplex_spline_jet(&at, &all);
         let near = [0, 1].map(|axis| at.x()[axis] + 1e-6 * (from[axis] - at.x()[axis]));
@@ -109,7 +110,8 @@ fn on_a_line_through_knots_one_side_counts() {
 
 #[test]
 fn sums_over_a_fan_of_triangles_count_every_point_once() {
-    // Of triangles around a knot, exactly one has the knot, or a point of an edge, as it is approached.
+    // Exactly one triangle around a knot contains the knot, or a point of an edge, in the limit from a
+    // direction.
     let around: Vec<[f64; 2]> =
         [[3, 0], [2, 2], [0, 3], [-3, 1], [-2, -2], [1, -3]].iter().map(|p| p.map(f64::from)).collect();
     let mut random = Random::new(9);
@@ -126,8 +128,8 @@ fn sums_over_a_fan_of_triangles_count_every_point_once() {
     }
 }
 
-/// The integral over a convex polygon of a function that is a polynomial of degree 3 at most on either side
-/// of each line.
+/// The integral over a convex polygon of a function that is a polynomial of degree at most 3 between the
+/// lines.
 fn integral(polygon: Vec<[f64; 2]>, lines: &[[[f64; 2]; 2]], f: &dyn Fn([f64; 2]) -> f64) -> f64 {
     if polygon.len() < 3 {
         return 0.0;

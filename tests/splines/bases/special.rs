@@ -8,7 +8,7 @@ use spmesh_splines::bases::{Basis, Scratch};
 struct Built {
     functions: Vec<Function>,
     collected: Basis,
-    /// All B-splines, one by one.
+    /// All B-splines as separate functions.
     single: Basis,
 }
 
@@ -31,8 +31,9 @@ fn values(basis: &Basis, x: [f64; 2]) -> Vec<f64> {
     values
 }
 
-/// The Zwart-Powell box spline is the square convolved with its directions (1, 1) and (1, -1), s and t along
-/// them: the area of the part of the unit square of (s, t) from which x is reached.
+/// The Zwart-Powell box spline is the unit square convolved with the directions (1, 1) and (1, -1). With
+/// coordinates s and t along these, its value at x is the area of the part of the unit square of (s, t) from
+/// which x is reached.
 fn zwart_powell([x, y]: [f64; 2]) -> f64 {
     let mut polygon = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     // Half-planes a s + b t <= c.
@@ -102,7 +103,8 @@ fn half_the_splines_of_the_sides_of_a_face_are_a_box_spline() {
     }
 }
 
-/// The share of corner `v` in the triangle that a point is in: zero if it is none of its corners.
+/// The barycentric coordinate of corner `v` in the triangle that contains the point; zero if `v` is not a
+/// corner of it.
 fn share(triangles: &[[[f64; 2]; 3]], v: [f64; 2], x: [f64; 2]) -> f64 {
     let size =
         |a: [f64; 2], b: [f64; 2], c: [f64; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -171,8 +173,8 @@ fn functions_of_features_sum_to_one_and_reproduce_linear_functions() {
         assert!(built.collected.is_in_domain(x));
         let all = values(&built.collected, x);
         assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-13, "{x:?}");
-        // Tents of linear elements are shared by their ends, so that only functions along these lose
-        // reproduction.
+        // The ends of linear elements share their tents, so functions along the elements do not reproduce
+        // polynomials.
         let is_linear = |kind| matches!(kind, FunctionKind::Vertex(11 | 12));
         if built.functions.iter().zip(&all).any(|(function, &value)| is_linear(function.kind) && value != 0.0)
         {

@@ -1,4 +1,4 @@
-//! Bases, observations and evaluations that tests have in common.
+//! Bases, observations and evaluations shared by tests.
 
 use spmesh_geometry::configurations::special::{Features, features};
 use spmesh_geometry::configurations::{self, Knots, Rule};
@@ -10,7 +10,8 @@ use std::num::NonZeroUsize;
 
 pub const ONE: NonZeroUsize = NonZeroUsize::MIN;
 
-/// Quadratic functions over points, with the border of their hull pulled apart: the domain is the whole hull.
+/// Quadratic functions over points with the border of their hull pulled apart, so that the domain is the
+/// whole hull.
 pub fn pulled_apart(points: &[[f64; 2]]) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
     let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
@@ -21,7 +22,7 @@ pub fn pulled_apart(points: &[[f64; 2]]) -> Basis {
     Basis::of_functions(&special.knots, &all[1], &functions).expect("a basis")
 }
 
-/// Cubic functions over points whose corners are clamped.
+/// Cubic functions over points with clamped corners.
 pub fn cubic(points: &[[f64; 2]]) -> Basis {
     let knots = Knots::new(points.to_vec()).and_then(|knots| knots.clamped(2)).expect("a hull");
     let start = configurations::delaunay(&knots).expect("triangles");
@@ -29,10 +30,10 @@ pub fn cubic(points: &[[f64; 2]]) -> Basis {
     Basis::new(&knots, &all[2]).expect("a basis")
 }
 
-/// Knots of a square grid over the unit square, those inside moved by up to a part of a cell.
+/// Knots of a square grid over the unit square, with inner knots moved by up to `moved` times a cell.
 ///
-/// Those next to corners are moved towards them first: an edge that cuts off a corner would join two knots
-/// that are pulled apart, along which splines may be folded.
+/// Knots next to a corner are moved towards it. Otherwise an edge that cuts off the corner could join two
+/// knots that are pulled apart, and splines may be folded along such an edge.
 pub fn grid(cells: usize, moved: f64) -> Vec<[f64; 2]> {
     let mut random = Random::new(11);
     let at = |i: usize| i as f64 / cells as f64;
@@ -70,7 +71,7 @@ pub fn deviation(basis: &Basis, coefficients: &[f64], side: usize, f: impl Fn([f
     points.map(|x| (value(basis, coefficients, x) - f(x)).abs()).fold(0.0, f64::max)
 }
 
-/// The solution of dense equations by elimination with complete rows exchanged.
+/// Solves dense equations by elimination with complete row exchange.
 pub fn solve_dense(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
     let count = right.len();
     for pivot in 0..count {

@@ -1,4 +1,4 @@
-//! Choosing how much to smooth.
+//! Choosing the amount of smoothing.
 
 use super::bases::{ONE, dense, grid, pulled_apart, scattered, solve_dense, value};
 use spmesh_reference::sets::Random;
@@ -6,11 +6,11 @@ use spmesh_splines::fitting::{
     self, Equations, Folds, NormalEquations, Observation, least_squares, thin_plate,
 };
 
-/// A function with noise of the given size.
+/// A function with normally distributed noise of the given size.
 fn noisy(count: usize, noise: f64) -> Vec<Observation> {
     let mut random = Random::new(21);
     let mut all = scattered(count, 20, smooth);
-    // The sum of twelve numbers in the unit interval has variance one.
+    // The sum of twelve uniform numbers in the unit interval has variance one.
     all.iter_mut().for_each(|one| one.value += noise * ((0..12).map(|_| random.unit()).sum::<f64>() - 6.0));
     all
 }
@@ -35,7 +35,7 @@ fn degrees_of_freedom_are_the_trace() {
         let full: Vec<Vec<f64>> = (0..count)
             .map(|i| (0..count).map(|j| normal.matrix.at(i, j) + lambda * energy.at(i, j)).collect())
             .collect();
-        // The trace of A F^-1 A' by every tenth row would be an estimate, too: all of F^-1 N is not.
+        // The exact trace of F^-1 N. The trace of A F^-1 A' over every tenth row would be an estimate.
         let exact: f64 = (0..count)
             .map(|i| {
                 let column = (0..count).map(|j| rows.iter().map(|row| row[i] * row[j]).sum()).collect();
@@ -49,7 +49,7 @@ fn degrees_of_freedom_are_the_trace() {
     }
 }
 
-/// The root of the mean square of the distance to the function without noise.
+/// The root mean square distance to the function without noise.
 fn distance(basis: &spmesh_splines::bases::Basis, coefficients: &[f64]) -> f64 {
     let points = (0..900).map(|i| [(f64::from(i % 30) + 0.5) / 30.0, (f64::from(i / 30) + 0.5) / 30.0]);
     let square: f64 = points.map(|x| (value(basis, coefficients, x) - smooth(x)).powi(2)).sum();
@@ -73,7 +73,7 @@ fn both_ways_choose_nearly_the_best() {
         assert!(found < 1.3 * best, "{found}, {best}: {choice:?}");
         assert!(choice.trials.windows(2).all(|pair| pair[0].lambda <= pair[1].lambda));
         assert!(choice.trials.iter().all(|trial| trial.score >= choice.best.score));
-        // Errors of prediction are noise, and little more.
+        // Errors of prediction are hardly larger than the noise.
         assert!((0.08..0.12).contains(&choice.best.score), "{choice:?}");
     }
     let plain = distance(&basis, &least_squares(&basis, &all, 0.0, ONE).expect("coefficients"));

@@ -1,4 +1,4 @@
-//! The thin-plate energy against integrals that are known, and against sums over many points.
+//! The thin-plate energy against known integrals, and against sums over many points.
 
 use super::bases::{cubic, grid, pulled_apart};
 use spmesh_geometry::configurations::{self, Knots, Rule};
@@ -6,7 +6,7 @@ use spmesh_reference::sets::Random;
 use spmesh_splines::bases::{Basis, Scratch};
 use spmesh_splines::fitting::{bending, control_bending, interpolate, thin_plate};
 
-/// The energy of a spline on the unit square, by the midpoints of many squares.
+/// The energy of a spline on the unit square, by the midpoint rule.
 fn by_midpoints(basis: &Basis, coefficients: &[f64], side: usize) -> f64 {
     let mut scratch = Scratch::default();
     let at = |i: usize| (i as f64 + 0.5) / side as f64;
@@ -54,8 +54,8 @@ fn energies_of_quadratic_polynomials_are_exact() {
 
 #[test]
 fn energies_of_splines_are_those_of_many_points() {
-    // Knots on lines, and knots far from lines: where they are nearly on one, second derivatives are great on
-    // narrow triangles.
+    // Knots on lines, and knots far from lines. If knots are nearly collinear, second derivatives are large
+    // on narrow triangles.
     for (basis, tolerance) in [
         (pulled_apart(&grid(4, 0.0)), 0.01),
         (pulled_apart(&sunflower(20)), 0.01),
@@ -73,8 +73,8 @@ fn energies_of_splines_are_those_of_many_points() {
 
 #[test]
 fn only_the_domain_counts() {
-    // Without copies of knots the domain is smaller than the hull; outside of it, splines of polynomials are
-    // none.
+    // Without copies of knots the domain is smaller than the hull. Outside of it, splines do not reproduce
+    // polynomials.
     let knots = Knots::new(grid(6, 0.2)).expect("finite points");
     let start = configurations::delaunay(&knots).expect("triangles");
     let degree_1 = configurations::link_triangulate(&knots, &start, &Rule::Delaunay).expect("links");
@@ -98,7 +98,7 @@ fn control_meshes_bend_for_all_but_planes() {
             energy.form(&coefficients)
         };
         assert!(of(&|[x, y]| 5.0 + 3.0 * x - 2.0 * y) < 1e-9);
-        // Each coefficient alone makes a bend that is no rounding error.
+        // The bend of each coefficient alone is larger than rounding errors.
         for function in 0..basis.len() {
             let mut one = vec![0.0; basis.len()];
             one[function] = 1.0;
@@ -109,7 +109,7 @@ fn control_meshes_bend_for_all_but_planes() {
 
 #[test]
 fn control_meshes_of_flat_triangles_are_not_stiff() {
-    // Sites almost on a line: triangles between them have no more area than rounding errors.
+    // The sites are almost collinear: triangles between them have areas as small as rounding errors.
     let places = [[0.0, 1e-16], [1.0, 0.0], [2.0, 0.0], [3.0, 1e-16], [1.5, 2.0]];
     let knots = Knots::new(places.to_vec()).expect("finite points");
     let linear = Basis::new(&knots, &configurations::delaunay(&knots).expect("triangles")).expect("a basis");
@@ -121,7 +121,7 @@ fn control_meshes_of_flat_triangles_are_not_stiff() {
 
 #[test]
 fn knots_in_line_but_for_rounding_are_not_stiff() {
-    // A grid that is turned: its lines are none to the last digit.
+    // A turned grid: rounding moves knots off its lines.
     let turned = |[x, y]: [f64; 2]| [0.8 * x - 0.6 * y + 100.0, 0.6 * x + 0.8 * y + 300.0];
     let basis = pulled_apart(&grid(6, 0.0).into_iter().map(turned).collect::<Vec<_>>());
     let energy = bending(&basis).expect("an energy");

@@ -1,4 +1,4 @@
-//! What cannot be fitted is said, with the place.
+//! Fits that are impossible: the error says why and where.
 
 use super::bases::{ONE, cubic, grid, pulled_apart, scattered};
 use spmesh_geometry::configurations::special::{Features, features};
@@ -120,7 +120,7 @@ fn degrees_that_cannot_be_smoothed_are_refused() {
 
 #[test]
 fn sites_that_depend_on_each_other_are_named() {
-    // A function that is there twice.
+    // One function is listed twice.
     let knots = Knots::new(grid(3, 0.2)).expect("finite points");
     let special =
         features(&knots, &Features { corners: (0..16).collect(), ..Features::default() }).expect("knots");

@@ -15,7 +15,7 @@ fn wave([x, _]: [f64; 2]) -> f64 {
     (std::f64::consts::PI * x).sin()
 }
 
-/// Greatest error, and root of the mean square, on a grid of 101 by 101 points.
+/// Greatest and root mean square error on a grid of 101 by 101 points.
 fn errors(basis: &Basis, side: f64, f: fn([f64; 2]) -> f64) -> (f64, f64) {
     let interpolation = Interpolation::new(basis).expect("sites");
     let coefficients = interpolation.of_function(|[x, y]| f([x / side, y / side])).expect("a spline");
@@ -26,7 +26,7 @@ fn errors(basis: &Basis, side: f64, f: fn([f64; 2]) -> f64) -> (f64, f64) {
     (greatest, (square / (101.0 * 101.0)).sqrt())
 }
 
-/// Functions over configurations of knots whose border is pulled apart.
+/// Functions over configurations of knots with the border pulled apart.
 fn collected(points: &[[f64; 2]], configurations: impl Fn(&Knots) -> Configurations) -> Basis {
     let knots = Knots::new(points.to_vec()).expect("finite points");
     let hull = delaunay2::triangulate(points).expect("a triangulation").hull.clone();
@@ -46,8 +46,8 @@ fn the_row_of_delaunay_configurations_is_reproduced() {
     let (greatest, mean) = errors(&basis, 1.0, exponential);
     assert!((4.05e-3..4.07e-3).contains(&greatest), "{greatest}");
     assert!((5.4e-4..6.3e-4).contains(&mean), "{mean}");
-    // Ties are broken the same way in all cells, which makes the start that of the row of box splines, with
-    // its 2.20e-3 here; other ways to break them give up to 2.32e-3.
+    // All cells break ties in the same way, so that the start is that of the row of box splines, with an
+    // error of 2.20e-3 here. Other ways to break ties give up to 2.32e-3.
     let (greatest, _) = errors(&basis, 1.0, wave);
     assert!((2.195e-3..2.325e-3).contains(&greatest), "{greatest}");
 }

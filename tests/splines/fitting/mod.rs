@@ -1,4 +1,4 @@
-//! Fits of splines against their theory, and against equations that are set up in another way.
+//! Fits of splines against their theory, and against equations that are set up independently.
 
 mod bases;
 mod choices;

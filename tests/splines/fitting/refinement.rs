@@ -1,4 +1,4 @@
-//! Knots that are added where they are needed.
+//! Adding knots where they are needed.
 
 use super::bases::{ONE, pulled_apart, scattered};
 use spmesh_reference::sets::Random;
@@ -11,7 +11,7 @@ fn ridge([x, y]: [f64; 2]) -> f64 {
     0.5 * x + (-across * across).exp()
 }
 
-/// A square grid of knots, moved a little.
+/// A square grid of slightly moved knots.
 fn uniform(cells: usize) -> Vec<[f64; 2]> {
     super::bases::grid(cells, 0.2)
 }
@@ -75,7 +75,7 @@ fn areas_without_observations_get_no_knots() {
     let mut all = scattered(20_000, 7, ridge);
     all.retain(|one| one.point[1] < 0.4 || one.point[0] > 0.97);
     let refined = refine(&all, &Goal::new(0.01, 600), ONE).expect("a spline");
-    // At the edge of the gap, few observations may be in a triangle.
+    // At the edge of the gap, a triangle may have too few observations to be divided.
     assert!(refined.rounds.last().expect("a round").above < 10, "{:?}", refined.rounds);
     let is_in_gap = |[x, y]: [f64; 2]| x < 0.85 && y > 0.7;
     let sites = (0..refined.space.basis.len()).map(|function| refined.space.basis.greville(function));

@@ -1,4 +1,4 @@
-//! Fits that gross errors do not pull.
+//! Fits that resist gross errors.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered};
 use spmesh_reference::sets::Random;
@@ -9,7 +9,7 @@ fn plane([x, y]: [f64; 2]) -> f64 {
     100.0 + 3.0 * x - 2.0 * y
 }
 
-/// Observations of the plane; every tenth one is far above.
+/// Observations of the plane; every tenth is far above it.
 fn with_outliers(count: usize, noise: f64) -> Vec<Observation> {
     let mut random = Random::new(31);
     let mut all = scattered(count, 30, plane);
@@ -64,7 +64,7 @@ fn noise_is_measured_and_kept() {
 
 #[test]
 fn weights_count() {
-    // A third of the observations is wrong, but counts for little.
+    // A third of the observations is wrong, but has little weight.
     let basis = pulled_apart(&grid(2, 0.2));
     let mut all = scattered(3_000, 9, plane);
     let mut random = Random::new(2);

@@ -1,4 +1,4 @@
-//! Smoothing: between a plane and least squares.
+//! Smoothing: between a plane and plain least squares.
 
 use super::bases::{ONE, deviation, grid, pulled_apart, scattered, solve_dense};
 use spmesh_splines::fitting::{Equations, NormalEquations, Observation, least_squares, thin_plate};
@@ -7,7 +7,7 @@ fn f([x, y]: [f64; 2]) -> f64 {
     (7.0 * x).sin() * (5.0 * y).cos() + 2.0 * x
 }
 
-/// The plane of least squares, from three equations.
+/// The least-squares plane, from three equations.
 fn plane(all: &[Observation]) -> Vec<f64> {
     let row = |one: &Observation| [1.0, one.point[0], one.point[1]];
     let entry = |i: usize, j: usize| all.iter().map(|one| row(one)[i] * row(one)[j]).sum();
@@ -28,7 +28,7 @@ fn a_great_lambda_leaves_the_plane_of_least_squares() {
         deviation(&basis, &coefficients, 31, |[x, y]| plane[0] + plane[1] * x + plane[2] * y)
     };
     let found = [1e6, 1e7, 1e8, 1e9].map(distance);
-    // From some lambda on, the distance is as one over it.
+    // For large lambda, the distance is proportional to 1 / lambda.
     assert!(found.windows(2).all(|pair| pair[1] < 0.4 * pair[0]), "{found:?}");
     assert!(found[3] < 5e-3 && found[3] < 0.12 * found[2], "{found:?}");
 }
