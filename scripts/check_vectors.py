@@ -23,7 +23,7 @@ def load(path):
 
 
 def read(data):
-    """The text twin, and the message of the error if there is one."""
+    """The text twin, and the error message if there is one."""
     lines = []
     stream = spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lines.append))
     try:

@@ -3,8 +3,8 @@
 
     python3 make_vectors.py            (--check writes nothing and fails if a file differs)
 
-A writer of its own, from the text of formats/spmesh.md alone. Every vector is spelled out here, with its text twin or
-the words that the error must contain.
+An independent writer, from the text of formats/spmesh.md alone. Every vector is spelled out here, with its
+text twin or the words that the error must contain.
 """
 
 import os
@@ -32,7 +32,7 @@ def crc32c(data):
 
 
 def number(value):
-    """A decimal as the text twin writes it; coordinates are given as strings or integers."""
+    """A decimal as the text twin writes it; `value` is a string or an integer."""
     if value in (INF, -INF):
         return str(value)
     text = format(Decimal(value), "f")
@@ -40,7 +40,7 @@ def number(value):
 
 
 class Vector:
-    """A stream in the making: pieces of bytes, each with a comment, and the lines of its text twin."""
+    """A stream under construction: pieces of bytes, each with a comment, and the lines of its text twin."""
 
     def __init__(self, kind="points", **fields):
         self.pieces, self.lines, self.sequence = [], [], 0
@@ -52,7 +52,7 @@ class Vector:
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
                chunked=False, wkt=None, geokeys=None, producer="vector", raw=None):
-        """`grid` is scale and offset; `raw` overrides a field with bytes, by its name below."""
+        """`grid` is scale and offset; `raw` overrides fields with bytes, by their names below."""
         raw = raw or {}
         self.grid, self.dims, self.axes = grid, dims, dims + elevation
         scale, offset = grid or (("0",) * 3, ("0",) * 3)
@@ -125,7 +125,8 @@ class Vector:
         return b"".join(data for data, _ in self.pieces)
 
     def block(self, tag, payload, **damage):
-        """`payload` is a list of bytes with comments; `damage` may set length, sequence or checksum."""
+        """`payload` is a list of pairs of bytes and comment; `damage` may set length, sequence or
+        checksum."""
         data = b"".join(piece for piece, _ in payload)
         sequence, length = damage.get("sequence", self.sequence), damage.get("length", len(data))
         head = tag + struct.pack("<II", sequence, length)
@@ -191,7 +192,8 @@ class Vector:
                                     for wall in walls])
 
     def points4(self, *points):
-        """Points of four coordinates and perhaps a value, as decimals in strings; "nan" is a value that is not known."""
+        """Points of four coordinates and an optional value, as decimals in strings; "nan" is an unknown
+        value."""
         payload = []
         for point in points:
             assert len(point) == self.axes, point
@@ -201,7 +203,8 @@ class Vector:
         return self.block(b"PNT4", payload)
 
     def cells4(self, *cells, split=()):
-        """Cells: whether they are infinite, vertices, neighbours; with blocks that end after the words `split`."""
+        """Cells as triples: whether they are infinite, vertices, neighbours. A block ends after each number
+        of words in `split`."""
         words = []
         for infinite, vertices, neighbours in cells:
             self.lines += ["ci"[infinite] + "4 " + " ".join(str(v + 1) for v in vertices),
@@ -222,8 +225,9 @@ class Vector:
                                     for simplex, text in zip(simplices, texts)])
 
     def configurations(self, degree, *groups, standing=0, goes_on=False, head=None):
-        """Groups of an interior set and boundaries; of two knots if they are infinite. `goes_on` says that the degree was
-        begun by the block before, and "group" that the first group was; `head` overrides degree, standing and count."""
+        """Groups of an interior set and boundaries; an infinite boundary has two knots. `goes_on` is true if
+        the block before began the degree, and "group" if it also began the first group. `head` overrides
+        degree, standing and count."""
         if not goes_on:
             self.lines.append("degree %d %s" % (degree, ("any", "delaunay", "lifted", "?")[standing]))
         for number, (interior, boundaries) in enumerate(groups):
@@ -239,7 +243,7 @@ class Vector:
         return self.block(b"CONF", payload)
 
     def functions(self, *functions):
-        """Of a name, or a code; knots, and terms of two knots and a factor as text."""
+        """Functions as triples: a name or a code, knots, and terms of two knots and a factor as text."""
         payload = []
         for name, kind, terms in functions:
             code = FUNCTIONS.index(name) if name in FUNCTIONS else name
@@ -283,10 +287,10 @@ CM = (("0.01", "0.01", "0.5"), ("1000", "-2000", "0"))
 HALF = (("0.5", "0.5", "0.25"), ("0", "0", "0"))
 QUADTREE = (2, 0, 0, 0, 4)
 SQUARE = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (2, 2, 4)]
-# A corner of a cube, its three neighbours, and the corner opposite: two tetrahedra on one facet.
+# A corner of a cube, its three neighbours, and the opposite corner: two tetrahedra that share a facet.
 CORNERS = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (4, 4, 4)]
 TETRAHEDRAL = dict(kind="tetrahedral mesh", dims=3, grid=HALF)
-# A simplex of four dimensions, its points sorted, and the five infinite cells around it.
+# A simplex in four dimensions with its points sorted, and the five infinite cells around it.
 CORNERS4 = [("0",) * 4, ("0", "0", "0", "1"), ("0", "0", "1", "0"), ("0", "1", "0", "0"), ("1", "0", "0", "0")]
 CELLS4 = [(0, (0, 1, 2, 3, 4), (1, 2, 3, 4, 5))] + [
     (1, tuple(v for v in range(5) if v != 4 - i), (0,) + tuple(1 + n for n in range(5) if n != i)) for i in range(5)]

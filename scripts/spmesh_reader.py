@@ -3,9 +3,10 @@
 
     python3 spmesh_reader.py FILE      (- for stdin; -q prints nothing)
 
-A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with the standard
-library alone. It checks every rule of the text but the orientation of simplices, those included that need a memory
-of cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit 1: the input cannot be read.
+A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with only
+the standard library. It checks every rule of the text except the orientation of simplices, including the
+rules that need to remember cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit
+1: the input cannot be read.
 """
 
 import bisect
@@ -71,7 +72,7 @@ KINDS = {
     10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
 }
 
-# Kinds of functions of splines: name, number of knots.
+# Kinds of functions of splines, with their numbers of knots.
 FUNCTIONS = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
 
 
@@ -180,7 +181,7 @@ class Header:
             require(encoding == 0 and not crs, "CRS encoding %d with %d bytes" % (encoding, crs_length))
 
     def point(self, stored):
-        """A stored point with its z, if it lies where the header says that all points lie."""
+        """Returns a stored point with its z, after checking the header's statements about all points."""
         point = stored if self.axes == 3 else stored + (0,)
         x, y, z = point
         if not self.is_integer:
@@ -253,12 +254,12 @@ class Tree:
         return True
 
     def level(self, code):
-        """Level of a location code, or None if it is no cell of the tree."""
+        """The level of a location code, or None if it is not a cell of the tree."""
         bits = code.bit_length() - 1
         return bits // self.dims if code > 0 and bits % self.dims == 0 and bits // self.dims <= self.depth else None
 
     def deepest(self, code):
-        """The cells of the deepest level in a cell: first code and one past the last."""
+        """The range of deepest cells in a cell: first code and one past the last."""
         shift = self.dims * (self.depth - self.level(code))
         return code << shift, (code + 1) << shift
 
@@ -274,7 +275,7 @@ class Tree:
         return low, high
 
     def code_of(self, point):
-        """Location code of the deepest cell that holds a point, by halving: every border is exact."""
+        """The location code of the deepest cell with a point, by halving, so that every border is exact."""
         code, low, side = 1, list(self.origin), self.side
         for _ in range(self.depth):
             side /= 2
@@ -291,7 +292,7 @@ class Tree:
 
 
 class FinalCells:
-    """Disjoint ranges of final cells of the deepest level; ranges that touch are one."""
+    """The final cells of the deepest level, as disjoint ranges; adjacent ranges are merged."""
 
     def __init__(self, tree):
         self.tree, self.starts, self.ends = tree, [], []
@@ -329,7 +330,7 @@ class FinalCells:
 
 
 class Chunks:
-    """The promise of a chunked stream: points between two runs of tags lie in one cell of the second."""
+    """Checks chunked streams: points between two runs of tags must lie in one cell of the second run."""
 
     def __init__(self, tree):
         self.tree, self.box, self.in_tags = tree, None, False
@@ -361,7 +362,7 @@ class Chunks:
 
 
 class Stream:
-    """Reads a stream, block by block, and prints it."""
+    """Reads a stream block by block, and prints it."""
 
     def __init__(self, source, text):
         self.source, self.text = source, text
@@ -811,7 +812,7 @@ class Text:
         self.write("".join(["x %d\n" % (vertex + 1) for vertex in finalized]))
 
     def numbers(self, word, numbers):
-        """Numbers counted from 1, at most 4096 in a line."""
+        """Numbers counted from 1, at most 4096 per line."""
         for at in range(0, max(len(numbers), 1), 4096):
             self.line((word if at == 0 else "+4") + "".join([" %d" % (n + 1) for n in numbers[at : at + 4096]]))
 

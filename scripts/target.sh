@@ -1,4 +1,4 @@
-# The release build of the project, for scripts to source: $root, $target and $programs say where it is.
+# The release build of the project, for scripts to source. Sets $root, $target and $programs.
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 target=${CARGO_TARGET_DIR:-$root/target}
 case $target in /*) ;; *) target=$PWD/$target ;; esac

@@ -1,4 +1,4 @@
-"""A browser that does what it is told, in the protocol WebDriver: Chromium by way of its driver."""
+"""Controls Chromium through its driver, by the WebDriver protocol."""
 
 import base64
 import contextlib
@@ -15,7 +15,7 @@ DOWN, UP = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button":
 
 
 def move(point, milliseconds=0):
-    """A move of the mouse or of a finger to a point of the window."""
+    """A move of the mouse or a finger to a point of the window."""
     return {"type": "pointerMove", "x": round(point[0]), "y": round(point[1]), "duration": milliseconds}
 
 
@@ -44,7 +44,7 @@ class Browser:
         return self.post("/execute/sync", script=script, args=arguments)
 
     def wait(self, script):
-        """What a script calls its last argument with."""
+        """Runs a script and waits for the value that it passes to its last argument, a callback."""
         return self.post("/execute/async", script=script, args=[])
 
     def developer(self, command, **parameters):
@@ -54,7 +54,7 @@ class Browser:
         return self.post("/se/log", type=kind)
 
     def addresses(self, event, part):
-        """Addresses of all requests or answers since the last call."""
+        """Addresses of all requests or responses since the last call."""
         messages = [json.loads(entry["message"])["message"] for entry in self.log("performance")]
         return [message["params"][part]["url"] for message in messages if message["method"] == f"Network.{event}"]
 
@@ -67,7 +67,7 @@ class Browser:
         self.developer("Emulation.setEmulatedMedia", features=names)
 
     def open(self, address):
-        # A page that differs only in its hash would not be loaded again.
+        # The browser would not reload a page whose address differs only in its hash.
         self.post("/url", url="about:blank")
         self.post("/url", url=address)
 
@@ -89,7 +89,7 @@ class Browser:
         return base64.b64decode(self.request("GET", "/screenshot"))
 
     def part(self, corner, side):
-        """A picture of a square of the window."""
+        """A picture of a square in the window."""
         clip = {"x": corner[0], "y": corner[1], "width": side, "height": side, "scale": 1}
         return base64.b64decode(self.developer("Page.captureScreenshot", clip=clip)["data"])
 
@@ -99,7 +99,7 @@ class Browser:
 
 @contextlib.contextmanager
 def browser():
-    """Chromium with an empty profile; both it and its driver end with the block."""
+    """Chromium with an empty profile; the browser and its driver end with the block."""
     driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     try:
         port = next(found[1] for line in driver.stdout if (found := re.search(r"started successfully on port (\d+)", line)))

@@ -11,9 +11,9 @@ from inputs import count_of, program
 from measure import Contestant, compete
 
 OURS = "spmesh"
-# Elevation models: their peers are other programs than those that triangulate.
+# Elevation models, whose peers differ from those of triangulations.
 DEM = "dem"
-# Looking at a clock takes time, so this is not what is compared.
+# Reading the clock takes time, so this run is not compared with peers.
 IN_PARTS = "spmesh, parts timed"
 DECODER = "decode LAZ once (laz crate, 2 threads)"
 ALONE = "spdelaunay2d --threads {}"
@@ -32,13 +32,13 @@ SETS = {
     "3d": (FULL_SETS_3D, QUICK_SETS_3D),
     "4d": (FULL_SETS_4D, QUICK_SETS_4D),
 }
-# Of a run; Qhull needs minutes for a grid in 4D.
+# Time limits of a run; Qhull needs minutes for a grid in 4D.
 LIMIT_S, LIMIT4_S = 120.0, 300.0
 COORDINATE_BYTES = 8
 
 
 def dims_of(name):
-    """Of the points of a set, by its name; 0 if it has no peers."""
+    """Dimension of the points of a set, from its name; 0 for sets without triangulating peers."""
     kind = name.split("-")[0]
     if name == SWEEP or kind == DEM:
         return 0
@@ -47,12 +47,12 @@ def dims_of(name):
 
 @dataclass
 class Contest:
-    """All that was measured on one input."""
+    """All measurements on one input."""
 
     name: str
     points: int
     contestants: list
-    # Peers that did not run, and why.
+    # Peers that did not run, with the reason.
     absent: dict = field(default_factory=dict)
     dims: int = 2
 
@@ -62,32 +62,33 @@ class Contest:
 
     @property
     def element(self):
-        """What a triangulation, or a diagram, is made of."""
+        """The elements of a triangulation or a diagram."""
         return {3: "tetrahedra", 4: "cells"}.get(self.dims, "triangles")
 
     @property
     def seconds(self):
-        """What is compared, of a contestant: all of a pipe, of a kernel the triangulation alone."""
+        """The compared time of a contestant: the whole pipe, or the triangulation of a kernel alone."""
         return (lambda c: c.wall) if self.is_pipe else (lambda c: c.said("seconds"))
 
     def get(self, name):
         return next((c for c in self.contestants if c.name == name and c.runs), None)
 
     def peers(self):
-        """Peers with figures, the fastest first; in 3D those on one thread, as ours is."""
+        """Peers with results, the fastest first; in 3D and 4D only those on one thread, as ours is."""
         names = {OURS, IN_PARTS, DECODER, FROM_LAZ, ALONE.format(1), ALONE.format(2)}
         ran = [c for c in self.contestants if c.name not in names and c.runs and self.seconds(c)]
         return sorted((c for c in ran if self.dims in (0, 2) or "threads" not in c.name), key=self.seconds)
 
     def speed(self, contestant, other):
-        """How many times as fast as another a contestant is: median over the rounds, as a machine's pace drifts."""
+        """How many times as fast as `other` a contestant is: the median of the ratios in each round, because
+        a machine's speed drifts."""
         if not other:
             return None
         pairs = zip(other.runs, contestant.runs)
         return statistics.median(theirs.said["seconds"] / its.said["seconds"] for theirs, its in pairs)
 
     def elements(self):
-        """The number that most exact programs agree on, where there are any."""
+        """The element count that most programs report, if any."""
         counts = [c.said(self.element) for c in self.contestants if c.said(self.element)]
         return max(counts, key=counts.count) if counts else None
 
@@ -97,13 +98,13 @@ class Contest:
 
 
 class Contests:
-    """Runs contests; remembers who is too slow for bigger ones."""
+    """Runs contests; remembers the programs that are too slow for larger ones."""
 
     def __init__(self, inputs, peers, flags):
         self.inputs, self.peers, self.flags = inputs, peers, flags
         self.triangles = flags.dir / "triangles.bin"
         self.mesh = flags.dir / "mesh.spm"
-        # By dimension, and whether the points are in an order.
+        # Seconds per point of each program, by dimension and by whether the points are ordered.
         self.per_point = defaultdict(dict)
 
     def run(self, name):
@@ -116,9 +117,11 @@ class Contests:
             contest = self.kernel4(name, self.inputs.file(f"{name}.f64"))
         else:
             contest = self.pipe(name, size) if kind == "pipe" else self.kernel(name, kind)
-        # Who does not sort its points is slow on those without order only.
+        # Programs that do not sort their points are slow on unordered points only, so these times are kept
+        # apart.
         per_point = self.per_point[contest.dims, kind in ("pipe", "flight", "grid4")]
-        # The time of a point of a 4D grid depends on how much of the grid there is: less of it does not tell.
+        # The time per point of a 4D grid depends on the share of the grid, so smaller shares do not predict
+        # it.
         if kind != "grid4":
             self.excuse_slow(contest, per_point)
         self.compete(contest)
@@ -130,7 +133,7 @@ class Contests:
         return contest
 
     def structures(self):
-        """A contest for each real structure, and those that cannot be read."""
+        """One contest per real structure, and the structures that cannot be read."""
         files, unread = structures.prepare(self.flags.structures, self.inputs.folder / "structures")
         contests = [self.kernel3(name, points) for name, points in files]
         for contest in contests:
@@ -140,7 +143,7 @@ class Contests:
         return contests, unread
 
     def sweep(self):
-        """All real structures in one go, on one thread and on two. That some of the files are bad is no failure."""
+        """All real structures in one run, on one thread and on two. Bad files do not fail the run."""
         files = structures.find(self.flags.structures)
         folder = self.flags.dir / "sweep"
         command = [program("tess3"), "--quiet", "--out-dir", folder, *files, "--threads"]
@@ -150,7 +153,7 @@ class Contests:
         return contest
 
     def limit(self, contest):
-        """Seconds of a run at most."""
+        """Time limit of a run, in seconds."""
         return self.flags.limit or (LIMIT4_S if contest.dims == 4 else LIMIT_S)
 
     def compete(self, contest):
@@ -211,7 +214,7 @@ class Contests:
         return {peer.name: f"not installed: {peer.reason}" for peer in self.peers[dims] if not peer.program}
 
     def excuse_slow(self, contest, per_point):
-        """Leaves out whoever would need too long, by what was measured on less."""
+        """Leaves out contestants that would take too long, judging by their times on smaller inputs."""
         for contestant in list(contest.contestants):
             expected = per_point.get(contestant.name, 0) * contest.points
             if expected >= self.limit(contest):

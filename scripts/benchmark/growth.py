@@ -1,4 +1,5 @@
-"""Growth: time per point, memory and width from a million points to a hundred, in their own order and in none."""
+"""Growth: time per point, memory and width from one million to a hundred million points, in flight order and
+permuted."""
 
 from inputs import count_of, program
 from measure import Contestant, compete
@@ -7,12 +8,12 @@ from tables import number, table
 SIZES = ["1M", "3M", "10M", "30M", "100M"]
 QUICK_SIZES = ["10k", "100k", "1M"]
 COHERENT, PERMUTED = "flight lines", "permuted"
-# What a hundred million points in no order shall fit in, besides a temporary file.
+# Memory for a hundred million unordered points, besides a temporary file.
 PERMUTED_MEMORY = "256M"
 
 
 class Growth:
-    """The pipe on inputs of several sizes, all in one contest."""
+    """The pipe on inputs of several sizes, in one contest."""
 
     def __init__(self, inputs, flags):
         self.inputs, self.flags = inputs, flags
@@ -32,7 +33,7 @@ class Growth:
         return rows
 
     def contestant(self, size, order):
-        # Points in no order wait in a temporary file, which shall be on the disk that was chosen.
+        # Unordered points are spilled to a temporary file, which must be on the chosen disk.
         folder = ["--temp-dir", self.flags.dir]
         flags = ["--memory", PERMUTED_MEMORY, *folder] if order == PERMUTED else []
         kind = "permuted" if order == PERMUTED else "flight"
@@ -42,7 +43,7 @@ class Growth:
 
 
 def row(size, order, contestant):
-    """The figures of one input; without `seconds` where it failed."""
+    """The figures for one input; without `seconds` if the run failed."""
     facts = {"points": count_of(size), "order": order, "failure": contestant.failure}
     if not contestant.runs:
         return facts

@@ -1,4 +1,4 @@
-"""Makes input files, once each, in the folder of the benchmark."""
+"""Makes input files in the folder of the benchmark, each once."""
 
 import os
 import subprocess
@@ -8,13 +8,13 @@ import target
 UNITS = {"k": 10**3, "M": 10**6}
 # Larger inputs are removed, unless --keep is given.
 KEPT_POINTS_MAX = 10**7
-# Examples that 4D sets need, and that other sets need.
+# Examples that 4D sets need, and examples that other sets need.
 EXAMPLES4 = ["diagram4_time"]
 EXAMPLES = ["kernel_time", "kernel3_time", "gen_lidar"]
 
 
 def count_of(text):
-    """The number of a text such as 300, 100k or 10M."""
+    """The number that a text such as 300, 100k or 10M stands for."""
     return int(text[:-1]) * UNITS[text[-1]] if text[-1] in UNITS else int(text)
 
 
@@ -33,7 +33,7 @@ class Inputs:
         if path.exists():
             return path
         kind, size = path.stem.split("-")
-        # Under another name until it is whole.
+        # The file has another name until it is complete.
         part = path.with_name("part-" + name)
         if kind == "flight":
             self.make(target.ROOT / "scripts" / "gen-lidar", "--points", count_of(size), "--seed", 1, "-o", part)

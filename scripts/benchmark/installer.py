@@ -14,35 +14,35 @@ NATIVE = HERE / "native"
 RUST = HERE / "rust"
 CXX = ["g++", "-std=c++20", "-O3", "-march=native", "-DNDEBUG"]
 PYTHON_BUILD_PACKAGES = ["cython", "numpy", "setuptools", "setuptools-scm", "wheel", "scikit-build-core", "cmake", "ninja"]
-# Error-free transformations break where the compiler fuses a product and a sum.
+# Error-free transformations fail if the compiler fuses a product and a sum.
 UNFUSED = "-ffp-contract=off"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 
 
 class Missing(Exception):
-    """Why a peer cannot be installed."""
+    """The reason why a peer cannot be installed."""
 
 
 @dataclass
 class Peer:
-    """A program that reads points and triangulates them; without `program` it is not here, for a `reason`."""
+    """A program that reads points and triangulates them; without `program` it is absent for a `reason`."""
 
     name: str
     source: str
     exact: str
-    # The method of the installer that makes it, or the crate.
+    # The method of the installer that builds it, or the crate.
     recipe: str
     threads: int = 1
-    # What follows the points, in 4D.
+    # Arguments after the points, in 4D.
     flags: tuple = ()
-    # Reads LAS alone, and says neither a time of its own nor a count.
+    # Reads only LAS, and reports neither its own time nor a count.
     whole_only: bool = False
     version: str = ""
     program: object = None
     reason: str = ""
 
     def command(self, points, triangles):
-        """In 2D: reads points and writes triangles."""
+        """The command in 2D: reads points and writes triangles."""
         if self.whole_only:
             return [self.program, "translate", points, f"{triangles}.ply", "delaunay", "--writers.ply.faces=true"]
         return [self.program, points, triangles]
@@ -59,7 +59,7 @@ def call(*command, **options):
         raise Missing(str(error)) from error
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if line.strip()]
-        # Python says it last, compilers first.
+        # Python reports the error last, compilers report it first.
         raised = [line for line in reversed(lines) if "Error: " in line]
         errors = raised or [line for line in lines if "rror" in line] or lines or ["failed"]
         raise Missing(f"{pathlib.Path(command[0]).name}: {errors[0].strip()[:160]}")
@@ -82,14 +82,14 @@ def debian_version(package):
 
 
 def debian(header, *packages):
-    """Installs Debian's packages unless `header` of the first is there; its version."""
+    """Installs Debian packages unless `header` of the first one exists; returns its version."""
     if not pathlib.Path("/usr/include", header).exists():
         apt_install(*packages)
     return debian_version(packages[0])
 
 
 class Installer:
-    """Puts peers and their parts under `folder`."""
+    """Installs peers and their parts in `folder`."""
 
     def __init__(self, folder):
         self.folder = folder / "peers"
@@ -97,7 +97,7 @@ class Installer:
         self.rust_programs = self.folder / "cargo" / "release"
 
     def compile(self, source, *flags, name=""):
-        """A program of native/SOURCE.cpp, called like it unless a `name` is said."""
+        """Compiles native/SOURCE.cpp to a program called `name` or like the source."""
         program = self.folder / (name or source)
         sources = [NATIVE / f"{source}.cpp", *NATIVE.glob("*.hpp"), *HERE.glob("peers*.py")]
         if program.exists() and program.stat().st_mtime > max(source.stat().st_mtime for source in sources):
@@ -106,7 +106,7 @@ class Installer:
         return program
 
     def python(self):
-        """The interpreter of an environment with what packages need before pip hands out their sources."""
+        """The interpreter of a virtual environment with the packages for downloads of sources by pip."""
         python = self.folder / "venv" / "bin" / "python"
         if not python.exists():
             call("python3", "-m", "venv", self.folder / "venv")
@@ -114,7 +114,7 @@ class Installer:
         return python
 
     def package(self, name, *flags):
-        """Folder with what the Python package `name` is made of, and its version."""
+        """The folder with the unpacked Python package `name`, and its version."""
         place = self.folder / f"package-{name}"
         if not place.exists():
             part = self.folder / f"part-{name}"
@@ -130,7 +130,7 @@ class Installer:
         return place, archive.name.removesuffix(".tar.gz").split("-")[1]
 
     def debian_source(self, name):
-        """Folder with the sources of a Debian package as its authors made them, and their version."""
+        """The folder with the upstream sources of a Debian package, and their version."""
         place = self.folder / f"source-{name}"
         if not place.exists():
             part = self.folder / f"part-{name}"
@@ -152,7 +152,7 @@ class Installer:
         return tree, archive.name.split("_")[1].split(".orig")[0].split("+")[0]
 
     def geogram_flags(self):
-        """How programs are linked to the library that Geogram's Python package brings, and its version."""
+        """Flags that link a program to the library in Geogram's Python package, and its version."""
         place, version = self.package("geogram", "--only-binary", "geogram")
         libraries = place / "geogram.libs"
         tbb = next(libraries.glob("libtbb*"))
@@ -163,7 +163,7 @@ class Installer:
         return flags, f"{number} (PyPI geogram {version}, its library as built there)"
 
     def build_rust(self):
-        """All crates at once, and what makes the inputs."""
+        """Builds all crates, and the programs that make the inputs."""
         flags = {**os.environ, "RUSTFLAGS": "-C target-cpu=native"}
         target = ["--target-dir", self.folder / "cargo"]
         call("cargo", "build", "--release", "--locked", "--quiet", *target, cwd=RUST, env=flags)
@@ -173,7 +173,7 @@ class Installer:
         return self.rust_programs / name, lock.split(f'name = "{name}"\nversion = "')[1].split('"')[0]
 
     def install(self, peers, wanted):
-        """All peers whose names are in `wanted`, or all; those that cannot be installed with the reason."""
+        """Installs all peers, or those named in `wanted`; a peer that cannot be installed gets the reason."""
         chosen = [peer for peer in peers if not wanted or peer.name.split()[0].strip(",").lower() in wanted]
         for peer in chosen:
             try:

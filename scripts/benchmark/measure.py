@@ -14,13 +14,13 @@ import threading
 import time
 from dataclasses import dataclass, field
 
-# A program that needs longer than this is run once: rounds are for differences of some per cent.
+# A program that takes longer is run once: more rounds serve to tell differences of a few per cent.
 ONCE_SECONDS = 30.0
 
 
 @dataclass
 class Run:
-    """What one run of a pipeline took."""
+    """The measurements of one run of a pipeline."""
 
     wall: float
     cpu: float
@@ -33,19 +33,19 @@ class Run:
 
 @dataclass
 class Contestant:
-    """A pipeline to be timed. `commands` are argument lists, joined by pipes; `output` is removed after each run, be it
-    a file or a folder."""
+    """A pipeline to be timed. `commands` are argument lists, joined by pipes; `output` is a file or a folder
+    that is removed after each run."""
 
     name: str
     commands: list
     output: str = ""
-    # Exit codes that are no failure.
+    # Exit codes that do not count as failures.
     accepts: tuple = (0,)
     runs: list = field(default_factory=list)
     failure: str = ""
 
     def median(self, value):
-        """Median over the runs of what `value` makes of a run; None if there is none."""
+        """Median of `value` over the runs; None if no run has a value."""
         values = [v for v in map(value, self.runs) if v is not None]
         return statistics.median(values) if values else None
 
@@ -55,7 +55,7 @@ class Contestant:
 
     @property
     def peaks(self):
-        """Of each process, the highest peak of all runs."""
+        """The highest peak of each process over all runs."""
         return [max(peaks) for peaks in zip(*(run.peaks for run in self.runs))]
 
     def said(self, key):
@@ -67,7 +67,8 @@ class Contestant:
 
 
 def floor_bytes():
-    """What no peak is below: until it is replaced, a new process is this one, and the system counts that."""
+    """A lower limit of measured peaks: a new process is a copy of this one until it runs its program, and the
+    system counts that."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
@@ -95,7 +96,7 @@ def run(commands, limit_s, accepts=(0,)):
 
 
 def spawn(commands, texts):
-    """Starts a pipeline; all but the pipes between goes to `texts`."""
+    """Starts a pipeline; stderr of all processes and stdout of the last one go to `texts`."""
     processes = []
     source = subprocess.DEVNULL
     for number, command in enumerate(commands):
@@ -109,7 +110,7 @@ def spawn(commands, texts):
 
 
 def parse(text):
-    """The JSON in `text`, joined, and the other lines."""
+    """The JSON objects in `text`, merged, and the other lines."""
     said, words = {}, []
     for line in text.splitlines():
         if line.startswith("{"):
@@ -128,7 +129,7 @@ def remove(output):
 
 @contextlib.contextmanager
 def alone(path):
-    """Holds a lock, if one is named: whoever else works on this machine may wait for it."""
+    """Holds a lock if a path is given, so that other jobs on this machine can wait for it."""
     if not path:
         yield
         return
@@ -138,7 +139,7 @@ def alone(path):
 
 
 def compete(contestants, rounds, limit_s, lock=None):
-    """Runs all contestants once per round, in turn, until each has its rounds, is too slow or fails."""
+    """Runs all contestants in turn, once per round, until each has its rounds, is too slow or fails."""
     for number in range(rounds):
         for contestant in contestants:
             slow = contestant.runs and contestant.runs[0].wall > ONCE_SECONDS and len(contestants) > 1
@@ -147,7 +148,7 @@ def compete(contestants, rounds, limit_s, lock=None):
             with alone(lock):
                 result = run(contestant.commands, limit_s, contestant.accepts)
             remove(contestant.output)
-            # What was written is on its way to the disk; the next one shall not wait for it.
+            # Flush the output to disk now, so that the next contestant does not wait for it.
             os.sync()
             told = result.failure or f"{result.wall:.2f} s"
             print(f"  round {number + 1}: {contestant.name}: {told}", file=sys.stderr, flush=True)

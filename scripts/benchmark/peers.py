@@ -18,7 +18,7 @@ PEERS = [
 
 
 class Peers2(Installer):
-    """A method makes a program, and tells its version."""
+    """Each method builds a program and returns it with its version."""
 
     dims = 2
 

@@ -14,7 +14,7 @@ PEERS = [
     Peer(f"{HXT}, 2 threads", "Debian", "yes", "hxt", threads=2),
     Peer("Geogram PDEL, 2 threads", "PyPI", "yes", "geogram", threads=2),
 ]
-# Parts of HXT that its Delaunay triangulation needs.
+# The parts of HXT that its Delaunay triangulation needs.
 HXT_SOURCES = {
     "core": "hxt_bbox hxt_mesh hxt_message hxt_sort",
     "tetMesh": "hxt_tetDelaunay hxt_tetFlag hxt_tetNodalSize hxt_tetRepair hxt_tetSync hxt_tetUtils hxt_vertices",
@@ -23,7 +23,7 @@ HXT_SOURCES = {
 
 
 class Peers3(Installer):
-    """A method makes a program, and tells its version."""
+    """Each method builds a program and returns it with its version."""
 
     dims = 3
 
@@ -42,7 +42,7 @@ class Peers3(Installer):
         return self.compile("geogram3", *flags), version
 
     def hxt(self):
-        """Compiled as its own instructions say, its predicates without fused operations."""
+        """Compiled according to its own instructions, with predicates that do not fuse operations."""
         tree, version = self.debian_source("gmsh")
         root = tree / "contrib" / "hxt"
         flags = [f"-I{path}" for part in HXT_SOURCES for path in (root / part / "include", root / part / "src")]

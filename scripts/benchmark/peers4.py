@@ -3,7 +3,7 @@
 from installer import Installer, Peer, debian
 from peers3 import CGAL
 
-# Only Qhull, merged, makes diagrams: the others triangulate cospherical points, and stop there.
+# Only Qhull, with merged facets, makes diagrams. The others stop after triangulating cospherical points.
 PEERS = [
     Peer(CGAL, "Debian", "yes", "cgal"),
     Peer("Qhull, merged", "Debian", "no", "qhull"),
@@ -12,7 +12,7 @@ PEERS = [
 
 
 class Peers4(Installer):
-    """A method makes a program, and tells its version."""
+    """Each method builds a program and returns it with its version."""
 
     dims = 4
 

@@ -12,7 +12,7 @@ COHERENT, PERMUTED = "flight lines", "permuted"
 
 
 def draw(rows):
-    """The picture of the rows that `growth` makes."""
+    """The picture of the rows that `growth` returns."""
     rows = [row for row in rows if "seconds" in row]
     counts = axis_of_counts({row["points"] for row in rows}, "points")
 

@@ -1,4 +1,4 @@
-"""Elevation models from files of points, and the peers that make them."""
+"""Elevation models from files of points, and peers that make them."""
 
 import json
 import math
@@ -13,7 +13,8 @@ GDAL, PDAL = "gdal_grid -a linear", "PDAL filters.delaunay, filters.faceraster"
 
 
 def contestants(inputs, name, folder):
-    """All that make an elevation model of flight lines with the same cells, and who is absent and why."""
+    """All programs that make an elevation model of flight lines with the same cells, and the absent ones with
+    the reason."""
     size = name.split("-")[1]
     las = inputs.file(f"flight-{size}.las")
     points = inputs.finalized(las)
@@ -35,7 +36,8 @@ def contestants(inputs, name, folder):
 
 
 def cells(points):
-    """Left, bottom, right and top of the cells that spdem makes by default, and the numbers of columns and rows."""
+    """Left, bottom, right and top of the cells that spdem makes by default, and the numbers of columns and
+    rows."""
     bounds = json.loads(subprocess.run([program("spinfo"), "--json", points], capture_output=True, check=True).stdout)["bounds"]
     low = [math.floor(x / STEP) * STEP for x in bounds["min"][:2]]
     high = [math.ceil(x / STEP) * STEP for x in bounds["max"][:2]]
@@ -43,7 +45,7 @@ def cells(points):
 
 
 def vector_layer(points, path):
-    """The same points as FlatGeobuf, which is binary and in the order of the stream: GDAL reads no LAS."""
+    """The points as FlatGeobuf, a binary format, in the order of the stream, because GDAL cannot read LAS."""
     if not path.exists():
         part = path.with_name("part-" + path.name)
         table = part.with_suffix(".csv")

@@ -1,13 +1,13 @@
 """Real structures as inputs: the atoms of PDB and mmCIF files, also .gz, as files of coordinates.
 
-These readers know no more than where coordinates are, and share no code with ours.
+These readers find coordinates and nothing else, and share no code with ours.
 """
 
 import gzip
 import re
 import struct
 
-# Of smaller ones hardly more than the start of a program could be measured.
+# With fewer atoms, a run is hardly longer than the start of a program.
 ATOMS_MIN = 1000
 ENDINGS = (".pdb", ".cif", ".ent")
 WORD = re.compile(r"'[^']*'(?=\s|$)|\"[^\"]*\"(?=\s|$)|\S+")
@@ -34,7 +34,7 @@ def of_pdb(lines):
 
 
 def of_mmcif(lines):
-    """Rows of the loop over _atom_site."""
+    """Coordinates from the loop over _atom_site, of the first model."""
     columns = []
     first_model = None
     for line in lines:
@@ -51,8 +51,9 @@ def of_mmcif(lines):
 
 
 def prepare(folder, place):
-    """Files of coordinates in `place` of all structures under `folder` that are large enough, by name, the largest
-    first, each once; and those that cannot be read, with the reason."""
+    """Writes coordinate files to `place` for all structures under `folder` that are large enough, each once.
+    Returns their names and files, the largest first, and the structures that cannot be read, with the
+    reason."""
     place.mkdir(parents=True, exist_ok=True)
     found, unread, known = [], {}, set()
     for path in find(folder):

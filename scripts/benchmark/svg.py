@@ -1,6 +1,7 @@
 """Diagrams as SVG.
 
-Colours are of middle lightness, and there is no background, so that they read on white and on black.
+Colours have a medium lightness, and there is no background, so that diagrams are legible on white and on
+black.
 """
 
 import math
@@ -19,14 +20,16 @@ STYLE = f"""
 
 @dataclass
 class Axis:
-    """From the least to the greatest of its ticks, pairs of a value and a label; linear or logarithmic."""
+    """A linear or logarithmic axis from the least to the greatest of its ticks, which are pairs of a value
+    and a label."""
 
     ticks: list
     name: str = ""
     is_log: bool = False
 
     def share(self, value):
-        """Where on the axis a value is, from 0 to 1; one below a logarithmic axis is at its start."""
+        """The position of a value on the axis, from 0 to 1; values below a logarithmic axis are at its
+        start."""
         low, high = self.ticks[0][0], self.ticks[-1][0]
         if self.is_log:
             value, low, high = math.log(max(value, low)), math.log(low), math.log(high)
@@ -34,7 +37,7 @@ class Axis:
 
 
 def axis_from_zero(value_max, name=""):
-    """Round steps up to a bit more than the greatest value."""
+    """An axis from zero in round steps to just above the greatest value."""
     step = nice_step(value_max / 4)
     steps = math.ceil(value_max * 1.05 / step)
     return Axis([(i * step, f"{i * step:g}") for i in range(steps + 1)], name)
@@ -47,7 +50,7 @@ def axis_of_counts(counts, name):
 
 @dataclass
 class Curve:
-    """Pairs of x and y; single values behind the line are dots."""
+    """Pairs of x and y; `dots` are the single values behind the curve."""
 
     name: str
     colour: str
@@ -58,7 +61,7 @@ class Curve:
 
 @dataclass
 class Panel:
-    """One diagram: its place, and its axes to the right and upwards."""
+    """One diagram: its position, and its axes to the right and upwards."""
 
     left: float
     right: float
@@ -75,7 +78,7 @@ class Panel:
         return self.bottom - self.up.share(value) * (self.bottom - self.top)
 
     def frame(self):
-        """Title, grid and numbers at the axes."""
+        """Title, grid, and numbers along the axes."""
         yield text(self.left - 40, self.top - 36, self.title, css="title")
         for i, (value, label) in enumerate(self.up.ticks):
             yield line(self.left, self.y(value), self.right, self.y(value), "axis" if i == 0 else "grid")
@@ -86,7 +89,7 @@ class Panel:
         yield text((self.left + self.right) / 2, self.bottom + 44, self.across.name, anchor="middle")
 
     def draw(self, curves):
-        """Lines with a mark at each value, and their names at their ends."""
+        """Curves with a mark at each value, and their names at their ends."""
         yield from self.frame()
         ends = []
         for curve in curves:
@@ -114,7 +117,7 @@ def document(width, height, alt, parts):
 
 
 def spread(ends, bottom, room=17):
-    """Moves labels down until none covers the one above, and those at the bottom up again, onto the diagram."""
+    """Moves labels down until no two overlap, and then up again if they are below the diagram."""
     lowest, downwards = -math.inf, []
     for y, name, colour in sorted(ends):
         lowest = max(y, lowest + room)
@@ -127,7 +130,7 @@ def spread(ends, bottom, room=17):
 
 
 def nice_step(value):
-    """The least of 1, 2, 2.5, 5 times a power of ten that is not below `value`."""
+    """The least of 1, 2, 2.5 and 5 times a power of ten that is at least `value`."""
     power = 10 ** math.floor(math.log10(value))
     return next(factor * power for factor in (1, 2, 2.5, 5, 10) if factor * power >= value * 0.999)
 

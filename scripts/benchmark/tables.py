@@ -8,21 +8,21 @@ PEERS_OF_STRUCTURES = [peer.name for peer in PEERS3 if peer.threads == 1]
 
 
 def table(head, rows):
-    """A markdown table; all columns but the first are aligned to the right."""
+    """A Markdown table; all columns but the first are right-aligned."""
     lines = ["| " + " | ".join(head) + " |", "|---" + "|---:" * (len(head) - 1) + "|"]
     lines += ["| " + " | ".join(row) + " |" for row in rows]
     return "\n".join(lines) + "\n"
 
 
 def number(value, digits=None):
-    """With the digits said, or two, and three below one."""
+    """A number with the given digits; by default with two, or three if it is below one."""
     if value is None:
         return ""
     return f"{value:.{(3 if value < 1 else 2) if digits is None else digits}f}"
 
 
 def megabytes(peaks):
-    """Peaks of all processes in MB; of several, their sum first."""
+    """Peaks of all processes in MB; their sum first if there are several."""
     each = [f"{peak / 1e6:.0f}" for peak in peaks]
     return each[0] if len(each) == 1 else f"{sum(peaks) / 1e6:.0f} ({' + '.join(each)})"
 
@@ -57,14 +57,15 @@ def kernel3_row(contest, c):
     span = spread(c, lambda run: run.said["seconds"])
     per_point = number(seconds / contest.points * 1e6, 3)
     speed = number(contest.speed(c, contest.get(CGAL)), 2)
-    # Below the floor, the peak is not the program's.
+    # Near the floor, the peak may not be the program's.
     bytes_per_point = f"{c.peaks[0] / contest.points:.0f}" if c.peaks[0] > 1.1 * floor_bytes() else ""
     cells = [per_point, ratio(contest, c), speed, megabytes(c.peaks), bytes_per_point, elements(contest, c)]
     return [c.name, number(seconds), span, *cells]
 
 
 def kernel4_row(contest, c):
-    """A row of 3D with two more counts: who triangulates has no cells, and who merges has no simplices."""
+    """A 3D row with two more counts. Programs that only triangulate have no cells; those that merge have no
+    simplices."""
     simplices, infinite = c.said("simplices"), c.said("infinite_cells")
     counts = ["" if count is None else f"{count:,.0f}" for count in (infinite, simplices)]
     return [*kernel3_row(contest, c), *counts]
@@ -83,7 +84,7 @@ PIPE_HEAD = ["program", "wall s", "range", "CPU s", "triangulation s", "times ou
 
 
 def contest(contest):
-    """A table of one contest, with who is absent, and what follows from it."""
+    """The table of one contest, the absent programs, and conclusions."""
     kernels = {3: (KERNEL3_HEAD, kernel3_row), 4: (KERNEL4_HEAD, kernel4_row)}
     head, make = kernels.get(contest.dims, (KERNEL_HEAD, kernel_row))
     if contest.is_pipe:
@@ -103,7 +104,7 @@ def contest(contest):
 def conclusions(contest):
     """Ratios, in words."""
     ours, peers = contest.get(OURS), contest.peers()
-    # Of elevation models, which have two peers, both are named.
+    # Elevation models have two peers, and both are named.
     for best in peers[: 1 if contest.dims else None] if ours else []:
         times = contest.seconds(best) / contest.seconds(ours)
         memory = 100 * sum(ours.peaks) / sum(best.peaks)
@@ -131,7 +132,7 @@ def conclusions(contest):
 
 
 def conclusions3(ours):
-    """The columns of thesis table 3.3, for ours."""
+    """The columns of thesis table 3.3 for our kernel."""
     words = ("order", "locate", "predicates", "update")
     times = [f"{word} {ours.said(f'{word}_seconds'):.3f} s" for word in words]
     yield f"ours, table 3.3: {', '.join(times)}, of {ours.said('seconds'):.3f} s with the clock"
@@ -140,7 +141,7 @@ def conclusions3(ours):
 
 
 def conclusions4(ours):
-    """What the parts of our time are, and what peers leave out."""
+    """The parts of our time, and the parts that peers leave out."""
     order, insertion, merge = (ours.said(f"{part}_seconds") for part in ("order", "insertion", "merge"))
     created, tests = ours.said("created"), ours.said("in_sphere_tests")
     yield f"ours: order {order:.3f} s, insertion {insertion:.3f} s, merge {merge:.3f} s"
@@ -149,7 +150,7 @@ def conclusions4(ours):
 
 
 def machine(facts):
-    """Where this was measured."""
+    """The machine of the measurements."""
     return table(["machine", ""], [[key, str(value)] for key, value in facts.items()])
 
 
@@ -159,7 +160,7 @@ def peers(peers):
 
 
 def structures(contests, unread):
-    """One row per structure, and all together: seconds of all programs on one thread."""
+    """One row per structure, and one for all: seconds of all programs on one thread."""
     names = [OURS, *PEERS_OF_STRUCTURES]
     rows, sums = [], dict.fromkeys(names, 0.0)
     for contest in contests:
@@ -179,7 +180,7 @@ def structures(contests, unread):
 
 
 def sweep(contest):
-    """All structures in one go."""
+    """All structures in one run."""
     rows = []
     for c in contest.contestants:
         span = spread(c, lambda run: run.wall) if c.runs else ""

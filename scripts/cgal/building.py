@@ -1,4 +1,4 @@
-"""Builds the programs of CGAL for comparisons."""
+"""Builds the CGAL programs of the comparisons."""
 
 import pathlib
 import shutil
@@ -10,7 +10,7 @@ MISSING = "SKIPPED: g++ or libcgal-dev is missing"
 
 
 def cgal(name, folder):
-    """The comparison program NAME.cpp, built in `folder`, or None where it cannot be built."""
+    """Builds NAME.cpp in `folder` and returns the program, or None if it cannot be built."""
     if not shutil.which("g++") or not pathlib.Path("/usr/include/CGAL").exists():
         return None
     program = folder / f"cgal_{name}"

@@ -1,6 +1,6 @@
-// Delaunay tetrahedralizations by CGAL, for comparison. Sets of points on stdin, each its size as u32 and triples of
-// f64; of each on stdout the numbers of tetrahedra and of hull facets as u32, and per tetrahedron four u32, indices of
-// points with the coordinates of its vertices, positively oriented.
+// Delaunay tetrahedralizations by CGAL, for comparison. On stdin each set of points is its size as u32 and
+// triples of f64. On stdout go the numbers of tetrahedra and of hull facets as u32, and per tetrahedron four
+// u32: indices of points with the coordinates of its vertices, positively oriented.
 #include <cstdint>
 #include <cstdio>
 #include <utility>

@@ -13,14 +13,14 @@ def ten_bits(rng, count):
 
 
 def atoms(rng, count):
-    """Multiples of 0.001 in decimals or as integers, packed like atoms."""
+    """Multiples of 0.001, as decimals or scaled to integers, as dense as atoms."""
     side = round(1000 * (10 * count) ** (1 / 3)) + 1
     unit = rng.choice([1, 1000])
     return [tuple(rng.randrange(-side, side) / unit for _ in range(3)) for _ in range(count)]
 
 
 def box(rng, count):
-    """Integers of a box with about as many points; its sides may be as short as one."""
+    """Integer points of a box with about `count` points; its sides may be as short as one."""
     sides = [max(1, round(count ** rng.uniform(0.1, 0.45))) for _ in range(2)]
     sides.append(max(1, count // (sides[0] * sides[1])))
     rng.shuffle(sides)
@@ -53,14 +53,14 @@ def face_centred_grid_with_holes(rng, count):
 
 
 def rotated_lattice(rng, count):
-    """An integer matrix of orthogonal rows, or any, applied to a grid with or without holes."""
+    """A grid with or without holes, transformed by an integer matrix, whose rows may be orthogonal."""
     rows = rng.choice([[(3, -4, 0), (4, 3, 0), (0, 0, 5)], [(1, 2, 2), (2, 1, -2), (2, -2, 1)], [(3, 1, 0), (-1, 3, 1), (1, -1, 2)]])
     grid = rng.choice([cubic, cubic_grid_with_holes])(rng, count)
     return [tuple(sum(a * c for a, c in zip(row, point)) for row in rows) for point in grid]
 
 
 def turned_lattice(rng, count):
-    """A grid turned by some angle, where every tie is nearly one."""
+    """A grid turned by random angles, which makes every tie a near tie."""
     angle, tilt = rng.uniform(0, 6), rng.uniform(0, 6)
     c, s, k, t = math.cos(angle), math.sin(angle), math.cos(tilt), math.sin(tilt)
     turned = ((c * x - s * y, s * x + c * y, z) for x, y, z in cubic_grid_with_holes(rng, count))
@@ -68,7 +68,7 @@ def turned_lattice(rng, count):
 
 
 def sphere(squares):
-    """All integer points with this sum of squares."""
+    """All integer points whose squared distance from the origin is `squares`."""
     reach = math.isqrt(squares)
     found = []
     for x in range(-reach, reach + 1):
@@ -80,8 +80,8 @@ def sphere(squares):
 
 
 def cospherical(rng, count):
-    """Integer points of one sphere or of some, with or without the centre."""
-    # Sums of squares with many ways to get them; there are about ten times the root of the sum.
+    """Integer points on one sphere or several, with or without the centre."""
+    # Integers that are sums of three squares in many ways, about ten times their square root.
     sums = [number for number in (5, 9, 41, 89, 194, 1105, 5525, 27625, 99986, 300005) if number < 9 + count * count / 50]
     spheres = [sphere(rng.choice(sums[-4:])) for _ in range(rng.choice([1, 1, 2, 3]))]
     points = [point for each in spheres for point in each]
@@ -98,7 +98,7 @@ def nested_cubes(rng, count):
 
 
 def random_plane(rng):
-    """Two integer directions and a start."""
+    """A start and two integer directions."""
     return [[rng.randrange(-3, 4) for _ in range(3)] for _ in range(3)]
 
 
@@ -108,28 +108,28 @@ def in_plane(plane, i, j):
 
 
 def coplanar_pieces(rng, count):
-    """Squares of integers in a few planes that cross each other."""
+    """Integer squares in a few planes that intersect."""
     planes = [random_plane(rng) for _ in range(rng.randrange(2, 6))]
     reach = max(1, math.isqrt(count // len(planes)) // 2)
     return [in_plane(rng.choice(planes), rng.randint(-reach, reach), rng.randint(-reach, reach)) for _ in range(count)]
 
 
 def tent(rng, count):
-    """A piece of a plane and few points beside it."""
+    """A piece of a plane and a few points beside it."""
     plane, reach = random_plane(rng), max(1, math.isqrt(count))
     flat = [in_plane(plane, rng.randrange(reach), rng.randrange(reach)) for _ in range(count)]
     return [tuple(rng.randrange(-50, 50) for _ in range(3)) for _ in range(rng.randrange(1, 5))] + flat
 
 
 def flat(rng, count):
-    """Points of one plane, or of one line, or one point."""
+    """Points in one plane, on one line, or one point."""
     plane, reach = random_plane(rng), max(1, math.isqrt(count))
     width = rng.choice([reach, reach, 1])
     return [in_plane(plane, rng.randrange(reach), rng.randrange(width)) for _ in range(count)]
 
 
 def collinear_runs(rng, count):
-    """Runs along a few lines, to which tetrahedra are about as many as pairs of points."""
+    """Points along a few lines, which have about as many tetrahedra as pairs of points."""
     lines = [random_plane(rng)[:2] for _ in range(rng.randrange(2, 6))]
     if rng.random() < 0.5:
         lines = [(start, rng.choice([(1, 0, 0), (0, 1, 0), (0, 0, 1)])) for start, _ in lines]
@@ -138,20 +138,20 @@ def collinear_runs(rng, count):
 
 
 def duplicates(rng, count):
-    """More points than places."""
+    """More points than distinct positions."""
     side = rng.choice([2, 3, 4, max(2, round((count / 3) ** (1 / 3)))])
     return [tuple(rng.randrange(side) for _ in range(3)) for _ in range(count)]
 
 
 def clusters(rng, count):
-    """Clusters with the extent of a millionth, in integers, in decimals or anywhere."""
+    """Clusters about 1e-6 wide, with random offsets, multiples of 1e-6 or multiples of 2^-20."""
     centres = [[rng.choice([rng.randrange(100), rng.random()]) for _ in range(3)] for _ in range(rng.randrange(1, 20))]
     near = rng.choice([lambda: rng.gauss(0, 1e-6), lambda: rng.randrange(8) * 1e-6, lambda: rng.randrange(8) * 2.0**-20])
     return [tuple(c + near() for c in rng.choice(centres)) for _ in range(count)]
 
 
 def extreme(rng, count):
-    """Very small and very large coordinates, of grids or of random points."""
+    """Very small or very large coordinates of grids or random points."""
     scale = rng.choice([1e-300, 2.0**-1070, 2.0**-400, 1e-30, 1e30, 2.0**400, 1e150, 1e300])
     make = rng.choice([uniform, cubic_grid_with_holes, duplicates])
     points = make(rng, min(count, 3000))
@@ -161,13 +161,13 @@ def extreme(rng, count):
 
 
 def mixed_scales(rng, count):
-    """Random points whose distances from the origin span many powers of ten."""
+    """Random points whose distances from the origin span many orders of magnitude."""
     few = min(count, 3000)
     return [tuple(rng.choice([-1, 1]) * 10 ** rng.uniform(-12, 12) for _ in range(3)) for _ in range(few)]
 
 
 def surface(rng, count):
-    """A sphere in decimals or in integers, or a cylinder."""
+    """A unit sphere in f64, or a large sphere or cylinder rounded to integers."""
     radius = rng.choice([1, 1000, 1e6])
     points = []
     for _ in range(count):
@@ -179,7 +179,7 @@ def surface(rng, count):
 
 
 def few(rng, count):
-    """So few that every way to begin is met."""
+    """Up to eight points on a 3 x 3 x 3 grid, so that every way to start occurs."""
     return [tuple(rng.randrange(3) for _ in range(3)) for _ in range(rng.randrange(0, 9))]
 
 

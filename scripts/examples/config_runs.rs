@@ -1,9 +1,9 @@
-//! Configurations for figures, and many runs of link triangulation.
+//! Configurations for figures, and tests of link triangulation in many runs.
 //!
-//! `config_runs random:N|zp:N DEGREE SEED` prints the knots, and configurations of all degrees, as JSON: of N
-//! random knots with random flips and random rules, or of a grid of N by N with ZP links. `config_runs runs
-//! COUNT DEGREE SEED` makes COUNT runs from random knots, flips and rules up to a degree, checks that facets
-//! match, and prints a row per degree, tab-separated.
+//! `config_runs random:N|zp:N DEGREE SEED` prints knots and configurations of all degrees as JSON: N random
+//! knots with random flips and random rules, or a grid of N by N knots with ZP links. `config_runs runs COUNT
+//! DEGREE SEED` makes COUNT runs up to a degree, with random knots, flips and rules. It checks that facets
+//! match, and prints a tab-separated row per degree.
 
 use spmesh_audit::configurations as audit;
 use spmesh_core::error::Result;
@@ -11,12 +11,12 @@ use spmesh_core::random::Random;
 use spmesh_geometry::configurations::special::{self, ZpSplit};
 use spmesh_geometry::configurations::{self, Configurations, Knots, Rule, Start};
 
-/// The generator of a run.
+/// The random number generator of a run.
 fn random_of(seed: u64) -> Random {
     Random::new(seed.wrapping_mul(0xd134_2543_de82_ef95))
 }
 
-/// A number below `count`; almost uniform.
+/// A random number below `count`, almost uniform.
 fn below(random: &mut Random, count: u64) -> u64 {
     random.bits() % count
 }
@@ -96,7 +96,7 @@ fn runs(count: u64, degree: usize, seed: u64) {
         let knots = (degree + 4) as u64 + below(&mut random, 20);
         let points = points(&mut random, knots as usize, run % 3);
         let Ok(knots) = Knots::new(points) else { continue };
-        // Knots on one line have no configurations.
+        // Collinear knots have no configurations.
         let Ok(mut lower) = flipped(&knots, below(&mut random, 60) as usize, random.bits()) else { continue };
         for row in rows.iter_mut().skip(1) {
             match step(&knots, &lower, &rule(&mut random, knots.len()), row) {
@@ -116,7 +116,7 @@ fn runs(count: u64, degree: usize, seed: u64) {
     }
 }
 
-/// The same configurations, as the audit holds them.
+/// The configurations in the types of the audit.
 fn held(of: &Configurations) -> Result<audit::Configurations> {
     let mut held = audit::Configurations::new(of.degree(), of.claim());
     for group in of.groups() {
@@ -127,7 +127,7 @@ fn held(of: &Configurations) -> Result<audit::Configurations> {
     Ok(held)
 }
 
-/// One degree more.
+/// Generates the next degree and counts its links.
 fn step(knots: &Knots, lower: &Configurations, rule: &Rule, row: &mut Row) -> Result<Configurations> {
     row.runs += 1;
     for link in configurations::links(knots, lower)?.iter() {

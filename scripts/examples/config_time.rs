@@ -1,8 +1,8 @@
-//! Times configurations against the 2D kernel on the same knots, in one thread.
+//! Times configurations against the 2D kernel on the same knots, on one thread.
 //!
-//! `config_time POINTS|uniform:N [DEGREE]` reads knots as `kernel_time` does, or makes uniform ones, runs the
-//! kernel and the configurations in turn three times, and prints the least times, seconds and microseconds
-//! per knot, with their ratio.
+//! `config_time POINTS|uniform:N [DEGREE]` reads knots as `kernel_time` does, or makes uniform ones. It runs
+//! the kernel and the configurations in turn, three times, and prints the least times, in seconds and in
+//! microseconds per knot, and their ratio.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Knots of a file, or uniform in the unit square, with the seed 1.
+/// Knots from a file, or uniform in the unit square with seed 1.
 fn read(source: &str) -> Result<Vec<[f64; 2]>, Box<dyn std::error::Error>> {
     let Some(count) = source.strip_prefix("uniform:") else {
         return Ok(Paths { points: source.into(), triangles: PathBuf::new() }.read_points()?);

@@ -1,8 +1,8 @@
-//! Times the 4D diagram, in one thread.
+//! Times the 4D diagram, on one thread.
 //!
-//! `diagram4_time POINTS` is the engine as one of the programs that `scripts/bench` compares: the points are
-//! in memory, and given away. With `--audit` it proves the diagram, too; with `--direct`, in a build with
-//! `--features experiments`, it takes the other route. POINTS has quadruples of little-endian f64.
+//! `diagram4_time POINTS` is our contestant in `scripts/bench`: the engine takes ownership of the points in
+//! memory. With `--audit` it also proves the diagram. With `--direct`, in a build with `--features
+//! experiments`, it takes the other route. POINTS has quadruples of little-endian f64.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A line of JSON.
+/// Prints the results as a line of JSON.
 fn report(diagram: &Diagram4, stats: &Stats, seconds: f64) {
     let sizes = Sizes::of(&diagram.cells);
     let times = [stats.order, stats.insertion, stats.merge].map(|time| time.as_secs_f64());
@@ -56,7 +56,7 @@ fn report(diagram: &Diagram4, stats: &Stats, seconds: f64) {
     println!("{{{}, {}}}", figures.join(", "), times.join(", "));
 }
 
-/// The counts of the cells. The faraway point counts as a vertex of infinite cells.
+/// Counts over all cells. The faraway point counts as a vertex of infinite cells.
 #[derive(Default)]
 struct Sizes {
     finite: u64,

@@ -1,9 +1,9 @@
-//! Times least squares of scattered points, step by step.
+//! Times least-squares fits to scattered points, step by step.
 //!
-//! `fit_time POINTS FUNCTIONS [THREADS] [LAMBDA]` makes observations at random points of the unit square
-//! while they are read, knots in a moved grid for about as many functions, and prints seconds of the
-//! configurations and the basis, of the normal equations, of the energy of a thin plate, and of the solution,
-//! with the greatest residual and the peak of memory.
+//! `fit_time POINTS FUNCTIONS [THREADS] [LAMBDA]` generates observations at random points of the unit square
+//! while they are read, and knots of a perturbed grid for about FUNCTIONS functions. It prints the seconds
+//! for the configurations and the basis, the normal equations, the thin-plate energy and the solution, the
+//! greatest residual and the peak memory.
 
 use spmesh_core::error::Result;
 use spmesh_core::random::Random;
@@ -14,7 +14,7 @@ use spmesh_splines::fitting::{
 use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// As many observations of a smooth function as asked for, at random points.
+/// Generated observations of a smooth function at `count` random points.
 struct Made {
     count: u64,
 }
@@ -46,15 +46,15 @@ fn value([x, y]: [f64; 2]) -> f64 {
     (9.0 * x).sin() * (7.0 * y).cos() + (x - y) * (x - y)
 }
 
-/// A random number from the unit interval, a function of `index` alone.
+/// A random number in the unit interval, a function of `index` alone.
 fn unit(index: u64) -> f64 {
     // The state of the generator after `index` steps from 0.
     Random::new(index.wrapping_mul(0x9e37_79b9_7f4a_7c15)).unit()
 }
 
-/// A grid of the unit square whose inner knots are moved.
+/// A grid of the unit square with its inner knots moved.
 fn places(functions: usize) -> Vec<[f64; 2]> {
-    // A knot inside has about two functions.
+    // There are about two functions per inner knot.
     let cells = ((functions as f64 / 2.05).sqrt() as usize).max(2) - 1;
     let step = 1.0 / cells as f64;
     let mut places = Vec::new();

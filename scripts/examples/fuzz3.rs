@@ -5,8 +5,7 @@
 //! cargo run --release --example fuzz3 -- --seconds 3600 --seed 1 --threads 1
 //! ```
 //!
-//! The same seed gives the same sets. Set `I` of a seed alone: `--set I`. A few large sets with large
-//! cavities: `--large`.
+//! `--set I` tries set `I` of a seed alone. `--large` tries a few large sets with large cavities.
 
 #[path = "../../tests/geometry/kernel3/promises.rs"]
 mod promises;

@@ -6,7 +6,7 @@
 //! cargo run --release --features experiments --example fuzz4 -- --seconds 600 --seed 1
 //! ```
 //!
-//! Set `I` of a seed alone: `--set I`. Shrinks a failing set and writes it to a file.
+//! `--set I` tries set `I` of a seed alone. Shrinks a failing set and writes it to a file.
 
 mod fuzzing;
 
@@ -56,7 +56,7 @@ fn try_set(points: &[Point4], random: &mut Random) -> usize {
     let mut shuffled = points.to_vec();
     random.shuffle(&mut shuffled);
     assert_eq!(by(Route::Simplices, &shuffled).as_ref(), Some(&diagram), "another order");
-    // Exact in f64, and cells do not change; the arithmetic does.
+    // These factors are exact in f64. They change the arithmetic, but not the cells.
     for factor in [0.125, 2f64.powi(-400), 2f64.powi(300), 65_536.0] {
         let scaled: Vec<Point4> = points.iter().map(|p| p.map(|x| x * factor)).collect();
         let scaled = by(Route::Simplices, &scaled).expect("as many dimensions");
@@ -88,7 +88,7 @@ fn points(random: &mut Random) -> Vec<Point4> {
     for _ in 0..count {
         let mut point = [(); 4].map(|()| random.integer(0, side - 1));
         if shell {
-            // Permutations and signs of one vector are on one sphere.
+            // All permutations and sign changes of one vector lie on one sphere.
             let mut vector = [1, side, 2 * side, 5];
             random.shuffle(&mut vector);
             point = vector.map(|x| if random.integer(0, 1) == 0 { x } else { -x });

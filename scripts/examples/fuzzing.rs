@@ -1,5 +1,5 @@
-//! The loop of the fuzzers: threads, a watchdog for sets that hang, and failing sets shrunk and written to a
-//! file.
+//! The main loop of the fuzzers: threads, a watchdog for sets that hang, and shrinking of failing sets, which
+//! are written to a file.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,5 +1,5 @@
-//! Writes a synthetic LIDAR survey: overlapping swaths flown back and forth over hills, scanned in zig-zag
-//! lines, in the order of acquisition, quantised to 0.01, with about 0.5 % of the points exactly above
+//! Writes a synthetic LIDAR survey: overlapping swaths flown back and forth over hills and scanned in zig-zag
+//! lines. Points come in the order of acquisition, quantised to 0.01; about 0.5 % of them lie exactly above
 //! another one. The same arguments give the same points everywhere.
 
 use std::f64::consts::TAU;
@@ -17,11 +17,11 @@ use spmesh_core::random::Random;
 const SCALE: f64 = 0.01;
 /// Points per square meter of one swath.
 const DENSITY: f64 = 4.0;
-/// Widest swath in meters, and the share of it that the next one covers again.
+/// Widest swath in meters, and its share that the next swath covers again.
 const SWATH_WIDTH_MAX: f64 = 500.0;
 const OVERLAP: f64 = 0.3;
 const LINES_MIN: u64 = 4;
-/// Share of points with another one exactly above.
+/// Share of points with another point exactly above.
 const DUPLICATES: f64 = 0.005;
 /// Share of points on vegetation, and its greatest height in meters.
 const VEGETATION: f64 = 0.15;
@@ -29,7 +29,7 @@ const VEGETATION_HEIGHT: f64 = 18.0;
 /// Lower left corner of the survey in meters, UTM zone 10 north.
 const ORIGIN: [f64; 2] = [500_000.0, 4_100_000.0];
 const EPSG: u16 = 26910;
-/// Points that all threads compress together.
+/// Points that the threads compress together.
 const SLAB_POINTS: usize = 16 * 50_000;
 const RECORD_LEN: usize = 28;
 
@@ -89,7 +89,7 @@ struct Wave {
     phase: f64,
 }
 
-/// The plan of the flight over a square.
+/// The flight plan over a square.
 struct Survey {
     points: u64,
     seed: u64,
@@ -134,7 +134,7 @@ impl Survey {
         250.0 + self.terrain.iter().map(wave).sum::<f64>()
     }
 
-    /// Calls a function with all returns, in the order of acquisition.
+    /// Passes all returns to a function, in the order of acquisition.
     fn fly(&self, mut put: impl FnMut(Return) -> Result<(), Failure>) -> Result<(), Failure> {
         for line in 0..self.lines {
             let share = self.points * (line + 1) / self.lines - self.points * line / self.lines;
@@ -192,7 +192,8 @@ impl Survey {
             } else {
                 give(1, ground, 2)?;
             }
-            // A split pulse counts twice, so that the line ends where its points do.
+            // A split pulse gives two points, so it counts twice: the line then ends with its share of the
+            // points.
             pulse += f64::from(of);
         }
         Ok(())

@@ -13,15 +13,15 @@ use spmesh_model::bits::spread3;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
-/// Points that are written together.
+/// Points that are written in one batch.
 const BATCH: usize = 1 << 16;
 /// Points per cell of a z-order curve through random points.
 const CELL_POINTS: u64 = 256;
 /// Bits per axis of a key along the curve.
 const KEY_BITS: u32 = 20;
-/// Approximate number of corners per finest cell of a horizontal plane, in the octree near the sheet.
+/// Approximate number of leaf corners per finest cell of a horizontal plane, in the octree near the sheet.
 const SHEET: f64 = 30.0;
-/// Waves of the gyroid per side of the cube.
+/// Periods of the gyroid per side of the cube.
 const WAVES: f64 = 4.0;
 
 type Failure = Box<dyn std::error::Error>;
@@ -133,7 +133,7 @@ impl Sink {
         Ok(())
     }
 
-    /// Puts points of a cube of the given size in order.
+    /// Writes points of a cube of the given size in the given order.
     fn put_sorted(&mut self, mut points: Vec<Point>, size: f64, order: Order) -> Result<(), Failure> {
         let cell = |x: f64| ((x / size * f64::from(1 << KEY_BITS)) as u32).min((1 << KEY_BITS) - 1);
         match order {
@@ -153,7 +153,7 @@ impl Sink {
     }
 }
 
-/// Random points, equally many in each slab or cell, so that memory does not depend on their number.
+/// Random points, the same number in each slab or cell, so that memory does not depend on the total.
 fn spread(arguments: &Arguments, random: &mut Random, sink: &mut Sink) -> Result<(), Failure> {
     let (points, is_curve) = (arguments.points, arguments.order == Order::Curve);
     let cells = points.div_ceil(CELL_POINTS).max(1);
@@ -182,7 +182,7 @@ fn lattice(side: i64) -> Vec<Point> {
     (0..side.pow(3)).map(point).collect()
 }
 
-/// The least corners of the leaves below a cell of level `level` above the finest.
+/// Adds the least corners of the leaves below a cell; `level` is its level above the finest cells.
 fn divide(corner: [u32; 3], level: u32, size: f64, leaves: &mut Vec<Point>) {
     let half = f64::from(1u32 << level) / 2.0;
     let centre = corner.map(|x| (f64::from(x) + half) / size);
@@ -206,7 +206,7 @@ fn sphere(count: u64, random: &mut Random) -> Vec<Point> {
     (0..count).map(point).collect()
 }
 
-/// Random points of a cube, moved along the gradient to a zero of the function of the gyroid; few miss it.
+/// Random points of a cube, moved along the gradient to a zero of the gyroid's function; a few miss it.
 fn gyroid(count: u64, random: &mut Random) -> Vec<Point> {
     let mut points = Vec::with_capacity(count as usize);
     while (points.len() as u64) < count {

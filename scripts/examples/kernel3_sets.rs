@@ -1,7 +1,7 @@
-//! Triangulates sets of points in 3D, one after the other, for `scripts/check-cgal3`.
+//! Triangulates sets of points in 3D, one after another, for `scripts/check-cgal3`.
 //!
-//! On stdin each set is its size as u32 and triples of f64; on stdout go the numbers of tetrahedra and of
-//! hull facets as u32, and per tetrahedron four u32, indices of its points in the set. All numbers are
+//! On stdin, each set is its size as u32 and triples of f64. On stdout go the numbers of tetrahedra and of
+//! hull facets as u32, and four u32 per tetrahedron, the indices of its points in the set. All numbers are
 //! little-endian.
 
 use std::borrow::Cow;

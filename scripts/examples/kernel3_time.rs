@@ -1,9 +1,9 @@
-//! Times the 3D kernel, in one thread.
+//! Times the 3D kernel, on one thread.
 //!
-//! `kernel3_time POINTS` is the kernel as one of the programs that `scripts/bench` compares: fresh buffers,
-//! once. With `--parts` it measures the parts of insertions, too, which takes time itself: the columns of
-//! thesis table 3.3. With a number as well, `kernel3_time POINTS ROUNDS`, it is for tuning: rounds with the
-//! same buffers. POINTS has triples of little-endian f64; files that `scripts/bench` made are in its folder.
+//! `kernel3_time POINTS` is our contestant in `scripts/bench`: one run with fresh buffers. With `--parts` it
+//! also times the parts of insertions, the columns of thesis table 3.3; this takes additional time.
+//! `kernel3_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers. POINTS has triples of
+//! little-endian f64; `scripts/bench` keeps its files of points in its folder.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// One round, fresh. The kernel is given the points: they are in memory once.
+/// One run with fresh buffers. The kernel takes ownership of the points, so that memory holds them once.
 fn compare(points: Vec<[f64; 3]>, is_timed: bool) -> Result<(), Box<dyn Error>> {
     let count = points.len();
     let mut mesh = Tetrahedralization::default();

@@ -1,9 +1,9 @@
-//! Times the 2D kernel, in one thread.
+//! Times the 2D kernel, on one thread.
 //!
-//! `kernel_time POINTS TRIANGLES` is the kernel as one of the programs that `scripts/bench` compares: fresh
-//! buffers, once. `kernel_time POINTS ROUNDS`, with a number, is for tuning: rounds with the same buffers,
-//! then in pieces of the size of leaves, and what the predicates did. The files of points that
-//! `scripts/bench` made are in its folder.
+//! `kernel_time POINTS TRIANGLES` is our contestant in `scripts/bench`: one run with fresh buffers.
+//! `kernel_time POINTS ROUNDS`, for tuning, runs several rounds with the same buffers, then in pieces of the
+//! size of leaves, and reports the counters of the predicates. `scripts/bench` keeps its files of points in
+//! its folder.
 
 #[path = "../benchmark/rust/src/lib.rs"]
 #[allow(dead_code, missing_docs)]
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
 }
 
-/// One round, fresh.
+/// One run with fresh buffers.
 fn compare(paths: &Paths, points: &[[f64; 2]]) -> Result<(), Box<dyn std::error::Error>> {
     let mut mesh = Triangles::default();
     let (result, seconds) = timed(|| Kernel::new().triangulate(points, &mut mesh));

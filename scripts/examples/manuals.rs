@@ -1,4 +1,4 @@
-//! Writes man pages and shell completions of all tools: `scripts/manuals FOLDER`.
+//! Writes the man pages and shell completions of all tools: `scripts/manuals FOLDER`.
 
 use std::fs::{self, File};
 use std::path::Path;

@@ -1,9 +1,9 @@
-//! Times splines over uniform, clustered or gridded knots, in one thread.
+//! Times splines over uniform, clustered or gridded knots, on one thread.
 //!
-//! `spline_time uniform:N|clustered:N|grid:N [DEGREE]` builds the basis of clamped knots in the unit square
-//! and prints, each the least of three rounds: seconds for the basis; microseconds for each point of a
-//! million at random and along a curve, values and derivatives; nanoseconds for each pixel of a raster of
-//! 2000 x 2000.
+//! `spline_time uniform:N|clustered:N|grid:N [DEGREE]` builds the basis of clamped knots in the unit square.
+//! It prints the least times of three rounds: seconds for the basis; microseconds per point for values and
+//! derivatives at up to a million points, random or along a curve; nanoseconds per pixel for a raster of 2000
+//! x 2000.
 
 use spmesh_core::random::Random;
 use spmesh_geometry::configurations::{self, Knots, Rule};
@@ -82,7 +82,7 @@ fn least<T>(mut work: impl FnMut() -> T) -> (T, f64) {
     (result, best)
 }
 
-/// Numbers in the unit interval.
+/// Random numbers in the unit interval.
 fn units(seed: u64) -> impl FnMut() -> f64 {
     let mut random = Random::new(seed);
     move || random.unit()

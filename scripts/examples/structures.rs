@@ -1,4 +1,5 @@
-//! Prints the atoms of structures as lines of text, or the time to read them, for `scripts/check-structures`.
+//! Prints the atoms of structures as lines of text, or the time that reading them takes, for
+//! `scripts/check-structures`.
 //!
 //!     cargo run --release --example structures -- [--time] FILE...
 

@@ -1,5 +1,5 @@
-// CDT by Artem Amirkhanov. It takes no equal points, so the removal of these counts as work; indices in the file are
-// those after it.
+// CDT by Artem Amirkhanov. It accepts no equal points, so their removal counts as work. Indices in the file
+// are the indices after that.
 #include "points.hpp"
 
 #include <CDT.h>

@@ -1,5 +1,6 @@
-// CGAL's Delaunay_triangulation_2, with its own insertion of a range: it sorts the points along a curve first. Indices
-// in the file count its vertices in its own order, which saves it carrying ours along (and equal points have none).
+// CGAL's Delaunay_triangulation_2, with its own insertion of a range, which sorts the points along a curve
+// first. Indices in the file number the vertices in CGAL's order, which spares it from storing ours; equal
+// points have no vertex.
 #include "points.hpp"
 
 #include <CGAL/Delaunay_triangulation_2.h>

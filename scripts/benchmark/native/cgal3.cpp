@@ -1,5 +1,5 @@
-// CGAL's Delaunay_triangulation_3, with its own insertion of a range, which sorts along a curve. With TBB it inserts in
-// parallel, where a grid of locks keeps threads apart.
+// CGAL's Delaunay_triangulation_3, with its own insertion of a range, which sorts along a curve. With TBB it
+// inserts in parallel; a grid of locks separates the threads.
 #include "points3.hpp"
 
 #include <CGAL/Delaunay_triangulation_3.h>

@@ -1,5 +1,5 @@
-// CGAL's Delaunay_triangulation of dimension 4, with its own insertion of a range, which sorts along a curve. It has no
-// diagram: of cospherical points it makes simplices, as it finds them.
+// CGAL's Delaunay_triangulation of dimension 4, with its own insertion of a range, which sorts along a curve.
+// It makes no diagram: cospherical points are divided into simplices.
 #include "points4.hpp"
 
 #include <CGAL/Delaunay_triangulation.h>

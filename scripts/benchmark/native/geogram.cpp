@@ -1,4 +1,4 @@
-// Geogram's sequential Delaunay2d (BDEL2d), from the library that its Python package brings.
+// Geogram's sequential Delaunay2d (BDEL2d), from the library in its Python package.
 #include "points.hpp"
 
 #include <geogram/basic/common.h>

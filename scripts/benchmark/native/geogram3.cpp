@@ -1,5 +1,5 @@
-// Geogram's Delaunay3d: sequential (BDEL) with one thread, parallel (PDEL) with more; from the library that its Python
-// package brings.
+// Geogram's Delaunay3d from the library in its Python package: sequential (BDEL) with one thread, parallel
+// (PDEL) with more.
 #include "points3.hpp"
 
 #include <geogram/basic/command_line.h>

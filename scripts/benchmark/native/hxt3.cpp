@@ -1,5 +1,5 @@
-// HXT's Delaunay triangulation by Marot, Pellerin and Remacle, from the sources of gmsh. It keeps four numbers per
-// vertex, the last for itself, and ghosts beyond the hull.
+// HXT's Delaunay triangulation by Marot, Pellerin and Remacle, from the sources of gmsh. It stores four
+// numbers per vertex, the fourth for internal use, and ghost tetrahedra outside the hull.
 #include "points3.hpp"
 
 extern "C" {

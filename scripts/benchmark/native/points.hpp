@@ -1,8 +1,9 @@
-// What all peers in C++ share: points in, triangles out, the clock in between.
+// Code shared by all peers in C++: points in, triangles out, and the clock.
 //
 // A peer is run as PEER POINTS TRIANGLES. POINTS is an uncompressed LAS file, whose stored integers are the
-// coordinates, or any other name: pairs of little-endian f64. TRIANGLES gets three little-endian u32 per triangle,
-// the indices of its points. A line of JSON on stdout says what was done and how long the triangulation alone took.
+// coordinates, or any other file: pairs of little-endian f64. TRIANGLES gets three little-endian u32 per
+// triangle, the indices of its points. A line of JSON on stdout reports the counts and the time of the
+// triangulation alone.
 #pragma once
 
 #include <chrono>
@@ -101,7 +102,7 @@ inline void report(std::size_t points, std::size_t triangles, double seconds) {
     std::printf("{\"points\": %zu, \"triangles\": %zu, \"seconds\": %.6f}\n", points, triangles, seconds);
 }
 
-// Fewer words for main: checks the arguments.
+// Shortens main: checks the arguments.
 inline void expect_arguments(int count, char** words) {
     if (count != 3) fail(std::string("usage: ") + words[0] + " POINTS TRIANGLES");
 }

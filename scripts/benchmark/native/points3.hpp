@@ -1,5 +1,5 @@
-// What all peers in 3D share. A peer is run as PEER POINTS THREADS. POINTS has triples of little-endian f64. A line of
-// JSON on stdout says how many tetrahedra there are, and how long the triangulation alone took.
+// Code shared by all peers in 3D. A peer is run as PEER POINTS THREADS. POINTS has triples of little-endian
+// f64. A line of JSON on stdout reports the number of tetrahedra and the time of the triangulation alone.
 #pragma once
 
 #include "points.hpp"
@@ -10,7 +10,7 @@ struct Point3 {
     double x, y, z;
 };
 
-// Calls `put` with each point: a peer holds them once, in its own way.
+// Calls `put` with each point, so that a peer stores the points only once, in its own types.
 template <class Put>
 void each_point3(const char* path, Put put) {
     File file(path, "rb");

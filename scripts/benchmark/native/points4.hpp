@@ -1,5 +1,5 @@
-// What all peers in 4D share. A peer is run as PEER POINTS [FLAG]. POINTS has quadruples of little-endian f64. A line
-// of JSON on stdout says how many cells or simplices there are, and how long these alone took.
+// Code shared by all peers in 4D. A peer is run as PEER POINTS [FLAG]. POINTS has quadruples of little-endian
+// f64. A line of JSON on stdout reports the number of cells or simplices, and the time that making them took.
 #pragma once
 
 #include "points.hpp"
@@ -18,7 +18,7 @@ inline std::vector<Point4> read_points4(const char* path) {
     return points;
 }
 
-// `element` is cells or simplices, finite ones.
+// `element` names the counted elements, finite cells or simplices.
 inline void report4(std::size_t points, const char* element, std::size_t elements, double seconds) {
     std::printf("{\"points\": %zu, \"%s\": %zu, \"seconds\": %.6f}\n", points, element, elements, seconds);
 }

@@ -1,6 +1,6 @@
-// Qhull's Delaunay triangulation, by a convex hull in 4D. Switches: Qt splits facets that it merged, Qbb scales the
-// lift, and Qz adds a point at infinity, so that points on one sphere are no failure. Its tetrahedra need not be
-// Delaunay or even have a volume.
+// Qhull's Delaunay triangulation, by a convex hull in 4D. Switches: Qt splits the facets that were merged,
+// Qbb scales the lift, and Qz adds a point at infinity, so that points on one sphere do not fail. Its
+// tetrahedra need not be Delaunay or even have a volume.
 #include "points3.hpp"
 
 extern "C" {

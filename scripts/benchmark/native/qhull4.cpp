@@ -1,6 +1,6 @@
-// Qhull's Delaunay diagram, by a convex hull in 5D: facets that rounded arithmetic cannot tell from coplanar ones are
-// merged, as Qhull does by default, so that cells of cospherical points are whole. With "split" it makes simplices of
-// them (Qt), which need not be Delaunay or even have a volume.
+// Qhull's Delaunay diagram, by a convex hull in 5D. By default, Qhull merges facets that are coplanar up to
+// rounding, so that cells of cospherical points stay whole. With "split" it divides them into simplices (Qt),
+// which need not be Delaunay or even have a volume.
 #include "points4.hpp"
 
 extern "C" {
@@ -15,7 +15,7 @@ int main(int count, char** words) {
     qhT state;
     qhT* qh = &state;
     qh_zero(qh, stderr);
-    // As qdelaunay does: Qbb scales the lift, Qx is how facets are merged in 5D.
+    // As in qdelaunay: Qbb scales the lift, Qx selects how facets are merged in 5D.
     char merged[] = "qhull d Qbb Qx";
     char split[] = "qhull d Qbb Qx Qt";
     char* command = is_split ? split : merged;

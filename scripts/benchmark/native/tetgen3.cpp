@@ -1,5 +1,5 @@
-// Si's TetGen through its C++ function. Switches: Q is quiet, N leaves out the points, F the faces and B the boundary
-// markers, which nobody needs here.
+// Si's TetGen through its C++ function. Switches: Q is quiet; N, F and B leave out the points, the faces and
+// the boundary markers, which are not needed here.
 #include "points3.hpp"
 
 #include <tetgen.h>

@@ -1,5 +1,5 @@
-// Shewchuk's Triangle through its C function. Switches: z counts from zero, Q is quiet, N leaves out the vertices
-// and B the boundary markers, which nobody needs here.
+// Shewchuk's Triangle through its C function. Switches: z counts from zero, Q is quiet; N and B leave out the
+// vertices and the boundary markers, which are not needed here.
 #include "points.hpp"
 
 #define REAL double

@@ -5,7 +5,7 @@ from svg import BLUE, GREEN, ORANGE, PURPLE, RED, Axis, Curve, Panel, axis_from_
 
 ORDERS = {"hilbert": BLUE, "row-major": ORANGE, "gray": GREEN, "morton": PURPLE, "random": RED}
 BITS = 23
-# The least time counts, as other programs only add to it.
+# The least time counts, because other programs can only add to it.
 REPEATS = 3
 
 
@@ -14,7 +14,7 @@ def run(place, flags):
     rows = []
     for number in range(1, flags.runs + 1):
         place.make(count, BITS, number)
-        # In turn, as a machine's pace drifts.
+        # The orders take turns, because the machine's speed drifts.
         times = [{order: seconds(place, order) for order in ORDERS} for _ in range(REPEATS)]
         rows += [(order, number, count, min(of_all[order] for of_all in times)) for order in ORDERS]
         progress(f"orders: set {number} of {flags.runs}")
@@ -27,7 +27,7 @@ def seconds(place, order):
 
 
 def draw(rows):
-    """All orders, and beside them those along curves, which are close to each other."""
+    """All orders, and beside them the orders along curves, whose times are close to each other."""
     title = f"Seconds for {rows[0][2]:,} points"
     parts = [
         *panel(56, title, rows, list(ORDERS)),

@@ -1,9 +1,9 @@
-"""Audit of a mesh in integers of 64 bits that overflow.
+"""Audit of a mesh in 64-bit integers that overflow.
 
-The in-sphere determinant of differences of b bits has about 5b bits. However it is evaluated without division, what
-overflows is lost modulo 2^64, so that the result is the exact determinant reduced to a signed word. Such an audit of a
-mesh that is right finds what table 3.1 of the thesis calls its exact audit: nothing to 16 bits, and faults nearly
-everywhere from 20.
+The in-sphere determinant of differences of b bits has about 5b bits. Evaluated in any way without division,
+it is reduced modulo 2^64, so that the result is the exact determinant wrapped to a signed word. Applied to a
+correct mesh, this audit finds what table 3.1 of the thesis calls its exact audit: no faults up to 16 bits,
+and faults nearly everywhere from 20 bits.
 """
 
 from collections import defaultdict
@@ -13,10 +13,11 @@ FACETS = ((1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))
 
 
 def count_not_delaunay(points, tetrahedra):
-    """Tetrahedra with a vertex of a neighbour inside of their sphere or on it, as overflowing integers see it.
+    """Number of tetrahedra with a neighbour's vertex inside or on their sphere, as overflowing integers
+    decide it.
 
-    `points` are triples of integers, `tetrahedra` positive quadruples of their numbers. One value tells for both sides
-    of a facet: it is the same determinant, of the same five points.
+    `points` are triples of integers, `tetrahedra` positively oriented quadruples of indices. One value
+    decides for both sides of a facet, because both have the same determinant of the same five points.
     """
     beyond = defaultdict(list)
     for number, tetrahedron in enumerate(tetrahedra):
@@ -33,12 +34,12 @@ def count_not_delaunay(points, tetrahedra):
 
 
 def reduced(value):
-    """The signed word that is left of an integer."""
+    """An integer wrapped to a signed word."""
     return (value + WORD // 2) % WORD - WORD // 2
 
 
 def in_sphere(corners, point):
-    """Positive if the point is inside of the sphere of a positive tetrahedron."""
+    """Positive if the point is inside the sphere of a positive tetrahedron."""
     (ax, ay, az), (bx, by, bz), (cx, cy, cz), (dx, dy, dz) = (
         tuple(x - y for x, y in zip(corner, point)) for corner in corners
     )

@@ -30,7 +30,7 @@ class Workplace:
         self.points.write_text("".join(numbers))
 
     def triangulate(self, *flags):
-        """The counts of tess3 on the points with these flags; the mesh is at `mesh`."""
+        """The counts that tess3 reports for the points with these flags; writes the mesh to `mesh`."""
         command = [BIN / "tess3", "--quiet", "--from=points", "--stats=json", *flags, "-o", self.mesh, self.points]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         if done.returncode:
@@ -38,7 +38,7 @@ class Workplace:
         return said(done.stderr)
 
     def audit(self):
-        """The census of spinfo on the mesh; violations are not failures."""
+        """The violations in the mesh that spinfo counts; they do not fail the run."""
         command = [BIN / "spinfo", "--audit=delaunay", "--count-violations", "--json", self.mesh]
         done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
         if done.returncode not in (0, 4):
@@ -46,7 +46,7 @@ class Workplace:
         return json.loads(done.stdout)["census"]
 
     def tetrahedra(self):
-        """The points, as integers, and the quadruples of their numbers in the mesh."""
+        """The points as integers, and the tetrahedra of the mesh as quadruples of indices."""
         medit = self.mesh.with_suffix(".mesh")
         subprocess.run([BIN / "spconvert", "--quiet", self.mesh, "-o", medit], check=True)
         lines = iter(medit.read_text().splitlines())
@@ -58,7 +58,7 @@ class Workplace:
 
 
 def measured(place, flags, name, sets, ways, row):
-    """A row for each way to triangulate each run of each set, of so many points and bits."""
+    """A row for each way to triangulate each run of each set; sets are numbers of points and bits."""
     rows = []
     for count, bits in sets:
         for number in range(1, flags.runs + 1):

@@ -1,4 +1,4 @@
-"""Figure 3.5: in-sphere tests with round-off errors during the construction."""
+"""Figure 3.5: in-sphere tests with rounding errors during the construction."""
 
 from itertools import product
 
@@ -33,7 +33,8 @@ def row(place, order, count, bits, number):
 
 
 def draw(rows):
-    """A panel for each order; a curve for each number of bits, through the means, and a dot for each run."""
+    """A panel for each order, with a curve for each number of bits through the means, and a dot for each
+    run."""
     across = axis_of_counts({row[1] for row in rows}, "points")
     up = Axis([(LEAST_PERCENT, "0"), *((10.0**power, f"{10.0**power:g}") for power in range(-3, 3))], is_log=True)
     parts = []
@@ -46,7 +47,8 @@ def draw(rows):
 
 
 def curves(rows):
-    """Those of few bits first. Those that end near the top share a name, and those without any error need none."""
+    """The curves, fewest bits first. Curves that end near the top share a name; curves without rounding
+    errors have none."""
     all_bits = sorted({row[2] for row in rows})
     is_named = True
     for place, bits in enumerate(all_bits):
@@ -64,6 +66,6 @@ def mean(values):
 
 
 def shade(place, count):
-    """From blue for few bits to red for many."""
+    """A colour from blue for few bits to red for many."""
     share = place / max(count - 1, 1)
     return "#" + "".join(f"{round(a + share * (b - a)):02x}" for a, b in ((0x35, 0xD0), (0x83, 0x54), (0xD6, 0x6A)))

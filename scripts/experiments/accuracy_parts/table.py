@@ -3,7 +3,7 @@
 import overflow
 from programs import measured, write_tsv
 
-# Those up to 16 are one column of the table in the thesis.
+# The thesis has one column for all numbers of bits up to 16.
 BITS = [10, 12, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23]
 QUICK_BITS = [10, 16, 20, 23]
 ARITHMETICS = ("float", "exact")
@@ -14,7 +14,7 @@ HEAD = (
     *(f"{audit}_{fault}" for audit in AUDITS for fault in FAULTS),
     "overflowing_inside_or_on",
 )
-# What a line of the printed table adds up: a vertex of a neighbour on a sphere is no fault.
+# The faults that a line of the printed table sums up. A neighbour's vertex on a sphere is not a fault.
 LINES = [
     (audit, name, tuple(HEAD.index(f"{audit}_{fault}") for fault in faults))
     for audit in AUDITS
@@ -36,14 +36,14 @@ def row(place, arithmetic, count, bits, number):
     told = place.triangulate("--arithmetic", arithmetic)
     counted = place.audit()
     faults = [counted[audit][fault] for audit in AUDITS for fault in FAULTS]
-    # The mesh of one run will do, as this audit is slow and is about overflow, not about tess3.
+    # One mesh is enough: this audit is slow, and it tests overflow, not tess3.
     is_first_exact = number == 1 and arithmetic == "exact"
     overflowing = overflow.count_not_delaunay(*place.tetrahedra()) if is_first_exact else ""
     return arithmetic, bits, number, count, told.get("missing", 0), told["tetrahedra"], *faults, overflowing
 
 
 def markdown(rows):
-    """Per cent of the tetrahedra of all runs, laid out as in the thesis."""
+    """Percentages of the tetrahedra of all runs, laid out as in the thesis."""
     all_bits = sorted({row[1] for row in rows})
     head = "| arithmetic | audit | error, % |" + "".join(f" {bits} |" for bits in all_bits)
     lines = [head, "|---" * 3 + "|---:" * len(all_bits) + "|"]
@@ -56,6 +56,6 @@ def markdown(rows):
 
 
 def share(rows, columns):
-    """Per cent of faults among the tetrahedra of the rows that have these columns."""
+    """Percentage of faults in these columns, among the tetrahedra of the rows that have values there."""
     rows = [row for row in rows if row[columns[0]] != ""]
     return 100 * sum(row[column] for row in rows for column in columns) / max(sum(row[5] for row in rows), 1)

@@ -1,4 +1,5 @@
-"""Bases of quadratic splines over knots on a square grid whose border is pulled apart (thesis, figure 8.8)."""
+"""Bases of quadratic splines over knots on a square grid with the border pulled apart (thesis, figure
+8.8)."""
 
 import re
 
@@ -10,7 +11,7 @@ GRID = ("--degree", "1", "--pull-apart", "boundary")
 
 
 def grid(work, cells):
-    """Knots at whole numbers, so that ties of the triangulation are ties."""
+    """Knots at integers, so that ties of the triangulation stay exact."""
     steps = np.arange(cells + 1)
     return work.table("knots.xy", [[x, y] for y in steps for x in steps])
 
@@ -20,10 +21,11 @@ def delaunay(work, knots):
 
 
 def box_links(work, knots):
-    """Links as box splines need them, with the B-splines of edges as they are.
+    """Links as box splines need them, but with separate B-splines of edges.
 
-    The stream lists box splines, which depend on each other, and what B-splines are left. Each B-spline in a box spline has its
-    parts there and in another function: these become one function again.
+    The stream lists box splines, which are linearly dependent, and the remaining B-splines. A B-spline in a
+    box spline has one half there and the other half in another function: the halves become one function
+    again.
     """
     twin = work.folder / "boxes.txt"
     twin.write_text(ours("spconvert", "--quiet", "--to", "text", made(work, knots, "--box", "zp")).stdout)
@@ -31,18 +33,19 @@ def box_links(work, knots):
     halves = {tuple(term[:2]) for _, terms in functions for term in terms if term[2] == "0.5"}
     kept = [(kind, terms) for kind, terms in functions if not halves & {tuple(term[:2]) for term in terms}]
     whole = [(["edge", *pair], [[*pair, "1"]]) for pair in halves]
-    # Functions are in the order of their kinds, and edges are the first kind.
+    # Functions are sorted by kind, and edges are the first kind.
     edges = sorted([f for f in kept if f[0][0] == "edge"] + whole, key=lambda f: [int(word) for word in f[0][1:]])
     others = [f for f in kept if f[0][0] != "edge"]
     lines = [line for kind, terms in edges + others for line in ["function " + " ".join(kind), *map(term_line, terms)]]
-    # The end counts functions, where other streams have vertices.
+    # The last line counts functions where other streams count vertices.
     tail = [re.sub(r"vertices \d+", f"vertices {len(edges + others)}", line) for line in tail]
     twin.write_text("\n".join([*head, *lines, *tail]) + "\n")
     return twin
 
 
 def split(lines):
-    """What comes before functions in a text twin, functions as pairs of a kind and terms, and what follows."""
+    """The lines before the functions of a text twin, the functions as pairs of a kind and terms, and the
+    lines after them."""
     places = [number for number, line in enumerate(lines) if line.startswith(("function ", "term "))]
     functions = []
     for line in lines[places[0] : places[-1] + 1]:
@@ -59,12 +62,12 @@ def term_line(term):
 
 
 def flipped(count):
-    """After so many random flips of the start triangulation."""
+    """The configurations after `count` random flips of the start triangulation."""
     return lambda work, knots, seed: made(work, knots, "--flip", f"random:{count}:{seed}")
 
 
 def aligned(work, knots):
-    """After flips towards edges along y."""
+    """The configurations after flips towards edges along y."""
     return made(work, knots, "--flip", "aligned:90")
 
 

@@ -1,4 +1,4 @@
-"""The order at which errors of interpolation shrink with the cells of the grid of knots: 3 for quadratic splines."""
+"""The order of convergence of interpolation on grids of knots: 3 for quadratic splines."""
 
 import bases
 import numpy as np
@@ -26,7 +26,7 @@ def run(work, flags):
 
 
 def measure(work, cells):
-    """Number of functions, and greatest and mean error of each function interpolated."""
+    """The number of functions, and the greatest and the mean error for each interpolated function."""
     knots, sites, errors = bases.delaunay(work, bases.grid(work, cells)), lattice(SITES), []
     for function in FUNCTIONS.values():
         work.interpolate(knots, lambda x, y: function(x / cells, y / cells))

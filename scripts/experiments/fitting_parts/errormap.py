@@ -1,7 +1,7 @@
-"""Maps of errors as SVG, with pixels of PNG and one colour ramp.
+"""Error maps as SVG, with PNG images and one colour ramp.
 
-The ramp goes in equal steps of lightness in OKLab (Ottosson 2020), in which equal distances look alike; pixels cover what is
-behind them, so that it reads on white and on black.
+The ramp has equal steps of lightness in OKLab (Ottosson 2020), where equal distances look alike. The images
+are opaque, so they are legible on white and on black.
 """
 
 import base64
@@ -12,16 +12,16 @@ import numpy as np
 from svg import document, line, text
 
 LEVELS = 64
-# Lightness, chroma, and hue in degrees, of no error and of the greatest.
+# Lightness, chroma, and hue in degrees of the least and of the greatest error.
 LEAST, GREATEST = (0.22, 0.10, 285.0), (0.93, 0.14, 100.0)
 SIDE, GAP, LEFT, TOP, BAR = 150, 16, 130, 56, 14
 
 
 def ramp():
-    """Colours from least to greatest, as bytes of red, green and blue."""
+    """The colours from the least to the greatest error, as bytes of red, green and blue."""
     share = np.linspace(0, 1, LEVELS)[:, None]
     lightness, chroma, hue = (np.array(LEAST) + share * (np.array(GREATEST) - LEAST)).T
-    # Little light holds little chroma.
+    # The chroma is smaller where dark colours have none of that chroma.
     a, b = chroma * np.cos(np.radians(hue)), chroma * np.sin(np.radians(hue))
     cone = np.array([[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]])
     light = np.array(
@@ -37,7 +37,7 @@ def ramp():
 
 
 def png(levels):
-    """An image with a palette; the first row is the uppermost."""
+    """A PNG image with a palette; the first row is the top row."""
     height, width = levels.shape
     rows = b"".join(b"\0" + row.tobytes() for row in levels.astype(np.uint8))
 
@@ -56,9 +56,11 @@ def image(levels, x, y, width, height):
 
 
 def draw(alt, columns, rows, powers):
-    """A map for each column of each row, of magnitudes of errors on a scale of powers of ten, `powers` the first and the last.
+    """A map of error magnitudes for each column of each row, on a logarithmic scale. `powers` are its first
+    and last powers of ten.
 
-    Rows are pairs of a name and of maps, arrays whose first row is the lowest; each map comes with a line of words.
+    Rows are pairs of a name and a list of maps. A map is a pair of an array, whose first row is the lowest,
+    and a line of text.
     """
     parts = [text(LEFT + i * (SIDE + GAP), TOP - 14, name, css="title") for i, name in enumerate(columns)]
     for j, (name, maps) in enumerate(rows):

@@ -1,4 +1,4 @@
-"""The function of Franke at scattered points, with noise and without."""
+"""Franke's function at scattered points, with and without noise."""
 
 import layouts
 import numpy as np
@@ -11,7 +11,7 @@ SEED = 1
 COUNTS, QUICK_COUNTS = (1_000, 10_000), (500,)
 NOISES = (0.0, 0.05)
 SITES = 101
-# Sites are so far from the border, along which triangles of points are long.
+# Distance of sites from the border, where the triangles of points are long.
 MARGIN = 0.05
 
 
@@ -37,7 +37,7 @@ def ways(count):
 
 
 def scattered(count, noise):
-    """Points with values, the corners among them, and sites on a grid inside."""
+    """Points with values, including the corners, and sites on an inner grid."""
     random = np.random.default_rng(SEED)
     corners = [[0, 0], [0, 1], [1, 0], [1, 1]]
     places = np.vstack([corners, random.random((count - len(corners), 2))])

@@ -1,4 +1,4 @@
-"""Functions that are fitted, on the unit square."""
+"""Functions on the unit square to be fitted."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ def exponential(x, y):
 
 
 def wave(x, y):
-    """The second function of figure 8.8, which is level along y."""
+    """The second function of figure 8.8, constant along y."""
     return np.sin(np.pi * x) + 0 * y
 
 
@@ -25,7 +25,8 @@ def franke(x, y):
 
 
 def lattice(count):
-    """Sites of a square grid of `count` by `count` on the unit square, its border included, row by row."""
+    """Sites of a square grid of `count` by `count` points on the unit square, including its border, row by
+    row."""
     steps = np.linspace(0, 1, count)
     return np.column_stack([np.tile(steps, count), np.repeat(steps, count)])
 

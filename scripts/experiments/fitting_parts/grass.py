@@ -10,7 +10,7 @@ IMPORT_LIMIT_S = 900.0
 
 
 def contestants(work, table, side, unknowns, raster_cells):
-    """One contestant: with a reason, if GRASS is not here."""
+    """A contestant; returns a reason if GRASS is absent."""
     try:
         return [contestant(work, table, side, unknowns, raster_cells)]
     except Missing as reason:

@@ -10,7 +10,7 @@ from work import Failed, progress
 CELLS, SITES = 5, 101
 FUNCTIONS = {"sin(xy) exp(x+y)": exponential, "sin(pi x)": wave}
 SEEDS, QUICK_SEEDS = range(1, 6), range(1, 2)
-# From the least error worth a colour to the greatest that there is, as powers of ten.
+# The range of errors with colours, as powers of ten.
 POWERS = (-6, -2)
 HEAD = ("basis", "seed", "functions", "condition", *(f"{word} {name}" for name in FUNCTIONS for word in ("max", "rms")))
 
@@ -39,7 +39,7 @@ def with_seed(count, seed):
 
 
 def measure(work, make):
-    """Functions, condition and errors, as texts, and the errors of each function at all sites."""
+    """Functions, condition and errors as texts, and the errors of each function at all sites."""
     configurations = make(work, bases.grid(work, CELLS))
     said = work.summary(configurations)
     try:
@@ -52,7 +52,7 @@ def measure(work, make):
 
 
 def interpolated(work, configurations, function):
-    """Errors on a grid of the spline that has a function's values at Greville sites."""
+    """Errors at grid sites of the spline that has a function's values at Greville sites."""
     work.interpolate(configurations, lambda x, y: function(x / CELLS, y / CELLS))
     sites = lattice(SITES)
     return work.values(CELLS * sites) - function(*sites.T)

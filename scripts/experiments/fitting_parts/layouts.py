@@ -2,13 +2,14 @@
 
 import numpy as np
 
-# How far knots inside are moved, in cells: no three are on a line then.
+# Distance by which inner knots are moved, in cells, so that no three are collinear.
 MOVED = 0.2
 SEED = 1
 
 
 def grid(cells):
-    """Makes knots on a grid of about square cells over the box of points, so many along the longer side, those inside moved."""
+    """Makes a function that writes knots on a grid of nearly square cells over the box of points: `cells`
+    along the longer side, with inner knots moved."""
 
     def make(work, points):
         low, high = points[:, :2].min(0), points[:, :2].max(0)
@@ -18,7 +19,8 @@ def grid(cells):
         inside = ((places > 0) & (places < counts)).all(1)
         random = np.random.default_rng(SEED)
         moves = random.uniform(-1, 1, places.shape)
-        # An edge that cut off a corner would let it fold; towards the corner, knots have an edge to it.
+        # An edge that cuts off a corner would allow a fold along it. Knots moved towards the corner have an
+        # edge to it.
         next_to_corner = ((places == 1) | (places == counts - 1)).all(1)
         moves[next_to_corner] = np.where(places == 1, -1.0, 1.0)[next_to_corner]
         places[inside] += MOVED * moves[inside]

@@ -1,7 +1,7 @@
-"""One peer of scipy in a process of its own: peer_program.py METHOD POINTS SITES VALUES [UNKNOWNS].
+"""One scipy method in a separate process: peer_program.py METHOD POINTS SITES VALUES [UNKNOWNS].
 
-POINTS are rows of x, y and z, and VALUES what the method says at SITES, all as files of numpy. SITES may be a number instead:
-VALUES is then a raster of so many cells along each side of the box of the points.
+POINTS has rows of x, y and z; VALUES gets the method's results at SITES. All are numpy files. If SITES is a
+number, VALUES is a raster with so many cells along each side of the box of the points.
 """
 
 import sys
@@ -9,7 +9,7 @@ import sys
 import numpy as np
 from scipy import interpolate
 
-# What is said to be a good compromise of time and error; the whole system of equations does not fit memory.
+# A compromise between time and error; the complete system of equations does not fit in memory.
 NEIGHBOURS = 50
 DEGREE = 3
 
@@ -29,7 +29,7 @@ def thin_plates(points, sites, _):
 
 
 def bicubic(points, sites, unknowns):
-    """Least squares by tensor product splines with about so many coefficients and even knots."""
+    """Least squares by tensor-product splines with about `unknowns` coefficients and evenly spaced knots."""
     x, y, z = points.T
     inner = max(round(unknowns**0.5) - DEGREE - 1, 0)
     box = [x.min(), x.max(), y.min(), y.max()]
@@ -52,7 +52,7 @@ def main():
     method, points, sites, values, *unknowns = sys.argv[1:]
     sites = int(sites) if sites.isdigit() else np.load(sites)
     points = np.load(points)
-    # Far from zero, squares of coordinates leave no digits.
+    # Far from zero, squares of coordinates lose their digits.
     origin = np.array([*np.floor(points[:, :2].min(0)), 0.0])
     moved = sites if isinstance(sites, int) else sites - origin[:2]
     found = METHODS[method](points - origin, moved, int(unknowns[0]) if unknowns else 0)

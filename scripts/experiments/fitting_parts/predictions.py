@@ -1,4 +1,4 @@
-"""Values at sites from points, by our program and by peers, with what that took."""
+"""Values at sites predicted from points by our program and by peers, with time and memory."""
 
 import importlib.util
 import pathlib
@@ -16,7 +16,7 @@ LIMIT_S = 300.0
 
 @dataclass
 class Prediction:
-    """What a way said at sites, and what it took; without values, for a reason."""
+    """The values at sites with time and memory; without values, a reason."""
 
     values: object = None
     seconds: float = 0.0
@@ -28,7 +28,8 @@ class Prediction:
 
 @dataclass
 class Ours:
-    """splinefit with flags; `knots`, if there are some, makes a file of knots of points, and `step` is in distances of points."""
+    """splinefit with flags; `knots`, if given, makes a file of knots from points, and `step` is in units of
+    point distances."""
 
     name: str
     flags: tuple = ()
@@ -36,7 +37,7 @@ class Ours:
     step: float = 0.0
 
     def predict(self, work, points, sites, _):
-        """By two processes, one that fits and one that evaluates."""
+        """Runs two processes, one that fits and one that evaluates."""
         try:
             flags = [*self.flags, *(("--knots", self.knots(work, points)) if self.knots else ())]
             if self.step:
@@ -54,7 +55,7 @@ class Ours:
 
 @dataclass
 class Scipy:
-    """A method of peer_program.py; it may be told how many unknowns it should have."""
+    """A method of peer_program.py, which may take a number of unknowns."""
 
     name: str
     method: str
@@ -89,13 +90,14 @@ def has_scipy():
 def run(command):
     result = measure.run([command], LIMIT_S)
     if result.failure:
-        # What the program says, without the paths of files.
+        # The program's message, without file paths.
         raise Failed(result.failure.split(": ", 2)[-1].rsplit(".xyz: ", 1)[-1])
     return result
 
 
 def compare(work, ways, points, sites, truth):
-    """A row for each way: unknowns, root of the mean square of errors, median and greatest error, seconds, and peak memory.
+    """A row for each way: unknowns, root mean square error, median, 99th percentile and greatest error, sites
+    without a value, seconds, and peak memory.
 
     Bicubic splines have as many unknowns as our first spline.
     """
@@ -118,7 +120,7 @@ def cells(found, truth):
     errors = np.abs(found.values - truth)
     known = errors[~np.isnan(errors)]
     numbers = [np.sqrt(np.mean(known**2)), np.median(known), np.percentile(known, 99), known.max()]
-    # Below the floor, a peak is not the program's.
+    # Below the floor, the peak may not be the program's.
     megabytes = f"{max(found.peak_bytes, measure.floor_bytes()) / 1e6:.0f}"
     at_most = "" if found.peak_bytes > measure.floor_bytes() else "at most "
     unknown = len(errors) - len(known)

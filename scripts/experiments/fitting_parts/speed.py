@@ -1,7 +1,7 @@
-"""Time and memory of a fit to many points and of its raster, ours and those of peers.
+"""Time and memory of a fit to many points and of its raster, by our program and by peers.
 
-Points are in a file of LAS for us, of numpy for scipy, and in the database of GRASS before it starts; rasters are written to
-files.
+Before the clock starts, the points are in a LAS file for us, in a numpy file for scipy, and in the database
+of GRASS. Rasters are written to files.
 """
 
 import sys
@@ -16,7 +16,7 @@ from tsv import write_tables
 from work import Failed, progress
 
 COUNT, QUICK_COUNT, MANY = 1_000_000, 20_000, 10_000_000
-# Along each side of the square: cells of knots, for about 20,000 functions of ours, and cells of rasters.
+# Cells of knots along each side of the square, for about 20,000 of our functions, and cells of rasters.
 KNOT_CELLS, RASTER_CELLS = 97, 2_000
 QUICK_KNOT_CELLS = 15
 LIMIT_S = 150.0
@@ -40,7 +40,8 @@ def run(work, flags):
 
 
 def make(work, count):
-    """Files of points, by a process of its own: a large process would hide how small others are."""
+    """Writes files of points in a separate process: the size of a large process would hide that of the small
+    programs it starts."""
     files = [work.folder / f"{count}{ending}" for ending in (".las", ".npy", ".txt")]
     made = measure.run([[sys.executable, HERE / "survey_program.py", str(count), str(SQUARE), *files]], LIMIT_S)
     if made.failure:

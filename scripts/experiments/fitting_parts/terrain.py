@@ -1,6 +1,8 @@
-"""A LIDAR tile: a part of its ground points is held back, and predicted from the others; the same with gross errors.
+"""A LIDAR tile: part of its ground points is held back and predicted from the others; then again with gross
+errors.
 
-Only held points inside of the convex hull of the others count. D is the distance of points: the root of the area of each.
+Only held points inside the convex hull of the others count. D is the distance of points: the root of the area
+per point.
 """
 
 import subprocess
@@ -50,7 +52,7 @@ def robust_ways():
 
 
 def ground(work, path):
-    """Ground points in the order of the file, the first at each place."""
+    """Ground points in the order of the file, without later duplicates in x and y."""
     stream = work.folder / "ground.spa"
     finalize = [inputs.program("spfinalize"), "--quiet", "--keep-class", GROUND, path]
     convert = [inputs.program("spconvert"), "--quiet", "--to", "spa", "-o", stream]
@@ -63,7 +65,7 @@ def ground(work, path):
 
 
 def held_back(points):
-    """Points that are fitted, and those of the others that are inside of their hull."""
+    """The points to fit, and the held points inside their hull."""
     order = np.random.default_rng(SEED).permutation(len(points))
     count = round(HELD_SHARE * len(points))
     fitted, held = points[order[count:]], points[order[:count]]
@@ -71,7 +73,7 @@ def held_back(points):
 
 
 def inside(places, sites):
-    """Which sites are left of all edges of the convex hull of places."""
+    """Which sites are inside the convex hull of places, left of all its edges."""
     hull = convex(places)
     edges = np.roll(hull, -1, axis=0) - hull
     sides = edges[:, 0] * (sites[:, None, 1] - hull[:, 1]) - edges[:, 1] * (sites[:, None, 0] - hull[:, 0])
@@ -79,7 +81,7 @@ def inside(places, sites):
 
 
 def convex(places):
-    """The convex hull, counterclockwise (Andrew 1979); exact, as digits after the point are few."""
+    """The convex hull, counterclockwise (Andrew 1979); exact, because coordinates have few digits."""
     ordered = sorted(map(tuple, places))
     return np.array(chain(ordered) + chain(ordered[::-1]))
 
@@ -98,7 +100,7 @@ def turn(p, q, r):
 
 
 def with_gross_errors(points):
-    """Some points far above the ground or below it."""
+    """Moves some points far above or below the ground."""
     random = np.random.default_rng(SEED)
     spoilt = points.copy()
     chosen = random.choice(len(points), round(GROSS_SHARE * len(points)), replace=False)

@@ -4,7 +4,7 @@ from work import progress
 
 
 def write_tables(stem, head, rows):
-    """PATH.tsv and PATH.md; rows may be shorter than the head."""
+    """Writes PATH.tsv and PATH.md; rows may be shorter than the head."""
     rows = [[str(cell) for cell in row] + [""] * (len(head) - len(row)) for row in rows]
     write(stem, ".tsv", "".join("\t".join(row) + "\n" for row in [head, *rows]))
     lines = [head, ["---"] + ["---:"] * (len(head) - 1), *rows]

@@ -1,4 +1,4 @@
-"""Our programs as functions, and the files between them."""
+"""Our programs as functions, and the files that they exchange."""
 
 import json
 import pathlib
@@ -13,7 +13,7 @@ SAID_LENGTH = 300
 
 
 class Failed(Exception):
-    """The message of a program that failed."""
+    """A program failed with this message."""
 
 
 class Workplace:
@@ -29,21 +29,22 @@ class Workplace:
         self.temporary.cleanup()
 
     def table(self, name, rows):
-        """A file of lines of numbers, with all digits."""
+        """Writes a file of lines of numbers, with all digits."""
         path = self.folder / name
         path.write_text("".join(" ".join(map(repr, row)) + "\n" for row in np.asarray(rows, float).tolist()))
         return path
 
     def fit(self, points, *flags):
-        """Fits the spline, and what the program counted."""
+        """Fits the spline, and returns the program's counts."""
         said = ours("splinefit", "fit", "--quiet", "--stats=json", *flags, points, "-o", self.spline).stderr
         return json.loads(next(line for line in said.splitlines() if line.startswith("{")))
 
     def interpolate(self, knots, function):
         """Makes the spline over knots that has the values of a function at Greville sites.
 
-        Points that are triangulated have their own values at their own places: so if these are the Greville sites, which the
-        control mesh of any spline over the knots lists, no other value counts.
+        `--interpolate` takes the values at Greville sites from the triangulated points. So if the points are
+        these sites, which the control mesh of any spline over the knots lists, their own values count and no
+        others.
         """
         x0, y0, x1, y1 = self.summary(knots)["domain"]
         corners = [[x, y, 0.0] for x in (x0, x1) for y in (y0, y1)]
@@ -59,17 +60,17 @@ class Workplace:
         return np.array([[float(word) for word in line.split()[1:3]] for line in lines if line.startswith("v ")])
 
     def summary(self, stream):
-        """The summary by splinefit info of a spline, or of configurations."""
+        """The summary of a spline or of configurations by splinefit info."""
         return json.loads(ours("splinefit", "info", "--json", stream).stdout)
 
     def values(self, sites):
-        """The spline at sites; NaN outside its domain."""
+        """The values of the spline at sites; NaN outside its domain."""
         lines = ours("splinefit", "eval", "--quiet", self.spline, "--at", self.table("at.xy", sites)).stdout
         return np.array([float(line.split()[2]) for line in lines.splitlines()])
 
 
 def ours(name, *words):
-    """Runs one of our programs to its end."""
+    """Runs one of our programs to the end."""
     command = [str(word) for word in (inputs.program(name), *words)]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:

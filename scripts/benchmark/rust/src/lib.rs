@@ -1,4 +1,4 @@
-//! What all peers in Rust share: points in, triangles out; see `native/points.hpp`, which does the same.
+//! Code shared by all peers in Rust: points in, triangles out. `native/points.hpp` does the same for C++.
 
 pub mod random;
 
@@ -9,7 +9,7 @@ use std::time::Instant;
 
 const BUFFER_BYTES: usize = 1 << 20;
 
-/// The files that a peer is run with.
+/// The files for a run of a peer.
 pub struct Paths {
     pub points: PathBuf,
     pub triangles: PathBuf,
@@ -25,7 +25,7 @@ impl Paths {
         }
     }
 
-    /// Coordinates: the stored integers of an uncompressed LAS file, or pairs of little-endian f64.
+    /// Reads coordinates: the stored integers of an uncompressed LAS file, or pairs of little-endian f64.
     pub fn read_points(&self) -> Result<Vec<[f64; 2]>> {
         let mut file = File::open(&self.points)?;
         if self.points.extension().is_some_and(|ending| ending == "las") {
@@ -34,7 +34,7 @@ impl Paths {
         read_tuples(&mut file)
     }
 
-    /// Writes three indices per triangle, and says on stdout what was done and in how many seconds.
+    /// Writes three indices per triangle, and reports the counts and the seconds on stdout.
     pub fn write_triangles<Index: TryInto<u32>>(
         &self,
         points: usize,
@@ -56,14 +56,14 @@ impl Paths {
     }
 }
 
-/// Does the work and takes its time.
+/// Runs `work` and measures its time.
 pub fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let start = Instant::now();
     let result = work();
     (result, start.elapsed().as_secs_f64())
 }
 
-/// The fields of a LAS header that are needed here.
+/// The needed fields of a LAS header.
 pub struct LasHeader {
     pub bytes: Vec<u8>,
     pub record_len: usize,
@@ -71,7 +71,7 @@ pub struct LasHeader {
 }
 
 impl LasHeader {
-    /// Reads all that comes before the points, and leaves the file there.
+    /// Reads everything before the points, and leaves the file position there.
     pub fn read(file: &mut File) -> Result<LasHeader> {
         let mut start = [0; 227];
         file.read_exact(&mut start)?;

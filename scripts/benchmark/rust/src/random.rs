@@ -1,4 +1,4 @@
-//! Numbers that are the same everywhere.
+//! Random numbers that are the same everywhere.
 
 /// SplitMix64 by Steele, Lea and Flood.
 pub struct Random(pub u64);
@@ -16,12 +16,12 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Uniform below a number.
+    /// A number below `end`, almost uniform.
     pub fn below(&mut self, end: usize) -> usize {
         (self.bits() % end as u64) as usize
     }
 
-    /// A permutation of the first numbers, by Fisher and Yates.
+    /// A permutation of 0..count, by Fisher and Yates.
     pub fn permutation(&mut self, count: usize) -> Vec<u32> {
         let mut numbers: Vec<u32> = (0..count as u32).collect();
         for i in (1..count).rev() {

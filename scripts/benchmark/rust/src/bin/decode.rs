@@ -1,5 +1,5 @@
-//! Decodes a LAZ file once with the `laz` crate, on as many threads as are said: `decode FILE THREADS`. The
-//! records are dropped.
+//! Decodes a LAZ file once with the `laz` crate and drops the records, on THREADS threads: `decode FILE
+//! THREADS`.
 
 use std::fs::File;
 use std::io::{Error, Result};
@@ -7,7 +7,7 @@ use std::io::{Error, Result};
 use laz::{LazVlr, ParLasZipDecompressor};
 use spmesh_bench::{LasHeader, timed};
 
-/// Points per thread that are decoded in one go.
+/// Points that each thread decodes in one batch.
 const POINTS_PER_THREAD: usize = 4 * 50_000;
 const HEADER_LEN_AT: usize = 94;
 const VLR_HEADER_LEN: usize = 54;
@@ -37,7 +37,7 @@ fn decode(path: &str, threads: usize) -> Result<usize> {
     Ok(header.points)
 }
 
-/// The record after the header that tells how points are compressed.
+/// The record after the header that describes how points are compressed.
 fn laszip_record(bytes: &[u8]) -> Result<&[u8]> {
     let short = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
     let mut at = short(HEADER_LEN_AT);

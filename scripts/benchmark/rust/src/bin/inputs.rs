@@ -1,6 +1,6 @@
-//! Makes inputs, the same everywhere: `inputs uniform COUNT FILE`, `inputs grid SIDE FILE` and `inputs
-//! decimals SIDE FILE` write little-endian pairs of f64 in random order, `inputs permute FROM.las FILE` the
-//! points of an uncompressed LAS file in random order.
+//! Makes the same inputs everywhere. `inputs uniform COUNT FILE`, `inputs grid SIDE FILE` and `inputs
+//! decimals SIDE FILE` write little-endian pairs of f64 in random order. `inputs permute FROM.las FILE`
+//! writes the points of an uncompressed LAS file in random order.
 
 use std::fs::File;
 use std::io::{BufWriter, Error, Read, Result, Write};
@@ -27,7 +27,7 @@ fn main() -> Result<()> {
     out.flush()
 }
 
-/// Points of the unit square.
+/// Random points in the unit square.
 fn uniform(count: usize, out: &mut impl Write) -> Result<()> {
     let mut random = Random(SEED);
     for _ in 0..2 * count {
@@ -36,8 +36,7 @@ fn uniform(count: usize, out: &mut impl Write) -> Result<()> {
     Ok(())
 }
 
-/// All points of a square of integers, divided by a number: tenths are rounded, so that ties become near
-/// ties.
+/// All integer points in a square, divided by a number. Tenths are rounded, so ties become near ties.
 fn grid(side: usize, divisor: f64, out: &mut impl Write) -> Result<()> {
     for number in Random(SEED).permutation(side * side) {
         let (column, row) = (number as usize % side, number as usize / side);

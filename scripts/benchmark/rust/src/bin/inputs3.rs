@@ -1,4 +1,4 @@
-//! Makes inputs in 3D, the same everywhere: `inputs3 KIND SIZE FILE` writes little-endian triples of f64.
+//! Makes the same inputs in 3D everywhere: `inputs3 KIND SIZE FILE` writes little-endian triples of f64.
 //!
 //! | kind | size | points |
 //! |---|---|---|
@@ -50,7 +50,7 @@ fn bytes_of(point: [f64; 3]) -> [[u8; 8]; 3] {
     point.map(f64::to_le_bytes)
 }
 
-/// A point of a sphere whose radius goes up and down by a fifth.
+/// A point on a sphere whose radius varies by a fifth.
 fn bumpy(random: &mut Random) -> [f64; 3] {
     let (z, angle) = (2.0 * random.unit() - 1.0, TAU * random.unit());
     let across = (1.0 - z * z).sqrt();
@@ -70,14 +70,14 @@ fn grid(side: usize, of_cell: &[[u32; 3]], step: u32, mut random: Random) -> imp
     })
 }
 
-/// Points of a cube in random order, like atoms of a protein or the water around it: in integers of 0.001
-/// angstrom, of about 0.1 per cubic angstrom, none nearer to another than `NEAREST`. Random points are taken
+/// Points in a cube in random order, packed like the atoms of a protein or of water: integers in units of
+/// 0.001 angstrom, about 0.1 points per cubic angstrom, no two nearer than `NEAREST`. Random points are taken
 /// unless an earlier one is too near (random sequential adsorption).
 fn packed(count: usize, mut random: Random) -> Vec<[i32; 3]> {
     const NEAREST: i64 = 1400;
     const ROOM: f64 = 10.0e9;
     let side = (count as f64 * ROOM).cbrt().ceil() as usize;
-    // At most one point fits in a cell of the index.
+    // A cell of the index is so small that it holds at most one point.
     let cell = (NEAREST as f64 / 3f64.sqrt()).floor() as usize;
     let cells = side / cell + 1;
     let mut index = vec![u32::MAX; cells * cells * cells];
@@ -93,8 +93,7 @@ fn packed(count: usize, mut random: Random) -> Vec<[i32; 3]> {
     points
 }
 
-/// Whether a point is nearer than `nearest` to one of `points`; cells that may have such a one are two away
-/// at most.
+/// Whether a point is nearer than `nearest` to one of `points`, which must be in a cell at most two away.
 fn near(
     points: &[[i32; 3]],
     index: &[u32],

@@ -1,4 +1,4 @@
-//! Makes inputs in 4D, the same everywhere: `inputs4 KIND SIZE FILE` writes little-endian quadruples of f64.
+//! Makes the same inputs in 4D everywhere: `inputs4 KIND SIZE FILE` writes little-endian quadruples of f64.
 //!
 //! | kind | size | points |
 //! |---|---|---|
@@ -34,7 +34,7 @@ fn main() -> Result<()> {
     out.flush()
 }
 
-/// Some per cent of the points of a grid, each at most once.
+/// A given percentage of the points of a grid, each at most once.
 fn sample(percent: usize, mut random: Random) -> impl Iterator<Item = [f64; 4]> {
     let order = random.permutation(SIDE.pow(4) as usize);
     let count = order.len() * percent / 100;

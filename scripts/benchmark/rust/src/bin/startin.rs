@@ -1,5 +1,5 @@
-//! The `startin` crate, without snapping to near points. Its vertices count from one; those of equal points
-//! are left out, so that indices in the file are those without them.
+//! The `startin` crate, without snapping to near points. Its vertices are numbered from one, without
+//! duplicates, and so are the indices in the file.
 
 use spmesh_bench::{Paths, timed};
 use startin::{InsertionStrategy, Triangulation};
