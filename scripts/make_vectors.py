@@ -441,7 +441,7 @@ def passing():
 
 
 def failing_headers():
-    """Name, words of the error, and vector of headers that break a rule. Bytes override a field as it is stored."""
+    """Name, words of the error, and vector, for each broken rule of headers. Bytes override stored fields."""
     f64 = lambda *values: struct.pack("<%dd" % len(values), *values)
     damage = [
         ("magic", "not those of a spmesh stream", dict(magic=b"\x88SPM\r\n\x1a\n")),

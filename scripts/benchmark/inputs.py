@@ -19,8 +19,9 @@ def count_of(text):
 
 
 class Inputs:
-    """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz, permuted-10M.las; in
-    3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64, see inputs3.rs and inputs4.rs in rust/src/bin.
+    """Files by name: uniform-10M.f64, grid-1000.f64, decimals-1000.f64, flight-10M.las or .laz,
+    permuted-10M.las; in 3D uniform3-1M.f64 and others, in 4D grid4-10.f64 and random4-10k.f64. See inputs3.rs
+    and inputs4.rs in rust/src/bin.
     """
 
     def __init__(self, folder, helpers):

@@ -1,4 +1,7 @@
-"""Writes seeded points of a smooth surface with noise as LAS, array and text: survey_program.py COUNT SIDE LAS NPY TEXT."""
+"""Writes seeded points of a smooth surface with noise, as LAS, array and text.
+
+    survey_program.py COUNT SIDE LAS NPY TEXT
+"""
 
 import struct
 import sys

@@ -2,7 +2,7 @@
 //!
 //! | kind | size | points |
 //! |---|---|---|
-//! | grid4 | per cent | that part of a grid of 16^4 integers, in random order; smaller parts begin larger ones |
+//! | grid4 | per cent | of a grid of 16^4 integers, in random order; larger parts extend smaller ones |
 //! | random4 | points | with integer coordinates below 2^20 |
 
 use std::fs::File;
