@@ -1,5 +1,4 @@
-"""Bases of quadratic splines over knots on a square grid with the border pulled apart (thesis, figure
-8.8)."""
+"""Bases of quadratic splines over knots on a square grid with its border pulled apart (figure 8.8)."""
 
 import re
 

@@ -21,7 +21,7 @@ def ramp():
     """The colours from the least to the greatest error, as bytes of red, green and blue."""
     share = np.linspace(0, 1, LEVELS)[:, None]
     lightness, chroma, hue = (np.array(LEAST) + share * (np.array(GREATEST) - LEAST)).T
-    # The chroma is smaller where dark colours have none of that chroma.
+    # Dark colours allow only a low chroma.
     a, b = chroma * np.cos(np.radians(hue)), chroma * np.sin(np.radians(hue))
     cone = np.array([[1, 0.3963377774, 0.2158037573], [1, -0.1055613458, -0.0638541728], [1, -0.0894841775, -1.2914855480]])
     light = np.array(

@@ -25,8 +25,7 @@ def franke(x, y):
 
 
 def lattice(count):
-    """Sites of a square grid of `count` by `count` points on the unit square, including its border, row by
-    row."""
+    """Sites of a square grid of `count` by `count` points on the unit square with its border, row by row."""
     steps = np.linspace(0, 1, count)
     return np.column_stack([np.tile(steps, count), np.repeat(steps, count)])
 

@@ -10,7 +10,7 @@ IMPORT_LIMIT_S = 900.0
 
 
 def contestants(work, table, side, unknowns, raster_cells):
-    """A contestant; returns a reason if GRASS is absent."""
+    """A list of one contestant, which has failed with the reason if GRASS cannot be installed."""
     try:
         return [contestant(work, table, side, unknowns, raster_cells)]
     except Missing as reason:
