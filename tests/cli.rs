@@ -34,6 +34,18 @@ fn every_tool_has_help_with_examples_and_a_version() {
     }
 }
 
+/// A heading holds for all flags after it, those of a flattened struct too.
+#[test]
+fn common_flags_stand_before_headings_of_others() {
+    for name in TOOLS {
+        let text = String::from_utf8(run(name, &["--help"], &[]).stdout).unwrap();
+        let headings = text.lines().filter(|line| line.ends_with(':') && !line.starts_with(' '));
+        let other = headings.skip_while(|line| *line != "Options:").nth(1).unwrap();
+        let quiet = text.find("-q, --quiet");
+        assert!(quiet.is_none_or(|at| at < text.find(&format!("\n{other}\n")).unwrap()), "{name}: {other}");
+    }
+}
+
 #[test]
 fn examples_are_indented_and_paragraphs_are_wrapped_once() {
     for name in TOOLS {

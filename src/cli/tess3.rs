@@ -110,15 +110,16 @@ pub struct Flags {
     #[arg(long, requires = "out_dir")]
     strict: bool,
 
-    #[command(flatten)]
-    method: MethodFlags,
-
     /// Print statistics on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
 
     #[command(flatten)]
     common: Common,
+
+    // The last, as its heading holds for all flags after it.
+    #[command(flatten)]
+    method: MethodFlags,
 }
 
 /// Values of `--from`.

@@ -76,6 +76,7 @@ impl Tetrahedron {
 /// which a tetrahedron names its vertices by their places in the array of vertices. All other methods speak
 /// of indices of input points, like those of [`Triangulation`](crate::delaunay2::Triangulation).
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct Tetrahedralization {
     pub(super) vertices: Vec<Vertex>,
     pub(super) tetrahedra: Vec<Tetrahedron>,

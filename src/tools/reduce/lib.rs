@@ -13,7 +13,7 @@
 //! * A node whose children are done triangulates the union of their residuals, drops the simplices in the
 //!   holes behind the walls, and tests the others against its box. At the root, all are final.
 //!
-//! `ARCHITECTURE.md` proves it. Data flow one way: [`reader`] reads points and holds them in a
+//! `docs/theory/reduction.md` proves it. Data flow one way: [`reader`] reads points and holds them in a
 //! [`cell_buffer`] until their cell is complete, [`schedule`] finds the nodes that can be triangulated,
 //! [`node`] triangulates them and cuts [`patches`], and [`sequencer`] writes them in order. [`coordinator`]
 //! does the same on several threads. [`merge`] joins the results of partial runs, each of which is a

@@ -23,7 +23,7 @@ use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
 use spmesh_stream::{Coordinates, Header, Kind, PatchBlocks, StreamReader, StreamWriter};
 
-/// How a run triangulates.
+/// How a run triangulates. Fields will be added: end the expression with `..Options::default()`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Options<const D: usize = 2> {
     /// Which elevation survives where points coincide.

@@ -4,6 +4,7 @@ use spmesh_geometry::predicates::PredicateCounts;
 
 /// Figures of one run of the reduction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Stats {
     /// Points triangulated.
     pub points: u64,
