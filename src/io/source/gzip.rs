@@ -66,7 +66,8 @@ impl<R: Read> Gunzip<R> {
         Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
     }
 
-    /// Says where in the compressed data decompression failed, and marks the failure as one of the data.
+    /// Names the byte of the compressed data where decompression failed, and makes the error
+    /// [`ErrorKind::InvalidData`]. Errors of reading stay as they are.
     #[cold]
     fn locate(&self, error: io::Error) -> io::Error {
         let input = self.decoder.get_ref();
