@@ -36,7 +36,7 @@ pub enum Format {
     Ply,
     /// Wavefront OBJ.
     Obj,
-    /// Lines of `v`, and maybe `f` behind them: OBJ, or SMA or SPA without a header.
+    /// Lines of `v`, possibly followed by lines of `f`: OBJ, or SMA or SPA without a header.
     VertexLines,
     /// OFF, the object file format of Geomview.
     Off,
@@ -257,7 +257,7 @@ impl Format {
         ROWS.iter().map(|row| row.format)
     }
 
-    /// What messages call a file of this format, with an article.
+    /// Name of the format in messages, with an article.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name

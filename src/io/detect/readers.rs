@@ -81,7 +81,7 @@ pub const DD4: Reader = Reader {
 /// All of them.
 pub const READERS: [&Reader; 7] = [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &TESS3, &DD4];
 
-/// The reader of a caller that does not say which tool it is.
+/// The reader of a caller that does not name its tool.
 static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true };
 
 impl Default for &'static Reader {

@@ -40,7 +40,7 @@ struct Seen {
 }
 
 impl Seen {
-    /// The format, if only one has lines like this; otherwise notes the line.
+    /// Notes a line. Returns the format if the lines so far prove one.
     fn by_line(&mut self, line: &[u8]) -> Option<Format> {
         let mut fields = words(line);
         let word = fields.next()?;
@@ -88,7 +88,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// PDB or mmCIF, if the line is one of theirs.
+/// PDB or mmCIF, if the line proves one of them.
 fn of_molecule(line: &[u8], word: &[u8]) -> Option<Format> {
     let starts_with = |start: &[u8]| word.get(..start.len()).is_some_and(|w| w.eq_ignore_ascii_case(start));
     if starts_with(b"data_") || starts_with(b"loop_") || starts_with(b"_atom_site.") {

@@ -15,7 +15,7 @@ impl Grid {
     /// The cells of a GeoTIFF.
     ///
     /// # Errors
-    /// If it cannot be read, is no GeoTIFF, or has cells that are not square or not along the axes.
+    /// If it cannot be read, is not a GeoTIFF, or has cells that are not square or not along the axes.
     pub fn of_file(path: &Path) -> Result<Grid> {
         read(path).map_err(|error| error.of_input(path.display().to_string()))
     }

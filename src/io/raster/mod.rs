@@ -45,7 +45,7 @@ pub struct RasterOptions {
     pub temp_dir: Option<PathBuf>,
 }
 
-/// A raster file to be written.
+/// A raster file to write.
 #[derive(Debug, Clone, Copy)]
 pub struct RasterFile<'a> {
     /// How it is written.

@@ -14,8 +14,8 @@ impl Default for NoData {
 
 impl NoData {
     /// The number written for a value; NaN means no data. A value that equals the no-data number, or is so
-    /// near that programs take it for that number (GDAL: a relative difference below 4 x f32::EPSILON), is
-    /// moved away from it.
+    /// near that programs take it for that number (GDAL: a relative difference below `4.0 * f32::EPSILON`),
+    /// is moved away from it.
     #[inline]
     #[must_use]
     pub fn stored(self, value: f32) -> f32 {

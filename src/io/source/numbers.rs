@@ -16,7 +16,7 @@ pub(super) enum Writing {
     Text,
 }
 
-/// Reads a stated number of numbers. Memory: the numbers of one call.
+/// Reads as many numbers as the file states. Memory: the numbers of one call.
 pub(super) struct NumberReader<R> {
     input: R,
     sample: SampleType,

@@ -111,7 +111,7 @@ impl ArrayPass {
         ArrayPass { view, arrays, at: 0, reader: None, values: Vec::new() }
     }
 
-    /// Replaces the values by those of the next points of the current array; false at its end.
+    /// Replaces the values by the coordinates of the next points of the current array; false at its end.
     fn read(&mut self) -> Result<bool> {
         let array = &self.arrays[self.at];
         let reader = match &mut self.reader {

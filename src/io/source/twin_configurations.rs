@@ -54,7 +54,7 @@ pub(super) fn parse_knot(field: &[u8]) -> Result<u32> {
     knot.ok_or_else(|| unexpected(field, "a number from 1 to 2^32 - 1"))
 }
 
-/// State that lines continue, across events.
+/// The state that lines carry from one to the next, across events.
 #[derive(Default)]
 pub(super) struct OpenLines {
     degree: Option<(u32, Claim)>,

@@ -63,7 +63,7 @@ impl GeoKeys {
         }
     }
 
-    /// The directory of `keys`, sorted, with the raster type of areas.
+    /// The directory of `keys`, sorted, with the raster type PixelIsArea.
     fn new(keys: &[[u16; 4]]) -> GeoKeys {
         let others = keys.iter().copied().filter(|key| key[0] != RASTER_TYPE);
         let mut all: Vec<[u16; 4]> = others.chain([[RASTER_TYPE, 0, 1, PIXEL_IS_AREA]]).collect();

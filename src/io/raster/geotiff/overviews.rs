@@ -39,7 +39,7 @@ pub(super) fn level_sizes(mut size: [u32; 2], has_overviews: bool) -> Vec<[u32; 
     sizes
 }
 
-/// Number of tiles along each axis for so many cells.
+/// Number of tiles along each axis, for an image of this size in cells.
 pub(super) fn tiles_of(size: [u32; 2]) -> [usize; 2] {
     size.map(|count| (count as usize).div_ceil(TILE))
 }

@@ -102,7 +102,7 @@ impl<'a> Store<'a> {
         extents.filter(|[_, len]| *len > 0).map(&mut place).collect()
     }
 
-    /// Writes the head and copies staged pieces behind it.
+    /// Writes the head, and copies staged pieces after it.
     ///
     /// # Errors
     /// If writing or the temporary file fails.

@@ -147,7 +147,7 @@ impl StructureBuilder {
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
     }
 
-    /// The finished structure, which messages call `name`.
+    /// The finished structure. Messages call it `name`.
     ///
     /// # Errors
     /// If it has no atom.

@@ -37,9 +37,9 @@ impl Conformer {
     }
 }
 
-/// For each atom, whether it belongs to one conformer of the model. That has all atoms with a single location
-/// and the atoms of the preferred conformer at each site. If the preferred conformer lacks an atom of its
-/// residue, it has that atom's preferred location among the others.
+/// For each atom, whether it belongs to one conformer of the model. The conformer has all atoms with a single
+/// location and the atoms of the preferred conformer at each site. If the preferred conformer lacks an atom
+/// of its residue, the conformer has that atom's preferred location among the others.
 pub(super) fn one_conformer(residues: &[Residue], atoms: &[Atom], preference: Preference) -> Vec<bool> {
     let residue = |atom: &Atom| residues[atom.residue as usize];
     let mut wanted: Vec<bool> = atoms.iter().map(|atom| atom.altloc.is_empty()).collect();
