@@ -1,6 +1,6 @@
-//! Indices of cells in the historical point formats: level by level from the root, which is 0; the children
-//! of cell i are 2^dims i + 1 and on. The lowest bit of a child says "lower x", then "upper y", then "lower
-//! z".
+//! Cell indices of the historical point formats. Cells are numbered level by level from the root (0); the
+//! children of cell i are 2^dims i + 1 onwards. In a child's number bit 0 is set for the lower half in x, bit
+//! 1 for the upper half in y, bit 2 for the lower half in z.
 
 use spmesh_model::cells::{CellCode, CellTree};
 
@@ -9,7 +9,7 @@ pub(crate) fn level_max(dims: u8) -> u8 {
     if dims == 2 { 15 } else { 10 }
 }
 
-/// The bits of a child in which indices differ from location codes.
+/// Bits in which a child's number differs from its location code.
 fn flip(dims: u8) -> u64 {
     if dims == 2 { 0b01 } else { 0b101 }
 }

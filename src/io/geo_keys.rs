@@ -1,21 +1,21 @@
-//! Reads the key directories of GeoTIFF, which LAS files and rasters have.
+//! Reads the key directories of GeoTIFF, which LAS files and rasters contain.
 //!
-//! Source: OGC GeoTIFF 1.1, chapter 7: four numbers for the directory, then four for each key: its number,
-//! the tag that holds its value (0: the key itself), a count, and the value or its place.
+//! Source: OGC GeoTIFF 1.1, chapter 7. The directory has a header of four numbers, then four numbers per key:
+//! the key's number, the tag that holds its value (0: the entry itself), a count, and the value or its index.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 /// Type of the model: projected or geographic.
 pub(crate) const MODEL_TYPE: u16 = 1024;
-/// Whether places are those of cells or of their centres.
+/// Whether coordinates refer to cells as areas or to their centres.
 pub(crate) const RASTER_TYPE: u16 = 1025;
-/// Name of the whole.
+/// Citation (name) of the whole definition.
 pub(crate) const CITATION: u16 = 1026;
 /// EPSG code of a geographic system.
 pub(crate) const GEOGRAPHIC_TYPE: u16 = 2048;
 /// EPSG code of a projected system.
 pub(crate) const PROJECTED_TYPE: u16 = 3072;
-/// The tag with the texts of keys.
+/// The tag that holds the texts of keys.
 pub(crate) const TEXTS_TAG: u16 = 34737;
 
 /// The numbers of a directory as a LAS file holds it.
@@ -28,7 +28,7 @@ pub(crate) fn keys(directory: &[u16]) -> impl Iterator<Item = [u16; 4]> {
     directory.as_chunks::<4>().0.iter().skip(1).copied()
 }
 
-/// The value of a key that holds it itself.
+/// The value of a key that is stored in its entry.
 pub(crate) fn short(directory: &[u16], wanted: u16) -> Option<u16> {
     keys(directory).find(|&[key, tag, ..]| key == wanted && tag == 0).map(|[.., value]| value)
 }

@@ -1,4 +1,4 @@
-//! Formats that their first bytes tell, where a fixed start does not.
+//! Tests of the first bytes, for formats without fixed magic bytes.
 
 /// First bytes of the legacy format of VTK.
 pub(super) const VTK_LEGACY_START: &[u8] = b"# vtk DataFile";
@@ -12,7 +12,7 @@ pub(super) fn is_vtk_xml(head: &[u8]) -> bool {
             && text.windows(ROOT.len()).any(|window| window == ROOT)
 }
 
-/// Whether it is the header of NIfTI-1 or NIfTI-2: its length comes first, in either byte order.
+/// Whether `head` is a NIfTI-1 or NIfTI-2 header, which starts with its own length in either byte order.
 pub(super) fn is_nifti(head: &[u8]) -> bool {
     const MAGIC_AT: usize = 344;
     let states = |len: u32| head.starts_with(&len.to_le_bytes()) || head.starts_with(&len.to_be_bytes());
@@ -20,12 +20,14 @@ pub(super) fn is_nifti(head: &[u8]) -> bool {
     states(348) && has_magic || states(540) && head.get(4..6) == Some(b"n+")
 }
 
-/// Version 7, byte order 0 or 1, then data type (two bits) and finalization method.
+/// Whether `head` is an SPB header: version 7, byte order 0 or 1, then data type (two bits) and finalization
+/// method.
 pub(super) fn is_spb(head: &[u8]) -> bool {
     matches!(*head, [7, 0 | 1, flags, ..] if flags & 3 < 3 && flags >> 2 <= 4)
 }
 
-/// Version 0, byte order 0 or 1, no compression. Bytes that are all zero are none.
+/// Whether `head` is an SMB header: version 0, byte order 0 or 1, no compression. All-zero bytes do not
+/// count.
 pub(super) fn is_smb(head: &[u8]) -> bool {
     matches!(head, [0, 0 | 1, 0, 0, ..]) && head.iter().any(|&byte| byte != 0)
 }

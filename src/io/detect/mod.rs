@@ -1,5 +1,5 @@
-//! Recognizes formats by the first bytes of an input: one table for all tools. Names say little: data arrives
-//! through pipes, and endings lie.
+//! Recognizes formats by the first bytes of an input: one table for all tools. File names are not used: data
+//! arrives through pipes, and extensions can be wrong.
 
 mod binary;
 mod readers;
@@ -36,7 +36,7 @@ pub enum Format {
     Ply,
     /// Wavefront OBJ.
     Obj,
-    /// Lines of `v`, and maybe `f` behind them: OBJ, or SMA or SPA without a header.
+    /// Lines of `v`, possibly followed by lines of `f`: OBJ, or SMA or SPA without a header.
     VertexLines,
     /// OFF, the object file format of Geomview.
     Off,
@@ -92,9 +92,9 @@ pub enum Format {
 enum Test {
     /// The input starts with one of these.
     Magic(&'static [&'static [u8]]),
-    /// A look at the first bytes, without a byte order mark.
+    /// A test of the first bytes, after a byte order mark if there is one.
     Look(fn(&[u8]) -> bool),
-    /// Text: the lines tell.
+    /// Text, recognized by its lines.
     Lines,
 }
 
@@ -106,7 +106,7 @@ struct Row {
     /// For "TOOL reads ...".
     listed: &'static str,
     test: Test,
-    /// What the user of a tool that does not read the format can do.
+    /// What the user can do if the tool does not read the format.
     hint: &'static str,
 }
 
@@ -125,7 +125,7 @@ const VALUES: &str = "write its values as NRRD or raw numbers first";
 const TO_POINTS: &str = "write points as lines of x y z, or use tess3";
 const TO_STREAM: &str = "convert it first with spconvert";
 
-/// All formats. The first row whose test fits tells what an input is.
+/// All formats. The first row whose test passes is the format of an input.
 const ROWS: [Row; 34] = [
     row(Format::Las, "a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), ""),
     row(Format::Stream, "a spmesh stream", "spmesh streams", Test::Magic(&[b"\x89S"]), ""),
@@ -257,7 +257,7 @@ impl Format {
         ROWS.iter().map(|row| row.format)
     }
 
-    /// What messages call a file of this format, with an article.
+    /// Name of the format in messages, with an article.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name

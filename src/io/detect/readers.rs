@@ -1,4 +1,4 @@
-//! Which tool reads which formats, and what it says of any other.
+//! Which formats each tool reads, and its message for any other.
 
 use spmesh_core::error::{Error, Result};
 
@@ -15,7 +15,7 @@ pub struct Reader {
     pub has_raw: bool,
 }
 
-/// Formats that hold points of space: those of every tool that takes points.
+/// Formats of points in space. Every tool that takes points reads them.
 const POINTS: &[Format] = &[
     Format::Las,
     Format::Text,
@@ -81,7 +81,7 @@ pub const DD4: Reader = Reader {
 /// All of them.
 pub const READERS: [&Reader; 7] = [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &TESS3, &DD4];
 
-/// The reader of a caller that does not say which tool it is.
+/// The reader of a caller that does not name its tool.
 static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true };
 
 impl Default for &'static Reader {
@@ -106,7 +106,7 @@ impl Reader {
         self.formats.iter().any(|list| list.contains(&format))
     }
 
-    /// What the tool says of a file of this format, which starts with `head`.
+    /// The tool's message for a file of this format, which starts with `head`.
     #[must_use]
     pub fn refusal(&self, format: Format, head: &[u8]) -> String {
         let mut listed: Vec<&str> = Vec::new();

@@ -1,15 +1,15 @@
-//! Formats of text, which a line tells that no other format has.
+//! Recognizes text formats by a line that no other format has.
 
 use super::Format;
 
-/// Record names of PDB, without those of atoms: words that start a line of few other texts.
+/// Record names of PDB except ATOM and HETATM: words that rarely start a line of another text.
 const PDB_RECORDS: [&[u8]; 22] = [
     b"HEADER", b"OBSLTE", b"COMPND", b"SOURCE", b"KEYWDS", b"EXPDTA", b"NUMMDL", b"AUTHOR", b"REVDAT",
     b"SPRSDE", b"JRNL", b"REMARK", b"DBREF", b"SEQADV", b"SEQRES", b"MODRES", b"HETNAM", b"FORMUL",
     b"SSBOND", b"CRYST1", b"ORIGX1", b"MODEL",
 ];
 
-/// First words of OFF files that have a vertex in three dimensions per line, whatever follows it.
+/// First words of OFF files with one three-dimensional vertex per line, whatever follows it.
 const OFF_KINDS: [&[u8]; 8] =
     [b"OFF", b"COFF", b"NOFF", b"CNOFF", b"STOFF", b"STCOFF", b"STNOFF", b"STCNOFF"];
 
@@ -28,19 +28,19 @@ pub(super) fn detect(head: &[u8]) -> Format {
     lines.find_map(|line| seen.by_line(line)).unwrap_or_else(|| seen.without_proof())
 }
 
-/// What lines that several formats have were seen.
+/// Which lines that several formats share were seen.
 #[derive(Default)]
 struct Seen {
     vertex: bool,
     face: bool,
-    /// Objects, groups and smoothing: OBJ, if there are vertices, too.
+    /// Objects, groups or smoothing: OBJ if there are vertices too.
     group: bool,
     bounds: bool,
     number: bool,
 }
 
 impl Seen {
-    /// The format that only one has such a line of.
+    /// Notes a line. Returns the format if the lines so far prove one.
     fn by_line(&mut self, line: &[u8]) -> Option<Format> {
         let mut fields = words(line);
         let word = fields.next()?;
@@ -72,7 +72,7 @@ impl Seen {
         (self.vertex && self.group).then_some(Format::Obj)
     }
 
-    /// The format of lines of which none tells.
+    /// The format if no line decided it.
     fn without_proof(&self) -> Format {
         match self {
             Seen { vertex: true, face: true, bounds: true, .. } => Format::Sma,
@@ -88,7 +88,7 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// PDB or mmCIF, if the line is one of theirs.
+/// PDB or mmCIF, if the line proves one of them.
 fn of_molecule(line: &[u8], word: &[u8]) -> Option<Format> {
     let starts_with = |start: &[u8]| word.get(..start.len()).is_some_and(|w| w.eq_ignore_ascii_case(start));
     if starts_with(b"data_") || starts_with(b"loop_") || starts_with(b"_atom_site.") {

@@ -3,11 +3,11 @@
 use spmesh_core::error::{Error, Result};
 use spmesh_model::points::Point2;
 
-/// Most cells of a row, and of a column.
+/// Greatest number of cells in a row or a column.
 const CELLS_MAX: f64 = (1u32 << 31) as f64;
-/// Most steps from a corner of cells that is given: more would not be counted exactly.
+/// Greatest distance of the window from a given anchor, in steps: beyond it, steps cannot be counted exactly.
 const STEPS_MAX: f64 = (1u64 << 48) as f64;
-/// Cells along the longer side of a grid, if nothing is said.
+/// Cells along the longer side of a grid, by default.
 const CELLS_DEFAULT: f64 = 1_000.0;
 
 /// A grid of square cells, in rows from the top (north).
@@ -28,16 +28,17 @@ pub struct Grid {
 /// How large cells are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Cells {
-    /// Their side; sides are at its multiples from an anchor, so that grids of neighbours fit together.
+    /// A given side, with cells aligned to its multiples from an anchor, so that grids of adjacent windows
+    /// fit together.
     Step {
         /// Their side.
         step: f64,
-        /// A corner of cells.
+        /// A corner of a cell.
         anchor: Point2,
     },
-    /// So many columns.
+    /// This many columns.
     Columns(u32),
-    /// So many rows.
+    /// This many rows.
     Rows(u32),
     /// A thousand along the longer side.
     Default,
@@ -59,8 +60,8 @@ impl Grid {
     /// As [`Grid::covering`].
     pub fn of(window: Window, cells: Cells) -> Result<Grid> {
         let [width, height] = [0, 1].map(|axis| window.max[axis] - window.min[axis]);
-        // A number of cells divides the window, however that is rounded: half a cell less never makes one
-        // more.
+        // A given number of cells divides the window exactly. Taking half a cell off its far side keeps
+        // rounding from adding a column or row.
         let exactly = |step: f64, counts: [Option<u32>; 2]| {
             let inner =
                 [0, 1].map(|axis| window.max[axis] - if counts[axis].is_some() { 0.5 * step } else { 0.0 });
@@ -74,11 +75,12 @@ impl Grid {
         }
     }
 
-    /// The least grid that covers a window and has sides of cells at multiples of `step` from `anchor`: so
-    /// grids of windows of one area fit together.
+    /// The smallest grid that covers a window with cells aligned to multiples of `step` from `anchor`, so
+    /// that grids of adjacent windows fit together.
     ///
     /// # Errors
-    /// Usage, if the step is not above zero, numbers are not finite, or there are too many cells.
+    /// Usage, if the step is not above zero, numbers are not finite, the anchor is too far away, or there are
+    /// too many cells.
     pub fn covering(window: Window, step: f64, anchor: Point2) -> Result<Grid> {
         if !anchor.iter().all(|number| number.is_finite()) {
             let [x, y] = anchor;
@@ -100,7 +102,7 @@ impl Grid {
             )));
         }
         let (low, high) = (first.map(f64::floor), last.map(f64::ceil));
-        // A window without width has one column.
+        // A window of width zero gets one column, and likewise one row.
         let counts = [0, 1].map(|axis| (high[axis] - low[axis]).max(1.0));
         if counts.iter().any(|&count| count.is_nan() || count > CELLS_MAX) {
             return Err(Error::usage(format!(

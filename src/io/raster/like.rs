@@ -1,4 +1,4 @@
-//! The grid of a GeoTIFF that is there already.
+//! The grid of an existing GeoTIFF.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -15,7 +15,7 @@ impl Grid {
     /// The cells of a GeoTIFF.
     ///
     /// # Errors
-    /// If it cannot be read, is no GeoTIFF, or has cells that are not square or not along the axes.
+    /// If it cannot be read, is not a GeoTIFF, or has cells that are not square or not along the axes.
     pub fn of_file(path: &Path) -> Result<Grid> {
         read(path).map_err(|error| error.of_input(path.display().to_string()))
     }
@@ -38,7 +38,7 @@ fn read(path: &Path) -> Result<Grid> {
         return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
     }
     let keys = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
-    // A place may be that of a centre instead of a corner.
+    // The tie point may be the centre of a cell instead of its corner.
     let half = if is_of_points(&keys) { 0.5 * width } else { 0.0 };
     if width != height {
         return Err(Error::usage(format!("its cells are {width} by {height}, ours are square")));

@@ -1,7 +1,7 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
-//! `grid` says where cells are, and `like` where those of a file are; `geotiff` and `ascii` write files, with
-//! a number of `no_data`; `relief` has what is made of gradients.
+//! `grid` places cells, and `like` takes a grid from a file; `geotiff` and `ascii` write files, with
+//! `no_data` for cells without data; `relief` derives slope, aspect and shading from gradients.
 
 mod ascii;
 mod geotiff;
@@ -27,7 +27,7 @@ pub enum RasterFormat {
     /// Tiles of 256 by 256 cells, compressed; BigTIFF if it may be longer than 4 GiB.
     #[default]
     GeoTiff,
-    /// Text of ESRI, with as many digits as tell f32 values apart.
+    /// ESRI ASCII grid, with as many digits as distinguish f32 values.
     Ascii,
 }
 
@@ -36,35 +36,34 @@ pub enum RasterFormat {
 pub struct RasterOptions {
     /// Their format.
     pub format: RasterFormat,
-    /// What cells have where nothing is known.
+    /// The value of cells without data.
     pub no_data: NoData,
-    /// Whether a GeoTIFF has overviews, and is laid out for readers at the other end of a network: overviews
-    /// stand before the image, and tiles in rows.
+    /// Whether a GeoTIFF has overviews, and a layout for remote readers: overviews before the image, and
+    /// tiles row by row.
     pub has_overviews: bool,
-    /// Where temporary files go; the system's folder for these if `None`.
+    /// Folder of temporary files; the system's if `None`.
     pub temp_dir: Option<PathBuf>,
 }
 
-/// What file a raster becomes.
+/// A raster file to write.
 #[derive(Debug, Clone, Copy)]
 pub struct RasterFile<'a> {
     /// How it is written.
     pub options: &'a RasterOptions,
     /// Its cells.
     pub grid: Grid,
-    /// Where on the earth these are.
+    /// Its coordinate reference system.
     pub crs: &'a Crs,
-    /// Whether cells have elevations, which the system may say the unit of.
+    /// Whether cells hold elevations, whose unit the coordinate reference system may state.
     pub are_elevations: bool,
     /// How overviews are made.
     pub reduction: Reduction,
-    /// Tiles wait in a temporary file until all have come, as they do for overviews, and for outputs that
-    /// cannot be sought: they can be read again.
+    /// Whether tiles are staged in a temporary file until all have come, so that they can be read back. Files
+    /// with overviews and outputs that cannot seek are always staged.
     pub is_staged: bool,
 }
 
-/// Writes a file: `row` is asked for the values of each row, from the top; NaN is a cell where nothing is
-/// known.
+/// Writes a file. `row` fills in the values of each row, from the top; NaN marks cells without data.
 ///
 /// Memory: 256 rows.
 ///

@@ -1,8 +1,8 @@
-//! The number that stands for no data.
+//! The number that marks cells without data.
 
 use std::fmt;
 
-/// The value of cells without data, or NaN.
+/// The value of cells without data. May be NaN.
 #[derive(Debug, Clone, Copy)]
 pub struct NoData(pub f32);
 
@@ -13,16 +13,16 @@ impl Default for NoData {
 }
 
 impl NoData {
-    /// What is written for a value, of which NaN says that nothing is known. A value that is this number by
-    /// chance, or so near that programs would take it for it (GDAL: within four parts in eight million),
-    /// moves away from it.
+    /// The number written for a value; NaN means no data. A value that equals the no-data number, or is so
+    /// near that programs take it for that number (GDAL: a relative difference below `4.0 * f32::EPSILON`),
+    /// is moved away from it.
     #[inline]
     #[must_use]
     pub fn stored(self, value: f32) -> f32 {
         if value.is_nan() {
             self.0
         } else if (value - self.0).abs() < self.room() {
-            // From the number itself towards zero, so that it stays in range.
+            // A value that equals the number moves towards zero, so that it stays in range.
             let sign = if value == self.0 { -self.0 } else { value - self.0 };
             self.0 + self.room().copysign(sign)
         } else {
@@ -30,12 +30,12 @@ impl NoData {
         }
     }
 
-    /// How far values must be from the number: sixteen units in its last place.
+    /// Least distance of values from the number: 16 units in its last place.
     fn room(self) -> f32 {
         16.0 * (self.0.abs() - self.0.abs().next_down())
     }
 
-    /// The value that was written as a number.
+    /// The value of a stored number; NaN if the number means no data.
     #[inline]
     #[must_use]
     pub fn known(self, stored: f32) -> f32 {

@@ -6,15 +6,15 @@ pub fn slope([p, q]: [f64; 2]) -> f64 {
     p.hypot(q).atan().to_degrees()
 }
 
-/// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; not a number
-/// where the surface is level.
+/// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; NaN where the
+/// surface is level.
 #[must_use]
 pub fn aspect([p, q]: [f64; 2]) -> f64 {
     if p == 0.0 && q == 0.0 {
         return f64::NAN;
     }
     let degrees = (-p).atan2(-q).to_degrees().rem_euclid(360.0);
-    // A full turn is none, also if only 32 bits make it one.
+    // 360 becomes 0, also where only rounding to f32 makes it 360.
     if degrees as f32 == 360.0 { 0.0 } else { degrees.abs() }
 }
 
@@ -34,8 +34,8 @@ impl Light {
         Light { towards: [azimuth.sin() * along, azimuth.cos() * along, altitude.sin()] }
     }
 
-    /// How bright a surface without gloss is (Lambert): from 0, where it faces away, to 255, where it faces
-    /// the light.
+    /// Brightness of a matt (Lambertian) surface: from 0, where it faces away from the light, to 255, where
+    /// it faces the light.
     #[must_use]
     pub fn shade(&self, [p, q]: [f64; 2]) -> f64 {
         let [east, north, up] = self.towards;

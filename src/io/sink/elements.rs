@@ -1,4 +1,4 @@
-//! Blocks of 32 elements behind a descriptor, as SMB and SPB have them.
+//! Blocks of 32 elements after a descriptor, as in SMB and SPB.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ const ELEMENTS_PER_BLOCK: u32 = 32;
 
 /// Collects elements of equal length and writes them block by block, little-endian.
 ///
-/// A block is a u32 whose bit i tells whether element i is a point (1) or the other sort (0), then the
+/// A block is a u32 whose bit i tells whether element i is a point (1) or of the other type (0), then the
 /// elements. All blocks but the last have 32 elements; the last has fewer, possibly none.
 pub(super) struct ElementBlocks<W> {
     output: W,

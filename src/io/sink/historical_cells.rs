@@ -5,12 +5,12 @@ use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Header};
 
-/// The tree of a stream, as a box of world coordinates whose halves are the cells.
+/// The finalization tree of a stream as a box of world coordinates, which is halved into cells.
 ///
-/// SPA and SPB state no tree: it is their bounding box, halved again and again, a point on a middle belonging
-/// to the upper half. For f64 coordinates the box is the cube itself, whose middles are exact. Integer
-/// coordinates become world coordinates by rounding, so their box is moved down by half a step: then
-/// no point lies near a border, and no rounding moves one across.
+/// SPA and SPB state no tree. Readers halve the bounding box again and again; a point on a midplane belongs
+/// to the upper half. For f64 coordinates the box is the cube itself, whose midplanes are exact. Integer
+/// coordinates are rounded to world coordinates, so their box is moved down by half a step: then no point
+/// lies near a midplane, and rounding cannot move a point across.
 pub(super) struct HistoricalCells {
     tree: CellTree,
     min: Point,
@@ -20,7 +20,8 @@ pub(super) struct HistoricalCells {
 }
 
 impl HistoricalCells {
-    /// The tree of the header as a box; `None` if there is none, or if its cells split the steps of the grid.
+    /// The box of the header's tree; `None` if there is no tree, or if its cells are not aligned to grid
+    /// steps.
     pub(super) fn of(header: &Header) -> Option<Self> {
         let tree = header.tree?;
         let (mut min, mut max) = tree.corners(CellCode::ROOT);
@@ -55,7 +56,7 @@ impl HistoricalCells {
         self.tree.dims() - 1
     }
 
-    /// Index of a cell; `None`, and counted, if it is too deep to have one.
+    /// Index of a cell; `None` if it is too deep to have one. Counts cells without an index.
     pub(super) fn index(&mut self, cell: CellCode) -> Option<i32> {
         self.is_complete |= cell == CellCode::ROOT;
         let index = index_of(&self.tree, cell);
@@ -63,7 +64,7 @@ impl HistoricalCells {
         index
     }
 
-    /// Index of the root, if the stream did not say that it is final: readers of old wait for that.
+    /// Index of the root if the stream did not finalize the root: old readers wait for its tag.
     pub(super) fn last_index(&self) -> Option<i32> {
         (!self.is_complete).then_some(0)
     }
@@ -73,7 +74,7 @@ impl HistoricalCells {
         self.skipped
     }
 
-    /// A quadtree says nothing of z: the height of the box is that of the points, where known.
+    /// A quadtree has no z extent: the box takes the height of the points, where known.
     fn set_height(&mut self, header: &Header) {
         let (low, high) = match header.bounds {
             Some(bounds) if header.has_elevation => {

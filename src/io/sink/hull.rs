@@ -11,25 +11,26 @@ use spmesh_model::simplex::TETRAHEDRON_FACETS;
 use spmesh_stream::{Event, Header, Kind, LiveVertices, Patch, Totals};
 
 /// The facets of a positively oriented tetrahedron, each counterclockwise seen from outside. The facet
-/// opposite to corner 1 begins with its last corner: the bytes of the files depend on where a facet begins.
+/// opposite corner 1 is rotated to begin with its last corner, because output bytes depend on where a facet
+/// begins.
 const FACETS: [[usize; 3]; 4] = {
     let [first, [a, b, c], third, fourth] = TETRAHEDRON_FACETS;
     [first, [c, a, b], third, fourth]
 };
 
-/// A facet that was met once: counterclockwise seen from outside of its tetrahedron.
+/// A facet met once so far: counterclockwise seen from outside its tetrahedron.
 type Facet = [(u64, Point); 3];
 
-/// Hands the facets that belong to one tetrahedron only to a sink of triangle meshes. The vertices are those
-/// of these facets, in the order of their ids in the stream, numbered anew.
+/// Passes the facets that belong to only one tetrahedron to a sink of triangle meshes. The vertices are those
+/// of these facets, renumbered in the order of their ids in the stream.
 ///
-/// Memory: the live vertices and the facets that were met once, at the end those of the hull.
+/// Memory: the live vertices and the facets met once so far, which at the end are those of the hull.
 pub struct HullSink<S> {
     surface: S,
-    /// What notices call the format of the surface.
+    /// Name of the surface's format in notices.
     format: &'static str,
     live: LiveVertices<Point>,
-    /// By the ids of the vertices, sorted.
+    /// Keyed by the sorted ids of the vertices.
     open: HashMap<[u64; 3], Facet>,
     facets: usize,
 }

@@ -12,7 +12,7 @@ use super::{EventSink, expect_kind, lost_of_header, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Event, Header, Kind, Totals};
 
-/// Greatest number of a vertex, and greatest reference, in version 2.
+/// Greatest vertex number and greatest reference in version 2.
 const NUMBER_MAX: u64 = i32::MAX as u64;
 
 /// Writes points or a mesh as Medit's text. The labels of vertices become their references, if all of them

@@ -1,4 +1,4 @@
-//! Writers of every format that a stream can be converted to, fed with the events of a stream.
+//! Writers of every format that a stream can be converted to. Their input is the events of a stream.
 
 mod elements;
 mod historical_cells;
@@ -40,13 +40,13 @@ use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 
 /// An output that takes the events of a stream, whatever its format.
 pub trait EventSink {
-    /// Writes an event; the last one is [`Event::End`], with which the output is complete and flushed.
+    /// Writes an event. The last event is [`Event::End`]; after it the output is complete and flushed.
     ///
     /// # Errors
-    /// If the event cannot be said in the format, or writing fails.
+    /// If the format cannot express the event, or writing fails.
     fn event(&mut self, event: &Event) -> Result<()>;
 
-    /// What of the stream was lost, for the user, after the end.
+    /// Notices for the user about what the format could not hold. Complete after the end.
     fn notices(&self) -> Vec<String>;
 }
 
@@ -54,7 +54,7 @@ fn write_error(cause: std::io::Error) -> Error {
     Error::io("writing", cause)
 }
 
-/// Refuses a stream of a kind that `format` does not hold.
+/// Rejects a stream of a kind that `format` does not hold.
 fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
     if kinds.contains(&header.kind) {
         return Ok(());
@@ -67,7 +67,7 @@ fn expect_kind(header: &Header, format: &str, kinds: &[Kind]) -> Result<()> {
     )))
 }
 
-/// What a format loses that has no room for all of the header.
+/// Notices about header fields that the format cannot hold.
 fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     let crs = (header.crs != Crs::Unknown).then(|| format!("{format} holds no CRS: dropped"));
     let is_grid = header.coordinates != Coordinates::F64;
@@ -79,7 +79,7 @@ fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     crs.into_iter().chain(grid).collect()
 }
 
-/// What a historical points format loses.
+/// Notices about what a historical points format cannot hold.
 fn lost_of_points(header: &Header, format: &str, cells: Option<&HistoricalCells>) -> Vec<String> {
     let mut lost = lost_of_header(header, format);
     match cells {

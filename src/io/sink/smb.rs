@@ -15,8 +15,8 @@ const START: [u8; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0
 
 /// Writes a triangle mesh as SMB, little-endian, vertices before their triangles.
 ///
-/// SMB has 32-bit coordinates and 31-bit vertex numbers, and says that a vertex is final only
-/// at its last use; notices tell what that lost.
+/// SMB has 32-bit coordinates and 31-bit vertex numbers, and can finalize a vertex only at its last use;
+/// notices report what that lost.
 pub struct SmbSink<W> {
     blocks: ElementBlocks<W>,
     header: Header,

@@ -9,8 +9,8 @@ use spmesh_core::error::Result;
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{Event, Header, Kind};
 
-/// Writes points and finalization tags as SPA, in decimals that lose nothing. The bounding box is that of
-/// the finalization tree, where there is one, because its halves are the cells.
+/// Writes points and finalization tags as SPA, in decimals that lose nothing. If there is a finalization
+/// tree, the bounding box is the tree's, because its halves are the cells.
 pub struct SpaSink<W> {
     output: W,
     header: Header,

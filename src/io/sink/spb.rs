@@ -13,11 +13,11 @@ use spmesh_stream::{Event, Header, Kind};
 
 const VERSION: u8 = 7;
 const LITTLE_ENDIAN: u8 = 0;
-/// Coordinates of 64 bits.
+/// 64-bit floating-point coordinates.
 const SP_DOUBLE: u8 = 2;
 
-/// Writes points and finalization tags as SPB, little-endian, with coordinates of 64 bits. The bounding
-/// box is that of the finalization tree, where there is one, because its halves are the cells.
+/// Writes points and finalization tags as SPB, little-endian, with f64 coordinates. If there is a
+/// finalization tree, the bounding box is the tree's, because its halves are the cells.
 pub struct SpbSink<W> {
     blocks: ElementBlocks<W>,
     header: Header,

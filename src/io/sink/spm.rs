@@ -6,7 +6,7 @@ use super::EventSink;
 use spmesh_core::error::Result;
 use spmesh_stream::{Event, Header, StreamWriter};
 
-/// Writes a stream of the events it is given.
+/// Writes its events as a binary stream.
 pub struct SpmSink<W: Write> {
     writer: Option<StreamWriter<W>>,
 }

@@ -1,4 +1,4 @@
-//! What waits in temporary files until its counts are known.
+//! Data that waits in temporary files until its counts are known.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, Write};
@@ -39,7 +39,7 @@ impl Spool {
         Ok(())
     }
 
-    /// Reads all in records of `N` bytes.
+    /// Reads all bytes as records of `N` bytes.
     pub(super) fn records<const N: usize>(&mut self) -> Result<Records<'_, N>> {
         Ok(Records(self.rewound()?))
     }

@@ -1,4 +1,4 @@
-//! Triangles as the historical meshes say them: with the corners that are used for the last time.
+//! Triangles with last-use flags, as the historical mesh formats store them.
 
 use spmesh_stream::Patch;
 
@@ -9,7 +9,8 @@ pub(super) struct Corner {
     pub(super) is_final: bool,
 }
 
-/// The triangles of a patch with their final corners, and the vertices that it finalizes without a triangle.
+/// The triangles of a patch with their final corners, and the vertices that it finalizes but that no triangle
+/// uses.
 pub(super) fn final_corners(patch: &Patch) -> (Vec<[Corner; 3]>, Vec<u64>) {
     let mut ends = vec![false; patch.vertices()];
     patch.finalized.iter().for_each(|&local| ends[local as usize] = true);

@@ -21,7 +21,7 @@ pub(super) fn points(output: &mut impl Write, points: &Points4) -> Result<()> {
     Ok(())
 }
 
-/// Lines `c4` or `i4`, then `n4`, and what is too long for one of them.
+/// Lines `c4` or `i4`, then `n4`; lists too long for a line continue in lines `+4`.
 pub(super) fn cells(output: &mut impl Write, cells: &Cells4) -> Result<()> {
     for cell in cells.iter() {
         numbers(output, if cell.is_infinite { "i4" } else { "c4" }, cell.vertices)?;
@@ -35,7 +35,7 @@ pub(super) fn simplices(output: &mut impl Write, simplices: &[[u32; 5]]) -> Resu
     simplices.iter().try_for_each(|simplex| numbers(output, "s4", simplex))
 }
 
-/// A line of numbers counted from 1, with further lines for those beyond what one line has.
+/// A line of numbers counted from 1, continued in lines `+4` after every [`TEXT_NUMBERS_MAX`] numbers.
 fn numbers(output: &mut impl Write, word: &str, numbers: &[u32]) -> Result<()> {
     let (first, _) = numbers.split_at(numbers.len().min(TEXT_NUMBERS_MAX));
     let rest = numbers[first.len()..].chunks(TEXT_NUMBERS_MAX).map(|numbers| ("+4", numbers));

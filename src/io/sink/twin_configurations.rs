@@ -7,7 +7,7 @@ use spmesh_core::error::Result;
 use spmesh_model::configurations::FARAWAY;
 use spmesh_stream::{ConfigurationBlock, claim_name};
 
-/// The degree and the interior set that the last lines were of.
+/// Degree and interior set of the lines written last.
 #[derive(Debug, Default)]
 pub(super) struct OpenGroup {
     degree: Option<u32>,
@@ -15,7 +15,7 @@ pub(super) struct OpenGroup {
 }
 
 impl OpenGroup {
-    /// Lines `degree` and `in` where something new begins, `on` and `line`.
+    /// Writes lines `degree` and `in` where degree or interior set change, and lines `on` and `line`.
     pub(super) fn write(&mut self, output: &mut impl Write, block: &ConfigurationBlock) -> Result<()> {
         if self.degree != Some(block.degree) {
             let claim = claim_name(block.claim);

@@ -21,7 +21,7 @@ pub(super) fn functions(output: &mut impl Write, functions: &[Function]) -> Resu
     Ok(())
 }
 
-/// A line each.
+/// A line `coefficient` for each.
 pub(super) fn coefficients(output: &mut impl Write, coefficients: &[f64]) -> Result<()> {
     coefficients.iter().try_for_each(|number| writeln!(output, "coefficient {number}")).map_err(write_error)
 }

@@ -1,7 +1,7 @@
 //! Writes VTU, the XML format of VTK for unstructured grids, with the arrays appended as raw bytes.
 //!
 //! Source: "VTK XML file formats" (docs.vtk.org). An array in the appended data is its length in bytes, here
-//! a u64, and then its values; `offset` counts from behind the underscore that starts them.
+//! a u64, then its values; `offset` counts from the byte after the underscore that starts the appended data.
 
 use std::io::Write;
 use std::path::Path;
@@ -32,7 +32,7 @@ pub struct VtuSink<W> {
 /// What an array holds.
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// What each vertex has: labels or values.
+    /// Data of the vertices: labels or values.
     Data,
     Vertices,
     Connectivity,
@@ -43,7 +43,7 @@ pub(super) enum Content {
 /// One array of the appended data.
 pub(super) struct Array {
     pub(super) content: Content,
-    /// Its element, and the one around it.
+    /// Attributes of its element, and the tags before and after it.
     attributes: &'static str,
     open: &'static str,
     close: &'static str,
@@ -51,17 +51,17 @@ pub(super) struct Array {
     pub(super) len: u64,
 }
 
-/// Numbers and sort of the cells.
+/// Counts and type of the cells.
 pub(super) struct Cells {
     pub(super) vertices: u64,
     pub(super) cells: u64,
     /// Vertices of a cell.
     pub(super) corners: u64,
-    /// Number that VTK has for the sort of cell.
+    /// VTK's number of the cell type.
     pub(super) code: u8,
 }
 
-/// What each vertex has, 8 bytes of it: the element around its array, and the array's own attributes.
+/// Data of 8 bytes per vertex: the tag around its array, and the array's attributes.
 pub(super) struct Data {
     pub(super) open: &'static str,
     pub(super) attributes: &'static str,
@@ -116,7 +116,7 @@ impl<W: Write> VtuSink<W> {
     }
 }
 
-/// All that stands before the appended data.
+/// Everything before the appended data.
 pub(super) fn head(cells: &Cells, arrays: &[Array]) -> String {
     let Cells { vertices, cells: count, .. } = cells;
     let mut text = format!("{START}<Piece NumberOfPoints=\"{vertices}\" NumberOfCells=\"{count}\">\n");

@@ -1,4 +1,4 @@
-//! Bytes written as base64.
+//! Decodes base64.
 
 use std::io::{self, BufRead, Read};
 
@@ -7,14 +7,14 @@ use data_encoding::BASE64;
 /// Characters decoded at once, a multiple of four.
 const CHUNK_LEN: usize = 1 << 15;
 
-/// Decodes base64 up to the first `<` or the end of the input. White space does not count, and what is
-/// encoded may end with padding and go on: VTK encodes the lengths of data apart from data.
+/// Decodes base64 up to the first `<` or the end of the input. White space is ignored. More groups may follow
+/// padding, because VTK encodes lengths and data separately, one after the other.
 pub(super) struct Base64Reader<R> {
     input: R,
-    /// Characters that were not decoded yet.
+    /// Characters not yet decoded.
     encoded: Vec<u8>,
     decoded: Vec<u8>,
-    /// Decoded bytes that were given out.
+    /// Decoded bytes already returned.
     used: usize,
     /// Characters that were decoded.
     done: u64,
@@ -25,8 +25,8 @@ impl<R: BufRead> Base64Reader<R> {
         Base64Reader { input, encoded: Vec::new(), decoded: Vec::new(), used: 0, done: 0 }
     }
 
-    /// Gathers the next characters, behind those that are no group of four yet; fewer than [`CHUNK_LEN`] only
-    /// at the end.
+    /// Fills `encoded` up to [`CHUNK_LEN`] characters, after any incomplete group of four from the last call;
+    /// fewer only at the end.
     fn gather(&mut self) -> io::Result<()> {
         while self.encoded.len() < CHUNK_LEN {
             let bytes = match self.input.fill_buf() {
@@ -46,7 +46,7 @@ impl<R: BufRead> Base64Reader<R> {
         Ok(())
     }
 
-    /// Decodes all groups of four characters.
+    /// Decodes all complete groups of four characters.
     fn decode(&mut self) -> io::Result<()> {
         let invalid = |at: usize, what: &str| {
             let message = format!("the base64 data {what} at character {}", self.done + at as u64);

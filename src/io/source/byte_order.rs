@@ -1,4 +1,4 @@
-//! Byte order of binary files, which those of Isenburg often state wrongly.
+//! Byte order of binary files. Isenburg's files often state it wrongly.
 
 use spmesh_core::error::Result;
 
@@ -22,7 +22,7 @@ impl ByteOrder {
         }
     }
 
-    /// The first `N` bytes in little-endian order; there must be as many.
+    /// The first `N` bytes in little-endian order; `bytes` must have at least `N`.
     fn little<const N: usize>(self, bytes: &[u8]) -> [u8; N] {
         let mut bytes: [u8; N] = bytes[..N].try_into().expect("N bytes");
         if self == ByteOrder::Big {
@@ -48,11 +48,11 @@ impl ByteOrder {
     }
 }
 
-/// Parses the start of a file in the byte order in which it makes most sense, as `plausibility` tells; in the
-/// one that its second byte states, if both make the same.
+/// Parses the start of a file in the byte order with the higher `plausibility`; if they are equal, in the
+/// order that the second byte states.
 ///
 /// # Errors
-/// That of the stated order, if the start cannot be parsed in either.
+/// The error of the stated order, if the start cannot be parsed in either.
 pub(super) fn parse_in_either<H>(
     head: &[u8],
     parse: impl Fn(ByteOrder) -> Result<H>,

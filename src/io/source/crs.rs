@@ -1,4 +1,4 @@
-//! Coordinate reference systems: a short name for people, and the one that files share.
+//! Coordinate reference systems: short names, and the system that files share.
 
 use crate::geo_keys::{self, CITATION, GEOGRAPHIC_TYPE, PROJECTED_TYPE};
 use spmesh_core::error::{Error, Result};
@@ -22,7 +22,7 @@ pub fn crs_name(crs: &Crs) -> Option<String> {
     }
 }
 
-/// `crs`, unless it is too long for the header of a stream: then nothing, with a notice.
+/// `crs`, or [`Crs::Unknown`] with a notice if it is too long for the header of a stream.
 pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     let len = match &crs {
         Crs::Unknown => 0,
@@ -38,8 +38,8 @@ pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     Crs::Unknown
 }
 
-/// The system that all files share, each given by its name and its system. A file that states none takes that
-/// of the others.
+/// The system that all `files`, given as (name, system), share. A file that states none takes the system of
+/// the others.
 ///
 /// # Errors
 /// Usage, if two systems differ.
@@ -77,7 +77,7 @@ fn quoted(text: &str) -> Option<&str> {
     text.split('"').nth(1).filter(|name| !name.is_empty())
 }
 
-/// The code of the outermost AUTHORITY (or ID, as newer text calls it).
+/// The code of the outermost AUTHORITY (WKT 1) or ID (WKT 2).
 fn wkt_code(text: &str) -> Option<String> {
     let (mut depth, mut in_quotes) = (0, false);
     for (at, symbol) in text.char_indices() {
@@ -99,7 +99,7 @@ fn wkt_code(text: &str) -> Option<String> {
     None
 }
 
-/// What the brackets hold that follow `word` at the start of `text`.
+/// The text in the brackets after `word`, if `text` starts with `word`.
 fn arguments<'t>(text: &'t str, word: &str) -> Option<&'t str> {
     let found = text.get(..word.len())?;
     let rest = text[found.len()..].trim_start().strip_prefix(['[', '('])?;
@@ -110,7 +110,7 @@ fn geo_keys_code(directory: &[u8]) -> Option<String> {
     let numbers = geo_keys::numbers(directory);
     let code =
         |wanted| geo_keys::short(&numbers, wanted).filter(|&value| value != 0 && value != USER_DEFINED);
-    // A projected system defined by other keys is none of EPSG's, although its geographic base is.
+    // A projected system defined by other keys has no EPSG code, even if its geographic base has one.
     let is_projected = geo_keys::keys(&numbers).any(|[key, ..]| key == PROJECTED_TYPE);
     let code = if is_projected { code(PROJECTED_TYPE) } else { code(GEOGRAPHIC_TYPE) };
     code.map(|code| format!("EPSG:{code}"))

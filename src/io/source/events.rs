@@ -1,4 +1,4 @@
-//! What every input that can be converted gives: a header, then events as of a spmesh stream.
+//! The interface of every convertible input: a header, then the events of a spmesh stream.
 
 use std::io::Read;
 
@@ -19,7 +19,7 @@ pub trait EventSource {
     /// Adds input and position to an error about the event that was read last.
     fn locate(&self, error: Error) -> Error;
 
-    /// What the input said that the events do not say, for the user.
+    /// Notices for the user about content of the input that the events do not carry.
     fn notices(&self) -> Vec<String> {
         Vec::new()
     }

@@ -1,18 +1,18 @@
 //! One grid for files of integer coordinates.
 //!
-//! Axes that geometry mixes (x and y; all three in three dimensions) need one quantum, so that the exact
-//! predicates can work on the integers themselves. Files are brought to a common grid only where that rounds
-//! nothing.
+//! Axes that take part in the geometry (x and y; all three in three dimensions) need one quantum, so that the
+//! exact predicates can work on the integers themselves. Files are brought to a common grid only where
+//! nothing is rounded.
 
 use super::placement::{RATIO_TOLERANCE, whole_steps};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Coordinates;
 
-/// Largest denominator, and largest number of quanta, that a scale may have to count as a multiple.
+/// Greatest numerator and denominator of a ratio of scales that counts as a small fraction.
 const MULTIPLIER_MAX: f64 = 10_000.0;
 
-/// What the grid must serve: the coordinates of one file.
+/// A file that the common grid must serve.
 pub(super) struct Member {
     pub(super) name: String,
     pub(super) coordinates: Coordinates,
@@ -36,7 +36,7 @@ pub(super) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
     let Some(&first) = grids.first() else { return Ok(Coordinates::F64) };
     let mut scale = first.0;
     for (member, grid) in members.iter().zip(&grids) {
-        // Axes that have one scale in each file keep having one: they go through the same steps.
+        // Geometric axes keep one scale, because all of them go through the same steps.
         for (scale, other) in scale.iter_mut().zip(grid.0) {
             *scale = common_measure(*scale, other).ok_or_else(|| conflict(&members[0], member))?;
         }
@@ -50,7 +50,7 @@ pub(super) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
     fit(members, scale, first.1)
 }
 
-/// The grid with an offset such that the stated boxes fit 32 bits: that of the first file where possible.
+/// The grid with an offset for which the stated boxes fit 32 bits: the first file's offset where possible.
 fn fit(members: &[Member], scale: Point, offset: Point) -> Result<Coordinates> {
     let grid = Coordinates::I32 { scale, offset };
     if members.iter().all(|member| member.coordinates == grid) {
@@ -93,7 +93,7 @@ fn fits(bounds: &Bounds) -> bool {
     bounds.min.iter().chain(&bounds.max).all(|value| range.contains(value))
 }
 
-/// Scale and offset of a grid whose geometric axes have one scale; `None` if there is none.
+/// Scale and offset of a grid whose geometric axes share one scale; `None` if they have none in common.
 fn one_quantum(coordinates: &Coordinates, dims: u8) -> Option<(Point, Point)> {
     let Coordinates::I32 { scale, offset } = coordinates else { return None };
     let axes = 0..usize::from(dims);
@@ -103,7 +103,7 @@ fn one_quantum(coordinates: &Coordinates, dims: u8) -> Option<(Point, Point)> {
     Some((scale, *offset))
 }
 
-/// The largest length of which both are whole multiples; `None` if the multiples are not small.
+/// The greatest length of which both are integer multiples; `None` if the multiples are not small.
 fn common_measure(a: f64, b: f64) -> Option<f64> {
     if a == b {
         return Some(a);

@@ -1,4 +1,4 @@
-//! The one gzip layer: inputs as they are, or compressed with gzip, which the first bytes tell.
+//! The one gzip layer: inputs that may be compressed with gzip, which their first bytes tell.
 
 use std::io::{self, BufReader, Chain, Cursor, ErrorKind, Read};
 
@@ -10,7 +10,7 @@ const MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
 
-/// An input of which the first bytes were looked at.
+/// An input whose first bytes were read to recognize it.
 type Whole<R> = Chain<Cursor<Vec<u8>>, R>;
 
 /// The plain bytes of an input, compressed with gzip or not.
@@ -66,7 +66,8 @@ impl<R: Read> Gunzip<R> {
         Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
     }
 
-    /// Says where in the compressed data decompression failed, and marks the failure as one of the data.
+    /// Names the byte of the compressed data where decompression failed, and makes the error
+    /// [`ErrorKind::InvalidData`]. Errors of reading stay as they are.
     #[cold]
     fn locate(&self, error: io::Error) -> io::Error {
         let input = self.decoder.get_ref();

@@ -31,7 +31,7 @@ struct Source {
     content: Content,
 }
 
-/// What a file is, with what of its header a pass needs.
+/// The format of a file, with the parts of its header that a pass needs.
 #[derive(Debug)]
 enum Content {
     Las(Box<LasHeader>),
@@ -59,12 +59,12 @@ impl Input {
     /// Opens `paths` ("-" is standard input), recognizes each file by its content, reads its header, and
     /// finds the encoding that all points share.
     ///
-    /// Cost: the headers; what cannot be read twice, and compressed files that are not read in order, are
-    /// copied to unlinked temporary files.
+    /// Cost: the headers. Inputs that cannot be read twice, and compressed files of formats that are not read
+    /// sequentially, are copied to unlinked temporary files.
     ///
     /// # Errors
-    /// If a file cannot be opened or its header is damaged (the file is named), or the files or options do
-    /// not go together ([`spmesh_core::error::ErrorKind::Usage`]).
+    /// If a file cannot be opened or its header is damaged (the file is named), or the files or options are
+    /// incompatible ([`spmesh_core::error::ErrorKind::Usage`]).
     pub fn open(paths: &[PathBuf], options: &SourceOptions) -> Result<Input> {
         check_options(paths, options)?;
         let mut notices = Vec::new();
@@ -75,8 +75,8 @@ impl Input {
         Input::of_sources(sources, options, notices)
     }
 
-    /// As `open`, from all that `input` gives, which is copied to an unlinked temporary file; `name` is what
-    /// messages call it.
+    /// As `open`, from the bytes of `input`, which are copied to an unlinked temporary file. Messages call
+    /// the input `name`.
     ///
     /// # Errors
     /// As [`Input::open`], and if `input` cannot be read.
@@ -85,7 +85,7 @@ impl Input {
         Input::of_origin(origin, name.to_string(), options)
     }
 
-    /// As `open`, from the bytes of one file; `name` is what messages call it.
+    /// As `open`, from the bytes of one file. Messages call it `name`.
     pub(super) fn of_origin(origin: Origin, name: String, options: &SourceOptions) -> Result<Input> {
         check_options(&[PathBuf::from(&name)], options)?;
         let mut notices = Vec::new();
@@ -104,7 +104,7 @@ impl Input {
         &self.description
     }
 
-    /// What the user should know: spools, and what was odd in the files.
+    /// Notices for the user: spools, and oddities in the files.
     #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
@@ -125,7 +125,7 @@ impl Input {
         })
     }
 
-    /// What messages about all files call them: the first one, and the number of the others.
+    /// Name of the whole input in messages: the first file, and the number of other files.
     #[must_use]
     pub fn name(&self) -> String {
         let first = &self.sources[0].name;
@@ -183,7 +183,7 @@ impl Source {
         Ok(source)
     }
 
-    /// Refuses what the file cannot give.
+    /// Rejects options that the file's format cannot serve.
     fn check(&self, options: &SourceOptions) -> Result<()> {
         if !matches!(self.content, Content::Las(_)) {
             if !options.keep_class.is_empty() || !options.drop_class.is_empty() {
@@ -219,7 +219,7 @@ impl Source {
     }
 }
 
-/// What a file is, and where its bytes are.
+/// The format of a file, and where its bytes are.
 struct Found {
     origin: Origin,
     /// `None` for raw numbers.
@@ -227,8 +227,8 @@ struct Found {
     is_compressed: bool,
 }
 
-/// Recognizes a file. If it is compressed and its format is not read in order, it is decompressed to a
-/// temporary file.
+/// Recognizes a file. A compressed file whose format is not read sequentially is decompressed to a temporary
+/// file.
 fn find_format(
     origin: Origin,
     name: &str,
@@ -274,7 +274,7 @@ impl Content {
             Format::Spa => (Content::Spa, spa::state(origin.plain()?)?),
             Format::Spb => (Content::Spb, spb::state(origin.plain()?)?),
             Format::Ply => (Content::Ply, stream::state_of_ply(origin.plain()?, name)?),
-            // The vertices of an SMA mesh are lines as those of OBJ, and its other lines are passed over.
+            // Vertex lines of SMA are those of OBJ; its other lines are skipped.
             Format::Obj | Format::Sma | Format::VertexLines => {
                 (Content::Obj, stream::state_of_obj(origin.plain()?, name)?)
             }

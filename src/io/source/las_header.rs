@@ -53,7 +53,7 @@ pub(super) struct Laszip {
 }
 
 impl LasHeader {
-    /// Reads the header of `file`. What is odd but harmless is told in `notices`.
+    /// Reads the header of `file`. Adds harmless oddities to `notices`.
     ///
     /// # Errors
     /// If the header is damaged, of another version, or states more points than the file can hold.
@@ -100,10 +100,10 @@ impl LasHeader {
         Ok(header)
     }
 
-    /// Refuses a file that ends before its last stated point, before any of them is used, and tells of bytes
-    /// before `points_end` that could be points, but are not stated.
+    /// Rejects a file too short for its stated points, before any point is used. If the header states no
+    /// points, adds a notice when there is room for points before `points_end`.
     ///
-    /// A header that passes has fewer bytes of records than `u64` can count.
+    /// If the check passes, `points * record_len` fits u64.
     fn check_len(&self, file: &FileView, points_end: u64, notices: &mut Vec<String>) -> Result<()> {
         let room = file.len().saturating_sub(self.points_start);
         let record_len = self.record_len as u64;
@@ -128,7 +128,7 @@ impl LasHeader {
                 Some(_) => laz_table::room(file, self.points_start, points_end)?,
                 None => points_end.saturating_sub(self.points_start),
             };
-            // Compressed points start with a whole record too.
+            // Compressed points start with an uncompressed record.
             if unused >= record_len {
                 notices.push(format!("the header states no points, although {unused} bytes follow it"));
             }
@@ -155,8 +155,8 @@ fn malformed(position: &str, error: &las::Error) -> Error {
     }
 }
 
-/// The number of points. Writers of LAS 1.4 fill a 32-bit field too, for older readers; where both are
-/// filled and differ, the formats that older readers know follow the older field, as the standard asks.
+/// The number of points. Writers of LAS 1.4 also fill a 32-bit field for older readers. If both are filled
+/// and differ, the older field counts for the formats that older readers know, as the standard requires.
 fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
     let legacy = u64::from(raw.number_of_point_records);
     let Some(large) = raw.large_file.map(|large| large.number_of_point_records).filter(|&n| n != 0) else {
@@ -172,7 +172,7 @@ fn count(raw: &raw::Header, format: u8, notices: &mut Vec<String>) -> u64 {
 
 fn coordinates(raw: &raw::Header) -> Result<Coordinates> {
     let scale = [raw.x_scale_factor, raw.y_scale_factor, raw.z_scale_factor];
-    // Adding zero makes a negative zero, which some writers leave behind, a positive one.
+    // Some writers leave a negative zero behind: adding 0.0 makes it positive.
     let offset = [raw.x_offset, raw.y_offset, raw.z_offset].map(|offset| offset + 0.0);
     for (axis, name) in ["x", "y", "z"].iter().enumerate() {
         if !(scale[axis] > 0.0 && scale[axis].is_finite()) {
@@ -201,7 +201,7 @@ fn stored_bounds(raw: &raw::Header, coordinates: &Coordinates) -> Option<Bounds>
     (fits(min) && fits(max) && ordered).then_some(Bounds { min, max })
 }
 
-/// The variable length records that matter here; others are passed over unread.
+/// The variable length records that matter here; others are skipped unread.
 #[derive(Default)]
 struct Records {
     laszip: Option<Vec<u8>>,
@@ -306,7 +306,7 @@ impl Records {
         }
     }
 
-    /// Well-known text where the header promises it or there is nothing else, otherwise the GeoTIFF keys.
+    /// Well-known text if the header promises it or there is nothing else, otherwise the GeoTIFF keys.
     fn crs(self, promises_wkt: bool, notices: &mut Vec<String>) -> Crs {
         let [directory, doubles, ascii] = self.geo_keys.map(Option::unwrap_or_default);
         let wkt = self.wkt.and_then(|bytes| {
@@ -314,7 +314,7 @@ impl Records {
             let text = text.trim_end_matches('\0');
             (!text.trim().is_empty()).then(|| text.to_string())
         });
-        // A directory of no more than its own header of four numbers says nothing.
+        // A directory no longer than its own header of four numbers is empty.
         let has_keys = directory.len() > 8;
         if promises_wkt && wkt.is_none() && has_keys {
             notices.push("the header promises a CRS as text, found GeoTIFF keys only".to_string());

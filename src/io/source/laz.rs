@@ -12,32 +12,31 @@ use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel::OrderedPool;
 
-/// Bytes of records that chunks under way decompress to, per thread, and in all.
+/// Greatest number of record bytes that the chunks under way decompress to, per thread and in total.
 const AHEAD_LEN_PER_THREAD: u64 = 2 << 20;
 const AHEAD_LEN_MAX: u64 = 32 << 20;
 
-/// Bytes of records from which chunks make up a job: small ones are decompressed several at a time.
+/// Record bytes from which chunks make up a job: several small chunks form one job.
 const JOB_LEN: u64 = 1 << 20;
 
-/// Bytes of records from which a chunk is decompressed as it is read.
+/// Record bytes above which a chunk is decompressed as it is read.
 const CHUNK_LEN_MAX: u64 = 32 << 20;
 
-/// Bytes of records that are taken at once from a chunk that is decompressed as it is read.
+/// Record bytes returned at a time from a chunk that is decompressed as it is read.
 const STREAMED_LEN: usize = 1 << 20;
 
-/// Chunks to be decompressed one after the other, and the buffers for it.
+/// Chunks to be decompressed one after the other, and buffers for them.
 #[derive(Default)]
 struct Job {
     chunks: Vec<Chunk>,
-    /// Number in the file of the first record.
+    /// Index in the file of the first record.
     first: u64,
     compressed: Vec<u8>,
     records: Vec<u8>,
 }
 
 impl Job {
-    /// Bytes that the job needs about: compressed data may be a little longer than the records, never by
-    /// much.
+    /// Approximate bytes that the job needs. Compressed data may be slightly longer than its records.
     fn len(&self, record_len: u64) -> u64 {
         self.chunks.iter().map(|chunk| (chunk.points * record_len).max(chunk.len)).sum()
     }
@@ -67,10 +66,10 @@ pub(super) struct LazRecords {
     threads: usize,
     chunks: std::iter::Peekable<std::vec::IntoIter<Chunk>>,
     decoders: Option<OrderedPool<Job, Result<Job>>>,
-    /// Jobs that are done, for their buffers.
+    /// Finished jobs, whose buffers are reused.
     spare: Vec<Job>,
     streamed: Option<Streamed>,
-    /// Records given out or to decoders so far.
+    /// Records returned or passed to decoders so far.
     done: u64,
 }
 
@@ -105,8 +104,8 @@ impl LazRecords {
         Ok(Some(records_len > CHUNK_LEN_MAX || chunk.len > 2 * CHUNK_LEN_MAX))
     }
 
-    /// Takes chunks from the table until they make up a job; `None` if the next one is no job's, or there is
-    /// none.
+    /// Takes chunks from the table until they make up a job; `None` if the next chunk is too long for a job,
+    /// or none is left.
     fn next_job(&mut self) -> Result<Option<Job>> {
         let record_len = self.codec.record_len as u64;
         let mut job = self.spare.pop().unwrap_or_default();
@@ -120,7 +119,7 @@ impl LazRecords {
         Ok((!job.chunks.is_empty()).then_some(job))
     }
 
-    /// Gives jobs to the decoders until enough are under way.
+    /// Passes jobs to the decoders until their pool is full.
     fn decode_ahead(&mut self) -> Result<()> {
         while !self.decoders.as_ref().is_some_and(OrderedPool::is_full) {
             let Some(job) = self.next_job()? else { break };
@@ -169,11 +168,11 @@ impl RecordReader for LazRecords {
     }
 }
 
-/// Records that are decompressed as they are read: from one chunk, or from chunks that follow each other
-/// without a table.
+/// Records that are decompressed as they are read: from one chunk, or from consecutive chunks without a
+/// table.
 struct Streamed {
     decompressor: Decompressor<BufReader<FileView>>,
-    /// Records left to give out, and those left in the current chunk.
+    /// Records left to return, and records left in the current chunk.
     left: u64,
     left_in_chunk: u64,
     points_per_chunk: PointsPerChunk,

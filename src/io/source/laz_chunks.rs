@@ -28,12 +28,12 @@ impl Chunk {
     }
 }
 
-/// How many records a chunk has that no table tells of.
+/// Number of records in the chunks of a file without a chunk table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PointsPerChunk {
     /// The same number in each chunk but the last.
     Fixed(u64),
-    /// As the head of each chunk of layers says.
+    /// Stated in the head of each layered chunk.
     Stated,
 }
 
@@ -42,7 +42,7 @@ pub(super) enum PointsPerChunk {
 pub(super) enum Chunks {
     /// All of them, in the order of the file; chunks without points are left out.
     Table(Vec<Chunk>),
-    /// Where the first one starts. The others follow without a gap.
+    /// The chunks start at `start` and follow each other without a gap.
     Unknown { start: u64, points_per_chunk: PointsPerChunk },
 }
 
@@ -51,7 +51,8 @@ impl Chunks {
     ///
     /// # Errors
     /// If it contradicts the header or the length of the file, or is missing where nothing can be read
-    /// without it. A file without a table was cut off or its writer was, but what is there can be read.
+    /// without it. A table is missing where the file was cut off or its writer did not finish; the chunks
+    /// present can still be read.
     pub(super) fn find(file: &FileView, header: &LasHeader, laszip: &Laszip) -> Result<Chunks> {
         if header.points == 0 {
             return Ok(Chunks::Table(Vec::new()));
@@ -85,7 +86,8 @@ fn read_table(file: &FileView, header: &LasHeader, laszip: &Laszip, table: u64) 
     let mut head = [0; 8];
     file.read_at(table, &mut head).map_err(|e| Error::io("reading", e))?;
     let count = u64::from(u32::from_le_bytes(head[4..8].try_into().expect("four bytes")));
-    // A chunk starts with a record as it is. Without this the library would allocate for any count.
+    // Each chunk starts with an uncompressed record. Without this limit the library would allocate for any
+    // count.
     let most = (table - start) / header.record_len as u64 + 1;
     let fixed = (!laszip.vlr.uses_variable_size_chunks()).then(|| u64::from(laszip.vlr.chunk_size()));
     let needed = fixed.map(|points| header.points.div_ceil(points));

@@ -1,8 +1,8 @@
-//! How the records of a LAZ file are compressed, and decompressing one chunk of them.
+//! Checks how the records of a LAZ file are compressed, and decompresses single chunks.
 //!
-//! The decompressors of the `laz` crate are used chunk by chunk, because all that they take from the file
-//! unchecked (chunk table, chunk lengths, lengths of layers) decides how much they allocate. Here those are
-//! checked first.
+//! The decompressors of the `laz` crate are used chunk by chunk. The crate allocates memory by numbers that
+//! it takes from the file unchecked (chunk table, lengths of chunks and layers); here these are checked
+//! first.
 
 use std::io::{Cursor, Read, Seek};
 
@@ -13,18 +13,17 @@ use super::las_header::LasHeader;
 use super::panic_guard::guarded;
 use spmesh_core::error::{Error, Result};
 
-/// Most items that the laszip record may split a point record into; the formats need four.
+/// Greatest number of items that the laszip record may split a point record into; the formats need four.
 const ITEMS_MAX: usize = 16;
 
 pub(super) type Decompressor<R> = Box<dyn RecordDecompressor<R> + Send + Sync>;
 
-/// How the records of a file are compressed, checked.
+/// How the records of a file are compressed, after checks.
 #[derive(Debug, Clone)]
 pub(super) struct Codec {
     vlr: LazVlr,
     pub(super) record_len: usize,
-    /// Layers of a chunk, each with its length in the chunk's head; 0 where records are compressed as a
-    /// whole.
+    /// Number of layers in a chunk, each with its length in the chunk's head; 0 if records are not layered.
     pub(super) layers: usize,
 }
 
@@ -75,8 +74,8 @@ impl Codec {
         Ok(decompressor)
     }
 
-    /// Makes a decompressor ready for the start of a chunk. Layers without coordinates, class and return
-    /// numbers (which come with x and y) are left out: they are most of the work.
+    /// Prepares a decompressor for the start of a chunk. It decompresses only the layers with coordinates,
+    /// class and return numbers (which share a layer with x and y): the other layers are most of the work.
     pub(super) fn prepare<R>(&self, decompressor: &mut dyn RecordDecompressor<R>) -> Result<()> {
         decompressor
             .set_fields_from(self.vlr.items())
@@ -87,8 +86,8 @@ impl Codec {
         Ok(())
     }
 
-    /// Checks the lengths of the layers of a chunk against `room`, the bytes it has, given its `head`: the
-    /// first record, the number of records, and the lengths. Returns the number of records.
+    /// Checks the lengths of the layers of a chunk against `room`, the chunk's length in bytes. `head` holds
+    /// the first record, the number of records, and the lengths. Returns the number of records.
     pub(super) fn check_layers(&self, head: &[u8], room: u64) -> Result<u64> {
         let mut numbers = head[self.record_len..]
             .chunks_exact(4)
@@ -101,7 +100,7 @@ impl Codec {
         Ok(count)
     }
 
-    /// Length of what precedes the layers of a chunk.
+    /// Length in bytes of a chunk before its layers.
     pub(super) fn head_len(&self) -> usize {
         self.record_len + 4 + 4 * self.layers
     }
@@ -128,7 +127,7 @@ impl Codec {
     }
 }
 
-/// What a decompressor did, as a result of this library.
+/// Converts the outcome of a decompressor to a result of this library.
 pub(super) fn decompression(outcome: std::result::Result<std::io::Result<()>, String>) -> Result<()> {
     match outcome {
         Ok(Ok(())) => Ok(()),

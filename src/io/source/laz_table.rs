@@ -6,8 +6,8 @@ use spmesh_core::error::{Error, Result};
 /// Length of the position of the chunk table, which precedes the chunks.
 pub(super) const TABLE_POSITION_LEN: u64 = 8;
 
-/// Bytes between the position of the chunk table, which stands at `points_start`, and the table; without a
-/// table, those up to `points_end`.
+/// Bytes from the end of the table's position, which is stored at `points_start`, to the chunk table; without
+/// a table, to `points_end`.
 pub(super) fn room(file: &FileView, points_start: u64, points_end: u64) -> Result<u64> {
     let start = points_start.saturating_add(TABLE_POSITION_LEN);
     if start > file.len() {
@@ -17,8 +17,8 @@ pub(super) fn room(file: &FileView, points_start: u64, points_end: u64) -> Resul
     Ok(end.saturating_sub(start))
 }
 
-/// The position of the chunk table, from before the points or, if the writer could not go back, from the end
-/// of the file. `None` if neither lies between the points and the end.
+/// The position of the chunk table, read from before the points or, if the writer could not seek back, from
+/// the end of the file. `None` if neither position lies between the points and the end of the file.
 pub(super) fn table_position(file: &FileView, points_start: u64) -> Result<Option<u64>> {
     let start = points_start + TABLE_POSITION_LEN;
     for at in [points_start, file.len().saturating_sub(TABLE_POSITION_LEN)] {

@@ -9,30 +9,30 @@ use spmesh_core::limits::{TEXT_HEADER_LINE_MAX, TEXT_LINE_MAX};
 /// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
 
-/// Lines that may be longer than others: the header of a text twin holds the CRS.
+/// Start of lines that may be longer than others: the header of a text twin holds the CRS.
 const HEADER_START: &[u8] = b"#spmesh ";
 
-/// What some editors write before a text in UTF-8.
+/// Byte order mark, which some editors write before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Reads an input line by line. Memory: one line and a buffer.
 pub(super) struct Lines<R> {
     input: BufReader<R>,
-    /// What messages call the input; empty if the caller names it.
+    /// Name of the input in messages; empty if the caller adds the name.
     name: String,
     line: Vec<u8>,
     number: u64,
     ended: bool,
     longest: usize,
-    /// The last line of the input, if it has no line end.
+    /// Number of the input's last line, if that has no line end.
     unended: Option<u64>,
     /// Bytes of all lines so far, with their line ends.
     bytes: u64,
 }
 
 impl<R: Read> Lines<R> {
-    /// Lines of at most [`TEXT_LINE_MAX`] bytes; `name` is what messages call the input, or nothing, if the
-    /// caller names it.
+    /// Lines of at most [`TEXT_LINE_MAX`] bytes. `name` is the name of the input in messages, or empty if the
+    /// caller adds it.
     pub(super) fn new(input: R, name: impl Into<String>) -> Self {
         Lines::with_longest(input, name, TEXT_LINE_MAX)
     }
@@ -87,11 +87,10 @@ impl<R: Read> Lines<R> {
         Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
     }
 
-    /// As `next_line`, for texts that people write: without white space around the line, and without a byte
-    /// order mark.
+    /// As `next_line`, for texts that people write: strips white space around the line and a byte order mark.
     ///
     /// # Errors
-    /// As `next_line`; if the line has a zero byte or a carriage return in it.
+    /// As `next_line`; if the line contains a zero byte or a carriage return.
     pub(super) fn next_trimmed(&mut self) -> Result<Option<&[u8]>> {
         if self.next_line()?.is_none() {
             return Ok(None);
@@ -121,27 +120,27 @@ impl<R: Read> Lines<R> {
         Err(self.locate(Error::malformed(message)))
     }
 
-    /// What follows the line that was read last, for formats whose header alone is text.
+    /// The input after the last line read, for formats with only a text header.
     pub(super) fn input(&mut self) -> &mut BufReader<R> {
         &mut self.input
     }
 
-    /// The line that was read last.
+    /// The last line read.
     pub(super) fn current(&self) -> &[u8] {
         &self.line
     }
 
-    /// Number of the line that was read last, counted from 1.
+    /// Number of the last line read, counted from 1.
     pub(super) fn number(&self) -> u64 {
         self.number
     }
 
-    /// Number of the line without a line end, at the end of the input.
+    /// Number of the input's last line, if that has no line end.
     pub(super) fn unended(&self) -> Option<u64> {
         self.unended
     }
 
-    /// Whether the line that was read last has a line end: a text that was cut off mostly ends without one.
+    /// Whether the last line read has a line end. Truncated texts mostly end without one.
     pub(super) fn is_ended(&self) -> bool {
         self.ended
     }
@@ -151,12 +150,12 @@ impl<R: Read> Lines<R> {
         self.bytes
     }
 
-    /// The line that was read last, for messages.
+    /// Position of the last line read, for messages.
     pub(super) fn position(&self) -> String {
         format!("line {}", self.number)
     }
 
-    /// Adds input and line to an error about the line that was read last.
+    /// Adds input and line to an error about the last line read.
     pub(super) fn locate(&self, error: Error) -> Error {
         let error = error.at(self.position());
         if self.name.is_empty() { error } else { error.of_input(&self.name) }
@@ -164,13 +163,13 @@ impl<R: Read> Lines<R> {
 }
 
 impl Lines<FileView> {
-    /// Byte of the file behind what was read last, lines or not.
+    /// Offset in the file after everything read so far, lines or not.
     pub(super) fn byte(&self) -> u64 {
         self.input.get_ref().position() - self.input.buffer().len() as u64
     }
 }
 
-/// A piece of a line for messages: what is not text is replaced, what is long is cut.
+/// A piece of input for messages: invalid UTF-8 is replaced, long pieces are cut.
 pub fn quote(bytes: &[u8]) -> String {
     const SHOWN: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(SHOWN)]);
@@ -178,7 +177,7 @@ pub fn quote(bytes: &[u8]) -> String {
     format!("{:?}{rest}", text)
 }
 
-/// The number that `field` is, exactly as `f64` has it.
+/// The number that `field` denotes, rounded to f64.
 pub(super) fn number(field: &[u8]) -> Option<f64> {
     std::str::from_utf8(field).ok()?.parse().ok()
 }

@@ -1,4 +1,4 @@
-//! Turns a mesh that comes element by element into the events of a stream.
+//! Converts a mesh read element by element to the events of a stream.
 
 use super::events::EventSource;
 use super::patches::{Order, PatchBuilder};
@@ -40,7 +40,7 @@ enum State {
 
 /// A mesh read element by element, as events. Vertices have world coordinates in f64, with z as elevation.
 ///
-/// Memory: one patch, and the vertices that are not final yet where the input says when they are.
+/// Memory: one patch; if the input says when vertices are final, also the vertices that are not final yet.
 pub(super) struct MeshEvents<E> {
     elements: E,
     header: Header,
@@ -128,7 +128,8 @@ impl<E: Elements> EventSource for MeshEvents<E> {
     }
 }
 
-/// A vertex number from 1, or negative and relative to the number of vertices so far, as one from 0.
+/// Converts a vertex number that counts from 1, or is negative and relative to the number of vertices so far,
+/// to one that counts from 0.
 pub(super) fn resolve(number: i64, vertices: u64) -> Result<u64> {
     let resolved = match number {
         1.. => Some(number as u64 - 1),

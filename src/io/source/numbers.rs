@@ -1,4 +1,4 @@
-//! Numbers one after the other, as text or as bytes.
+//! Sequences of numbers, as text or binary.
 
 use std::io::{self, BufRead, Read};
 
@@ -16,12 +16,12 @@ pub(super) enum Writing {
     Text,
 }
 
-/// Reads as many numbers as there are said to be. Memory: what is asked for at once.
+/// Reads as many numbers as the file states. Memory: the numbers of one call.
 pub(super) struct NumberReader<R> {
     input: R,
     sample: SampleType,
     writing: Writing,
-    /// Numbers there are said to be, and those that were read.
+    /// Stated number of numbers, and numbers read so far.
     total: u64,
     done: u64,
     bytes: Vec<u8>,
@@ -33,16 +33,15 @@ impl<R: BufRead> NumberReader<R> {
         NumberReader { input, sample, writing, total, done: 0, bytes: Vec::new() }
     }
 
-    /// Numbers that were read.
+    /// Numbers read so far.
     pub(super) fn done(&self) -> u64 {
         self.done
     }
 
-    /// Appends the next numbers to `numbers`: `most` of them, fewer only at the end. False if there are no
-    /// more.
+    /// Appends the next `most` numbers to `numbers`, fewer only at the end. False if none are left.
     ///
     /// # Errors
-    /// If reading fails, the input ends before all numbers, or something is no number of the type.
+    /// If reading fails, the input ends before the stated number of numbers, or a number is not of the type.
     pub(super) fn read(&mut self, most: u64, numbers: &mut Vec<f64>) -> Result<bool> {
         let wanted = most.min(self.total - self.done);
         match self.writing {
@@ -73,7 +72,7 @@ impl<R: BufRead> NumberReader<R> {
         Ok(())
     }
 
-    /// That the input ends behind the numbers.
+    /// Checks that the input ends after the numbers.
     ///
     /// # Errors
     /// If it goes on, or reading fails.
@@ -97,17 +96,18 @@ impl<R: BufRead> NumberReader<R> {
     }
 }
 
-/// That there are fewer numbers than stated.
+/// The error of an input with fewer numbers than stated.
 pub(super) fn truncated(found: u64, expected: u64) -> Error {
     Error::malformed(format!("truncated: found {found} of {expected} values"))
 }
 
-/// The bytes that come next; none at the end.
+/// The next bytes of the buffer; empty at the end.
 ///
 /// # Errors
 /// If reading fails.
 pub(super) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
-    // Interrupted reads are repeated here, since the slice of a failed try cannot be returned from a loop.
+    // Interrupted reads are retried here, because a loop cannot return the slice that it borrows from
+    // `fill_buf`.
     while let Err(e) = input.fill_buf() {
         if e.kind() != io::ErrorKind::Interrupted {
             return Err(Error::io("reading", e));
@@ -116,10 +116,10 @@ pub(super) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
     input.fill_buf().map_err(|e| Error::io("reading", e))
 }
 
-/// Replaces `number` by what comes next between white space and commas; nothing at the end.
+/// Replaces `number` by the next field between white space and commas; empty at the end.
 ///
 /// # Errors
-/// If reading fails, or it is longer than numbers are.
+/// If reading fails, or the field is longer than any number.
 pub(super) fn next_number(input: &mut impl BufRead, number: &mut Vec<u8>) -> Result<()> {
     number.clear();
     loop {

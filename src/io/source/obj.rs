@@ -1,4 +1,4 @@
-//! Reads OBJ: `v` and `f` lines; other statements of OBJ are passed over.
+//! Reads OBJ: `v` and `f` lines; other statements are skipped.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -14,7 +14,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
 
-/// Statements of OBJ that say nothing of vertices and triangles.
+/// Statements of OBJ that do not affect vertices or triangles.
 const PASSED_OVER: [&[u8]; 17] = [
     b"vn",
     b"vt",
@@ -35,24 +35,24 @@ const PASSED_OVER: [&[u8]; 17] = [
     b"trace_obj",
 ];
 
-/// Reads OBJ as a triangle mesh; polygons become fans around their first vertex. `name` is what messages call
-/// the input.
+/// Reads OBJ as a triangle mesh; polygons become fans around their first vertex. Messages call the input
+/// `name`.
 ///
 /// Errors come with the events: [`spmesh_core::error::ErrorKind::Malformed`] (or I/O), with input and line.
 ///
-/// Memory: one patch, and the triangles that come before their vertices.
+/// Memory: one patch, and the triangles that precede their vertices.
 pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn EventSource> {
     let lines = Lines::new(input, name);
     Box::new(MeshEvents::new(ObjElements { lines, triangles: VecDeque::new() }))
 }
 
-/// Reads the vertices of OBJ as points that have a z; `name` is what messages call the input.
+/// Reads the vertices of OBJ as points with z. Messages call the input `name`.
 pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVertices<R>> {
     let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
     VertexPoints::new(ObjVertices { lines: Lines::new(input, name) }, header)
 }
 
-/// The position of a vertex; colours and weights behind it are passed over.
+/// The position of a vertex; colours and weights after it are ignored.
 fn parse_vertex(line: &[u8]) -> Result<Point> {
     let mut coordinates = fields(line).skip(1);
     if fields(line).nth(3).is_none() {
@@ -87,7 +87,7 @@ impl<R: Read> Vertices for ObjVertices<R> {
 
 struct ObjElements<R> {
     lines: Lines<R>,
-    /// The rest of the polygon that was read last.
+    /// Remaining triangles of the last polygon read.
     triangles: VecDeque<[u64; 3]>,
 }
 

@@ -1,4 +1,4 @@
-//! Points of any source, or the stream that a program would rather have: whichever an input is.
+//! Opens an input as points of any source, or as a stream of a kind that the program prefers.
 
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use crate::detect::{Format, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Kind, StreamReader};
 
-/// What an input is.
+/// An opened input.
 pub enum Opened {
     /// Points of any source.
     Points(Box<Input>),
-    /// A stream of a wanted kind, or the text twin of one.
+    /// A stream of a preferred kind, or its text twin.
     Events(Box<dyn EventSource>),
 }
 
@@ -45,7 +45,7 @@ pub fn open_knots(path: &Path, options: &SourceOptions) -> Result<Opened> {
 }
 
 fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) -> Result<Opened> {
-    // A notice of the spool would say nothing of use: all of the input is held in memory later.
+    // No notice of the spool: the whole input will be held in memory anyway.
     let origin = Origin::new(path, &options.temp_dir(), &mut Vec::new())?;
     let name = name_of(path);
     let events = open_events(&origin, &name, options).map_err(|e| e.of_input(&name))?;
@@ -55,7 +55,7 @@ fn open(path: &Path, options: &SourceOptions, is_wanted: impl Fn(Kind) -> bool) 
     }
 }
 
-/// `None` if it is neither a stream nor the text twin of one.
+/// The events of the input; `None` if it is neither a stream nor the text twin of one.
 fn open_events(origin: &Origin, name: &str, options: &SourceOptions) -> Result<Option<Box<dyn EventSource>>> {
     let head = read_head(&mut origin.plain()?).map_err(|e| Error::io("reading", e))?;
     let events = || origin.plain().map(|plain| BufReader::with_capacity(1 << 18, plain));

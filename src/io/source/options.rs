@@ -1,4 +1,4 @@
-//! What callers can choose of an input.
+//! Options of reading an input.
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use spmesh_model::bounds::Bounds;
 /// What to read of the files, and how.
 #[derive(Debug, Clone, Default)]
 pub struct SourceOptions {
-    /// The tool that reads, for messages.
+    /// The reading tool, for messages.
     pub reader: &'static Reader,
     /// Keep only points of these classes, if any are given.
     pub keep_class: Vec<u8>,
@@ -27,19 +27,19 @@ pub struct SourceOptions {
     pub skip_invalid: bool,
     /// Dimensions of the geometry: 2 (z is an elevation) or 3.
     pub dims: u8,
-    /// Grid to put integer coordinates on: scale and offset per axis, instead of those of the files.
+    /// Grid for integer coordinates: scale and offset per axis, instead of the files' own.
     pub grid: Option<([f64; 3], [f64; 3])>,
-    /// Files hold nothing but numbers of this type, x, y and z of one point after the other; their content
-    /// does not tell.
+    /// Type of the numbers if the files hold only x, y and z of one point after the other, without a header.
+    /// Such files cannot be recognized by content.
     pub raw: Option<RawType>,
-    /// Where spools go; the system's folder for temporary files if `None`.
+    /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
     /// Threads that decompress points; one per core if `None`.
     pub threads: Option<NonZeroUsize>,
 }
 
 impl SourceOptions {
-    /// The folder where spools go.
+    /// The folder of spools.
     pub(super) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)
     }

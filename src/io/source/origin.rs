@@ -1,4 +1,4 @@
-//! Where the bytes of an input are, so that each pass can read them from the start.
+//! Holds the place of an input's bytes, so that each pass can read them from the start.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -11,7 +11,7 @@ use super::gzip::Plain;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::temporary::TemporaryFile;
 
-/// What messages call an input: its path, or stdin for "-".
+/// Name of an input in messages: its path, or stdin for "-".
 pub fn name_of(path: &Path) -> String {
     if path.as_os_str() == "-" { "stdin".to_string() } else { path.display().to_string() }
 }
@@ -22,15 +22,16 @@ pub(super) type Bytes = Plain<FileView>;
 /// Bytes that can be read several times.
 #[derive(Debug)]
 pub(super) enum Origin {
-    /// A regular file, opened anew by each pass: an input of many tiles needs no more than one descriptor.
+    /// A regular file, opened anew by each pass, so that an input of many tiles needs only one descriptor at
+    /// a time.
     Path(PathBuf),
     /// A file without a name: a spool, or standard input redirected from a file.
     Open(Arc<File>),
 }
 
 impl Origin {
-    /// The bytes of `path`; "-" is standard input. What cannot be read twice (a pipe, a terminal, a socket)
-    /// is spooled to an unlinked temporary file in `temp_dir`, and a notice says so.
+    /// The bytes of `path`; "-" is standard input. An input that cannot be read twice (a pipe, a terminal, a
+    /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice.
     pub(super) fn new(path: &Path, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
         if path.as_os_str() == "-" {
             return Origin::of_stdin(temp_dir, notices).map_err(|e| e.of_input("stdin"));
@@ -60,13 +61,13 @@ impl Origin {
         spool_pipe(file, "stdin", temp_dir, notices)
     }
 
-    /// The content, decompressed if it is compressed, from its start.
+    /// The content from its start, decompressed if necessary.
     pub(super) fn plain(&self) -> Result<Bytes> {
         Plain::new(self.view()?).map_err(|e| Error::io("reading", e))
     }
 
-    /// The decompressed content as a file, for formats that are not read in order; `name` is what messages
-    /// call it.
+    /// The decompressed content as a file, for formats that are not read sequentially. Messages call it
+    /// `name`.
     pub(super) fn unpacked(&self, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
         let (file, size) = spool(self.plain()?, temp_dir)?;
         let place = temp_dir.display();
@@ -74,12 +75,12 @@ impl Origin {
         Ok(file)
     }
 
-    /// All that `input` gives, in an unlinked temporary file.
+    /// Copies all bytes of `input` to an unlinked temporary file.
     pub(super) fn spooled(input: impl Read, temp_dir: &Path) -> Result<Origin> {
         spool(input, temp_dir).map(|(file, _)| file)
     }
 
-    /// A view of all the bytes as they are stored, at their start.
+    /// A view of all bytes as stored, positioned at their start.
     pub(super) fn view(&self) -> Result<FileView> {
         let file = match self {
             Origin::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
@@ -90,7 +91,7 @@ impl Origin {
     }
 }
 
-/// Spools what cannot be read twice, and says so in a notice.
+/// Spools a file that cannot be read twice, and adds a notice.
 fn spool_pipe(from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
     let (file, size) = spool(from, temp_dir)?;
     let place = temp_dir.display();
@@ -99,7 +100,7 @@ fn spool_pipe(from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>
     Ok(file)
 }
 
-/// Copies all that `input` gives to an unlinked temporary file; tells how much it is.
+/// Copies all bytes of `input` to an unlinked temporary file; also returns their amount as text.
 fn spool(mut input: impl Read, temp_dir: &Path) -> Result<(Origin, String)> {
     let file = TemporaryFile::create(Some(temp_dir))?;
     let mut buffer = vec![0; 1 << 17];
@@ -133,7 +134,7 @@ impl FileView {
         self.end
     }
 
-    /// Byte that is read next, counted from the start of the file.
+    /// Offset of the next byte, counted from the start of the file.
     pub(super) fn position(&self) -> u64 {
         self.position
     }
@@ -143,7 +144,7 @@ impl FileView {
         FileView { file: Arc::clone(&self.file), position: start, end: end.min(self.end) }
     }
 
-    /// Fills `buffer` with the bytes from `start` on, without moving.
+    /// Fills `buffer` with the bytes from `start` on, without changing the position.
     pub(super) fn read_at(&self, start: u64, buffer: &mut [u8]) -> io::Result<()> {
         self.range(start, self.end).read_exact(buffer)
     }

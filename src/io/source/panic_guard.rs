@@ -1,5 +1,5 @@
-//! Keeps a panic from ending the program: in a decoder library damaged input is an error, not a crash, and
-//! among many files one must not end the work on the others.
+//! Contains panics of decoder libraries. Damaged input is an error, not a crash, and one damaged file must
+//! not end the work on others.
 
 use std::cell::Cell;
 use std::panic::{self, AssertUnwindSafe};
@@ -13,7 +13,7 @@ static HOOK: Once = Once::new();
 
 /// Runs `decode` on this thread; a panic in it becomes `Err` with its message and prints nothing.
 ///
-/// The panic hook of the process is wrapped once; it stays as it was for all panics outside of `decode`.
+/// The process's panic hook is wrapped once; panics outside `decode` still reach the original hook.
 pub fn guarded<T>(decode: impl FnOnce() -> T) -> Result<T, String> {
     HOOK.call_once(|| {
         let previous = panic::take_hook();

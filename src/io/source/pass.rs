@@ -1,25 +1,25 @@
-//! What the formats of an input have in common: what a file states, and a pass over its points.
+//! The interface of all formats of an input: what a file states, and a pass over its points.
 
 use super::placement::Placement;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
-/// About how many points a batch has: few enough to stay in the cache of a core on their way.
+/// Approximate number of points in a batch: few enough to stay in a core's cache between stages.
 pub(super) const BATCH_POINTS: usize = 1 << 14;
 
 /// One pass over the points of one file.
 pub(super) trait Pass: Send {
-    /// Puts the next points into `batch`, about `BATCH_POINTS` of them; none may be left after filters.
-    /// Returns false at the end of the file, with nothing put.
+    /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters. Returns
+    /// false at the end of the file, without appending any.
     fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool>;
 }
 
-/// What a file says of itself.
+/// What a file states about itself.
 #[derive(Debug)]
 pub(super) struct Stated {
     pub(super) coordinates: Coordinates,
-    /// Whether points have a third coordinate; `None` if the file has no points to tell.
+    /// Whether points have a third coordinate; `None` if the file has no point to show it.
     pub(super) has_z: Option<bool>,
     pub(super) crs: Crs,
     /// Bounding box, in stored coordinates.

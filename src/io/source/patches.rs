@@ -1,4 +1,4 @@
-//! Cuts a mesh that comes vertex by vertex and triangle by triangle into patches.
+//! Cuts a mesh that arrives vertex by vertex and triangle by triangle into patches.
 
 use std::collections::HashMap;
 
@@ -6,7 +6,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Patch, Totals};
 
-/// Sizes at which a patch is closed. Together they keep it far below the maximum of a block, because each
+/// Sizes at which a patch is closed. They keep it far below the greatest length of a block, because each
 /// triangle imports at most three vertices and each finalization one: 24 + 24 * 2048 + 8 * (3 * 4096 + 4096)
 /// + 12 * 4096 + 4 * 4096 bytes are 240 KiB.
 const NEW_MAX: usize = 2048;
@@ -18,23 +18,23 @@ const FINALIZED_MAX: usize = 4096;
 pub(super) enum Order {
     /// Vertices come before their triangles, and the input says when they are final (pre-order).
     Stated,
-    /// Vertices come after all their triangles, so that they are final when they come (post-order).
+    /// Vertices come after all their triangles, so that they are final on arrival (post-order).
     OnArrival,
-    /// The input says nothing: all are final at its end. Triangles may come before their vertices.
+    /// The input does not say: all vertices are final at its end. Triangles may precede their vertices.
     AtEnd,
 }
 
 /// A vertex that is not finalized yet.
 #[derive(Debug, Default, Clone, Copy)]
 struct Live {
-    /// Triangles that use it and wait for another vertex.
+    /// Number of triangles that use it and wait for another vertex.
     waiting: u32,
     /// The input said that it is final.
     closed: bool,
 }
 
-/// Collects elements into patches. Memory: a patch, and the width of the input: live vertices, and
-/// triangles that wait for their vertices. With [`Order::AtEnd`] only the latter.
+/// Collects elements into patches. Memory: a patch, the live vertices (the width of the input), and the
+/// triangles that wait for their vertices. With [`Order::AtEnd`] no live vertices are held.
 pub(super) struct PatchBuilder {
     order: Order,
     first_id: u64,
@@ -42,9 +42,9 @@ pub(super) struct PatchBuilder {
     triangles: Vec<[u64; 3]>,
     finalized: Vec<u64>,
     live: HashMap<u64, Live>,
-    /// Triangles that wait, with the number of vertices they wait for, under a running number.
+    /// Waiting triangles by serial number, each with the number of vertices it waits for.
     waiting: HashMap<u64, ([u64; 3], u8)>,
-    /// Triangles that wait for a vertex which has not come.
+    /// Serial numbers of waiting triangles, by the vertex they wait for.
     awaited: HashMap<u64, Vec<u64>>,
     waited: u64,
     triangles_read: u64,
@@ -72,12 +72,12 @@ impl PatchBuilder {
         }
     }
 
-    /// Vertices read so far, which is the id of the next one.
+    /// Number of vertices read so far, which is also the id of the next one.
     pub(super) fn vertices(&self) -> u64 {
         self.first_id + self.new.len() as u64
     }
 
-    /// Triangles read so far.
+    /// Number of triangles read so far.
     pub(super) fn triangles(&self) -> u64 {
         self.triangles_read
     }
@@ -142,7 +142,7 @@ impl PatchBuilder {
         Ok(())
     }
 
-    /// Says that no later triangle uses a vertex.
+    /// Records that no later triangle uses a vertex.
     pub(super) fn finalize(&mut self, id: u64) -> Result<()> {
         let vertices = self.vertices();
         match self.live.get_mut(&id) {
@@ -163,10 +163,10 @@ impl PatchBuilder {
             || self.finalized.len() >= FINALIZED_MAX
     }
 
-    /// Ends the input: what is live is final.
+    /// Ends the input: all live vertices are final.
     ///
     /// # Errors
-    /// If a triangle waits for a vertex that never came.
+    /// If a triangle still waits for a vertex.
     pub(super) fn end(&mut self) -> Result<()> {
         if let Some(id) = self.awaited.keys().min() {
             let vertices = self.vertices();
@@ -178,7 +178,7 @@ impl PatchBuilder {
         Ok(())
     }
 
-    /// The next patch after [`PatchBuilder::end`], until nothing is left.
+    /// The next patch after [`PatchBuilder::end`]; `None` when nothing is left.
     pub(super) fn take_remaining(&mut self) -> Option<Patch> {
         let room = FINALIZED_MAX.saturating_sub(self.finalized.len());
         let from_list = self.remaining.len().saturating_sub(room);
@@ -194,14 +194,15 @@ impl PatchBuilder {
         (!is_empty).then(|| self.take())
     }
 
-    /// What the END block says of the input.
+    /// Totals of the input, for the END block.
     pub(super) fn totals(&self) -> Totals {
         let vertices = self.vertices();
         Totals { points: vertices, vertices, simplices: self.triangles_read, ..Totals::default() }
     }
 
-    /// The patch so far; a new one starts. One vertex can complete any number of triangles: what is too much
-    /// for a patch stays for the next one, and finalizations wait for the triangles before them.
+    /// Returns the patch so far and starts a new one. One vertex can complete any number of triangles: those
+    /// beyond the size of a patch stay for the next one, and finalizations wait for the triangles before
+    /// them.
     pub(super) fn take(&mut self) -> Patch {
         let first_id = self.first_id;
         let new = std::mem::take(&mut self.new);
@@ -212,7 +213,7 @@ impl PatchBuilder {
         patch_of_ids(first_id, new, triangles.as_flattened(), &finalized)
     }
 
-    /// One triangle that used the vertex no longer waits.
+    /// Records that one triangle that used the vertex no longer waits.
     fn release(&mut self, id: u64) {
         if let Some(live) = self.live.get_mut(&id) {
             live.waiting -= 1;
@@ -228,8 +229,8 @@ impl PatchBuilder {
     }
 }
 
-/// The patch of vertices from `first_id` on, with ids below the end of those in simplices, one behind the
-/// other, and in finalizations.
+/// The patch of the vertices `new`, whose ids count from `first_id`. `simplices` (concatenated) and
+/// `finalized` are ids of these or earlier vertices.
 pub(super) fn patch_of_ids(first_id: u64, new: Vec<Point>, simplices: &[u64], finalized: &[u64]) -> Patch {
     let used = simplices.iter().chain(finalized);
     let mut imported: Vec<u64> = used.copied().filter(|&id| id < first_id).collect();

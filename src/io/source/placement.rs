@@ -1,18 +1,18 @@
-//! Moves points from the coordinates of their file to those of the whole input, and drops what is not wanted.
+//! Moves points from the coordinates of their file to those of the whole input, and drops points by filters.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Coordinates;
 
-/// Largest deviation of a ratio of scales from the fraction that it is taken for, relative: 2^-40. Division
-/// and decimal notation of scales cost some 2^-51. Over 32 bits a coordinate moves by 2^-9 of its file's step
-/// at most.
+/// Greatest relative deviation of a ratio of scales from the fraction that it stands for: 2^-40. Division and
+/// decimal notation of scales cause deviations of about 2^-51. Over the range of 32 bits a coordinate moves
+/// by at most 2^-9 of its file's step.
 pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Largest factor between steps: stored integers times the factor, and a shift beside them, are exact in f64.
+/// Greatest factor between steps: a stored integer times the factor, plus a shift, is exact in f64.
 const FACTOR_MAX: f64 = (1u64 << 21) as f64;
 
-/// Largest deviation of an offset from a multiple of the quantum, and of a coordinate from a side of the
+/// Greatest deviation of an offset from a multiple of the quantum, and of a coordinate from a side of the
 /// bounds filter, in quanta.
 const QUANTA_TOLERANCE: f64 = 1e-6;
 
@@ -30,9 +30,9 @@ pub(super) struct Placement {
 #[derive(Debug)]
 enum Step {
     Same,
-    /// Both are integers, of which the file's count whole multiples of the input's. Nothing is rounded, and
-    /// equal points stay equal; where scales are equal but for their notation, the world may move by
-    /// [`RATIO_TOLERANCE`].
+    /// Both grids are integers, and a step of the file is an integer multiple of a step of the input. Nothing
+    /// is rounded, and equal points stay equal. Where scales differ in their notation only, world coordinates
+    /// may move by a relative [`RATIO_TOLERANCE`].
     Integers {
         factor: Point,
         shift: Point,
@@ -65,16 +65,16 @@ impl Placement {
         Placement { step, bounds, skip_invalid, invalid: 0 }
     }
 
-    /// Whether points with integer coordinates, which are finite, all stay what they are.
+    /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
     pub(super) fn keeps_integers(&self) -> bool {
         matches!(self.step, Step::Same) && self.bounds.is_none()
     }
 
-    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless it is to be dropped.
+    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it.
     ///
     /// # Errors
-    /// If a coordinate is not finite (and that is not to be skipped), or does not fit the input's grid. The
-    /// caller knows the record and adds it.
+    /// If a coordinate is not finite (unless such points are skipped), or does not fit the input's grid. The
+    /// caller adds the record's position.
     #[inline]
     pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<()> {
         if let Some(bounds) = &self.bounds
@@ -118,8 +118,8 @@ impl Placement {
     }
 }
 
-/// Factor and shift per axis that turn stored integers of `from` into those of `to`, if there are any. In the
-/// world, a point moves by no more than 2^-9 steps of `from` and 10^-6 steps of `to`.
+/// Factor and shift per axis that convert stored integers of `from` to those of `to`; `None` if there are
+/// none. In the world, a point moves by at most 2^-9 steps of `from` and 10^-6 steps of `to`.
 pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {
     let (Coordinates::I32 { scale, offset }, Coordinates::I32 { scale: to_scale, offset: to_offset }) =
         (from, to)
@@ -142,8 +142,8 @@ fn whole(value: f64, tolerance: f64) -> Option<f64> {
     ((value - rounded).abs() <= tolerance && rounded.abs() < 2f64.powi(52)).then_some(rounded)
 }
 
-/// Sides of the bounds filter in stored coordinates. A grid point that means to lie on a side is inside,
-/// however the products of scale and integer are rounded.
+/// The bounds filter in stored coordinates. A grid point meant to lie on a side is inside, however the
+/// product of scale and integer is rounded.
 fn stored_bounds(from: &Coordinates, bounds: Bounds) -> Bounds {
     let Coordinates::I32 { scale, offset } = from else { return bounds };
     let steps = |side: Point, axis: usize| (side[axis] - offset[axis]) / scale[axis];

@@ -1,4 +1,4 @@
-//! Reads PLY, text and bytes of either order: a triangle mesh if it has faces, else points.
+//! Reads PLY, text or binary of either byte order: a triangle mesh if it has faces, else points.
 
 use std::collections::VecDeque;
 use std::io::Read;
@@ -17,13 +17,13 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
 
-/// Longest list of a row: polygons and strips of any use are shorter, and a damaged length ends here.
+/// Greatest length of a row's list. Useful polygons and strips are shorter; a greater length is damage.
 const LIST_MAX: u64 = 1 << 16;
 
 /// Reads PLY: a triangle mesh, in which polygons become fans around their first vertex, or points of `dims`
-/// dimensions; `name` is what messages call the input.
+/// dimensions. Messages call the input `name`.
 ///
-/// Memory: one patch or batch, and triangles that come before their vertices.
+/// Memory: one patch or batch, and triangles that precede their vertices.
 ///
 /// # Errors
 /// If the header is damaged or states no vertices with x, y and z; usage, if it states triangle strips. Every
@@ -40,8 +40,7 @@ pub fn open_ply<R: Read + 'static>(
     Ok(Box::new(points(rows, dims)))
 }
 
-/// Reads the vertices of PLY as points that have a z, whatever else it holds; `name` is what messages call
-/// the input.
+/// Reads the vertices of PLY as points with z, and ignores everything else. Messages call the input `name`.
 ///
 /// # Errors
 /// If the header is damaged or states no vertices with x, y and z.
@@ -78,7 +77,7 @@ impl<R: Read> Vertices for PlyVertices<R> {
 
 struct PlyElements<R: Read> {
     rows: Rows<R>,
-    /// The rest of the polygon that was read last.
+    /// Remaining triangles of the last polygon read.
     triangles: VecDeque<[u64; 3]>,
 }
 
@@ -115,13 +114,13 @@ impl<R: Read> Elements for PlyElements<R> {
     }
 }
 
-/// A row that matters here.
+/// A row that is used.
 enum Row {
     Vertex(Point),
     Face(Vec<u64>),
 }
 
-/// The rows behind the header, in the order of the file.
+/// The rows after the header, in the order of the file.
 struct Rows<R: Read> {
     lines: Lines<R>,
     header: PlyHeader,
@@ -137,7 +136,7 @@ impl<R: Read> Rows<R> {
         Ok(Rows { lines, header, table: 0, row: 0 })
     }
 
-    /// The next vertex or face; rows of other elements are read over.
+    /// The next vertex or face; rows of other elements are skipped.
     fn next(&mut self) -> Result<Option<Row>> {
         while let Some(table) = self.header.tables.get(self.table) {
             if self.row == table.rows {
@@ -159,7 +158,7 @@ impl<R: Read> Rows<R> {
         Ok(None)
     }
 
-    /// That nothing follows: a count that is too low would lose the rest without a word.
+    /// Checks that nothing follows: with a count that is too low, the remaining rows would be lost silently.
     fn expect_end_of_input(&mut self) -> Result<()> {
         let goes_on = match self.header.encoding {
             Encoding::Ascii => loop {
@@ -191,7 +190,7 @@ impl<R: Read> Rows<R> {
     }
 }
 
-/// What a row says, property by property.
+/// The values of a row, collected property by property.
 #[derive(Default)]
 struct RowValues {
     point: Point,
@@ -215,7 +214,7 @@ impl RowValues {
         }
     }
 
-    /// Values of a property, each from `next`.
+    /// Takes the values of a property, each from `next`.
     fn property(
         &mut self,
         property: &Property,
@@ -237,7 +236,7 @@ fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Resu
     let mut fields = fields(line);
     for property in properties {
         values.property(property, |role, _| match role {
-            // What is read over may be no finite number.
+            // A skipped value need not be a finite number.
             Role::Other => next_field(&mut fields).map(|_| 0.0),
             _ => parse_decimal(next_field(&mut fields)?),
         })?;

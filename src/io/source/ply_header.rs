@@ -8,7 +8,7 @@ use super::sample_type::SampleType;
 use super::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
-/// Elements and properties that a header may have: far more than any has, and no memory to speak of.
+/// Greatest number of elements and properties of a header: far above any real header, and little memory.
 const ITEMS_MAX: usize = 1000;
 
 /// How the values are written.
@@ -18,16 +18,16 @@ pub(super) enum Encoding {
     Binary(ByteOrder),
 }
 
-/// What a property of an element means here.
+/// The meaning of an element's property here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     /// Coordinate of a vertex: 0, 1 or 2.
     Axis(usize),
     /// Vertices of a face.
     Corners,
-    /// How many values a list has.
+    /// Length of a list.
     Length,
-    /// Anything else: read over.
+    /// Anything else: skipped.
     Other,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Property {
     pub(super) scalar: SampleType,
 }
 
-/// What the rows of an element are.
+/// The type of an element's rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sort {
     Vertex,
@@ -50,7 +50,7 @@ pub(super) enum Sort {
     Other,
 }
 
-/// A sort of rows.
+/// An element of the header, with its rows.
 #[derive(Debug, Clone)]
 pub(super) struct ElementTable {
     pub(super) sort: Sort,
@@ -102,7 +102,7 @@ impl PlyHeader {
         Ok(header)
     }
 
-    /// Number of rows of a sort.
+    /// Number of rows of a type.
     pub(super) fn rows(&self, sort: Sort) -> u64 {
         self.tables
             .iter()
@@ -128,7 +128,7 @@ impl PlyHeader {
             if table.sort == Sort::Face && lists != 1 {
                 return Err(Error::malformed(format!("faces with {lists} lists vertex_indices, expected 1")));
             }
-            // Rows of no bytes would never come to an end that a count of 2^64 - 1 states.
+            // Rows of zero bytes could be stated 2^64 - 1 times and would never end.
             if table.properties.is_empty() {
                 return Err(Error::malformed(format!("{} rows of no properties", table.rows)));
             }

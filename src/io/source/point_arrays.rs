@@ -1,4 +1,4 @@
-//! Points that stand in a file as one array of coordinates, three for each, or as several of them.
+//! Points that a file stores as one or several arrays of coordinates, three per point.
 
 use std::io::{BufRead, BufReader};
 use std::sync::Arc;
@@ -19,22 +19,22 @@ const BUFFER_LEN: usize = 1 << 18;
 /// An array of coordinates: x, y and z of one point after the other.
 #[derive(Debug, Clone)]
 pub(super) struct PointArray {
-    /// Number of the part of the file that the array belongs to, if files have parts.
+    /// Number of the array's piece of the file, if the format has pieces.
     pub(super) piece: Option<u64>,
     pub(super) points: u64,
     pub(super) sample: SampleType,
     pub(super) writing: Writing,
     pub(super) place: Place,
-    /// Whether the place ends with the last coordinate.
+    /// Whether the place must end with the last coordinate.
     pub(super) is_exact: bool,
 }
 
 /// Where the numbers of an array are.
 #[derive(Debug, Clone)]
 pub(super) enum Place {
-    /// Between these bytes of the file, as they are.
+    /// Between these bytes of the file, unpacked.
     Plain { start: u64, end: u64 },
-    /// As VTK packs them.
+    /// Packed as in the XML formats of VTK.
     Framed(Framed),
 }
 
@@ -42,17 +42,17 @@ pub(super) enum Place {
 pub(super) type Numbers = Box<dyn BufRead + Send>;
 
 impl PointArray {
-    /// Bytes that binary numbers of `points` points have.
+    /// Length in bytes of the binary numbers of `points` points.
     ///
     /// # Errors
-    /// If no file is as long.
+    /// If the length is beyond that of any file.
     pub(super) fn len_of(points: u64, sample: SampleType) -> Result<u64> {
         let too_many = || Error::malformed(format!("{points} points are stated: no file holds as many"));
-        // Numbers that are text have two bytes at least, with what separates them.
+        // The limit serves text too: a number of text takes at least two bytes, with its separator.
         points.checked_mul(3 * sample.len() as u64).filter(|&len| len < 1 << 62).ok_or_else(too_many)
     }
 
-    /// Whether reading takes more than copying.
+    /// Whether reading takes more than copying bytes.
     fn is_costly(&self) -> bool {
         self.writing == Writing::Text || matches!(self.place, Place::Framed(_))
     }
@@ -67,7 +67,7 @@ impl PointArray {
         Ok(NumberReader::new(input, self.sample, self.writing, 3 * self.points))
     }
 
-    /// What messages call the point with this number, counted from 0.
+    /// Position of the point with this index, for messages.
     fn position(&self, point: u64) -> String {
         let piece = self.piece.map(|piece| format!("piece {piece}, ")).unwrap_or_default();
         match (&self.place, self.writing) {
@@ -80,12 +80,12 @@ impl PointArray {
     }
 }
 
-/// Whether reading `arrays` takes more than copying.
+/// Whether reading `arrays` takes more than copying bytes.
 pub(super) fn are_costly(arrays: &[PointArray]) -> bool {
     arrays.iter().any(PointArray::is_costly)
 }
 
-/// What a file with `arrays` says of itself.
+/// What a file with `arrays` states about itself.
 pub(super) fn state(arrays: &[PointArray]) -> Stated {
     Stated {
         coordinates: Coordinates::F64,
@@ -100,7 +100,7 @@ pub(super) fn state(arrays: &[PointArray]) -> Stated {
 pub(super) struct ArrayPass {
     view: FileView,
     arrays: Arc<[PointArray]>,
-    /// Number of the array that is read, and its reader once it is open.
+    /// Index of the current array, and its reader once it is open.
     at: usize,
     reader: Option<NumberReader<Numbers>>,
     values: Vec<f64>,
@@ -111,7 +111,7 @@ impl ArrayPass {
         ArrayPass { view, arrays, at: 0, reader: None, values: Vec::new() }
     }
 
-    /// Replaces the values by those of the next points of the current array; false at its end.
+    /// Replaces the values by the coordinates of the next points of the current array; false at its end.
     fn read(&mut self) -> Result<bool> {
         let array = &self.arrays[self.at];
         let reader = match &mut self.reader {

@@ -1,4 +1,4 @@
-//! Polylines and points along which splines are not smooth: lines of text, or GeoJSON.
+//! Polylines along which splines are not smooth, and corner points: lines of text, or GeoJSON.
 
 use std::io::Read;
 
@@ -9,7 +9,7 @@ use super::words::{finite, for_each_line};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::points::Point2;
 
-/// What a polyline is to splines; as the features of configurations have them.
+/// The role of a polyline in a spline, as in the features of configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PolylineKind {
     /// Each of its vertices is a sharp corner.
@@ -18,18 +18,18 @@ pub enum PolylineKind {
     Crease,
     /// A crease that is smooth at its ends.
     SmoothCrease,
-    /// Values along it are interpolated linearly.
+    /// Values along the polyline are interpolated linearly.
     Linear,
 }
 
-/// Vertices, with what they are for.
+/// A polyline with its role.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
-    /// What it is to splines.
+    /// Role in a spline.
     pub kind: PolylineKind,
     /// Its vertices, in world coordinates.
     pub vertices: Vec<Point2>,
-    /// Where it is in the input, for messages.
+    /// Position in the input, for messages.
     pub position: String,
 }
 
@@ -40,17 +40,17 @@ const NAMES: [(&str, PolylineKind); 4] = [
     ("linear", PolylineKind::Linear),
 ];
 
-/// The property of GeoJSON features that says what they are.
+/// The property of GeoJSON features that states the role.
 const PROPERTY: &str = "spline";
 
-/// Reads lines of a word, `corner`, `crease`, `smooth-crease` or `linear`, and coordinates X Y X Y ...; or
-/// GeoJSON, in which points are corners, and lines and rings of polygons are creases, unless a feature has a
-/// property `spline` with one of these words.
+/// Reads text or GeoJSON. A line of text is a word, `corner`, `crease`, `smooth-crease` or `linear`, and
+/// coordinates X Y X Y ... In GeoJSON, points are corners, and lines and rings of polygons are creases,
+/// unless a feature has a property `spline` with one of these words.
 ///
-/// Coordinates of GeoJSON are taken as they are; third ones do not count.
+/// Coordinates of GeoJSON are not transformed; third coordinates are ignored.
 ///
 /// # Errors
-/// If reading fails, a line or a geometry is something else, or there is none.
+/// If reading fails, a line or geometry is not of these forms, or there is none at all.
 pub fn read_polylines(mut input: impl Read) -> Result<Vec<Polyline>> {
     let mut bytes = Vec::new();
     input.read_to_end(&mut bytes).map_err(|e| Error::io("reading", e))?;
@@ -138,7 +138,7 @@ fn of_geometry(geometry: &Value, kind: Option<PolylineKind>, polylines: &mut Vec
         let parts = array(geometry.get("geometries").unwrap_or(&Value::Null))?;
         return parts.iter().try_for_each(|part| of_geometry(part, kind, polylines));
     }
-    // How many levels of lists there are around positions, and what they are if nothing is said.
+    // Nesting depth of the lists around positions, and the default role.
     let (levels, own) = match type_of(geometry) {
         "Point" => (0, PolylineKind::Corner),
         "MultiPoint" => (1, PolylineKind::Corner),

@@ -1,4 +1,4 @@
-//! Points of space in files that are nothing but numbers: x, y and z of one after the other.
+//! Points in files of nothing but numbers: x, y and z of one point after the other.
 
 use std::path::Path;
 
@@ -8,15 +8,15 @@ use super::point_arrays::{Place, PointArray};
 use super::raw_type::RawType;
 use spmesh_core::error::{Error, Result};
 
-/// Whether a file of raw numbers is compressed: its name tells, since numbers may start with any bytes.
+/// Whether a file of raw numbers is compressed, by its name: raw numbers may start with any bytes.
 pub(super) fn is_compressed(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("gz"))
 }
 
-/// The array that the whole file is.
+/// The whole file as an array.
 ///
 /// # Errors
-/// If the file is empty or ends inside of a point.
+/// If the file is empty or ends within a point.
 pub(super) fn open(view: &FileView, kind: RawType) -> Result<PointArray> {
     let point_len = 3 * kind.sample.len() as u64;
     let (len, points) = (view.len(), view.len() / point_len);

@@ -1,4 +1,4 @@
-//! How numbers of files without a header are stored, by a name.
+//! Names of the types of raw numbers.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,8 +6,8 @@ use std::str::FromStr;
 use super::byte_order::ByteOrder;
 use super::sample_type::SampleType;
 
-/// Type and byte order of raw numbers, as in `f32le`: i, u or f for signed, unsigned and floating point, the
-/// bits, and le or be for little-endian or big-endian, which single bytes do without.
+/// Type and byte order of raw numbers, such as `f32le`: i, u or f for signed, unsigned or floating point, the
+/// number of bits, and le or be for little-endian or big-endian, which types of one byte omit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RawType {
     pub(super) sample: SampleType,

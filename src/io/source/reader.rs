@@ -1,10 +1,10 @@
-//! What an input of points is to its readers.
+//! The interface of an input of points.
 
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
-/// What is known of an input before its points are read.
+/// Properties of an input that are known before its points are read.
 #[derive(Debug, Clone)]
 pub struct Description {
     /// Encoding that all points of the input share.
@@ -15,7 +15,7 @@ pub struct Description {
     pub has_elevation: bool,
     /// Coordinate reference system that all files share.
     pub crs: Crs,
-    /// Bounding box that the headers state, in stored coordinates: to be verified.
+    /// Bounding box that the headers state, in stored coordinates; not verified.
     pub stated_bounds: Option<Bounds>,
     /// Number of points that the headers state, before filters.
     pub stated_points: Option<u64>,

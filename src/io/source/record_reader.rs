@@ -1,8 +1,8 @@
-//! What gives the point records of a LAS file, compressed or not.
+//! The interface that supplies the point records of a LAS file, compressed or not.
 
 use spmesh_core::error::Result;
 
-/// A supply of point records as they stand in an uncompressed file.
+/// Supplies point records in their uncompressed form.
 pub(super) trait RecordReader: Send {
     /// Replaces the content of `records` with the next whole records; leaves it empty at the end.
     ///

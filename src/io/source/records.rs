@@ -10,7 +10,7 @@ use super::record_reader::RecordReader;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
-/// Bytes of records that are read at once from a file that is not compressed.
+/// Bytes of records read at once from an uncompressed file.
 const READ_LEN: usize = 1 << 18;
 
 /// Which records to keep.
@@ -35,13 +35,13 @@ impl RecordFilter {
         }
     }
 
-    /// Whether every record is wanted, whatever it says.
+    /// Whether the filter keeps every record.
     fn wants_all(&self) -> bool {
         !self.first_only && !self.last_only && self.keep.iter().all(|&keep| keep)
     }
 
-    /// Whether `record` is wanted. Formats 0 to 5 have 5 bits for the class and 3 for each return number,
-    /// formats 6 to 10 have 8 and 4. A return number of 0 is none: it counts as both first and last.
+    /// Whether to keep `record`. Formats 0 to 5 have 5 bits for the class and 3 for each return number,
+    /// formats 6 to 10 have 8 and 4. A return number of 0 means none: it counts as both first and last.
     fn wants(&self, record: &[u8]) -> bool {
         let (class, number, returns) = if self.is_extended {
             (record[16], record[14] & 15, record[14] >> 4)
@@ -60,7 +60,7 @@ pub(super) struct RecordPass {
     filter: RecordFilter,
     record_len: usize,
     records: Vec<u8>,
-    /// Bytes of `records` that are used up, and the number of records before `records`.
+    /// Bytes of `records` already used, and number of records in the file before `records`.
     used: usize,
     before: u64,
 }
@@ -109,7 +109,7 @@ impl Pass for RecordPass {
     }
 }
 
-/// The integers of a record as the file has them.
+/// The stored integers of a record.
 fn raw_point(record: &[u8]) -> Point {
     let value = |at: usize| {
         f64::from(i32::from_le_bytes(
@@ -119,7 +119,7 @@ fn raw_point(record: &[u8]) -> Point {
     [value(0), value(4), value(8)]
 }
 
-/// Records of a file that is not compressed.
+/// Records of an uncompressed file.
 struct PlainRecords {
     file: FileView,
     at: u64,

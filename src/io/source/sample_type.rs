@@ -18,7 +18,8 @@ pub(super) enum SampleType {
     F64,
 }
 
-/// The numbers in `bytes`: a loop for each type and order, so that none asks for them again and again.
+/// Appends the numbers in `bytes`. Each type and order gets its own loop, so that no loop branches on them
+/// per number.
 macro_rules! decode {
     ($type:ty, $bytes:expr, $order:expr, $numbers:expr) => {{
         let numbers =
@@ -30,7 +31,7 @@ macro_rules! decode {
     }};
 }
 
-/// Takes the last number.
+/// Keeps only the last number.
 struct Last(f64);
 
 impl Extend<f64> for Last {
@@ -40,7 +41,7 @@ impl Extend<f64> for Last {
 }
 
 impl SampleType {
-    /// Bytes of a number.
+    /// Length of a number in bytes.
     pub(super) fn len(self) -> usize {
         match self {
             SampleType::I8 | SampleType::U8 => 1,
@@ -66,17 +67,17 @@ impl SampleType {
         }
     }
 
-    /// The number in `bytes`, which are as many as it has.
+    /// The number in `bytes`, which must be exactly [`SampleType::len`] bytes.
     pub(super) fn number(self, bytes: &[u8], order: ByteOrder) -> f64 {
         let mut last = Last(0.0);
         self.decode(bytes, order, &mut last);
         last.0
     }
 
-    /// The value that is written as `text`.
+    /// The number that `text` denotes.
     ///
     /// # Errors
-    /// If it is none of this type.
+    /// If `text` is not a number of this type.
     pub(super) fn parse(self, text: &[u8]) -> Result<f64> {
         let text = std::str::from_utf8(text).unwrap_or("");
         let integer = |least: i128, most: i128| {

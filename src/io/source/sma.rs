@@ -9,14 +9,14 @@ use super::patches::Order;
 use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_signed, unexpected};
 use spmesh_core::error::{Error, Result};
 
-/// Reads an SMA mesh, pre-order or post-order: now up to the first element. `name` is what messages call the
-/// input.
+/// Opens an SMA mesh, pre-order or post-order, and reads up to its first element. Messages call the input
+/// `name`.
 ///
-/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole line looks
-/// like a short one.
+/// Verifies the counts that the header states. Without them a mesh truncated after a whole line looks like a
+/// shorter mesh.
 ///
 /// # Errors
-/// If the lines before the first element are no header of SMA. This and every later error is
+/// If the lines before the first element are not a header of SMA. This and every later error is
 /// [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line.
 pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<Box<dyn EventSource>> {
     let lines = Lines::new(input, name);
@@ -29,14 +29,14 @@ pub fn open_sma<R: Read + 'static>(input: R, name: impl Into<String>) -> Result<
 struct SmaElements<R> {
     lines: Lines<R>,
     order: Order,
-    /// The current line is still to be read: it ended the header.
+    /// The current line ended the header and is still to be parsed.
     held: bool,
     vertices: Option<u64>,
     triangles: Option<u64>,
 }
 
 impl<R: Read> SmaElements<R> {
-    /// Reads comments up to the first element, whose sort decides the order of the mesh.
+    /// Reads comments up to the first element, whose type decides the order of the mesh.
     fn read_header(&mut self) -> Result<()> {
         while let Some(line) = self.lines.next_line()? {
             let mut fields = fields(line);
@@ -85,7 +85,7 @@ impl<R: Read> Elements for SmaElements<R> {
     }
 }
 
-/// That the header states the number that the mesh has, if it states one.
+/// Checks the count that the header states, if any, against the mesh.
 pub(super) fn check_count(what: &str, stated: Option<u64>, found: u64) -> Result<()> {
     match stated {
         Some(stated) if stated != found => Err(Error::malformed(format!(

@@ -11,12 +11,12 @@ use super::smb_header::{ELEMENT_LEN, ELEMENTS_PER_BLOCK, SmbHeader, point, read_
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
 
-/// Reads an SMB mesh, pre-order or post-order, of either byte order: now the header, deciding the byte order
-/// from what header and first block say in each, because the flag in the file is often wrong. `name` is what
-/// messages call the input.
+/// Opens an SMB mesh, pre-order or post-order, and reads its header. The byte order is decided by the
+/// plausibility of header and first block in each order, because the flag in the file is often wrong.
+/// Messages call the input `name`.
 ///
-/// Counts that the header states are verified. Without them a mesh that was cut off behind a whole element
-/// looks like a short one.
+/// Verifies the counts that the header states. Without them a mesh truncated after a whole element looks like
+/// a shorter mesh.
 ///
 /// # Errors
 /// If the header makes sense in neither byte order. This and every later error is
@@ -54,9 +54,9 @@ struct SmbElements<R> {
     order: Order,
     descriptor: u32,
     block: Vec<u8>,
-    /// Byte at which the block starts.
+    /// Offset of the block in the file.
     offset: u64,
-    /// Elements of the block that were given out.
+    /// Elements of the block already returned.
     used: usize,
     /// The block is the last one.
     ended: bool,
@@ -67,7 +67,7 @@ impl<R: Read> SmbElements<R> {
         let mut descriptor = Vec::with_capacity(4);
         self.read(4, &mut descriptor)?;
         if descriptor.is_empty() && self.header.vertices.is_none() {
-            // Every mesh ends with a block of less than 32 elements, if need be of none.
+            // Every mesh ends with a block of fewer than 32 elements, possibly none.
             return Err(Error::malformed("truncated: the last block is missing"));
         }
         let mut block = std::mem::take(&mut self.block);

@@ -1,4 +1,4 @@
-//! The header of SMB, and the byte order that its content has.
+//! The header of SMB, and the detection of its byte order.
 
 use super::byte_order::{ByteOrder, parse_in_either};
 use spmesh_core::error::{Error, Result};
@@ -27,8 +27,8 @@ pub(super) struct SmbHeader {
     bounds: Option<[Point; 2]>,
 }
 
-/// Reads the header from the first bytes of a file, in the byte order in which they make most sense; the one
-/// that the file is flagged with, if both make the same.
+/// Reads the header from the first bytes of a file, in the more plausible byte order; if both are equally
+/// plausible, in the order that the file's flag states.
 pub(super) fn read_header(head: &[u8]) -> Result<SmbHeader> {
     parse_in_either(
         head,
@@ -76,9 +76,9 @@ fn parse_header(head: &[u8], order: ByteOrder) -> Result<SmbHeader> {
     Ok(SmbHeader { order, vertices, triangles, len, bounds })
 }
 
-/// How much header and first block look like a mesh in this byte order: coordinates of an ordinary size, in
-/// the bounding box, and triangles of vertices that are there. Numbers of vertices that may come later
-/// (post-order) count little, because small floats with their bytes swapped look like them.
+/// How plausible header and first block are as a mesh in this byte order: coordinates of ordinary magnitude
+/// within the bounding box, and triangles of existing vertices. Numbers of vertices that may come later
+/// (post-order) weigh little, because byte-swapped small floats look like them.
 fn plausibility(header: &SmbHeader, body: &[u8]) -> u32 {
     let order = header.order;
     let is_ordinary = |x: &&f64| **x == 0.0 || (1e-9..1e9).contains(&x.abs());

@@ -1,4 +1,4 @@
-//! What the streaming point formats SPA and SPB have in common; `formats/historical.md` describes both.
+//! The interface of the streaming point formats SPA and SPB; `formats/historical.md` describes both.
 
 use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
@@ -17,7 +17,7 @@ pub enum SpDatatype {
     Double,
 }
 
-/// Which space partition the cell indices of finalization tags refer to.
+/// The space partition to which the cell indices of finalization tags refer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpFinalization {
     /// No tags.
@@ -35,11 +35,11 @@ pub enum SpFinalization {
 /// The header of an SPA or SPB file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpHeader {
-    /// Comments of the file.
+    /// Comments in the file.
     pub comments: Vec<String>,
     /// How coordinates are stored.
     pub datatype: SpDatatype,
-    /// What the finalization tags mean.
+    /// The meaning of finalization tags.
     pub finalization: SpFinalization,
     /// Number of points, if stated.
     pub points: Option<u64>,
@@ -47,10 +47,10 @@ pub struct SpHeader {
     pub bounds: Option<Bounds>,
 }
 
-/// What such a file says after its header.
+/// A statement of such a file after its header.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SpEvent {
-    /// A point. Single precision and integers are exact in f64.
+    /// A point. Single-precision and integer coordinates are exact in f64.
     Point(Point),
     /// No later point lies in the cell of this index.
     FinalizedCell(i32),
@@ -64,16 +64,16 @@ pub trait SpReader {
     /// The next event; `None` at the end.
     ///
     /// # Errors
-    /// If reading fails, or the file is damaged or has another number of points than it states. Coordinates
-    /// need not be finite.
+    /// If reading fails, the file is damaged, or its number of points is not the stated one. Coordinates may
+    /// be infinite or NaN.
     fn next_event(&mut self) -> Result<Option<SpEvent>>;
 
-    /// Where the event that was read last is, for messages.
+    /// Position of the last event read, for messages.
     fn position(&self) -> String;
 }
 
 impl SpHeader {
-    /// Fails if the file ends after another number of points than it states.
+    /// Fails if `points`, counted at the end of the file, is not the stated number.
     pub(super) fn check_count(&self, points: u64) -> Result<()> {
         match self.points {
             Some(stated) if stated != points => {

@@ -1,4 +1,4 @@
-//! Turns a file of the historical point formats SPA and SPB into the events of a stream.
+//! Converts files of the historical point formats SPA and SPB to the events of a stream.
 
 use super::events::EventSource;
 use super::sp::{SpEvent, SpFinalization, SpHeader, SpReader};
@@ -8,14 +8,14 @@ use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Event, FinalizedCells, Header, Kind, check_place};
 
-/// Points of one event at most.
+/// Greatest number of points or tags of an event.
 const BATCH_MAX: usize = 4096;
 
 /// An SPA or SPB file as a points stream, in world coordinates.
 ///
-/// Finalization tags are kept if the bounding box of the file, of which its cells are halves of halves, is
-/// the cube of an exact finalization tree; otherwise they are dropped, and a notice says so. Tags of cells
-/// that are final already say nothing and are dropped too.
+/// Finalization tags are kept if the bounding box of the file, which is halved into cells, is the cube of an
+/// exact finalization tree; otherwise they are dropped, with a notice. Tags of cells that are already final
+/// are redundant and dropped too.
 pub struct SpEvents<S> {
     reader: S,
     name: String,
@@ -28,8 +28,8 @@ pub struct SpEvents<S> {
 }
 
 impl<S: SpReader> SpEvents<S> {
-    /// Events of `reader`; `name` is what messages call it. Without a finalization tree that tells, the
-    /// points have `dims` dimensions; with 2, z is an elevation.
+    /// Events of `reader`, which messages call `name`. The finalization method decides the dimensions of the
+    /// points; without a tree they have `dims` dimensions. With 2, z is an elevation.
     pub fn new(reader: S, name: impl Into<String>, dims: u8) -> Self {
         let dims = match reader.header().finalization {
             SpFinalization::QuadTree => 2,
@@ -51,7 +51,7 @@ impl<S: SpReader> SpEvents<S> {
         }
     }
 
-    /// The next event without those that are dropped.
+    /// The next event that is not dropped.
     fn next_kept(&mut self) -> Result<Option<SpEvent>> {
         if let Some(event) = self.held.take() {
             return Ok(Some(event));
@@ -140,7 +140,7 @@ impl<S: SpReader> EventSource for SpEvents<S> {
     }
 }
 
-/// The tree whose cells the tags of a file are, if it is exact.
+/// The tree whose cells the file's tags finalize, if it is exact.
 fn tree_of(header: &SpHeader) -> Option<CellTree> {
     let Bounds { min, max } = header.bounds?;
     let dims = match header.finalization {
@@ -156,7 +156,7 @@ fn tree_of(header: &SpHeader) -> Option<CellTree> {
     if is_cube { CellTree::new(dims, cell_index::level_max(dims), origin, side) } else { None }
 }
 
-/// The cell of a tag, which the tree must have.
+/// The cell of a tag; an error if the tree has none.
 fn cell_of(index: i32, tree: &CellTree) -> Result<CellCode> {
     let unknown = || Error::malformed(format!("finalized cell {index}, which the tree does not have"));
     cell_index::cell_of(tree, index).ok_or_else(unknown)

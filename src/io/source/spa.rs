@@ -9,7 +9,7 @@ use super::sp::{SpDatatype, SpEvent, SpFinalization, SpHeader, SpPass, SpReader}
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 
-/// Longest text of comments that is kept, in bytes.
+/// Greatest number of bytes of comments to keep.
 const COMMENTS_MAX: usize = 1 << 20;
 
 /// Reads an SPA file.
@@ -26,7 +26,7 @@ impl<R: Read> SpaReader<R> {
     /// Reads the header: all comment lines before the first event.
     ///
     /// # Errors
-    /// If reading fails or a line is no line of SPA.
+    /// If reading fails or a line is not SPA.
     pub fn new(input: R) -> Result<Self> {
         let header = SpHeader {
             comments: Vec::new(),
@@ -81,8 +81,8 @@ impl<R: Read> SpReader for SpaReader<R> {
     }
 }
 
-/// The event of a line, if it has one: comments and tags of vertices are passed over. Faces and tetrahedra
-/// belong to meshes of the family, which are no points.
+/// The event of a line; `None` for comments and tags of vertices. Faces and tetrahedra are errors: they
+/// belong to the related mesh formats.
 fn parse(line: &[u8]) -> Result<Option<SpEvent>> {
     let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
     let bad = || Error::malformed(format!("found {}, expected a line of SPA", quote(line)));
@@ -157,7 +157,7 @@ impl HeaderFields {
     }
 }
 
-/// Reads the header of a file. Its bounding box is rounded, and so not the one of the points.
+/// Reads the header of a file. Its bounding box is left out, because SPA rounds it.
 pub(super) fn state(file: Bytes) -> Result<Stated> {
     Ok(SpaReader::new(file)?.header().state(None))
 }

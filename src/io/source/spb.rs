@@ -1,4 +1,4 @@
-//! SPB: streaming points as bytes.
+//! SPB: binary streaming points.
 
 use std::io::{BufReader, Cursor, Read};
 
@@ -13,11 +13,11 @@ use spmesh_model::bounds::{Bounds, Point};
 /// First byte of a file.
 const VERSION: u8 = 7;
 
-/// Elements of a full block: one bit each in its descriptor.
+/// Number of elements in a full block, one per bit of its descriptor.
 const BLOCK_ELEMENTS: usize = 32;
 
 impl SpDatatype {
-    /// Bytes of a coordinate.
+    /// Length of a coordinate in bytes.
     fn width(self) -> usize {
         match self {
             SpDatatype::Float | SpDatatype::Int => 4,
@@ -25,7 +25,7 @@ impl SpDatatype {
         }
     }
 
-    /// The coordinate in the first bytes.
+    /// The coordinate at the start of `bytes`.
     fn coordinate(self, order: ByteOrder, bytes: &[u8]) -> f64 {
         match self {
             SpDatatype::Float => f64::from(f32::from_bits(order.u32(bytes))),
@@ -42,17 +42,17 @@ pub struct SpbReader<R> {
     header: SpHeader,
     block: Vec<u8>,
     descriptor: u32,
-    /// Elements of the block that were given out.
+    /// Elements of the block already returned.
     used: usize,
-    /// Byte at which the next block starts.
+    /// Offset of the next block in the file.
     offset: u64,
     points: u64,
     ended: bool,
 }
 
 impl<R: Read> SpbReader<R> {
-    /// Reads the header, and decides the byte order from what header and first block say in each: the flag
-    /// in the file is often wrong.
+    /// Reads the header. The byte order is decided by the plausibility of header and first block in each
+    /// order, because the flag in the file is often wrong.
     ///
     /// # Errors
     /// If reading fails, or the header makes sense in neither byte order.
@@ -79,7 +79,7 @@ impl<R: Read> SpbReader<R> {
         })
     }
 
-    /// Reads descriptor and elements of the next block. The last one may be short.
+    /// Reads descriptor and elements of the next block. The last block may be short.
     fn read_block(&mut self) -> Result<()> {
         let mut descriptor = Vec::with_capacity(4);
         self.block.clear();
@@ -138,7 +138,7 @@ fn point(order: ByteOrder, datatype: SpDatatype, bytes: &[u8]) -> Point {
     std::array::from_fn(|axis| datatype.coordinate(order, &bytes[axis * width..]))
 }
 
-/// Reads the header from the first bytes of a file, and tells its length.
+/// Parses the header in the first bytes of a file; also returns its length.
 fn parse_header(head: &[u8], order: ByteOrder) -> Result<(SpHeader, usize)> {
     let mut rest = head;
     let mut take = |len: usize| -> Result<&[u8]> {
@@ -192,8 +192,8 @@ fn parse_header(head: &[u8], order: ByteOrder) -> Result<(SpHeader, usize)> {
     Ok((SpHeader { comments, datatype, finalization, points, bounds }, len))
 }
 
-/// How much the header and the first block look like data in this byte order: each coordinate of an ordinary
-/// size, each point inside of the bounding box, and a descriptor without bits beyond the elements count.
+/// How plausible header and first block are in this byte order. The score counts coordinates of ordinary
+/// magnitude, points within the bounding box, and a descriptor without bits beyond its elements.
 fn plausibility(order: ByteOrder, header: &SpHeader, body: &[u8]) -> u32 {
     let largest = if header.datatype == SpDatatype::Int { 2f64.powi(24) } else { 1e9 };
     let is_ordinary = |value: f64| value == 0.0 || (1e-9..largest).contains(&value.abs());

@@ -1,4 +1,4 @@
-//! Fields of a line: words, numbers, and what is said of others.
+//! Fields of a line: words, numbers, and errors about them.
 
 use super::lines::{number, quote};
 use spmesh_core::error::{Error, Result};
@@ -13,7 +13,7 @@ pub(super) fn parse_decimal(field: &[u8]) -> Result<f64> {
     number(field).filter(|number| number.is_finite()).ok_or_else(|| unexpected(field, "a finite number"))
 }
 
-/// An integer without sign.
+/// An unsigned integer.
 pub(super) fn parse_integer(field: &[u8]) -> Result<u64> {
     let digits = field.iter().all(u8::is_ascii_digit).then_some(field);
     let number = digits.and_then(|digits| std::str::from_utf8(digits).ok()?.parse().ok());
@@ -37,17 +37,17 @@ pub(super) fn parse_decimals<'a, const N: usize>(
     Ok(numbers)
 }
 
-/// The next field, which must be there.
+/// The next field; an error if there is none.
 pub(super) fn next_field<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<&'a [u8]> {
     fields.next().ok_or_else(|| Error::malformed("the line ends early: a field is missing"))
 }
 
-/// That no field is left.
+/// Checks that no field is left.
 pub(super) fn expect_no_field<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<()> {
     fields.next().map_or(Ok(()), |field| Err(unexpected(field, "the end of the line")))
 }
 
-/// An error that quotes the beginning of what was found.
+/// An error that quotes the start of `found`.
 pub(super) fn unexpected(found: &[u8], expected: &str) -> Error {
     Error::malformed(format!("found {}, expected {expected}", quote(found)))
 }

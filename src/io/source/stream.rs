@@ -1,4 +1,4 @@
-//! Points from streams of this project and their text twins, where what cell tags promise is ignored; and the
+//! Points from streams of this project and their text twins, without the promises of cell tags; and the
 //! vertices of PLY and OBJ.
 
 use std::io::BufReader;
@@ -30,7 +30,7 @@ pub(super) fn state_of_ply(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&ply::open_vertices(file, name)?)
 }
 
-/// What there is to know of an OBJ, whose vertices are the points, before it is read.
+/// What is known of an OBJ, whose vertices are the points, before it is read.
 pub(super) fn state_of_obj(file: Bytes, name: &str) -> Result<Stated> {
     state_of(&obj::open_vertices(file, name))
 }

@@ -1,4 +1,4 @@
-//! Points as lines of text: xyz, csv and the like.
+//! Points as lines of text: xyz, csv and similar formats.
 
 use super::lines::{Lines, number, quote};
 use super::origin::Bytes;
@@ -8,14 +8,14 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs};
 
-/// What separates the fields of a line.
+/// The separator of a line's fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Delimiter {
     WhiteSpace,
     Byte(u8),
 }
 
-/// Where the coordinates of a line are.
+/// The columns that hold the coordinates.
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
     delimiter: Delimiter,
@@ -23,23 +23,24 @@ pub(super) struct Columns {
     axes: Vec<usize>,
     /// Line of the column names, if there is one.
     names_line: Option<u64>,
-    /// Whether a third column would be one that the first line of points did not show.
+    /// Whether the first line of points has only two columns, so that a third column in another line is an
+    /// error.
     only_two: bool,
 }
 
-/// A line that holds no number, before all points.
+/// A line without numbers, before all points.
 struct Names {
     line: u64,
     delimiter: Delimiter,
     fields: Vec<Vec<u8>>,
 }
 
-/// Finds the columns from the first line that is neither blank nor comment, and from the next one if that
-/// holds the names of the columns. Whether the other lines are good is for the pass to tell.
+/// Finds the columns from the first line that is neither blank nor a comment and, if that holds the names of
+/// the columns, from the next one. The pass checks the other lines.
 ///
 /// # Errors
-/// If the first line is neither a point nor can be the names of the columns, or if those do not tell which
-/// columns are x and y.
+/// If the first line is neither a point nor names of columns, or if the names do not tell which columns are x
+/// and y.
 pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
     let mut lines = Lines::new(file, "");
     let mut names: Option<Names> = None;
@@ -76,7 +77,7 @@ pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
     Ok((columns, stated))
 }
 
-/// The columns from the first line of points and the names above it.
+/// The columns, from the first line of points and any names above it.
 fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> Result<Columns> {
     let axes = (0..fields.len().clamp(2, 3)).collect();
     let only_two = fields.len() == 2;
@@ -104,7 +105,7 @@ fn no_text_of_points(line: u64) -> Error {
     Error::malformed(reason).at(format!("line {line}"))
 }
 
-/// The columns that are called x, y and z, or by other usual names, if x and y are there.
+/// The columns named x, y and z, or by other usual names; `None` without x and y.
 fn named_axes<Name: AsRef<[u8]>>(names: &[Name]) -> Option<Vec<usize>> {
     let column = |usual: &[&str]| {
         let is_usual =
@@ -133,7 +134,7 @@ pub(super) fn delimiter_of(line: &[u8]) -> Delimiter {
     if let Some(&byte) = [b';', b','].iter().find(|byte| line.contains(byte)) {
         return Delimiter::Byte(byte);
     }
-    // Tabs separate names that may contain blanks; between numbers they are white space as any other.
+    // Tabs separate names that may contain blanks; between numbers they are white space like any other.
     let has_numbers = line.split(u8::is_ascii_whitespace).any(is_number);
     if line.contains(&b'\t') && !has_numbers { Delimiter::Byte(b'\t') } else { Delimiter::WhiteSpace }
 }

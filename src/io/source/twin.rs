@@ -18,7 +18,7 @@ use spmesh_stream::{
     ConfigurationBlock, Coordinates, Event, Header, Kind, Patch, Tally, Totals, check_place,
 };
 
-/// Lines of one sort that become one event at most.
+/// Greatest number of lines that become one event.
 const BATCH_MAX: usize = 4096;
 
 /// One line, parsed. Vertices and residual points are counted from 0 here.
@@ -26,12 +26,12 @@ enum Statement {
     Vertex(Point),
     Cell(CellCode),
     Patch,
-    /// Of a triangle the first three count.
+    /// A triangle uses the first three.
     Simplex([u64; 4]),
     Final(u64),
     Label(u64),
     Residual(Option<u64>, Point),
-    /// In the plane the first two count.
+    /// In the plane, a wall uses the first two.
     Wall([u64; 3]),
     Four(Statement4),
     Configuration(ConfigurationLine),
@@ -43,19 +43,19 @@ enum Statement {
 #[derive(Default)]
 struct PatchLines {
     new: Vec<Point>,
-    /// One behind the other.
+    /// Ids of all simplices, concatenated.
     simplices: Vec<u64>,
     finalized: Vec<u64>,
 }
 
 impl PatchLines {
-    /// Length of the payload without imported vertices, in bytes.
+    /// Length in bytes of the payload without imported vertices.
     fn len_min(&self, header: &Header) -> usize {
         24 + self.new.len() * header.point_len() + self.simplices.len() * 4 + self.finalized.len() * 4
     }
 }
 
-/// Lines that make the next event.
+/// Lines that become the next event.
 enum Group {
     Empty,
     Points(Vec<Point>),
@@ -63,14 +63,14 @@ enum Group {
     Patch(PatchLines),
     Labels(Vec<u64>),
     Residual(Vec<(Option<u64>, Point)>),
-    /// One behind the other.
+    /// Corners of all walls, concatenated.
     Walls(Vec<u32>),
     Four(Group4),
     Configurations(ConfigurationBlock),
     Functions(FunctionGroup),
 }
 
-/// Reads a text twin. Memory: one line, and one block's worth of lines.
+/// Reads a text twin. Memory: one line, and the lines of one block.
 ///
 /// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input and line.
 pub struct TwinSource<R> {
@@ -84,10 +84,10 @@ pub struct TwinSource<R> {
 }
 
 impl<R: Read> TwinSource<R> {
-    /// Reads the header; `name` is what messages call the input.
+    /// Reads the header. Messages call the input `name`.
     ///
     /// # Errors
-    /// If the input is no text twin, or its header is not complete or breaks a rule.
+    /// If the input is not a text twin, or its header is incomplete or breaks a rule.
     pub fn new(input: R, name: impl Into<String>) -> Result<Self> {
         let mut lines = Lines::new(input, name);
         let mut header = TwinHeader::default();
@@ -148,7 +148,7 @@ impl<R: Read> TwinSource<R> {
         }
     }
 
-    /// Adds a statement to the group, which it starts if there is none.
+    /// Adds a statement to the group, or starts a group with it.
     fn push(&mut self, statement: Statement) -> Result<()> {
         let is_mesh = self.header.kind.vertices_per_simplex() > 0;
         let is_points = self.header.kind == Kind::Points
@@ -210,7 +210,7 @@ impl<R: Read> TwinSource<R> {
         }
     }
 
-    /// The event of the group, checked by the rules of the stream.
+    /// The event of the group, checked by the rules of streams.
     fn take_group(&mut self) -> Result<Event> {
         let vertices = self.tally.totals().vertices;
         let event = match std::mem::replace(&mut self.group, Group::Empty) {
@@ -238,7 +238,7 @@ impl<R: Read> TwinSource<R> {
         Ok(event)
     }
 
-    /// Whether functions or coefficients have begun: knots and configurations come before.
+    /// Whether functions or coefficients have begun. Knots and configurations precede them.
     fn has_functions(&self) -> bool {
         let Totals { vertices, residual_points, .. } = self.tally.totals();
         self.header.kind.has_knots() && vertices + residual_points > 0
@@ -289,7 +289,7 @@ impl<R: Read> EventSource for TwinSource<R> {
 }
 
 impl Group {
-    /// Whether the statement belongs to the event that the group makes.
+    /// Whether the statement belongs to the group's event.
     fn takes(&self, statement: &Statement) -> bool {
         match (self, statement) {
             (Group::Empty, _) => true,
@@ -309,7 +309,7 @@ impl Group {
     }
 }
 
-/// Whether a line is a statement of content or end.
+/// Whether a line is a statement of content or the end.
 fn is_content(line: &[u8]) -> bool {
     let mut fields = fields(line);
     match fields.next() {
@@ -371,7 +371,7 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     Ok(Some(statement))
 }
 
-/// The statements of a kind, for messages.
+/// The statements allowed in streams of a kind, for messages.
 fn statements_of(kind: Kind) -> &'static str {
     match kind {
         Kind::Points => "v, x or a comment",
@@ -385,13 +385,13 @@ fn statements_of(kind: Kind) -> &'static str {
     }
 }
 
-/// A point in stored coordinates, from world coordinates, checked by the header.
+/// Converts world coordinates to a stored point and checks it against the header.
 fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Point> {
     let world = parse_decimals::<3>(fields)?;
     let mut stored = header.coordinates.to_stored(world);
     stored[header.coordinates_per_point()..].fill(0.0);
     if let Coordinates::I32 { .. } = header.coordinates {
-        // What rounds to -0 is the integer 0.
+        // Adding 0.0 turns a -0.0 from rounding into the integer 0.
         stored = stored.map(|value| value + 0.0);
     }
     for (value, world) in stored.iter().zip(world) {
@@ -423,7 +423,7 @@ fn parse_cell(field: &[u8], header: &Header) -> Result<CellCode> {
     tree.is_valid(cell).then_some(cell).ok_or_else(|| unexpected(field, "a location code of the tree"))
 }
 
-/// A number counted from 1, as one counted from 0.
+/// A number that counts from 1, converted to count from 0.
 fn parse_number(field: &[u8]) -> Result<u64> {
     parse_integer(field)?.checked_sub(1).ok_or_else(|| unexpected(field, "a number from 1 on"))
 }
@@ -447,7 +447,7 @@ fn parse_end<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Totals> 
     })
 }
 
-/// A wall between different ones of the residual points.
+/// A wall between distinct residual points.
 fn check_wall(wall: &[u64], residual_points: u64) -> Result<Vec<u32>> {
     let known = |&corner: &u64| u32::try_from(corner).ok().filter(|_| corner < residual_points);
     let corners: Option<Vec<u32>> = wall.iter().map(known).collect();

@@ -6,25 +6,25 @@ use spmesh_core::limits::CELL_WORDS_MAX;
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 use spmesh_stream::{Event, Header, Kind, Points4, check_value};
 
-/// Words from which a group of cells takes no further one.
+/// Number of words from which a group of cells takes no further cell.
 const BATCH_WORDS: usize = 1 << 16;
 
 /// One line, parsed. Points and cells are counted from 0 here.
 pub(super) enum Statement4 {
     Vertex(Point4, Option<f64>),
-    /// A cell begins with vertices.
+    /// Start of a cell, with its vertices.
     Cell {
         is_infinite: bool,
         vertices: Vec<u32>,
     },
     /// Neighbours of the cell.
     Neighbours(Vec<u32>),
-    /// More of the list before.
+    /// Continuation of the list before.
     More(Vec<u32>),
     Simplex([u32; 5]),
 }
 
-/// The statement that `word` starts and `fields` go on with.
+/// Parses the statement of `word` and the `fields` after it.
 pub(super) fn parse<'a>(
     word: &[u8],
     fields: &mut impl Iterator<Item = &'a [u8]>,
@@ -69,13 +69,13 @@ fn parse_numbers<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Vec<
     fields.map(parse_number).collect()
 }
 
-/// A number counted from 1, as one of 32 bits counted from 0.
+/// A number that counts from 1, converted to a u32 that counts from 0.
 fn parse_number(field: &[u8]) -> Result<u32> {
     let number = parse_integer(field)?.checked_sub(1).and_then(|number| u32::try_from(number).ok());
     number.ok_or_else(|| unexpected(field, "a number from 1 to 2^32"))
 }
 
-/// Lines that make the next event.
+/// Lines that become the next event.
 pub(super) enum Group4 {
     Points(Points4),
     Cells(CellLines),
@@ -102,7 +102,7 @@ impl Group4 {
         }
     }
 
-    /// Whether the statement belongs to the event that the group makes.
+    /// Whether the statement belongs to the group's event.
     pub(super) fn takes(&self, statement: &Statement4, batch_max: usize) -> bool {
         match (self, statement) {
             (Group4::Points(points), Statement4::Vertex(..)) => points.points.len() < batch_max,
@@ -132,7 +132,7 @@ impl Group4 {
         }
     }
 
-    /// The event.
+    /// The group's event.
     pub(super) fn finish(self) -> Result<Event> {
         match self {
             Group4::Points(points) => Ok(Event::Points4(points)),
@@ -145,7 +145,7 @@ impl Group4 {
     }
 }
 
-/// Cells, the last of which may go on.
+/// Cells, of which the last may be incomplete.
 #[derive(Default)]
 pub(super) struct CellLines {
     done: Cells4,
@@ -181,7 +181,7 @@ impl CellLines {
         Ok(())
     }
 
-    /// Puts the open cell, if there is one, to the others.
+    /// Adds the open cell, if there is one, to the others.
     fn close(&mut self) -> Result<()> {
         let Some(OpenCell { is_infinite, vertices, neighbours }) = self.open.take() else { return Ok(()) };
         let neighbours =

@@ -5,18 +5,18 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::configurations::{Claim, FARAWAY};
 use spmesh_stream::{ConfigurationBlock, check_degree, claim_from_name};
 
-/// Words from which an event takes no further line.
+/// Number of words from which an event takes no further line.
 const BATCH_WORDS: usize = 1 << 14;
 
 /// One line, parsed. Knots are counted from 0 here.
 pub(super) enum ConfigurationLine {
     Degree(u32, Claim),
     Interior(Vec<u32>),
-    /// The last is [`FARAWAY`] if the line is `line`.
+    /// The last entry is [`FARAWAY`] for a line `line`.
     Boundary([u32; 3]),
 }
 
-/// The line that `word` starts and `fields` go on with; `None` if it is no line of configurations.
+/// Parses the line of `word` and the `fields` after it; `None` if it is not a line of configurations.
 pub(super) fn parse<'a>(
     word: &[u8],
     fields: &mut impl Iterator<Item = &'a [u8]>,
@@ -54,22 +54,22 @@ pub(super) fn parse_knot(field: &[u8]) -> Result<u32> {
     knot.ok_or_else(|| unexpected(field, "a number from 1 to 2^32 - 1"))
 }
 
-/// What lines go on with, over all events.
+/// The state that lines carry from one to the next, across events.
 #[derive(Default)]
 pub(super) struct OpenLines {
     degree: Option<(u32, Claim)>,
     interior: Option<Vec<u32>>,
-    /// Whether the interior set waits for its first configuration.
+    /// Whether the interior set has no configuration yet.
     is_bare: bool,
 }
 
 impl OpenLines {
-    /// Whether a degree has begun: knots come before.
+    /// Whether a degree has begun. Knots precede all degrees.
     pub(super) fn is_begun(&self) -> bool {
         self.degree.is_some()
     }
 
-    /// The empty event that `line` starts; none if it cannot start one.
+    /// The empty event that `line` starts; `None` before the first degree.
     pub(super) fn start(&mut self, line: &ConfigurationLine) -> Result<Option<ConfigurationBlock>> {
         if let &ConfigurationLine::Degree(degree, claim) = line {
             self.check_closed()?;
@@ -85,7 +85,7 @@ impl OpenLines {
         Ok(self.degree.map(|(degree, claim)| ConfigurationBlock::new(degree, claim)))
     }
 
-    /// Adds a line, which is not one of a degree, to an event.
+    /// Adds a line to an event; `degree` lines are ignored.
     pub(super) fn push(&mut self, block: &mut ConfigurationBlock, line: ConfigurationLine) -> Result<()> {
         match (line, &self.interior) {
             (ConfigurationLine::Degree(..), _) => {}
@@ -116,7 +116,7 @@ impl OpenLines {
         Ok(())
     }
 
-    /// That the last interior set has a configuration.
+    /// Checks that the last interior set has a configuration.
     pub(super) fn check_closed(&self) -> Result<()> {
         if self.is_bare { Err(Error::malformed("an interior set has no configuration")) } else { Ok(()) }
     }

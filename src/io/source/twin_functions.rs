@@ -13,13 +13,13 @@ pub(super) enum FunctionLine {
     Coefficient(f64),
 }
 
-/// Lines that make the next event.
+/// Lines that become the next event.
 pub(super) enum FunctionGroup {
     Functions(Vec<Function>),
     Coefficients(Vec<f64>),
 }
 
-/// The line that `word` starts and `fields` go on with; `None` if it is no line of functions.
+/// Parses the line of `word` and the `fields` after it; `None` if it is not a line of functions.
 pub(super) fn parse<'a>(
     word: &[u8],
     fields: &mut impl Iterator<Item = &'a [u8]>,
@@ -46,7 +46,7 @@ fn parse_kind<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Functio
 }
 
 impl FunctionGroup {
-    /// The empty event that `line` starts; none if it cannot start one after what was counted.
+    /// The empty event that `line` starts; `None` if the line is not allowed after these totals.
     pub(super) fn start(line: &FunctionLine, totals: &Totals) -> Option<FunctionGroup> {
         match line {
             FunctionLine::Function(_) if totals.residual_points == 0 => {
@@ -67,7 +67,7 @@ impl FunctionGroup {
         }
     }
 
-    /// Adds a line that it takes.
+    /// Adds a line that the event takes.
     pub(super) fn push(&mut self, line: FunctionLine) -> Result<()> {
         match (self, line) {
             (FunctionGroup::Functions(functions), FunctionLine::Function(kind)) => {

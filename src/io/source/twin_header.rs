@@ -6,7 +6,7 @@ use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
 use spmesh_stream::{Coordinates, Crs, Header, Kind};
 
-/// The header so far, as the lines say it.
+/// The header as stated by the lines so far.
 #[derive(Default)]
 pub(super) struct TwinHeader {
     seen: Vec<Vec<u8>>,
@@ -26,7 +26,7 @@ pub(super) struct TwinHeader {
 }
 
 impl TwinHeader {
-    /// Takes the part of a header line behind `#spmesh `.
+    /// Takes the part of a header line after `#spmesh `.
     pub(super) fn line(&mut self, line: &[u8]) -> Result<()> {
         let key = fields(line).next().unwrap_or_default().to_vec();
         let rest = line[line.windows(key.len().max(1)).position(|w| w == key).unwrap_or(0) + key.len()..]
@@ -67,7 +67,7 @@ impl TwinHeader {
         Ok(())
     }
 
-    /// The header that the lines make.
+    /// The header made of the lines.
     pub(super) fn finish(self) -> Result<Header> {
         let missing = |what: &str| Error::malformed(format!("the header does not say the {what}"));
         let kind = self.kind.ok_or_else(|| missing("kind"))?;
@@ -120,14 +120,14 @@ fn only<'a, T>(value: T, mut rest: impl Iterator<Item = &'a [u8]>) -> Result<T> 
     Ok(value)
 }
 
-/// Four or six numbers, which may be infinite.
+/// Four or six numbers, possibly infinite.
 fn parse_region(text: &[u8]) -> Result<Vec<f64>> {
     let numbers = fields(text).map(|field| std::str::from_utf8(field).ok()?.parse::<f64>().ok());
     let sides: Option<Vec<f64>> = numbers.collect();
     sides.filter(|sides| matches!(sides.len(), 4 | 6)).ok_or_else(|| unexpected(text, "four or six numbers"))
 }
 
-/// The region with the given lower sides, then upper ones.
+/// The region of these sides: first the lower sides, then the upper sides.
 fn region_of(sides: &[f64], dims: u8) -> Result<Region<3>> {
     if sides.len() != 2 * usize::from(dims) {
         let message = format!("a region of {} numbers in {dims} dimensions", sides.len());

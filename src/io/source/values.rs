@@ -1,4 +1,4 @@
-//! Values beside points: a line for each, with one number or the two of a gradient.
+//! Values of points: a line per point, with one number or the two numbers of a gradient.
 
 use std::io::Read;
 
@@ -6,19 +6,19 @@ use super::lines::{Lines, number, quote};
 use super::text::{delimiter_of, fields, without_comment};
 use spmesh_core::error::{Error, Result};
 
-/// A value for each of many points, in their order.
+/// A value per point, in the order of the points.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// One number each.
+    /// One number per point.
     Numbers(Vec<f64>),
-    /// Two numbers each.
+    /// Two numbers per point.
     Vectors(Vec<[f64; 2]>),
 }
 
-/// Reads lines of one number, or of two; the first line tells. Blank lines and comments do not count.
+/// Reads lines of one or two numbers; the first line decides. Blank lines and comments are skipped.
 ///
 /// # Errors
-/// If reading fails, a line has another number of columns or something else than numbers, or there is no
+/// If reading fails, a line has another number of columns or a word that is not a number, or there is no
 /// line.
 pub fn read_values(input: impl Read) -> Result<Values> {
     let mut lines = Lines::new(input, "");

@@ -10,13 +10,13 @@ const BATCH_POINTS: usize = 1 << 12;
 
 /// Reads vertices one after the other.
 pub(super) trait Vertices {
-    /// The next vertex; whatever is between is passed over.
+    /// The next vertex; everything before it is skipped.
     ///
     /// # Errors
     /// If reading fails or the file is malformed.
     fn next_vertex(&mut self) -> Result<Option<Point>>;
 
-    /// Adds the position that was reached to an error.
+    /// Adds the current position to an error.
     fn locate(&self, error: Error) -> Error;
 }
 
@@ -29,7 +29,7 @@ pub(super) struct VertexPoints<V> {
 }
 
 impl<V: Vertices> VertexPoints<V> {
-    /// The points of `vertices`, of which `header` says what they are.
+    /// The points of `vertices`, described by `header`.
     pub(super) fn new(vertices: V, header: Header) -> Self {
         VertexPoints { vertices, header, points: 0, ended: false }
     }

@@ -1,4 +1,4 @@
-//! Words of lines, as small text files of a purpose have them.
+//! Words of lines in small text files.
 
 use std::io::Read;
 
@@ -6,11 +6,11 @@ use super::lines::{Lines, number, quote};
 use super::text::without_comment;
 use spmesh_core::error::{Error, Result};
 
-/// Hands over the words of each line that has some, and counts these lines. Blank lines and comments do not
-/// count.
+/// Passes the words of each line that has any to `found`, and returns the number of these lines. Blank lines
+/// and comments are skipped.
 ///
 /// # Errors
-/// If reading fails, and as `found`, with the position.
+/// If reading fails; or any error of `found`, with the position.
 pub fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
     let mut lines = Lines::new(input, "");
     let mut count = 0;
@@ -26,10 +26,10 @@ pub fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result
     Ok(count)
 }
 
-/// The finite number that a word is.
+/// The finite number that a word denotes.
 ///
 /// # Errors
-/// Malformed, if it is none.
+/// Malformed, if the word is not a finite number.
 pub fn finite(word: &[u8]) -> Result<f64> {
     let finite = number(word).filter(|number| number.is_finite());
     finite.ok_or_else(|| Error::malformed(format!("found {}, expected a finite number", quote(word))))

@@ -1,4 +1,4 @@
-//! Compresses tiles on a thread of its own, in order.
+//! Compresses tiles in order, on a separate thread.
 
 use super::overviews::TileName;
 use super::tile_code;
@@ -6,14 +6,14 @@ use crate::raster::NoData;
 use spmesh_core::error::Result;
 use spmesh_core::parallel::OrderedPool;
 
-/// Tiles that may be under way.
+/// Greatest number of tiles under way.
 const TILES_MAX: u64 = 8;
 
 /// A tile that is compressed.
 pub(super) struct Compressed {
     pub(super) name: TileName,
     pub(super) bytes: Vec<u8>,
-    /// The memory of its values, to be used again.
+    /// The buffer of its values, for reuse.
     pub(super) values: Vec<f32>,
 }
 
@@ -35,7 +35,7 @@ impl Compressor {
         Ok(Compressor { pool: OrderedPool::start("compressor", 1, TILES_MAX, compress)? })
     }
 
-    /// Takes a tile; returns an earlier one if as many as may be are under way.
+    /// Takes a tile. If [`TILES_MAX`] tiles are under way, returns the first of them.
     pub(super) fn push(&mut self, name: TileName, values: Vec<f32>) -> Option<Compressed> {
         let first = if self.pool.is_full() { self.pool.take() } else { None };
         self.pool.give((name, values), 1);

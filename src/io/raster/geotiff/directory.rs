@@ -1,7 +1,7 @@
-//! Directories of TIFF files: what stands before the data (TIFF 6.0, section 2; BigTIFF).
+//! Directories of TIFF files, which describe the data (TIFF 6.0, section 2; BigTIFF).
 //!
-//! They come first in our files, so that a reader at the other end of a network has all it needs at once;
-//! libraries write them when all data are written, after them.
+//! They precede the data here, so that a remote reader gets all directories with its first request. Libraries
+//! write them after the data.
 
 /// Numbers or text of a tag.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,8 +33,8 @@ const LONG: u16 = 4;
 const DOUBLE: u16 = 12;
 const LONG8: u16 = 16;
 
-/// The bytes of a file before its data: header, and directories one after the other. Their number depends on
-/// the numbers of values only, not on the values.
+/// The bytes of a file before its data: header, and directories one after the other. Their length depends on
+/// the number of values of each tag only, not on the values.
 pub(super) fn encode(directories: &[Directory], size: Size) -> Vec<u8> {
     let mut bytes = match size {
         Size::Classic => vec![b'I', b'I', 42, 0],
@@ -65,7 +65,7 @@ fn put_directory(bytes: &mut Vec<u8>, directory: &Directory, size: Size, is_last
             bytes.append(&mut encoded);
         } else {
             size.put_offset(bytes, after);
-            // Values and directories start at even places.
+            // Values and directories start at even offsets.
             encoded.resize(encoded.len().next_multiple_of(8), 0);
             after += encoded.len() as u64;
             values_after.append(&mut encoded);
@@ -83,7 +83,7 @@ impl Size {
         }
     }
 
-    /// Bytes of a directory without values that follow it.
+    /// Length in bytes of a directory, without the values that follow it.
     fn directory_len(self, tags: usize) -> u64 {
         let (count_len, tag_len) = match self {
             Size::Classic => (2, 12),
@@ -121,7 +121,7 @@ impl Values {
             Values::Longs(numbers) => numbers.len(),
             Values::Offsets(numbers) => numbers.len(),
             Values::Doubles(numbers) => numbers.len(),
-            // With the zero at its end.
+            // With the terminating NUL.
             Values::Text(text) => text.len() + 1,
         };
         count as u64

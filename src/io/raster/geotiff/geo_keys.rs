@@ -11,23 +11,24 @@ const PROJECTED: u16 = 1;
 const GEOGRAPHIC: u16 = 2;
 const PIXEL_IS_AREA: u16 = 1;
 const PIXEL_IS_POINT: u16 = 2;
-/// Numbers of keys that say what elevations are.
+/// Numbers of the keys of the vertical coordinate system.
 const OF_ELEVATIONS: std::ops::RangeInclusive<u16> = 4096..=4099;
-/// The first numbers of a directory: version and revision of keys.
+/// The first three numbers of a directory: directory version, key revision, minor revision.
 const VERSION: [u16; 3] = [1, 1, 0];
 
-/// The records of GeoTIFF for a system.
+/// The GeoTIFF records of a coordinate reference system.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct GeoKeys {
-    /// Four numbers for each key, after four of their own.
+    /// The key directory: a header of four numbers, then four numbers per key.
     pub(super) directory: Vec<u16>,
     pub(super) doubles: Vec<f64>,
     pub(super) texts: String,
 }
 
 impl GeoKeys {
-    /// Keys of a LAS file as they are, but for the type of raster, and those of elevations where cells have
-    /// none; of well-known text its EPSG code, or else its name.
+    /// The records for `crs`. Keys of a LAS file are kept, except that the raster type is replaced and
+    /// vertical keys are dropped unless cells hold elevations. Well-known text becomes its EPSG code or,
+    /// without one, its name.
     pub(super) fn of(crs: &Crs, are_elevations: bool) -> GeoKeys {
         match crs {
             Crs::Unknown => GeoKeys::new(&[]),
@@ -62,7 +63,7 @@ impl GeoKeys {
         }
     }
 
-    /// The directory of keys, sorted, with the type of raster.
+    /// The directory of `keys`, sorted, with the raster type PixelIsArea.
     fn new(keys: &[[u16; 4]]) -> GeoKeys {
         let others = keys.iter().copied().filter(|key| key[0] != RASTER_TYPE);
         let mut all: Vec<[u16; 4]> = others.chain([[RASTER_TYPE, 0, 1, PIXEL_IS_AREA]]).collect();
@@ -72,7 +73,7 @@ impl GeoKeys {
     }
 }
 
-/// Whether a directory of keys says that places are those of the centres of cells.
+/// Whether a key directory says that coordinates refer to the centres of cells.
 pub(in crate::raster) fn is_of_points(directory: &[u16]) -> bool {
     geo_keys::short(directory, RASTER_TYPE) == Some(PIXEL_IS_POINT)
 }

@@ -1,9 +1,8 @@
-//! GeoTIFF files of one band of 32-bit numbers (OGC 19-008r4, GeoTIFF 1.1), with overviews if they are
-//! wanted.
+//! GeoTIFF files of one band of f32 (OGC 19-008r4, GeoTIFF 1.1), with overviews on request.
 //!
-//! Tiles come in any order. `tile_code` is what becomes of their values, on the thread of `compressor`;
-//! `overviews` reduces them; `store` has their bytes until all have come. `directory` writes what stands
-//! before them, of which `geo_keys` are the part that says where on the earth the image is.
+//! Tiles arrive in any order. `compressor` encodes them by `tile_code` on a separate thread, `overviews`
+//! reduces them, and `store` holds the encoded bytes until all tiles have come. `directory` writes the bytes
+//! before the tiles; `geo_keys` supplies its georeferencing part.
 
 mod compressor;
 mod directory;
@@ -27,7 +26,8 @@ use spmesh_core::error::{Error, Result};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 256;
-/// Bytes from which a file is BigTIFF, before compression, which may lengthen some tiles.
+/// Files longer than this before compression become BigTIFF. Below 2^32, because compression may lengthen
+/// some tiles.
 const BIG: u64 = 4_000_000_000;
 
 const DEFLATE: u16 = 8;
@@ -51,7 +51,7 @@ const TILE_OFFSETS: u16 = 324;
 const TILE_BYTE_COUNTS: u16 = 325;
 const SAMPLE_FORMAT: u16 = 339;
 
-/// Tags of GeoTIFF, and of GDAL for cells without value.
+/// Tags of GeoTIFF, and GDAL's tag for cells without data.
 pub(super) const PIXEL_SCALE: u16 = 33550;
 pub(super) const TIEPOINT: u16 = 33922;
 pub(super) const KEY_DIRECTORY: u16 = 34735;
@@ -66,7 +66,7 @@ pub struct Tiles<'a> {
     overviews: Option<Overviews>,
     compressor: Compressor,
     store: Store<'a>,
-    /// Memory that can be used again.
+    /// Buffers for reuse.
     spare: Vec<f32>,
     bytes: Vec<u8>,
 }
@@ -74,11 +74,11 @@ pub struct Tiles<'a> {
 /// An image and its tiles.
 struct Level {
     size: [u32; 2],
-    /// For each tile where it is in the store.
+    /// Place of each tile in the store.
     tiles: Vec<Extent>,
 }
 
-/// Writes a file of the tiles that `fill` hands over; where it hands over none, nothing is known.
+/// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data.
 ///
 /// Memory: some tiles, and 16 bytes for each tile of the file.
 ///
@@ -112,7 +112,7 @@ pub fn write_tiles<W: Write + Seek>(
     tiles.put_rest_of_overviews()?;
     tiles.store_all()?;
     let Tiles { mut levels, store, .. } = tiles;
-    // The least image first, as cloud-optimised files have it.
+    // The smallest image first, as in cloud-optimised files.
     let staged = store.arrange(levels.iter_mut().rev().flat_map(|level| &mut level.tiles), head_len);
     store.finish(&directory::encode(&directories(file, &levels), size), &staged)
 }
@@ -130,9 +130,10 @@ impl Level {
 }
 
 impl Tiles<'_> {
-    /// Writes the tile at a place in rows of tiles from the top; NaN is a cell where nothing is known.
+    /// Writes the tile at this column and row of tiles, counted from the top left. NaN marks cells without
+    /// data.
     ///
-    /// Domain: 256 by 256 values, row by row; those beyond the grid do not count.
+    /// Domain: 256 by 256 values, row by row; values beyond the grid are ignored.
     ///
     /// # Errors
     /// If writing fails.
@@ -144,7 +145,7 @@ impl Tiles<'_> {
         self.put((0, [column, row]), copy)
     }
 
-    /// Reads a tile that was written, if the file is staged; false, if it was not written.
+    /// Reads back a tile of a staged file; false if the tile was not written.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -163,7 +164,7 @@ impl Tiles<'_> {
     pub(super) fn rows(&mut self, row: &mut impl FnMut(u32, &mut [f32]) -> Result<()>) -> Result<()> {
         let [columns, rows] = self.levels[0].size;
         let [across, down] = tiles_of([columns, rows]);
-        // A row of tiles, with what is beyond the last column.
+        // A row of tiles, padded beyond the last column.
         let width = across * TILE;
         let mut band = vec![f32::NAN; width * TILE];
         let mut tile = vec![f32::NAN; TILE * TILE];
@@ -182,7 +183,7 @@ impl Tiles<'_> {
         Ok(())
     }
 
-    /// Sends a tile on its way, and those of overviews that it completes.
+    /// Passes a tile to the compressor, and then each overview tile that it completes.
     fn put(&mut self, name: TileName, values: Vec<f32>) -> Result<()> {
         let mut next = Some((name, values));
         while let Some((name, values)) = next {
@@ -197,7 +198,7 @@ impl Tiles<'_> {
         Ok(())
     }
 
-    /// Sends tiles of overviews on their way that have parts where nothing is known.
+    /// Passes the remaining overview tiles, which lack some quarters, to the compressor.
     fn put_rest_of_overviews(&mut self) -> Result<()> {
         for level in 1..self.levels.len() {
             let names = self.overviews.as_ref().map(|overviews| overviews.rest(level)).unwrap_or_default();
@@ -210,7 +211,7 @@ impl Tiles<'_> {
         Ok(())
     }
 
-    /// Waits for all tiles that are on their way.
+    /// Waits for all tiles under way.
     fn store_all(&mut self) -> Result<()> {
         while let Some(done) = self.compressor.next() {
             self.store(done)?;
@@ -225,7 +226,7 @@ impl Tiles<'_> {
     }
 }
 
-/// What stands before the tiles: the image, and its overviews.
+/// The directories of the image and its overviews.
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     let mut directories: Vec<Directory> =
         levels.iter().map(|level| describe(level, file.options.no_data)).collect();
@@ -235,7 +236,7 @@ fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     directories
 }
 
-/// What the numbers are, and where.
+/// The tags that describe the samples and where the tiles are.
 fn describe(level: &Level, no_data: NoData) -> Directory {
     let short = |number: u16| Values::Shorts(vec![number]);
     let long = |number: u32| Values::Longs(vec![number]);
@@ -257,7 +258,7 @@ fn describe(level: &Level, no_data: NoData) -> Directory {
     ]
 }
 
-/// Where cells are on the earth.
+/// The tags that georeference the cells.
 fn refer(grid: &Grid, keys: &GeoKeys) -> Directory {
     let mut tags = vec![
         (PIXEL_SCALE, Values::Doubles(vec![grid.step, grid.step, 0.0])),

@@ -1,8 +1,8 @@
-//! Overviews: the same image with half as many cells along each axis, and half of that, until it fits a tile.
+//! Overviews: the image at half the resolution, then half of that, until it fits one tile.
 //!
-//! They are made while tiles come: a tile is reduced to a quarter of one of the next level, which waits in a
-//! temporary file until all of its quarters have come. So overviews need no second pass, and no memory to
-//! speak of.
+//! They are made as tiles arrive: each tile is reduced to a quarter of a tile of the next level. Quarters
+//! wait in a temporary file until their tile is complete, so overviews need no second pass and hardly any
+//! memory.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -20,12 +20,12 @@ const HALF: usize = TILE / 2;
 /// Bytes of a quarter.
 const QUARTER_LEN: usize = HALF * HALF * LEN;
 
-/// What a cell of an overview has of the four cells that it covers.
+/// How a cell of an overview gets its value from the four cells that it covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reduction {
-    /// The mean of those that are known.
+    /// The mean of the known values.
     Mean,
-    /// The first one that is known: for values whose mean says nothing, such as directions.
+    /// The first known value: for values whose mean is meaningless, such as directions.
     First,
 }
 
@@ -39,7 +39,7 @@ pub(super) fn level_sizes(mut size: [u32; 2], has_overviews: bool) -> Vec<[u32; 
     sizes
 }
 
-/// Number of tiles along each axis for so many cells.
+/// Number of tiles along each axis, for an image of this size in cells.
 pub(super) fn tiles_of(size: [u32; 2]) -> [usize; 2] {
     size.map(|count| (count as usize).div_ceil(TILE))
 }
@@ -61,14 +61,13 @@ struct OpenTile {
 }
 
 impl Overviews {
-    /// None so far, for levels of some sizes.
+    /// No tiles yet; `sizes` are the sizes of the levels.
     pub(super) fn new(reduction: Reduction, sizes: Vec<[u32; 2]>, temp_dir: Option<&Path>) -> Overviews {
         let quarters = Records::new(temp_dir, 4 * QUARTER_LEN as u64);
         Overviews { reduction, sizes, open: HashMap::new(), quarters }
     }
 
-    /// Adds a tile to the one of the next level that it is a quarter of, and gives that one, if it is
-    /// complete.
+    /// Reduces a tile to a quarter of a tile of the next level, and returns that tile if it is complete.
     ///
     /// # Errors
     /// If the temporary file fails.
@@ -92,14 +91,14 @@ impl Overviews {
         if present == self.expected(level, name.1) { self.take(name).map(Some) } else { Ok(None) }
     }
 
-    /// The names of tiles of a level that are not complete, and will not become so, in rows.
+    /// Names of the tiles of a level that are incomplete, row by row.
     pub(super) fn rest(&self, level: usize) -> Vec<TileName> {
         let mut names: Vec<TileName> = self.open.keys().copied().filter(|name| name.0 == level).collect();
         names.sort_unstable_by_key(|(_, [column, row])| [*row, *column]);
         names
     }
 
-    /// Takes a tile, whose quarters that have not come are empty.
+    /// Removes and returns a tile; quarters that have not come are NaN.
     ///
     /// # Errors
     /// If the temporary file fails.
@@ -119,19 +118,20 @@ impl Overviews {
         Ok((name, values))
     }
 
-    /// Cells of a tile along each axis that are in the image.
+    /// Number of cells of a tile that are in the image, along each axis.
     fn inside(&self, level: usize, at: [usize; 2]) -> [usize; 2] {
         [0, 1].map(|axis| (self.sizes[level][axis] as usize - at[axis] * TILE).min(TILE))
     }
 
-    /// The quarters that a tile has, whose parts are tiles of `level`.
+    /// Bit mask of the quarters that the tile at this column and row of level `level + 1` has.
     fn expected(&self, level: usize, [column, row]: [usize; 2]) -> u8 {
         let [across, down] = tiles_of(self.sizes[level]);
         let quarters = (0..4).filter(|n| 2 * column + n % 2 < across && 2 * row + n / 2 < down);
         quarters.map(|number| 1 << number).sum()
     }
 
-    /// A tile with half as many cells along each axis; `inside` are those that count.
+    /// The tile at half the resolution; `inside` is the number of its cells that are in the image, along each
+    /// axis.
     fn quarter(&self, values: &[f32], inside: [usize; 2]) -> Vec<f32> {
         let known = |column: usize, row: usize| {
             let value = values[row * TILE + column];
@@ -153,5 +153,5 @@ impl Overviews {
     }
 }
 
-/// What is being done when writing fails.
+/// The action that errors of writing name.
 const KEEPING: &str = "keeping overviews";

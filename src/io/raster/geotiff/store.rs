@@ -1,5 +1,5 @@
-//! Where the bytes of tiles go: to the output at once, or to a temporary file, to be read again and brought
-//! into order.
+//! Stores the bytes of tiles: in the output directly, or in a temporary file, from which they can be read
+//! back and reordered.
 
 use std::io::{Seek, SeekFrom, Write};
 use std::path::Path;
@@ -7,16 +7,16 @@ use std::path::Path;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::temporary::TemporaryFile;
 
-/// What is being done when a temporary file fails.
+/// The actions that errors of the temporary file name.
 const KEEPING: &str = "keeping tiles";
 const READING: &str = "reading tiles back";
 
-/// Where a piece is, and how long it is; zeros, if there is none.
+/// Offset and length of a piece; zeros if there is none.
 pub(super) type Extent = [u64; 2];
 
 /// Pieces one after the other.
 pub(super) enum Store<'a> {
-    /// In the output, after room for what stands before them.
+    /// In the output, after room for the bytes before the pieces.
     Direct {
         output: &'a mut dyn WriteSeek,
         end: u64,
@@ -28,12 +28,12 @@ pub(super) enum Store<'a> {
     },
 }
 
-/// An output; one that cannot be sought takes what is staged.
+/// An output. If it cannot seek, pieces must be staged.
 pub(super) trait WriteSeek: Write + Seek {}
 impl<T: Write + Seek> WriteSeek for T {}
 
 impl<'a> Store<'a> {
-    /// Pieces in the output, which leave room for `head_len` bytes.
+    /// Writes pieces directly to the output, after `head_len` bytes left free.
     ///
     /// # Errors
     /// If the output cannot be written.
@@ -42,7 +42,7 @@ impl<'a> Store<'a> {
         Ok(Store::Direct { output, end: head_len })
     }
 
-    /// Pieces in a temporary file.
+    /// Writes pieces to a temporary file.
     ///
     /// # Errors
     /// If it cannot be made.
@@ -70,7 +70,7 @@ impl<'a> Store<'a> {
         Ok(extent)
     }
 
-    /// Reads a piece again, of a temporary file; nothing from an output.
+    /// Reads a staged piece back. Leaves `bytes` empty if pieces are not staged.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -83,8 +83,9 @@ impl<'a> Store<'a> {
         Ok(())
     }
 
-    /// Says where pieces are going to be in the output, after so many bytes: where they are, or, if they were
-    /// staged, in the order of `extents`. Gives where staged ones are now.
+    /// Lays out staged pieces in the output after `head_len` bytes, in the order of `extents`, and sets
+    /// `extents` accordingly. Returns their extents in the temporary file. Pieces that are not staged stay
+    /// where they are.
     pub(super) fn arrange<'b>(
         &self,
         extents: impl Iterator<Item = &'b mut Extent>,
@@ -101,7 +102,7 @@ impl<'a> Store<'a> {
         extents.filter(|[_, len]| *len > 0).map(&mut place).collect()
     }
 
-    /// Writes what stands before the pieces, and those that are staged.
+    /// Writes the head, and copies staged pieces after it.
     ///
     /// # Errors
     /// If writing or the temporary file fails.

@@ -1,7 +1,7 @@
-//! The bytes of a tile: deflated after the predictor for floating-point numbers (Adobe Photoshop TIFF
-//! technical note 3).
+//! The bytes of a tile: floating-point predictor, then deflate (Adobe Photoshop TIFF technical note 3).
 //!
-//! Bytes of equal weight stand together, as differences, which slowly varying values make small.
+//! The predictor groups bytes of equal significance and stores differences, which are small for slowly
+//! varying values.
 
 use std::io::{Read, Write};
 
@@ -17,7 +17,7 @@ pub(super) const LEN: usize = size_of::<f32>();
 /// Bytes of a row.
 const ROW_LEN: usize = TILE * LEN;
 
-/// Rows through the predictor, then deflated; NaN is a cell where nothing is known.
+/// Predicts each row, then deflates the result. NaN marks cells without data.
 pub(super) fn encode(values: &[f32], no_data: NoData) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
     let mut bytes = [0; ROW_LEN];
@@ -28,10 +28,10 @@ pub(super) fn encode(values: &[f32], no_data: NoData) -> Vec<u8> {
     encoder.finish().expect("memory takes all that is written")
 }
 
-/// The values of a tile that was encoded.
+/// Decodes the values of a tile.
 ///
 /// # Errors
-/// If it was not.
+/// If `bytes` are not an encoded tile.
 pub(super) fn decode(bytes: &[u8], no_data: NoData, values: &mut [f32]) -> std::io::Result<()> {
     let mut decoder = ZlibDecoder::new(bytes);
     let mut row_bytes = [0; ROW_LEN];
@@ -42,7 +42,8 @@ pub(super) fn decode(bytes: &[u8], no_data: NoData, values: &mut [f32]) -> std::
     Ok(())
 }
 
-/// The first bytes of all values, then the second ones and so on, each less the one before.
+/// Writes the first bytes of all values, then the second bytes and so on, each as the difference from the
+/// byte before.
 fn predict(row: &[f32], no_data: NoData, bytes: &mut [u8; ROW_LEN]) {
     for (i, value) in row.iter().enumerate() {
         for (place, byte) in no_data.stored(*value).to_be_bytes().into_iter().enumerate() {
@@ -54,7 +55,7 @@ fn predict(row: &[f32], no_data: NoData, bytes: &mut [u8; ROW_LEN]) {
     }
 }
 
-/// Values from what [`predict`] made of them.
+/// Inverts [`predict`].
 fn restore(bytes: &mut [u8; ROW_LEN], no_data: NoData, row: &mut [f32]) {
     for i in 1..bytes.len() {
         bytes[i] = bytes[i].wrapping_add(bytes[i - 1]);

@@ -1,4 +1,4 @@
-//! Conditions on points, as `value > 0.3 and (t == 2 or x < y)`.
+//! Conditions on points, such as `value > 0.3 and (t == 2 or x < y)`.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use spmesh_core::limits::{CONDITION_DEPTH_MAX, CONDITION_LEN_MAX};
 use spmesh_model::cells4::Point4;
 
-/// What points have to fulfil.
+/// A condition that points can fulfil.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     text: String,
@@ -41,13 +41,13 @@ enum Relation {
 }
 
 impl Condition {
-    /// Whether a point with this value fulfils it. No comparison with NaN is true.
+    /// Whether a point with this value fulfils the condition. Comparisons with NaN are false.
     #[must_use]
     pub fn holds(&self, point: &Point4, value: f64) -> bool {
         self.rule.holds(point, value)
     }
 
-    /// Whether it compares values.
+    /// Whether the condition uses values.
     #[must_use]
     pub fn needs_value(&self) -> bool {
         self.rule.needs_value()
@@ -117,14 +117,14 @@ impl FromStr for Condition {
 /// Reads a condition by recursive descent.
 struct Parser<'t> {
     text: &'t str,
-    /// Byte that comes next.
+    /// Offset in bytes of what comes next.
     at: usize,
-    /// Open parentheses.
+    /// Number of open parentheses.
     depth: usize,
 }
 
 impl<'t> Parser<'t> {
-    /// Comparisons that are joined by `and`, joined by `or`.
+    /// Conjunctions joined by `or`.
     fn any(&mut self) -> Result<Rule, String> {
         self.joined("or", Self::all, Rule::Any)
     }
@@ -133,7 +133,7 @@ impl<'t> Parser<'t> {
         self.joined("and", Self::one, Rule::All)
     }
 
-    /// One or several rules with `word` between them.
+    /// One or more rules with `word` between them.
     fn joined(
         &mut self,
         word: &str,
@@ -180,7 +180,8 @@ impl<'t> Parser<'t> {
             "z" => Some(Term::Coordinate(2)),
             "t" => Some(Term::Coordinate(3)),
             "value" => Some(Term::Value),
-            // Rust takes "nan" and "inf" for numbers; nothing could be compared with the former.
+            // Rust parses "nan" and "inf" as numbers. NaN is rejected, since every comparison with it is
+            // false.
             word => word.parse().ok().filter(|number: &f64| !number.is_nan()).map(Term::Number),
         };
         let term = term.ok_or_else(|| self.expected("value, x, y, z, t, or a number"))?;
@@ -202,7 +203,7 @@ impl<'t> Parser<'t> {
         Ok(relation)
     }
 
-    /// What comes next: a word or a number, signs of a comparison, or a single character; empty at the end.
+    /// The next token: a word or number, a comparison operator, or a single character; empty at the end.
     fn peek(&self) -> &'t str {
         let rest = self.text[self.at..].trim_start();
         let len_while = |is: fn(char) -> bool| rest.find(|c| !is(c)).unwrap_or(rest.len());
@@ -216,12 +217,12 @@ impl<'t> Parser<'t> {
         &rest[..len]
     }
 
-    /// Goes behind what comes next.
+    /// Skips the next token.
     fn take(&mut self) {
         self.at = self.start() + self.peek().len();
     }
 
-    /// Byte where that starts.
+    /// Offset in bytes at which the next token starts.
     fn start(&self) -> usize {
         let rest = &self.text[self.at..];
         self.at + rest.len() - rest.trim_start().len()
@@ -241,8 +242,8 @@ fn is_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '.' | '_' | '+' | '-')
 }
 
-/// Length of the word or the number that `text` starts with. A sign is part of it at its start and behind the
-/// `e` of a number only.
+/// Length of the word or number that `text` starts with. A sign is part of it only at the start and after the
+/// `e` of a number.
 fn word_len(text: &str) -> usize {
     let mut before = None;
     for (at, c) in text.char_indices() {

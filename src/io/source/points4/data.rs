@@ -1,4 +1,4 @@
-//! The values of a volume, where they are in one file or several.
+//! The values of a volume, in one file or several.
 
 use std::io::{self, BufRead, BufReader, Read};
 
@@ -23,15 +23,15 @@ pub(super) enum Encoding {
 /// Where the values of a volume are, and how they are written.
 #[derive(Debug)]
 pub(super) struct Data {
-    /// Files, each with as many of the values, in order.
+    /// The files in order, each with the same number of values.
     pub parts: Vec<Part>,
     pub sample: SampleType,
     pub encoding: Encoding,
-    /// Lines of each part before its values, as it is stored.
+    /// Number of lines to skip in each part before its values, as stored.
     pub line_skip: u64,
-    /// Bytes after those and before the values, decompressed.
+    /// Bytes to skip after these lines, decompressed.
     pub byte_skip: Skip,
-    /// Whether bytes behind the values are an error: the size was not stated by the file.
+    /// Whether bytes after the values are an error, as for files that do not state their size.
     pub is_exact: bool,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Data {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Skip {
     Bytes(u64),
-    /// All but the values, which end the file.
+    /// All bytes up to the values, which end the file.
     ToEnd,
 }
 
@@ -47,7 +47,7 @@ pub(super) enum Skip {
 #[derive(Debug)]
 pub(super) struct Part {
     pub origin: Origin,
-    /// What messages call it, if it is another file than the input.
+    /// Its name in messages, if it is another file than the input.
     pub name: Option<String>,
     /// Whether the file is compressed as a whole.
     pub is_gzip: bool,
@@ -56,13 +56,13 @@ pub(super) struct Part {
 }
 
 impl Data {
-    /// Gives all `total` values to `visit`, in batches.
+    /// Passes all `total` values to `visit`, in batches.
     ///
-    /// Memory: a batch. Reads no more than `total` values and a byte, however much a compressed file would
-    /// give.
+    /// Memory: a batch. Reads at most `total` values and one byte, even if a compressed file would yield
+    /// more.
     ///
     /// # Errors
-    /// If there are fewer values, or one of them is none; or whatever `visit` returns.
+    /// If there are fewer values, or one of them cannot be parsed; or any error of `visit`.
     pub(super) fn scan(&self, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
         let share = total / self.parts.len() as u64;
         for part in &self.parts {
@@ -96,7 +96,7 @@ impl Data {
         Ok(())
     }
 
-    /// Adds to an error about the value behind `done` others which one it is, where no byte tells.
+    /// Adds the number of the value after `done` others to an error, where no byte offset tells the position.
     fn locate(&self, error: Error, done: u64) -> Error {
         match self.encoding {
             Encoding::Text => error.at(format!("value {}", done + 1)),
@@ -104,7 +104,7 @@ impl Data {
         }
     }
 
-    /// The data of a part.
+    /// Opens the values of a part.
     fn open(&self, part: &Part, total: u64) -> Result<Box<dyn BufRead>> {
         let view = part.origin.view()?;
         if self.byte_skip == Skip::ToEnd {

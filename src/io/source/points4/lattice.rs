@@ -1,20 +1,20 @@
-//! Sites of a grid, and where they are.
+//! Sites of a grid, and their coordinates.
 
 use super::too_many;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::SITES4_MAX;
 use spmesh_model::cells4::Point4;
 
-/// The sites of a grid, numbered as in volume files: along the first axis fastest.
+/// The sites of a grid, numbered as in volume files: the index of the first axis changes fastest.
 #[derive(Debug, Clone)]
 pub(super) struct Lattice {
     lens: [u64; 4],
-    /// For each axis: which of x, y, z and t changes along it.
+    /// For each axis, the coordinate (x, y, z or t) that changes along it.
     coordinates: [usize; 4],
     frame: Frame,
 }
 
-/// Where indices are: at `mins + index * steps`, for x, y, z and t.
+/// Coordinates of indices: `mins + index * steps`, for x, y, z and t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Frame {
     pub mins: [f64; 4],
@@ -28,15 +28,15 @@ impl Default for Frame {
 }
 
 impl Lattice {
-    /// A grid of so many sites along x, y, z and t.
+    /// A grid with `lens` sites along x, y, z and t.
     ///
     /// # Errors
-    /// Usage, if there is none along an axis, or there are more than [`SITES4_MAX`].
+    /// Usage, if a length is 0, or there are more than [`SITES4_MAX`] sites.
     pub(super) fn new(lens: [u64; 4]) -> Result<Lattice> {
         Lattice::along(lens, [0, 1, 2, 3])
     }
 
-    /// As [`Lattice::new`], where other coordinates change along the axes.
+    /// As [`Lattice::new`], but `coordinates` names the coordinate that changes along each axis.
     pub(super) fn along(lens: [u64; 4], coordinates: [usize; 4]) -> Result<Lattice> {
         let [a, b, c, d] = lens;
         if lens.contains(&0) {
@@ -61,10 +61,10 @@ impl Lattice {
         self.lens.iter().product()
     }
 
-    /// Puts the sites elsewhere.
+    /// Sets the coordinates of the sites.
     ///
     /// # Errors
-    /// Usage, if one of them would be at infinity.
+    /// Usage, if a coordinate overflows to infinity.
     pub(super) fn place(&mut self, frame: Frame) -> Result<()> {
         self.frame = frame;
         if self.largest().iter().all(|largest| largest.is_finite()) {
@@ -74,7 +74,7 @@ impl Lattice {
         Err(Error::usage(format!("sites {steps:?} apart, starting at {mins:?}, go beyond all numbers")))
     }
 
-    /// Where the site of this number is.
+    /// The coordinates of the site with this number.
     pub(super) fn site(&self, mut number: u64) -> Point4 {
         let mut index = [0; 4];
         for (index, len) in index.iter_mut().zip(self.lens) {
@@ -104,13 +104,13 @@ impl Lattice {
         let Frame { mins, steps } = &self.frame;
         let mut point = [0.0; 4];
         for (index, coordinate) in index.into_iter().zip(self.coordinates) {
-            // Adding 0 makes 0 of -0.
+            // Adding 0.0 turns -0.0 into 0.0.
             point[coordinate] = mins[coordinate] + index as f64 * steps[coordinate] + 0.0;
         }
         point
     }
 
-    /// The largest size of a coordinate, for each of them.
+    /// The greatest magnitude of each coordinate.
     fn largest(&self) -> [f64; 4] {
         let Frame { mins, steps } = &self.frame;
         let mut largest = [0.0; 4];
@@ -120,8 +120,8 @@ impl Lattice {
         largest
     }
 
-    /// Whether every coordinate is exactly `min + index * step`: both are multiples of a power of two that no
-    /// coordinate has more than 2^53 of.
+    /// Whether every coordinate is exactly `min + index * step`: both are multiples of a power of two, and no
+    /// coordinate exceeds 2^53 times that power.
     pub(super) fn is_exact(&self) -> bool {
         let Frame { mins, steps } = &self.frame;
         let largest = self.largest();

@@ -1,8 +1,8 @@
-//! Points of four dimensions: lines of x y z t, grids, and volumes that change over time (NRRD, NIfTI, raw),
-//! and streams, whole or chosen by a condition and at random.
+//! Points of four dimensions: lines of x y z t, grids, volumes that change over time (NRRD, NIfTI, raw), and
+//! streams. All points are read, or those that a condition or a random choice selects.
 //!
-//! Coordinates are grid indices unless the world is asked for, so that they are integers and cells are
-//! cospherical exactly where the grid is. What is chosen depends on the input and the seed alone.
+//! Coordinates are grid indices unless world coordinates are requested. So they are integers, and cells are
+//! cospherical exactly where the grid is. The selection depends only on the input and the seed.
 
 mod condition;
 mod data;
@@ -30,79 +30,78 @@ use super::origin::{Origin, name_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Points of four dimensions, in the order of the input: in that of volume files, where x changes fastest, if
-/// they are sites of a grid. Equal points of a text stay as they are.
+/// Points of four dimensions in the order of the input. Sites of a grid are in the order of volume files,
+/// where x changes fastest. Equal points of a text are all kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selected4 {
-    /// The points, finite; none is -0.
+    /// The points, all finite, and none with -0.0.
     pub points: Vec<Point4>,
     /// A value for each point, if the input has values.
     pub values: Option<Vec<f64>>,
-    /// What messages call the input.
+    /// Name of the input in messages.
     pub name: String,
-    /// Points of the input, whether they were wanted or not.
+    /// Number of points in the input, selected or not.
     pub sites: u64,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
-/// Which points are wanted, and of what.
+/// The points to be read.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// Where they come from.
+    /// The source of the points.
     pub from: From4,
-    /// What the coordinates of volumes are.
+    /// The coordinates of volumes.
     pub spacing: Spacing,
-    /// Which of them are wanted.
+    /// Which points are selected.
     pub selection: Selection,
-    /// Where spools go; the system's folder for temporary files if `None`.
+    /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
 }
 
-/// Where points come from.
+/// A source of points.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum From4 {
-    /// A file that tells what it is; "-" is standard input.
+    /// A file whose content tells the format; "-" is standard input.
     File(PathBuf),
-    /// A file that holds nothing but the values of a volume.
+    /// A file that holds only the values of a volume.
     Raw(PathBuf, RawLayout),
-    /// A full grid of so many sites along x, y, z and t, without values.
+    /// A full grid of this many sites along x, y, z and t, without values.
     Grid([u64; 4]),
 }
 
-/// What the coordinates of volumes are.
+/// The kind of coordinates of volumes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Spacing {
     /// Grid indices, from 0.
     #[default]
     Index,
-    /// What the file states for them, in its units, rounded to f64.
+    /// World coordinates as the file states them, in its units, rounded to f64.
     World,
 }
 
-/// Which points are wanted.
+/// Which points are selected.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Selection {
-    /// Only points that fulfil it.
+    /// Selects only points that fulfil this condition.
     pub condition: Option<Condition>,
-    /// Whether points whose value is missing (NaN) are wanted, too.
+    /// Whether points whose value is missing (NaN) are selected too.
     pub keep_nan: bool,
-    /// Only so many of them, chosen at random.
+    /// Selects only this share of them, at random.
     pub share: Option<Share>,
-    /// What decides on the choice.
+    /// Seed of the random choice.
     pub seed: u64,
 }
 
-/// Reads or makes the points that are asked for.
+/// Reads or generates the requested points.
 ///
-/// Cost: a pass over the input, and a second one if points are chosen at random from a file; from a whole
-/// grid they are chosen without a pass. Memory: what is kept, in 32 bytes per point, 8 per value, and some 24
-/// more for each that is chosen at random. An input that cannot be read twice is copied to an unlinked
-/// temporary file.
+/// Cost: a pass over the input, and a second one if points of a file are chosen at random; sites of a whole
+/// grid are chosen without a pass. Memory: 32 bytes per selected point, 8 per value, and about 24 more per
+/// point chosen at random. An input that cannot be read twice is copied to an unlinked temporary file.
 ///
 /// # Errors
-/// If the input cannot be read, is malformed (with the position), or of no known format; if what is asked for
-/// does not go with it, or would be more than [`spmesh_core::limits`] allows.
+/// If the input cannot be read, is malformed (with the position), or of no known format; if the request does
+/// not suit the input, or selects more than [`spmesh_core::limits`] allows.
 pub fn read_points4(request: &Request) -> Result<Selected4> {
     let mut warnings = Vec::new();
     let (supply, name) = match &request.from {
@@ -144,7 +143,7 @@ const ROUNDED: &str = "coordinates in world units are rounded: sites that are co
     so no \
     more, or coincide; cells are those of the rounded points";
 
-/// An error of usage that says that something is too much.
+/// A usage error for exceeding a limit.
 fn too_many(what: &str, count: u64, most: u64, remedy: &str) -> Error {
     Error::usage(format!("{count} {what}, more than {most}: {remedy}"))
 }

@@ -1,6 +1,7 @@
 //! NIfTI-1: a header of 348 bytes, then the values (nifti1.h of the NIfTI Data Format Working Group, 2007).
 //!
-//! The `nifti` crate brings arrays and linear algebra of its own; what is needed here is a dozen fields.
+//! The `nifti` crate would add arrays and linear algebra as dependencies; a dozen fields are all that is
+//! needed here.
 
 use super::data::{Data, Encoding, Part, Skip};
 use super::lattice::{Frame, Lattice};
@@ -13,17 +14,16 @@ use spmesh_core::error::{Error, Result};
 /// Length of the header, which its first four bytes state.
 const HEADER_LEN: u32 = 348;
 
-/// That of NIfTI-2.
+/// Length of a NIfTI-2 header.
 const HEADER2_LEN: u32 = 540;
 
-/// Where the magic bytes are.
+/// Offset of the magic bytes.
 const MAGIC_AT: usize = 344;
 
 /// Reads the header of a volume.
 ///
 /// # Errors
-/// If it is of another kind than one file of real numbers in three or four dimensions, or its fields make no
-/// sense.
+/// If it is not a single file of real numbers in three or four dimensions, or its fields make no sense.
 pub(super) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Vec<String>) -> Result<Volume> {
     let order = if head[0] == 0 { ByteOrder::Big } else { ByteOrder::Little };
     let header = Header { bytes: head, order };
@@ -56,7 +56,7 @@ pub(super) fn open(origin: Origin, head: &[u8], is_gzip: bool, warnings: &mut Ve
     })
 }
 
-/// Fields of the header, by where they are.
+/// Fields of the header, by their offsets.
 struct Header<'b> {
     bytes: &'b [u8],
     order: ByteOrder,
@@ -124,17 +124,18 @@ impl Header<'_> {
         Ok(sample)
     }
 
-    /// Where values start (`vox_offset`).
+    /// Offset of the values (`vox_offset`).
     fn data_start(&self) -> Result<u64> {
         let start = self.f32(108);
-        // An f32 holds all integers up to there.
+        // 2^24: f32 holds all integers up to here.
         if start.fract() != 0.0 || !(HEADER_LEN as f32 + 4.0..=16_777_216.0).contains(&start) {
             return Err(Error::malformed(format!("values cannot start at byte {start}")).at("vox_offset"));
         }
         Ok(start as u64)
     }
 
-    /// What makes values of what is stored (`scl_slope`, `scl_inter`); a slope of 0 says nothing.
+    /// Slope and intercept that convert stored numbers to values (`scl_slope`, `scl_inter`); a slope of 0
+    /// means none.
     fn scaling(&self) -> Result<Option<[f64; 2]>> {
         let [slope, intercept] = [self.f32(112), self.f32(116)];
         if slope == 0.0 || slope.is_nan() || (slope, intercept) == (1.0, 0.0) {
@@ -147,7 +148,7 @@ impl Header<'_> {
         Ok(Some([slope.into(), intercept.into()]))
     }
 
-    /// Where sites are: as `sform` says, or `qform`, or by their distances alone.
+    /// World coordinates of the sites by `sform`, else by `qform`, else by the distances alone.
     fn world(&self) -> std::result::Result<Frame, String> {
         let (mins, steps) = if self.i16(254) > 0 {
             self.affine()?
@@ -172,7 +173,7 @@ impl Header<'_> {
         Ok(Frame { mins, steps })
     }
 
-    /// Distance of sites along an axis (`pixdim`).
+    /// Distance between sites along an axis (`pixdim`).
     fn distance(&self, axis: usize) -> f64 {
         self.f32(80 + 4 * axis).into()
     }
@@ -186,10 +187,11 @@ impl Header<'_> {
         Ok(([0, 1, 2].map(|row| entry(row, 3)), [0, 1, 2].map(|row| entry(row, row))))
     }
 
-    /// Origin and steps of the rotation that `quatern_b` and its kin state, if it maps axes to themselves.
+    /// Origin and steps of the rotation that `quatern_b` and its siblings state, if it maps axes to
+    /// themselves.
     fn rotation(&self) -> std::result::Result<([f64; 3], [f64; 3]), String> {
         let turn = [256, 260, 264].map(|at| self.f32(at));
-        // Half turns around an axis have one component of 1; no turn has none.
+        // A half turn around an axis has one component of 1; the identity has only zeros.
         let signs = match turn.map(f32::abs) {
             [0.0, 0.0, 0.0] => [1.0, 1.0, 1.0],
             [1.0, 0.0, 0.0] => [1.0, -1.0, -1.0],
@@ -197,7 +199,7 @@ impl Header<'_> {
             [0.0, 0.0, 1.0] => [-1.0, -1.0, 1.0],
             _ => return Err(oblique()),
         };
-        // The third axis is mirrored if qfac (pixdim[0]) says so.
+        // qfac (pixdim[0]) below 0 mirrors the third axis.
         let mirror = if self.f32(76) < 0.0 { -1.0 } else { 1.0 };
         let mut steps = [0, 1, 2].map(|axis| signs[axis] * self.distance(axis));
         steps[2] *= mirror;

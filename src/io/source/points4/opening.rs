@@ -8,10 +8,10 @@ use crate::detect::{DD4, Format, read_head};
 use crate::source::origin::Origin;
 use spmesh_core::error::{Error, Result};
 
-/// Recognizes what `origin` holds and reads its header; `path` is where it is, if it has a name.
+/// Recognizes the format of `origin` and reads its header; `path` is the file's path, if it has one.
 ///
 /// # Errors
-/// If it is of no known format, or its header is malformed.
+/// If the format is not known, or the header is malformed.
 pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Supply> {
     let mut plain = origin.plain()?;
     let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;

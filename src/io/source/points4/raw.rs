@@ -1,4 +1,4 @@
-//! Volumes that are nothing but numbers, x fastest.
+//! Volumes without a header, x fastest.
 
 use std::fmt;
 use std::path::Path;
@@ -52,8 +52,8 @@ pub fn parse_sizes(text: &str) -> std::result::Result<[u64; 4], String> {
     sizes.next().map_or(Ok(lens), |_| Err(expected()))
 }
 
-/// The volume in `origin`. It is decompressed if the name of the file ends with .gz: numbers may start with
-/// anything.
+/// The volume in `origin`, decompressed if the file's name ends with .gz: raw numbers may start with any
+/// bytes, even those of gzip.
 ///
 /// # Errors
 /// Usage, if the sizes are too large.

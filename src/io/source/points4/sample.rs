@@ -13,20 +13,20 @@ use spmesh_core::random::Random;
 /// How many points are chosen at random.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Share {
-    /// This part of them, between 0 and 1, rounded to the nearest number of points.
+    /// This part of the points, between 0 and 1, rounded to the nearest number of points.
     Part(f64),
-    /// So many.
+    /// This many points.
     Count(u64),
 }
 
 impl Share {
-    /// How many of `total` points are chosen.
+    /// Number of points to choose of `total`.
     ///
     /// # Errors
-    /// Usage, if there are not so many, or more than [`POINTS4_MAX`] would be chosen.
+    /// Usage, if there are fewer points, or more than [`POINTS4_MAX`] would be chosen.
     pub(super) fn of(self, total: u64) -> Result<u64> {
         let count = match self {
-            // Exact: totals have at most 53 bits.
+            // The conversion is exact: totals have at most 53 bits.
             Share::Part(part) => (part * total as f64).round() as u64,
             Share::Count(count) => count,
         };
@@ -49,13 +49,14 @@ impl fmt::Display for Share {
     }
 }
 
-/// `count` of the numbers below `total`, increasing; every set of so many is as likely as the others.
+/// Chooses `count` of the numbers below `total`, in increasing order; all sets of this size are equally
+/// likely.
 ///
-/// Cost: O(n log n) for n = `count`, whatever the total is (Floyd; Bentley and Floyd, Communications of the
+/// Cost: O(n log n) for n = `count`, independent of `total` (Floyd; Bentley and Floyd, Communications of the
 /// ACM 1987).
 ///
 /// # Errors
-/// [`ErrorKind::Memory`], if there is not enough for so many.
+/// [`ErrorKind::Memory`], if there is not enough memory for `count` numbers.
 pub(super) fn choose(total: u64, count: u64, seed: u64) -> Result<Vec<u64>> {
     let no_memory = |_| Error::new(ErrorKind::Memory, format!("not enough memory to choose {count} points"));
     let mut random = Random::new(seed);

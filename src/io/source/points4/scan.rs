@@ -7,7 +7,7 @@ use super::volume::Volume;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// What gives points, as often as wanted.
+/// A source of points that can be scanned any number of times.
 #[derive(Debug)]
 pub(super) enum Supply {
     Grid(Lattice),
@@ -17,10 +17,10 @@ pub(super) enum Supply {
 }
 
 impl Supply {
-    /// Gives every point, and its value if there are values, to `visit`.
+    /// Passes every point, with its value if there are values, to `visit`.
     ///
     /// # Errors
-    /// If the input cannot be read or is malformed; or whatever `visit` returns.
+    /// If the input cannot be read or is malformed; or any error of `visit`.
     pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         match self {
             Supply::Grid(lattice) => lattice.iter().try_for_each(|site| visit(site, None)),
@@ -40,11 +40,11 @@ impl Supply {
         }
     }
 
-    /// Puts the sites of a volume where they are in the world.
+    /// Gives the sites of a volume their world coordinates. Coordinates of texts and streams stay unchanged.
     ///
     /// # Errors
-    /// Usage, if that is not known or not along the axes. The coordinates of texts and streams are what they
-    /// are.
+    /// Usage, if the world coordinates are not known or not along the axes, or the source is a grid without a
+    /// file.
     pub(super) fn place_in_world(&mut self) -> Result<()> {
         match self {
             Supply::Grid(_) => {
@@ -55,7 +55,7 @@ impl Supply {
         }
     }
 
-    /// Whether coordinates are not exactly where the header of a volume states that they are.
+    /// Whether rounding moves sites of a volume from the coordinates that its header states.
     pub(super) fn is_rounded(&self) -> bool {
         matches!(self, Supply::Volume(volume) if !volume.lattice.is_exact())
     }

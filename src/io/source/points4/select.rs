@@ -1,4 +1,4 @@
-//! Which points of an input are kept.
+//! Selects the points of an input.
 
 use super::sample::choose;
 use super::scan::Supply;
@@ -7,10 +7,10 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::limits::POINTS4_MAX;
 use spmesh_model::cells4::Point4;
 
-/// The points that are wanted, in the order of the input.
+/// The selected points, in the order of the input.
 ///
 /// # Errors
-/// As [`Supply::scan`]; usage, if the selection does not go with the input or leaves too much of it.
+/// As [`Supply::scan`]; usage, if the selection does not suit the input or selects too many points.
 pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Selected4> {
     check(supply, selection)?;
     match (supply, selection.share) {
@@ -35,7 +35,7 @@ fn check(supply: &Supply, selection: &Selection) -> Result<()> {
     if let (Supply::Grid(lattice), None, None) = (supply, &selection.condition, selection.share)
         && lattice.sites() > POINTS4_MAX
     {
-        // Known before any of them is made.
+        // Refused before any site is generated.
         return Err(too_many("points", lattice.sites(), POINTS4_MAX, REMEDY));
     }
     Ok(())
@@ -43,7 +43,7 @@ fn check(supply: &Supply, selection: &Selection) -> Result<()> {
 
 const REMEDY: &str = "choose some of them with --where, --sample or --count";
 
-/// Two passes: how many points are wanted has to be known before some of them are chosen.
+/// Takes two passes: the number of wanted points must be known before some of them are chosen.
 fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Result<Selected4> {
     let mut wanted = 0;
     supply.scan(&mut |point, value| {
@@ -53,7 +53,7 @@ fn select_at_random(supply: &Supply, selection: &Selection, share: Share) -> Res
     let mut chosen = choose(wanted, share.of(wanted)?, selection.seed)?.into_iter().peekable();
     let intake = Intake::of(supply, selection, |number| chosen.next_if_eq(&number).is_some())?;
     if chosen.peek().is_some() || intake.wanted != wanted {
-        // Only another process can do that.
+        // Only another process can have changed the input.
         return Err(Error::malformed("has changed while it was read: read it again"));
     }
     Ok(intake.finish(selection))
@@ -64,7 +64,7 @@ fn is_wanted(selection: &Selection, point: &Point4, value: Option<f64>) -> bool 
     (selection.keep_nan || !value.is_some_and(f64::is_nan)) && selection.condition.as_ref().is_none_or(holds)
 }
 
-/// Points on their way in.
+/// Collects points.
 struct Intake {
     points: Vec<Point4>,
     values: Option<Vec<f64>>,
@@ -74,7 +74,7 @@ struct Intake {
 }
 
 impl Intake {
-    /// Keeps the wanted points whose number among the wanted ones `keeps`.
+    /// Keeps those wanted points for whose index among the wanted points `keeps` returns true.
     fn of(supply: &Supply, selection: &Selection, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
         let values = supply.has_values().then(Vec::new);
         let mut intake = Intake { points: Vec::new(), values, sites: 0, wanted: 0, missing: 0 };

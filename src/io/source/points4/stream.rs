@@ -1,5 +1,4 @@
-//! Streams of this project with points of four dimensions, and their text twins. Cells between the points are
-//! read over.
+//! Streams of this project with points of four dimensions, and their text twins. Cells are skipped.
 
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -15,7 +14,7 @@ const TWIN_MAGIC: &[u8] = b"#spmesh ";
 
 const BUFFER_LEN: usize = 1 << 18;
 
-/// A stream whose header is read.
+/// A stream whose header has been read.
 #[derive(Debug)]
 pub(super) struct Stream {
     origin: Origin,
@@ -24,10 +23,10 @@ pub(super) struct Stream {
     pub has_values: bool,
 }
 
-/// The points of the stream in `origin`, which starts with `head`, for any number of passes.
+/// The points of the stream in `origin`, which starts with `head`. They can be scanned any number of times.
 ///
 /// # Errors
-/// If its header is damaged; usage, if its points have fewer dimensions.
+/// If the header is damaged; usage, if the points have fewer dimensions.
 pub(super) fn open(origin: Origin, path: Option<&Path>, head: &[u8]) -> Result<Stream> {
     let name = path.map_or("stdin".to_string(), |path| path.display().to_string());
     let is_twin = head.starts_with(TWIN_MAGIC);
@@ -56,16 +55,16 @@ impl Stream {
         })
     }
 
-    /// Gives every point to `visit`; the stream is read to its END.
+    /// Passes every point to `visit`; reads the stream up to its END.
     ///
     /// # Errors
-    /// If the stream is truncated or malformed; or whatever `visit` returns.
+    /// If the stream is truncated or malformed; or any error of `visit`.
     pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut source = self.read()?;
         while let Some(event) = source.next_event()? {
             let Event::Points4(block) = event else { continue };
             for (number, point) in block.points.into_iter().enumerate() {
-                // Adding 0 makes 0 of -0.
+                // Adding 0.0 turns -0.0 into 0.0.
                 visit(point.map(|x| x + 0.0), block.values.as_ref().map(|values| values[number]))?;
             }
         }

@@ -1,4 +1,4 @@
-//! Lines of x y z t, or of x y z t value.
+//! Texts of lines x y z t or x y z t value.
 
 use crate::source::lines::{Lines, number, quote};
 use crate::source::origin::{Bytes, Origin};
@@ -13,7 +13,7 @@ pub(super) struct Text {
     columns: Columns,
 }
 
-/// Where the numbers of a line are.
+/// The columns of a line.
 #[derive(Debug, PartialEq)]
 struct Columns {
     delimiter: Delimiter,
@@ -24,10 +24,10 @@ struct Columns {
     names_line: Option<u64>,
 }
 
-/// Finds the columns from the first line of points and the names above it, if there are some.
+/// Finds the columns from the first line of points and any names above it.
 ///
 /// # Errors
-/// If there is no point, or its columns are not those of one; line and column are named.
+/// If there is no point, or the columns are not those of points; line and column are named.
 pub(super) fn open(origin: Origin) -> Result<Text> {
     let mut lines = read(&origin)?;
     let mut names: Option<(u64, Vec<String>)> = None;
@@ -54,7 +54,7 @@ pub(super) fn open(origin: Origin) -> Result<Text> {
     })
 }
 
-/// The columns of lines of `count` fields below these names.
+/// The columns for lines of `count` fields and these names above them.
 fn columns(delimiter: Delimiter, count: usize, names: Option<(u64, Vec<String>)>) -> Result<Columns> {
     let mut columns = Columns { delimiter, count, axes: [0, 1, 2, 3], value: None, names_line: None };
     let named = match &names {
@@ -89,7 +89,7 @@ fn columns(delimiter: Delimiter, count: usize, names: Option<(u64, Vec<String>)>
     Ok(columns)
 }
 
-/// The columns that are called x, y, z and t, if all are there: they may be in another order.
+/// The columns named x, y, z and t, in any order; `None` if one is missing.
 fn named(names: &[String]) -> Option<[usize; 4]> {
     let column = |usual: &[&str]| names.iter().position(|name| is_name(name, usual));
     Some([column(&["x"])?, column(&["y"])?, column(&["z"])?, column(&["t", "time"])?])
@@ -109,10 +109,10 @@ impl Text {
         self.columns.value.is_some()
     }
 
-    /// Gives the points of all lines to `visit`.
+    /// Passes the points of all lines to `visit`.
     ///
     /// # Errors
-    /// If a line is no point, or has other columns than the first; line and column are named.
+    /// If a line is not a point, or has other columns than the first; line and column are named.
     pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut lines = read(&self.origin)?;
         while let Some(line) = lines.next_trimmed()? {
@@ -141,7 +141,7 @@ impl Columns {
             };
             if let Some(axis) = self.axes.iter().position(|&wanted| wanted == column) {
                 let coordinate = number(field).filter(|number| number.is_finite());
-                // Adding 0 makes 0 of -0.
+                // Adding 0.0 turns -0.0 into 0.0.
                 point[axis] = coordinate.ok_or_else(|| expected("a finite number"))? + 0.0;
             } else if self.value == Some(column) {
                 value = Some(number(field).ok_or_else(|| expected("a number"))?);

@@ -5,22 +5,22 @@ use super::lattice::{Frame, Lattice};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// A volume whose header is read.
+/// A volume whose header has been read.
 #[derive(Debug)]
 pub(super) struct Volume {
     pub lattice: Lattice,
     pub data: Data,
-    /// Values are `slope * stored + intercept`, unless they are what is stored.
+    /// Slope and intercept: values are `slope * stored + intercept`. `None` if values are stored directly.
     pub scaling: Option<[f64; 2]>,
-    /// Where sites are in the world, or why that is not known.
+    /// World coordinates of the sites, or why they are not known.
     pub world: std::result::Result<Frame, String>,
 }
 
 impl Volume {
-    /// Gives every site and its value to `visit`.
+    /// Passes every site and its value to `visit`.
     ///
     /// # Errors
-    /// If the values cannot be read; or whatever `visit` returns.
+    /// If the values cannot be read; or any error of `visit`.
     pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
         let mut sites = self.lattice.iter();
         self.data.scan(self.lattice.sites(), &mut |values| {
@@ -32,10 +32,10 @@ impl Volume {
         })
     }
 
-    /// Puts the sites where they are in the world.
+    /// Gives the sites their world coordinates.
     ///
     /// # Errors
-    /// Usage, if that is not known or not along the axes.
+    /// Usage, if these are not known or not along the axes.
     pub(super) fn place_in_world(&mut self) -> Result<()> {
         match &self.world {
             Ok(frame) => self.lattice.place(*frame),

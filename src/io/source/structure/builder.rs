@@ -1,16 +1,16 @@
-//! Puts atoms together to a structure, as they come from a file.
+//! Builds a structure from atoms, in the order of a file.
 
 use super::decimal::{Number, Quantum};
 use super::model::{Atom, Model, Residue, Structure};
 use super::names::Names;
 use spmesh_core::error::{Error, Result};
 
-/// An atom as a file has it.
+/// An atom as stated by a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<'a> {
     /// Line in which it ends, counted from 1.
     pub(super) line: u64,
-    /// `None` if the file has none that can be read.
+    /// `None` if the file states none that can be parsed.
     pub(super) serial: Option<u64>,
     pub(super) name: &'a str,
     pub(super) element: &'a str,
@@ -24,16 +24,16 @@ pub(super) struct Record<'a> {
     pub(super) place: [Number; 3],
 }
 
-/// Something odd that is counted, and said once at the end.
+/// An oddity that is counted, and reported once at the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Oddity {
-    /// A serial number that cannot be read.
+    /// A serial number that cannot be parsed.
     Serial,
-    /// A residue number that cannot be read.
+    /// A residue number that cannot be parsed.
     ResidueNumber,
-    /// An occupancy that is no number.
+    /// An occupancy that is not a number.
     Occupancy,
-    /// A model without a number that can be read, or atoms between models.
+    /// A model whose number cannot be parsed, or atoms between models.
     Model,
 }
 
@@ -44,16 +44,16 @@ const ODDITIES: [(Oddity, &str, &str); 4] = [
     (Oddity::Model, "models have no number, or no MODEL record", "they are counted on from the model before"),
 ];
 
-/// A structure that grows. Memory: what it holds.
+/// A structure under construction. Memory: its content.
 #[derive(Debug, Default)]
 pub(super) struct StructureBuilder {
     quantum: Quantum,
     models: Vec<Model>,
-    /// Index of the model that atoms go to.
+    /// Index of the model that receives atoms.
     model: usize,
     residues: Vec<Residue>,
     names: Names,
-    /// First line and number of each oddity.
+    /// First line and count of each oddity.
     oddities: [(u64, u64); ODDITIES.len()],
     warnings: Vec<String>,
     /// Line of the last atom.
@@ -67,7 +67,7 @@ impl StructureBuilder {
         self.models.push(Model { number, ..Model::default() });
     }
 
-    /// Goes on with the last model of this number, or starts one.
+    /// Continues the last model with this number, or starts a new one.
     pub(super) fn resume_model(&mut self, number: i64) {
         if self.models.get(self.model).is_some_and(|model| model.number == number) {
             return;
@@ -78,12 +78,12 @@ impl StructureBuilder {
         }
     }
 
-    /// Number for a model that has none of its own.
+    /// Number for a model without a number of its own.
     pub(super) fn next_model_number(&self) -> i64 {
         self.models.last().map_or(1, |model| model.number.saturating_add(1))
     }
 
-    /// Notes something odd in `line`.
+    /// Counts an oddity in `line`.
     pub(super) fn note(&mut self, oddity: Oddity, line: u64) {
         let (first, count) = &mut self.oddities[oddity as usize];
         if *count == 0 {
@@ -97,7 +97,8 @@ impl StructureBuilder {
         self.warnings.push(warning.into());
     }
 
-    /// Notes which line has no line end, if there is one: an atom in it may have lost its last columns.
+    /// Warns if the last atom's line is `unended`, the line without a line end: it may have lost its last
+    /// columns.
     pub(super) fn end(&mut self, unended: Option<u64>) {
         if unended.is_some_and(|line| line == self.last_line) {
             self.warn("the last atom's line has no line end: the file may have been cut off there");
@@ -131,7 +132,7 @@ impl StructureBuilder {
         Ok(())
     }
 
-    /// Index of the residue of an atom: that of the atom before, or a new one.
+    /// Index of an atom's residue: the residue of the atom before, or a new one.
     fn residue(&mut self, record: &Record) -> Result<u32> {
         let residue = Residue {
             chain: self.names.intern(record.chain),
@@ -146,7 +147,7 @@ impl StructureBuilder {
             .map_err(|_| Error::malformed("more than 2^32 residues, the maximum"))
     }
 
-    /// The structure, `name` being what messages call it.
+    /// The finished structure. Messages call it `name`.
     ///
     /// # Errors
     /// If it has no atom.
@@ -175,7 +176,7 @@ impl StructureBuilder {
 /// A name from a file, if it is printable text without line ends and tabs.
 ///
 /// # Errors
-/// If it is not; `what` says what it should be.
+/// If the text is not printable; `what` names the expected text.
 pub(super) fn printable<'a>(bytes: &'a [u8], what: &str) -> Result<&'a str> {
     let is_printable = bytes.iter().all(|&byte| byte >= b' ' && byte != 0x7f);
     let text = if is_printable { std::str::from_utf8(bytes).ok() } else { None };

@@ -6,7 +6,7 @@ use crate::source::lines::Lines;
 
 use spmesh_core::error::{Error, Result};
 
-/// What a token is.
+/// Type of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Token {
     /// `data_` with the name of a block.
@@ -25,14 +25,14 @@ pub(super) enum Token {
     End,
 }
 
-/// Reads tokens; the current one is there from the start. Memory: a line, and a text field.
+/// Reads tokens; the first is current from the start. Memory: a line, and a text field.
 pub(super) struct Tokens<R> {
     lines: Lines<R>,
     token: Token,
-    /// Where the text of the token is in the line; text fields are in `field`.
+    /// Range of the token's text in the line; text fields are in `field`.
     start: usize,
     end: usize,
-    /// Where the next token is looked for.
+    /// Column at which the search for the next token starts.
     next: usize,
     field: Vec<u8>,
     is_field: bool,
@@ -55,13 +55,12 @@ impl<R: Read> Tokens<R> {
         Ok(tokens)
     }
 
-    /// What the current token is.
+    /// Type of the current token.
     pub(super) fn token(&self) -> Token {
         self.token
     }
 
-    /// The text of the current token: of values without their quotes, of tags as they are, of blocks their
-    /// name.
+    /// Text of the current token: values without their quotes, whole tags, and the names of blocks.
     pub(super) fn text(&self) -> &[u8] {
         if self.is_field { &self.field } else { &self.lines.current()[self.start..self.end] }
     }
@@ -71,7 +70,7 @@ impl<R: Read> Tokens<R> {
         self.lines.number()
     }
 
-    /// The line without a line end, at the end of the input.
+    /// Number of the input's last line, if that has no line end.
     pub(super) fn unended(&self) -> Option<u64> {
         self.lines.unended()
     }
@@ -79,7 +78,7 @@ impl<R: Read> Tokens<R> {
     /// Reads the next token.
     ///
     /// # Errors
-    /// If a quotation or a text field has no end, or a reserved word is met.
+    /// If a quoted value or text field does not end, or a reserved word occurs.
     pub(super) fn advance(&mut self) -> Result<Token> {
         self.token = self.read().map_err(|e| self.locate(e))?;
         Ok(self.token)
@@ -156,7 +155,8 @@ impl<R: Read> Tokens<R> {
         Ok(token)
     }
 
-    /// Reads a text field: from the semicolon at the start of a line to that at the start of another one.
+    /// Reads a text field: from the semicolon at the start of a line to the next semicolon at the start of a
+    /// line.
     fn read_field(&mut self) -> Result<Token> {
         let first = self.line();
         self.field.clear();

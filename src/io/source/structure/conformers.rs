@@ -1,4 +1,4 @@
-//! One of the alternate locations of each atom.
+//! Chooses one of the alternate locations of each atom.
 
 use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
@@ -8,21 +8,21 @@ use foldhash::fast::FixedState;
 use super::model::{Atom, Residue};
 use super::names::Name;
 
-/// Which conformer of a residue is taken.
+/// The conformer of a residue to choose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Preference {
-    /// The one that comes first.
+    /// The first conformer.
     First,
-    /// The one whose atoms are occupied most on average, the first of equals.
+    /// The conformer with the highest mean occupancy; of equal ones the first.
     MostOccupied,
 }
 
 type Map<K, V> = HashMap<K, V, FixedState>;
 
-/// A place in a chain. Residues of several names at one place are alternatives, too.
+/// A place in a chain. Residues with different names at one place are alternatives too.
 type Site = (Name, Option<i32>, Name, Name);
 
-/// A conformer of what is at a site.
+/// A conformer at a site.
 #[derive(Debug, Clone, Copy)]
 struct Conformer {
     altloc: Name,
@@ -37,9 +37,9 @@ impl Conformer {
     }
 }
 
-/// For each atom, whether it belongs to one conformer of the model: atoms with one location, those of the
-/// conformer that is preferred at each site, and where an atom of its residue is not in that conformer, the
-/// location that is preferred among the others.
+/// For each atom, whether it belongs to one conformer of the model. The conformer has all atoms with a single
+/// location and the atoms of the preferred conformer at each site. If the preferred conformer lacks an atom
+/// of its residue, the conformer has that atom's preferred location among the others.
 pub(super) fn one_conformer(residues: &[Residue], atoms: &[Atom], preference: Preference) -> Vec<bool> {
     let residue = |atom: &Atom| residues[atom.residue as usize];
     let mut wanted: Vec<bool> = atoms.iter().map(|atom| atom.altloc.is_empty()).collect();
@@ -71,13 +71,13 @@ pub(super) fn one_conformer(residues: &[Residue], atoms: &[Atom], preference: Pr
     wanted
 }
 
-/// The place of a residue; one without a number is told from others by its name.
+/// The place of a residue. Residues without a number are distinguished by name.
 fn site(residue: &Residue) -> Site {
     let name = if residue.number.is_none() { residue.name } else { Name::EMPTY };
     (residue.chain, residue.number, residue.insertion_code, name)
 }
 
-/// The alternate location that is preferred at each site.
+/// The preferred alternate location at each site.
 fn choose<'a, S: Copy + Hash + Eq>(
     alternatives: impl Iterator<Item = (S, &'a Atom)>,
     preference: Preference,

@@ -1,36 +1,36 @@
-//! Decimal numbers as they are written, and the quantum that all coordinates of an input are multiples of.
+//! Decimal numbers as written, and the quantum of which all coordinates of an input are multiples.
 
 use super::model::Model;
 use spmesh_model::points::Point3;
 use spmesh_stream::Coordinates;
 
-/// Most digits of a number that is kept as an integer: every integer of 15 digits is exact in f64.
+/// Greatest number of digits of a number kept as an integer: every integer of 15 digits is exact in f64.
 const DIGITS_MAX: usize = 15;
 
-/// Powers of ten that are exact in f64, as far as they are needed here.
+/// The powers of ten needed here. All are exact in f64.
 const POWERS: [f64; DIGITS_MAX + 1] =
     [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
 
-/// Most decimal places of a quantum; a finer one leaves 32 bits no room for a molecule.
+/// Greatest number of decimal places of a quantum; a finer quantum leaves no room for a molecule in 32 bits.
 const PLACES_MAX: usize = 9;
 
-/// Decimal places of coordinates in structures: 0.001 Å.
+/// Decimal places of coordinates in most structures: 0.001 Å.
 const PLACES_USUAL: usize = 3;
 
 /// The quanta by their decimal places.
 const QUANTA: [f64; PLACES_MAX + 1] = [1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
-/// A number of a text.
+/// A number in a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Number {
-    /// `digits / 10^places`; at most 15 digits, integer-valued.
+    /// `digits / 10^places`; `digits` is an integer of at most 15 digits.
     Decimal { digits: f64, places: usize },
-    /// What f64 has nearest to a number with an exponent or with more digits.
+    /// The f64 nearest to a number with an exponent or with more digits.
     Float(f64),
 }
 
 impl Number {
-    /// The number that `field` is, without blanks around it; `None` if it is none, or not finite.
+    /// The number that `field` denotes, without surrounding blanks; `None` if it is not a finite number.
     pub(super) fn parse(field: &[u8]) -> Option<Number> {
         let digits = match field.split_first()? {
             (b'-' | b'+', rest) => rest,
@@ -51,7 +51,7 @@ impl Number {
             return None;
         }
         let places = point.map_or(0, |at| digits.len() - 1 - at);
-        // An integer zero has no sign: -0.000 is the same place as 0.000.
+        // An integer zero has no sign: -0.000 becomes 0.000.
         let digits = if field[0] == b'-' && value != 0 { -(value as f64) } else { value as f64 };
         Some(Number::Decimal { digits, places })
     }
@@ -71,12 +71,13 @@ impl Number {
     }
 }
 
-/// How coordinates are stored while an input is read: as multiples of a quantum as long as one serves all.
+/// How coordinates are stored while an input is read: as multiples of a quantum as long as one fits all of
+/// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Quantum {
-    /// Whole multiples of the power of ten with these decimal places.
+    /// Integer multiples of the power of ten with this number of decimal places.
     Places(usize),
-    /// The numbers themselves.
+    /// No quantum: the numbers themselves, as f64.
     None,
 }
 
@@ -87,7 +88,7 @@ impl Default for Quantum {
 }
 
 impl Quantum {
-    /// The stored form of a place; what is stored in `models` changes with the quantum if that has to.
+    /// The stored form of a point. If the quantum has to change, converts all points in `models`.
     #[inline]
     pub(super) fn store(&mut self, place: [Number; 3], models: &mut [Model]) -> Point3 {
         let Quantum::Places(places) = *self else { return place.map(Number::value) };
@@ -118,7 +119,8 @@ impl Quantum {
         }
     }
 
-    /// The coarsest quantum, of `places` or more, that serves `place` and what is stored with `places`.
+    /// The coarsest quantum, with at least `places` decimal places, that fits `place` and all points stored
+    /// with `places`.
     fn for_all(places: usize, place: [Number; 3], models: &[Model]) -> Quantum {
         let Some(finer) = (places..=PLACES_MAX)
             .find(|&finer| place.iter().all(|&number| multiple(number, finer).is_some()))
@@ -134,7 +136,7 @@ impl Quantum {
         }
     }
 
-    /// How what was stored maps to the world.
+    /// The encoding of stored coordinates.
     pub(super) fn coordinates(self) -> Coordinates {
         match self {
             Quantum::Places(places) => Coordinates::I32 { scale: [QUANTA[places]; 3], offset: [0.0; 3] },
@@ -143,13 +145,13 @@ impl Quantum {
     }
 }
 
-/// The number in units of a quantum, if it is a 32-bit integer.
+/// The number in units of a quantum, if that is a 32-bit integer.
 fn multiple(number: Number, places: usize) -> Option<f64> {
     let Number::Decimal { digits, places: own } = number else { return None };
     let multiple = if own <= places {
         digits * POWERS[places - own]
     } else {
-        // Both are exact, so the quotient is whole if and only if the division leaves nothing.
+        // Both are exact, so the quotient is an integer if and only if the remainder is 0.
         let divisor = POWERS[own - places];
         (digits % divisor == 0.0).then_some(digits / divisor)?
     };

@@ -10,7 +10,7 @@ use crate::source::lines::Lines;
 use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
-/// The items of `_atom_site` that matter here, in the order of [`ITEMS`].
+/// The items of `_atom_site` that are used, in the order of [`ITEMS`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Item {
     X,
@@ -60,7 +60,7 @@ const CATEGORY: &[u8] = b"_atom_site.";
 /// Reads the atoms of the first data block that has any.
 ///
 /// # Errors
-/// If the syntax is broken, an atom has no place, or no block has atoms; line and column are named.
+/// If the syntax is broken, an atom has no coordinates, or no block has atoms; line and column are named.
 pub(super) fn read<R: Read>(lines: Lines<R>, builder: &mut StructureBuilder) -> Result<()> {
     let tokens = Tokens::new(lines)?;
     MmcifReader { tokens, builder, row: Row::default(), blocks: 0, state: Block::Empty, is_core: false }
@@ -71,14 +71,14 @@ struct MmcifReader<'b, R> {
     tokens: Tokens<R>,
     builder: &'b mut StructureBuilder,
     row: Row,
-    /// Data blocks with atoms so far; only those of the first are read.
+    /// Number of data blocks with atoms so far; only the first of them is read.
     blocks: u64,
     state: Block,
-    /// Whether there are atoms in the words of the core dictionary.
+    /// Whether there are atoms in the tags of the core dictionary.
     is_core: bool,
 }
 
-/// What a data block had so far.
+/// The form of the atoms in the current data block so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Block {
     Empty,
@@ -87,7 +87,7 @@ enum Block {
     Loop,
 }
 
-/// What is stated of an atom.
+/// The values stated for an atom.
 #[derive(Debug, Default)]
 struct Row {
     values: Vec<u8>,
@@ -139,7 +139,7 @@ impl<R: Read> MmcifReader<'_, R> {
         Ok(())
     }
 
-    /// Notes that the block has atoms; whether they are to be read.
+    /// Records that the block has atoms. Returns whether to read them.
     fn enter(&mut self, state: Block) -> Result<bool> {
         match self.state {
             Block::Empty => self.blocks += 1,
@@ -168,8 +168,8 @@ impl<R: Read> MmcifReader<'_, R> {
         self.tokens.advance().map(drop)
     }
 
-    /// The item that the current tag names: `None` if it is of another category, `Some(None)` if it does not
-    /// matter.
+    /// The item of the current tag: `None` if it is of another category, `Some(None)` if the item is not
+    /// used.
     fn item(&mut self) -> Option<Option<Item>> {
         let tag = self.tokens.text();
         let (category, name) = tag.split_at_checked(CATEGORY.len())?;
@@ -233,7 +233,7 @@ impl<R: Read> MmcifReader<'_, R> {
         Ok(())
     }
 
-    /// Keeps the current value for the row.
+    /// Stores the current value in the row.
     fn take(&mut self, item: Item) -> Result<()> {
         let value = self.tokens.text();
         let is_stated = self.tokens.token() == Token::Quoted || !matches!(value, b"?" | b".");
@@ -252,7 +252,7 @@ impl<R: Read> MmcifReader<'_, R> {
         Ok(())
     }
 
-    /// Makes an atom of the row, and empties it.
+    /// Makes an atom of the row, and clears the row.
     fn finish_row(&mut self) -> Result<()> {
         let result = self.row.push_to(self.builder, self.tokens.line());
         self.row.clear();
@@ -271,7 +271,7 @@ impl Row {
         self.ranges[item as usize].clone().map(|range| &self.values[range])
     }
 
-    /// The text of the first of the items that is stated.
+    /// The text of the first of these items that is stated.
     fn text(&self, items: [Item; 2]) -> Result<&str> {
         match items.into_iter().find_map(|item| Some((item, self.value(item)?))) {
             Some((item, value)) => printable(value, ITEMS[item as usize].1),

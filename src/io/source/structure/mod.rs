@@ -1,9 +1,9 @@
 //! Molecular structures and files of points in space: PDB, mmCIF, XYZ, text of points, streams of this
-//! project and its kin, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The format is told by the
-//! content.
+//! project and their text twins, PLY, OBJ, OFF and VTK, each plain or compressed with gzip. The content tells
+//! the format.
 //!
-//! The readers are this project's own: `pdbtbx`, the crate there is, panics on some files of the test data,
-//! refuses others that hold all their atoms, and takes longer than the triangulation.
+//! The readers are this project's own. The crate `pdbtbx` panics on some files of the test data, rejects
+//! others whose atoms are all intact, and takes longer than the triangulation.
 
 mod builder;
 mod cif;
@@ -52,20 +52,21 @@ pub enum Format {
     Obj,
     /// Vertices of an OFF file.
     Off,
-    /// Points as `spfinalize` reads them: lines `x y z` and their kin, streams of this project, their text
+    /// Points as `spfinalize` reads them: lines `x y z` and similar text, streams of this project, their text
     /// twins, LAS, VTK.
     Points,
 }
 
-/// Reads the structure or the points in the file `path`; "-" is standard input. The format is told by the
-/// content unless `format` says what it is.
+/// Reads the structure or the points in the file `path`; "-" is standard input. Without `format`, the content
+/// tells the format.
 ///
-/// Cost: one pass; memory: what is read, in 56 bytes per atom and 24 per point without names. Points that are
-/// compressed or come through a pipe are copied to an unlinked temporary file first.
+/// Cost: one pass. Memory: 56 bytes per atom, and 24 per point without names. Input of [`Format::Points`]
+/// that is not a regular file, and compressed LAS and VTK files, are copied to an unlinked temporary file
+/// first.
 ///
 /// # Errors
 /// If the file cannot be read; [`spmesh_core::error::ErrorKind::Malformed`], with file and line (or byte), if
-/// it is damaged, has no atom, or is of no format that is known.
+/// it is damaged, has no atom, or is of no known format.
 pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> {
     if path.as_os_str() == "-" {
         return read_structure_from(std::io::stdin(), "stdin", format);
@@ -76,7 +77,7 @@ pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> 
     read(file, &name, format, is_file.then_some(path))
 }
 
-/// As [`read_structure`], from any reader; `name` is what messages call it.
+/// As [`read_structure`], from any reader. Messages call the input `name`.
 ///
 /// # Errors
 /// As [`read_structure`].
@@ -88,7 +89,7 @@ pub fn read_structure_from(
     read(input, name, format, None)
 }
 
-/// `path` is a file that holds what `input` does, if there is one.
+/// Reads `input`. `path` is a regular file with the same content, if there is one.
 fn read(
     input: impl Read + 'static,
     name: &str,
@@ -128,7 +129,7 @@ fn read(
 /// The format of an input that starts with `head`.
 ///
 /// # Errors
-/// If it has nothing but white space, or is of a format that is not read.
+/// If the input is empty but for white space, or its format is not supported.
 fn recognized(head: &[u8]) -> Result<Format> {
     if head.trim_ascii().is_empty() {
         return Err(Error::malformed("empty: found no atom and no point"));

@@ -1,4 +1,4 @@
-//! Molecular structures in memory: models of atoms, compact enough for millions of them.
+//! Molecular structures in memory, compact enough for millions of atoms.
 
 use super::names::{Name, Names};
 use spmesh_model::points::Point3;
@@ -7,37 +7,38 @@ use spmesh_stream::Coordinates;
 /// A molecular structure, or points without names.
 #[derive(Debug, Clone)]
 pub struct Structure {
-    /// What messages call it: the path of the file, or "stdin".
+    /// Name in messages: the path of the file, or "stdin".
     pub name: String,
-    /// How the points of all models are stored: integers in units of 0.001 Å (or of a smaller power of ten
-    /// that all coordinates of the input are multiples of) in 32 bits, or else the numbers themselves.
+    /// How the points of all models are stored: as 32-bit integers in units of 0.001 Å (or of a smaller power
+    /// of ten of which all coordinates of the input are multiples), or else as world coordinates.
     pub coordinates: Coordinates,
-    /// The models that have atoms, one or more, in the order of the file; a file that names none has one of
+    /// The models that have atoms, at least one, in the order of the file. A file without models has one with
     /// number 1.
     pub models: Vec<Model>,
     /// The residues that atoms refer to.
     pub residues: Vec<Residue>,
     /// The texts that residues and atoms refer to.
     pub names: Names,
-    /// What is odd in the input, as sentences.
+    /// Oddities of the input, as sentences.
     pub warnings: Vec<String>,
 }
 
-/// One model: the same molecule again in ensembles, something else in other files.
+/// One model: in ensembles another copy of the same molecule, in other files anything.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
-    /// Number that the file gives it.
+    /// Number stated by the file.
     pub number: i64,
-    /// Where the atoms are, in stored coordinates; all finite.
+    /// Positions of the atoms, in stored coordinates; all finite.
     pub points: Vec<Point3>,
-    /// The atoms, as many as points; none if the input has points without names.
+    /// The atoms, one per point; empty if the input has points without names.
     pub atoms: Vec<Atom>,
 }
 
-/// What is known of an atom but its place, which is the point of the same index: 32 bytes.
+/// The data of an atom, in 32 bytes. Its position is the point with the same index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Atom {
-    /// Serial number; where the file has none that can be read, that of the atom before plus one.
+    /// Serial number; if the file states none that can be parsed, the serial number of the atom before plus
+    /// one.
     pub serial: u64,
     /// Index of its residue in [`Structure::residues`].
     pub residue: u32,
@@ -45,7 +46,7 @@ pub struct Atom {
     pub name: Name,
     /// Element symbol as the file states it; empty if it does not.
     pub element: Name,
-    /// Alternate location; empty if there is one location only.
+    /// Alternate location; empty if the atom has only one.
     pub altloc: Name,
     /// Share of the molecules in which the atom is here; 1 if not stated.
     pub occupancy: f32,
@@ -53,20 +54,20 @@ pub struct Atom {
     pub is_hetatm: bool,
 }
 
-/// A residue: what the atoms of a monomer, ligand or molecule of water have in common.
+/// A residue: the data that the atoms of a monomer, ligand or water molecule share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Residue {
-    /// Chain, as the authors call it.
+    /// Chain, as named by the authors.
     pub chain: Name,
     /// Name ("ALA", "HOH").
     pub name: Name,
-    /// Number within the chain, as the authors count; `None` if not stated.
+    /// Number within the chain, as counted by the authors; `None` if not stated.
     pub number: Option<i32>,
-    /// Insertion code; empty mostly.
+    /// Insertion code; mostly empty.
     pub insertion_code: Name,
 }
 
-/// All that is known of one atom, with its texts.
+/// All data of one atom, with its texts.
 #[derive(Debug, Clone, Copy)]
 pub struct AtomView<'s> {
     /// The structure it belongs to.
@@ -75,7 +76,7 @@ pub struct AtomView<'s> {
     pub model: i64,
     /// The atom.
     pub atom: &'s Atom,
-    /// Its place, in stored coordinates.
+    /// Its position, in stored coordinates.
     pub point: Point3,
 }
 

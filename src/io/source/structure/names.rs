@@ -1,10 +1,10 @@
-//! Short texts kept once: atoms are many, and their names are few.
+//! Short texts stored once each: atoms are many, and their names are few.
 
 use std::collections::HashMap;
 
 use foldhash::fast::FixedState;
 
-/// A text of a [`Names`] table; that of [`Name::EMPTY`] is empty in all tables.
+/// A text of a [`Names`] table. [`Name::EMPTY`] is the empty text in every table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Name(u32);
 
@@ -19,14 +19,14 @@ impl Name {
     }
 }
 
-/// Longest text that is looked up by its bytes as one number.
+/// Length in bytes up to which texts are looked up as integers.
 const SHORT_MAX: usize = 7;
 
-/// A table of texts, each held once.
+/// A table of texts, each stored once.
 #[derive(Debug, Clone)]
 pub struct Names {
     texts: Vec<Box<str>>,
-    /// Nearly all texts have a few bytes: numbers are compared faster than texts.
+    /// Nearly all texts have only a few bytes, and integers are compared faster than texts.
     by_number: HashMap<u64, Name, FixedState>,
     by_text: HashMap<Box<str>, Name, FixedState>,
 }
@@ -41,7 +41,7 @@ impl Default for Names {
 }
 
 impl Names {
-    /// The name of `text`, which becomes part of the table.
+    /// The name of `text`, which is added to the table if necessary.
     pub fn intern(&mut self, text: &str) -> Name {
         if let Some(name) = self.find(text) {
             return name;
@@ -71,7 +71,8 @@ impl Names {
     }
 }
 
-/// The bytes of a short text as digits behind a 1, which keeps texts of different lengths apart.
+/// The bytes of a short text as base-256 digits after a leading 1, which distinguishes texts of different
+/// lengths.
 fn short(text: &str) -> Option<u64> {
     (text.len() <= SHORT_MAX).then(|| text.bytes().fold(1, |number, byte| number << 8 | u64::from(byte)))
 }

@@ -1,4 +1,4 @@
-//! Reads the vertices of OFF files; their faces are not looked at.
+//! Reads the vertices of OFF files; their faces are ignored.
 
 use std::io::Read;
 
@@ -8,10 +8,10 @@ use crate::source::statements::{fields, next_field, parse_decimals, parse_intege
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
-/// The vertices.
+/// Reads the vertices.
 ///
 /// # Errors
-/// If there are fewer than the file states, or a line does not start with three numbers; the line is named.
+/// If there are fewer vertices than stated, or a line does not start with three numbers; the line is named.
 pub(super) fn read(lines: &mut Lines<impl Read>) -> Result<Vec<Point>> {
     let vertices = read_count(lines).map_err(|e| lines.locate(e))?;
     let mut points = Vec::new();
@@ -26,7 +26,7 @@ pub(super) fn read(lines: &mut Lines<impl Read>) -> Result<Vec<Point>> {
     Ok(points)
 }
 
-/// The number of vertices, behind the word that starts the file or in the line after it.
+/// The number of vertices, which follows the file's first word on its line or on the next.
 fn read_count(lines: &mut Lines<impl Read>) -> Result<u64> {
     next_content(lines)?;
     let mut words = content(lines.current());
@@ -45,7 +45,7 @@ fn read_count(lines: &mut Lines<impl Read>) -> Result<u64> {
     parse_integer(next_field(&mut content(lines.current()))?)
 }
 
-/// Goes to the next line that says something; false at the end.
+/// Goes to the next line that is not blank or a comment; false at the end.
 fn next_content(lines: &mut Lines<impl Read>) -> Result<bool> {
     while let Some(line) = lines.next_line()? {
         if content(line).next().is_some() {

@@ -1,8 +1,8 @@
 //! Reads PDB: records of fixed columns.
 //!
-//! Files by many programs are read, not only those of the archive: lines may end after the coordinates,
-//! serial and residue numbers may go beyond their columns in the ways that are in use (hybrid-36,
-//! hexadecimal, one column more, asterisks). What is not forgiven is a coordinate that is not certain.
+//! Reads files of many programs, not only of the archive: lines may end after the coordinates, and serial and
+//! residue numbers may exceed their columns in the usual ways (hybrid-36, hexadecimal, one column more,
+//! asterisks). An ambiguous coordinate is an error.
 
 use std::io::Read;
 
@@ -13,19 +13,19 @@ use crate::source::lines::{Lines, quote};
 use crate::source::statements::unexpected;
 use spmesh_core::error::{Error, Result};
 
-/// Columns of x, y and z, counted from 0.
+/// First columns of x, y and z, counted from 0.
 const PLACE: [(usize, &str); 3] = [(30, "x"), (38, "y"), (46, "z")];
 
-/// Columns of one coordinate.
+/// Width of a coordinate in columns.
 const WIDTH: usize = 8;
 
-/// Columns that mean anything here.
+/// Number of columns that are used.
 const LINE_LEN: usize = 80;
 
 /// Reads all records.
 ///
 /// # Errors
-/// If an atom has no place that can be read for certain; the line is named.
+/// If an atom has no coordinates that can be read with certainty; the line is named.
 pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
     let mut reader = PdbReader { builder, serials: Serials::default(), is_closed: false, number: 0 };
     while let Some(line) = lines.next_line()? {
@@ -105,11 +105,11 @@ impl PdbReader<'_> {
             line: self.number,
             serial,
             name: columns(text, 12, 16),
-            // Older files have their code and a line number in the last columns.
+            // Older files have their PDB code and a line number in the last columns.
             element: if element.bytes().all(|byte| byte.is_ascii_alphabetic()) { element } else { "" },
             altloc: columns(text, 16, 17),
             chain: columns(text, 21, 22),
-            // The format has no column 21; names of four letters are in wide use.
+            // The format leaves column 21 empty; residue names of four letters are widely used.
             residue_name: columns(text, 17, 21),
             residue_number,
             insertion_code,
@@ -120,7 +120,7 @@ impl PdbReader<'_> {
     }
 }
 
-/// The name of the record that matters here: of ATOM, HETATM, MODEL, ENDMDL and END, in any case.
+/// The name of the record if it is used: ATOM, HETATM, MODEL, ENDMDL or END, in upper or lower case.
 fn record_name(line: &[u8]) -> &'static [u8] {
     let is = |name: &[u8], len: usize| {
         line.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name))
@@ -161,8 +161,8 @@ fn place(line: &[u8]) -> Result<[Number; 3]> {
     if is_apart(line, end) { Ok(place) } else { Err(overflow(line, "z in columns 47 to 54")) }
 }
 
-/// Whether the number that starts at `start` is not one with what stands before it. Numbers of eight columns
-/// with three decimal places may touch; other numbers that touch may have overflowed their columns.
+/// Whether the number that starts at `start` is separate from the characters before it. Numbers of eight
+/// columns with three decimal places may touch; other numbers that touch may have overflowed their columns.
 fn is_apart(line: &[u8], start: usize) -> bool {
     let is_part = |byte: u8| byte.is_ascii_digit() || byte == b'.';
     let starts_within = line.get(start).is_some_and(|&byte| is_part(byte));
@@ -177,11 +177,11 @@ fn overflow(line: &[u8], expected: &str) -> Error {
     ))
 }
 
-/// The columns that matter, as text of one byte per column.
+/// The used columns as ASCII text, one byte per column.
 fn ascii(line: &[u8]) -> Result<&str> {
     let line = &line[..line.len().min(LINE_LEN)];
     let is_printable = |byte: &u8| matches!(byte, b' '..=b'~');
-    // Nearly all lines are: without an early exit the loop takes many bytes at once.
+    // Nearly all lines are printable: without an early exit the loop is vectorized.
     if !line.iter().fold(true, |all, byte| all & is_printable(byte)) {
         let at = line.iter().position(|byte| !is_printable(byte)).expect("one is not");
         let found = format!("byte {:#04x} in column {}", line[at], at + 1);
@@ -190,20 +190,20 @@ fn ascii(line: &[u8]) -> Result<&str> {
     Ok(std::str::from_utf8(line).expect("printable ASCII"))
 }
 
-/// The text of columns counted from 0, as far as the line goes, without blanks around it.
+/// The text of columns counted from 0, cut off at the end of the line, without surrounding blanks.
 fn columns(line: &str, start: usize, end: usize) -> &str {
     let end = end.min(line.len());
     line.get(start..end).unwrap_or_default().trim_ascii()
 }
 
-/// The text of the serial number: columns 7 to 11, and those at their sides that numbers overflow to.
+/// The text of the serial number: columns 7 to 11, and the adjacent columns into which numbers overflow.
 fn serial_text(line: &str, is_hetatm: bool) -> &str {
     let start = if is_hetatm { 6 } else { 4 };
     let goes_on = line.as_bytes()[10..12].iter().all(u8::is_ascii_digit);
     columns(line, start, if goes_on { 12 } else { 11 })
 }
 
-/// The texts of residue number and insertion code: a digit in the column of the code is part of the number.
+/// The texts of residue number and insertion code. A digit in the code's column belongs to the number.
 fn residue_texts(line: &str) -> (&str, &str) {
     if line.as_bytes()[26].is_ascii_digit() {
         (columns(line, 22, 27), "")

@@ -1,4 +1,4 @@
-//! Points without names: whatever `spfinalize` reads, and the vertices of meshes.
+//! Points without names: every input of `spfinalize`, and the vertices of meshes.
 
 use std::io::Read;
 use std::path::Path;
@@ -21,8 +21,7 @@ pub(super) fn read_file(path: &Path) -> Result<Structure> {
     read_input(&Input::open(&[path.to_path_buf()], &options())?)
 }
 
-/// Reads the points of `input`, which is copied to an unlinked temporary file; `name` is what messages call
-/// it.
+/// Reads the points of `input`, which is copied to an unlinked temporary file. Messages call it `name`.
 ///
 /// # Errors
 /// As [`Input::open`], and if there is no point.
@@ -56,8 +55,8 @@ fn read_input(input: &Input) -> Result<Structure> {
     structure(points, coordinates, &input.name(), warnings)
 }
 
-/// The last number, if the first coordinates are whole numbers from 0 or 1 without a gap, in any order, as
-/// those of points are that stand in a column of their own before the coordinates.
+/// The last number, if the first coordinates look like a column of point numbers before the coordinates: all
+/// integers from 0 or 1 without a gap, in any order.
 fn numbered(points: &[Point]) -> Option<usize> {
     const FEWEST: usize = 8;
     let first = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);
@@ -72,10 +71,10 @@ fn numbered(points: &[Point]) -> Option<usize> {
     points.iter().all(is_next).then(|| first as usize + points.len() - 1)
 }
 
-/// Reads the points, or the vertices, of an input that is read as events.
+/// Reads the points or vertices of an input of events.
 ///
 /// # Errors
-/// If it is malformed or has none.
+/// If the input is malformed or has no points.
 pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Result<Structure> {
     let coordinates = source.header().coordinates;
     let mut all = Vec::new();
@@ -86,11 +85,11 @@ pub(super) fn read_events(mut source: Box<dyn EventSource>, name: &str) -> Resul
             _ => {}
         }
     }
-    // What they notice is about when vertices are final, which does not matter here.
+    // Notices of events concern the finalization of vertices, which does not matter here.
     structure(all, coordinates, name, Vec::new())
 }
 
-/// A structure of points without names; `name` is what messages call it.
+/// A structure of points without names. Messages call it `name`.
 ///
 /// # Errors
 /// If there is no point.

@@ -1,4 +1,4 @@
-//! Which atoms of a structure are wanted, and those atoms.
+//! Selects atoms of a structure.
 
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -9,56 +9,56 @@ use super::names::Name;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::points::Point3;
 
-/// Which models.
+/// Models to select.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Models {
-    /// The first of the file.
+    /// The first model of the file.
     #[default]
     First,
-    /// The one of this number.
+    /// The model with this number.
     One(i64),
-    /// All of them, as one set of atoms.
+    /// All models, as one set of atoms.
     All,
 }
 
-/// Which of the alternate locations of an atom. Atoms with one location are always wanted.
+/// Alternate locations to select. Atoms with a single location are always selected.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Altlocs {
-    /// Those of the conformer of each residue that is occupied most, the first of equals.
+    /// The conformer of each residue with the highest occupancy; of equal ones the first.
     #[default]
     Best,
-    /// Those of the conformer of each residue that comes first.
+    /// The first conformer of each residue.
     First,
-    /// Those with this name.
+    /// The locations with this name.
     Named(String),
-    /// All of them.
+    /// All locations.
     All,
 }
 
-/// Which atoms of a molecule.
+/// Types of atoms to select.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Atoms {
-    /// All of them.
+    /// All atoms.
     #[default]
     All,
-    /// All but hydrogen (and deuterium).
+    /// All atoms except hydrogen (and deuterium).
     Heavy,
     /// Alpha carbons only.
     CAlpha,
 }
 
-/// Which atoms are wanted.
+/// The atoms to select.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Selection {
-    /// Which models.
+    /// Models.
     pub models: Models,
     /// Names of chains as the authors call them; all chains if empty.
     pub chains: Vec<String>,
-    /// Which alternate locations.
+    /// Alternate locations.
     pub altlocs: Altlocs,
-    /// Whether HETATM records are wanted.
+    /// Whether HETATM records are selected.
     pub hetatm: bool,
-    /// Which atoms.
+    /// Types of atoms.
     pub atoms: Atoms,
 }
 
@@ -74,7 +74,7 @@ impl Default for Selection {
     }
 }
 
-/// The atoms (or points without names) that were selected, in the order of the file.
+/// The selected atoms (or points without names), in the order of the file.
 #[derive(Debug, Clone)]
 pub struct Selected<'s> {
     structure: &'s Structure,
@@ -82,22 +82,22 @@ pub struct Selected<'s> {
     members: Members,
 }
 
-/// Where the selected atoms are in the structure.
+/// Places of the selected atoms in the structure.
 #[derive(Debug, Clone)]
 enum Members {
-    /// All of one model.
+    /// All atoms of one model.
     Model(usize),
-    /// Model and index of each.
+    /// Model and index of each atom.
     Listed(Vec<[u32; 2]>),
 }
 
 impl Structure {
-    /// The atoms that `selection` wants. To select a whole model costs nothing; points without names are in
-    /// every selection of their model that does not ask for chains or alpha carbons.
+    /// Selects atoms. Selecting a whole model takes no time. Points without names are in every selection of
+    /// their model, unless it asks for chains or alpha carbons.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Usage`] if the structure has no such model or chain, or no names to
-    /// select by; none if no atom is left.
+    /// select by. An empty selection is not an error.
     pub fn select(&self, selection: &Selection) -> Result<Selected<'_>> {
         let models = self.models_of(selection)?;
         let chains = self.chains_of(selection)?;
@@ -125,7 +125,7 @@ impl Structure {
         Selected { structure: self, points, members: Members::Model(model) }
     }
 
-    /// Indices of the models that are wanted.
+    /// Indices of the selected models.
     fn models_of(&self, selection: &Selection) -> Result<Vec<usize>> {
         match selection.models {
             Models::First => Ok(vec![0]),
@@ -140,7 +140,7 @@ impl Structure {
         }
     }
 
-    /// The chains that are wanted; all if none is named.
+    /// The selected chains; empty if all are.
     fn chains_of(&self, selection: &Selection) -> Result<Vec<Name>> {
         let is_nameless = self.models.iter().all(|model| model.atoms.is_empty());
         if is_nameless && (!selection.chains.is_empty() || selection.atoms == Atoms::CAlpha) {
@@ -173,15 +173,15 @@ impl Structure {
     }
 }
 
-/// Which atoms of one model are wanted.
+/// Selects atoms of one model.
 struct Filter<'s> {
     structure: &'s Structure,
     model: &'s Model,
     hetatm: bool,
     atoms: Atoms,
-    /// Whether each residue is in a chain that is wanted; empty if all are.
+    /// For each residue, whether its chain is selected; empty if all are.
     residues: Vec<bool>,
-    /// Whether each atom is at a location that is wanted; empty if all are.
+    /// For each atom, whether its location is selected; empty if all are.
     locations: Vec<bool>,
 }
 
@@ -205,7 +205,7 @@ impl<'s> Filter<'s> {
         Filter { structure, model, hetatm: selection.hetatm, atoms: selection.atoms, residues, locations }
     }
 
-    /// Whether nothing is filtered.
+    /// Whether all atoms pass.
     fn wants_all(&self) -> bool {
         let every_kind = self.hetatm && self.atoms == Atoms::All;
         self.model.atoms.is_empty() || (every_kind && self.residues.is_empty() && self.locations.is_empty())
@@ -224,8 +224,8 @@ impl<'s> Filter<'s> {
             && is_kind()
     }
 
-    /// By the element; where it is not stated, by the name, digits aside: that of an ion is that of its
-    /// residue.
+    /// Decides by the element or, if it is not stated, by the name without leading digits. An atom with the
+    /// name of its residue is an ion.
     fn is_hydrogen(&self, atom: &Atom) -> bool {
         let names = &self.structure.names;
         match names.text(atom.element) {
@@ -238,7 +238,7 @@ impl<'s> Filter<'s> {
         }
     }
 
-    /// By name and element; calcium is a residue of its own.
+    /// Decides by name and element. A calcium ion has the name of its residue.
     fn is_alpha_carbon(&self, atom: &Atom) -> bool {
         let names = &self.structure.names;
         let is_calcium = atom.name == self.structure.residues[atom.residue as usize].name;
@@ -249,20 +249,20 @@ impl<'s> Filter<'s> {
 }
 
 impl<'s> Selected<'s> {
-    /// Where the atoms are, in the stored coordinates of the structure.
+    /// Positions of the atoms, in the stored coordinates of the structure.
     #[must_use]
     pub fn points(&self) -> &[Point3] {
         &self.points
     }
 
-    /// The structure they are from.
+    /// The structure of the atoms.
     #[must_use]
     pub fn structure(&self) -> &'s Structure {
         self.structure
     }
 
-    /// The label of the point at `index`: the serial number of its atom, or for points without names its
-    /// number in the input, counted from 1.
+    /// The label of the point at `index`: its atom's serial number or, for points without names, the number
+    /// of the point in the input, counted from 1.
     #[must_use]
     pub fn label(&self, index: usize) -> u64 {
         let [model, atom] = self.place(index);

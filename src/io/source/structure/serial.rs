@@ -1,11 +1,12 @@
-//! Serial and residue numbers of PDB files, and the ways in which they go beyond their columns.
+//! Serial and residue numbers of PDB files, and the ways in which they exceed their columns.
 
-/// Smallest number of hybrid-36 with capital letters, by its width of 4 or 5 characters.
+/// Smallest hybrid-36 number with upper-case letters, for a width of 4 or 5 characters.
 fn hybrid36_start(width: usize) -> i64 {
     10i64.pow(width as u32)
 }
 
-/// The number of `text` in hybrid-36, whose first character is a letter: capitals first, then small letters.
+/// The hybrid-36 number `text`, whose first character is a letter: first upper-case letters, then lower-case
+/// letters.
 ///
 /// Source: R. W. Grosse-Kunstleve, cctbx.
 pub(super) fn hybrid36(text: &str) -> Option<i64> {
@@ -17,11 +18,12 @@ pub(super) fn hybrid36(text: &str) -> Option<i64> {
     }
     let number = i64::from_str_radix(text, 36).ok()?;
     let rest = 36i64.pow(width as u32 - 1);
-    // Numbers start with ten for the letter A; small letters follow the 26 capitals.
+    // The first letter, A, has the digit value 10. Lower-case numbers follow those of the 26 upper-case
+    // letters.
     Some(number - 10 * rest + if has_lower { 26 * rest } else { 0 } + hybrid36_start(width))
 }
 
-/// Serial numbers of a model, from one to the next.
+/// Parses the serial numbers of a model, in order.
 #[derive(Debug, Default)]
 pub(super) struct Serials {
     /// Whether numbers have become hexadecimal, as some programs write them after 99999.
@@ -29,7 +31,7 @@ pub(super) struct Serials {
 }
 
 impl Serials {
-    /// The number that `text` is; `None` if it is none (asterisks, blanks).
+    /// The number that `text` denotes; `None` if it is not a number (asterisks, blanks).
     pub(super) fn parse(&mut self, text: &str) -> Option<u64> {
         if self.is_hexadecimal {
             return u64::from_str_radix(text, 16).ok();
@@ -49,7 +51,7 @@ impl Serials {
 /// The number of a residue: decimal, hybrid-36, or hexadecimal.
 pub(super) fn residue_number(text: &str) -> Option<i32> {
     let number = text.parse().ok().or_else(|| hybrid36(text)).or_else(|| {
-        // Only a number that is too great for decimal digits is hexadecimal, and that fills its columns.
+        // Numbers become hexadecimal only beyond the decimal range, so they fill their columns.
         let is_full = text.len() == 4 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
         if is_full { i64::from_str_radix(text, 16).ok() } else { None }
     })?;

@@ -8,10 +8,10 @@ use crate::source::lines::Lines;
 use crate::source::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 
-/// Reads all frames, each as a model. Atoms are numbered from 1 in each; their name is their element.
+/// Reads all frames, each as a model. Atoms are numbered from 1 in each frame; their name is their element.
 ///
 /// # Errors
-/// If a frame has fewer or other lines than its count says; the line is named.
+/// If a frame has fewer lines than its count or lines of another form; the line is named.
 pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder) -> Result<()> {
     let mut frame = 0;
     while let Some(atoms) = read_count(lines).map_err(|e| lines.locate(e))? {
@@ -44,7 +44,7 @@ fn read_count(lines: &mut Lines<impl Read>) -> Result<Option<u64>> {
     Ok(None)
 }
 
-/// Reads an atom; `serial` and `line` are its numbers in the frame and in the file.
+/// Reads an atom; `serial` is its number in the frame, and `line` in the file.
 fn read_atom(text: &[u8], [serial, line]: [u64; 2], builder: &mut StructureBuilder) -> Result<()> {
     let mut fields = fields(text);
     let element = printable(next_field(&mut fields)?, "an element")?;

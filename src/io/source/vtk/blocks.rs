@@ -1,4 +1,4 @@
-//! Compressed blocks, one after the other.
+//! Consecutive compressed blocks.
 
 use std::io::{self, BufRead, Cursor, Read, Take};
 
@@ -9,7 +9,7 @@ use crate::source::panic_guard::guarded;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::limits::VTK_BLOCK_MAX;
 
-/// Most bytes that LZ4 makes of one: a length is coded in steps of 255.
+/// Greatest ratio of LZ4 decompression: a length is coded in steps of 255.
 const LZ4_RATIO_MAX: u64 = 255;
 
 /// How blocks are compressed.
@@ -19,39 +19,39 @@ pub(super) enum Compressor {
     Lz4,
 }
 
-/// What is known of the blocks of an array.
+/// Layout of the blocks of an array.
 pub(super) struct Blocks {
     /// Their compressed lengths.
     pub(super) sizes: Numbers,
     pub(super) lengths: Lengths,
     pub(super) compressor: Compressor,
-    /// Decompressed bytes of a block, but for the last.
+    /// Decompressed length of a block in bytes; the last may be shorter.
     pub(super) block_len: u64,
-    /// Decompressed bytes of the blocks that were not begun.
+    /// Decompressed bytes of the blocks not yet begun.
     pub(super) left: u64,
-    /// Number of the block that was begun last, counted from 1.
+    /// Number of the last block begun, counted from 1.
     pub(super) number: u64,
 }
 
 /// The decompressed bytes of all blocks.
 pub(super) struct BlockReader {
     blocks: Blocks,
-    /// The compressed bytes; within a block it has them.
+    /// The compressed bytes; `None` while a zlib block is read, which owns them.
     data: Option<Numbers>,
     block: Option<Block>,
-    /// Decompressed bytes that are left of the block.
+    /// Decompressed bytes left of the block.
     left: u64,
 }
 
-/// A block that is being read.
+/// The block being read.
 enum Block {
-    /// Decompressed as it is read, however long it is: some writers make one block of an array.
+    /// Decompressed as it is read, whatever its length: some writers make one block of an array.
     Zlib(ZlibDecoder<Take<Numbers>>),
     Lz4(Cursor<Vec<u8>>),
 }
 
 impl Blocks {
-    /// The bytes of all blocks, which stand in `data`.
+    /// Reads the decompressed bytes of all blocks from `data`.
     pub(super) fn reader(self, data: Numbers) -> BlockReader {
         BlockReader { blocks: self, data: Some(data), block: None, left: 0 }
     }
@@ -81,10 +81,10 @@ impl BlockReader {
         Ok(true)
     }
 
-    /// Ends a block of which all bytes were read, and checks that its compressed data end, too.
+    /// Ends a block after its last byte, and checks that its compressed data end too.
     fn end(&mut self) -> io::Result<()> {
         if let Some(Block::Zlib(mut decoder)) = self.block.take() {
-            // The checksum is read, and verified, with the end of the data.
+            // Reading at the end of the data verifies the checksum.
             if decoder.read(&mut [0])? > 0 {
                 return Err(invalid("it is longer than stated"));
             }
@@ -129,7 +129,7 @@ impl Read for BlockReader {
     }
 }
 
-/// The block of `len` bytes that the next `size` bytes of `data` decompress to.
+/// The block of `len` bytes, decompressed from the next `size` bytes of `data`.
 fn read_lz4(data: &mut impl BufRead, size: u64, len: u64) -> io::Result<Vec<u8>> {
     if len > VTK_BLOCK_MAX {
         return Err(invalid(&format!("{len} bytes, the maximum for LZ4 is {VTK_BLOCK_MAX}")));

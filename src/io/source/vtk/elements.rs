@@ -1,4 +1,5 @@
-//! The elements of an XML file, one after the other, with texts of any length left where they are.
+//! Reads the elements of an XML file one after the other. Texts stay in the file, so they may have any
+//! length.
 
 use std::io::{self, BufRead, BufReader, Read};
 use std::ops::Range;
@@ -11,15 +12,15 @@ use crate::source::origin::FileView;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{XML_DEPTH_MAX, XML_TAG_MAX};
 
-/// Bytes that are read at once.
+/// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
 
 /// Reads elements. Memory: one tag.
 pub(super) struct Elements {
     reader: Reader<Bounded<BufReader<FileView>>>,
-    /// Byte of the file at which the reader started.
+    /// Offset in the file at which the reader started.
     start: u64,
-    /// Names of the elements that are open.
+    /// Names of the open elements.
     path: Vec<String>,
     buffer: Vec<u8>,
 }
@@ -29,15 +30,15 @@ pub(super) struct Elements {
 pub(super) struct Tag {
     pub(super) name: String,
     attributes: Vec<(String, String)>,
-    /// Byte of the file behind it.
+    /// Offset in the file after the tag.
     pub(super) end: u64,
 }
 
-/// What comes next, but for texts.
+/// What comes next, except texts.
 enum Next {
     Open(Tag),
     Close,
-    /// A comment, or something else that says nothing.
+    /// A comment or other content to ignore.
     Nothing,
 }
 
@@ -47,7 +48,7 @@ impl Tag {
         self.attributes.iter().find(|(key, _)| key == name).map(|(_, value)| value.trim())
     }
 
-    /// That something is wrong with the element.
+    /// An error about the element.
     pub(super) fn error(&self, what: &str) -> Error {
         Error::malformed(format!("element {}: {what}", self.name)).at(format!("byte {}", self.end))
     }
@@ -64,9 +65,8 @@ impl Elements {
         Ok(Elements { reader, start, path: Vec::new(), buffer: Vec::new() })
     }
 
-    /// The next element within the one that was opened last, or the one of the file; `None` at the end of
-    /// that. What is between does not count. The caller goes to the end of the element before it asks for the
-    /// next.
+    /// The next child of the innermost open element, or at first the root; `None` at the end of that element.
+    /// Texts and comments are skipped. The caller must reach the end of a child before asking for the next.
     pub(super) fn child(&mut self) -> Result<Option<Tag>> {
         loop {
             self.text()?;
@@ -78,7 +78,7 @@ impl Elements {
         }
     }
 
-    /// Goes to the end of the element that was opened last.
+    /// Goes to the end of the innermost open element.
     pub(super) fn skip(&mut self) -> Result<()> {
         let depth = self.path.len();
         while self.path.len() >= depth {
@@ -87,8 +87,8 @@ impl Elements {
         Ok(())
     }
 
-    /// Goes to the end of the element that was opened last, and tells where its text is, between its other
-    /// elements.
+    /// Goes to the end of the innermost open element, and returns the range of its only text, which may stand
+    /// between child elements.
     pub(super) fn only_text(&mut self) -> Result<Range<u64>> {
         let mut found = 0..0;
         loop {
@@ -105,7 +105,7 @@ impl Elements {
         }
     }
 
-    /// Where the bytes are that follow an underscore, as those of appended data do.
+    /// Offset of the bytes after an underscore, where appended data starts.
     pub(super) fn behind_underscore(&mut self) -> Result<u64> {
         self.reader.get_mut().left = usize::MAX;
         let mut stream = self.reader.stream();
@@ -133,7 +133,7 @@ impl Elements {
         error.at(format!("byte {}", self.position()))
     }
 
-    /// Goes to the next tag, and tells where text before it is, without white space before that.
+    /// Goes to the next tag, and returns the range of the text before it, without leading white space.
     fn text(&mut self) -> Result<Range<u64>> {
         self.reader.get_mut().left = usize::MAX;
         let (mut start, mut is_blank) = (self.position(), true);
@@ -159,7 +159,7 @@ impl Elements {
         Ok(start..self.position())
     }
 
-    /// What comes next behind a text.
+    /// The next item after a text.
     fn next(&mut self) -> Result<Next> {
         self.buffer.clear();
         self.reader.get_mut().left = XML_TAG_MAX;
@@ -206,7 +206,7 @@ fn damaged(error: quick_xml::Error) -> Error {
     }
 }
 
-/// An input of which only some bytes may be read, so that a tag that does not end is not held in memory.
+/// An input with a limit on the bytes that may be read, so that an endless tag is not held in memory.
 struct Bounded<R> {
     input: R,
     left: usize,

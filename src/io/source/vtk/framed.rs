@@ -1,4 +1,4 @@
-//! Binary arrays as the XML formats of VTK pack them: behind their length, in base64, and in compressed
+//! Binary arrays as packed by the XML formats of VTK: after their length, in base64, and in compressed
 //! blocks.
 
 use std::io::{self, BufReader, Read};
@@ -10,29 +10,29 @@ use crate::source::origin::FileView;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::error::{Error, Result};
 
-/// Bytes that are read at once.
+/// Bytes read at once.
 const BUFFER_LEN: usize = 1 << 17;
 
-/// Where a binary array is, and how it is packed.
+/// Place and packing of a binary array.
 #[derive(Debug, Clone)]
 pub(in crate::source) struct Framed {
-    /// Bytes of the file that hold it; what follows the array may be there, too.
+    /// Range of the file that holds it; may extend beyond the array.
     pub(super) start: u64,
     pub(super) end: u64,
     pub(super) is_base64: bool,
     pub(super) lengths: Lengths,
     pub(super) compressor: Option<Compressor>,
-    /// Bytes of its numbers.
+    /// Length of its numbers in bytes.
     pub(super) len: u64,
 }
 
 impl Framed {
-    /// The bytes of the numbers, and maybe others behind them.
+    /// The bytes of the numbers, possibly followed by others.
     ///
     /// Memory: buffers, and for LZ4 one block.
     ///
     /// # Errors
-    /// If reading fails, or the stated length is not that of the numbers.
+    /// If reading fails, or the stated length differs from that of the numbers.
     pub(in crate::source) fn open(&self, view: &FileView) -> Result<Numbers> {
         let mut head = self.bytes(view, 0)?;
         let Some(compressor) = self.compressor else {
@@ -54,10 +54,10 @@ impl Framed {
         Ok(Box::new(BufReader::with_capacity(BUFFER_LEN, blocks.reader(data))))
     }
 
-    /// Where the numbers themselves start, if they stand in the file as they are.
+    /// Offset of the numbers, if they are stored unpacked.
     ///
     /// # Errors
-    /// If the stated length is not that of the numbers, or the file ends within them.
+    /// If the stated length differs from that of the numbers, or the file ends within them.
     pub(super) fn plain_start(&self, view: &FileView) -> Result<Option<u64>> {
         if self.is_base64 || self.compressor.is_some() {
             return Ok(None);
@@ -74,7 +74,7 @@ impl Framed {
         Ok(Some(start))
     }
 
-    /// The packed bytes behind the first `skipped`, out of base64.
+    /// The array's bytes, decoded from base64 if necessary, without the first `skipped`.
     fn bytes(&self, view: &FileView, skipped: u64) -> Result<Numbers> {
         if !self.is_base64 {
             let start = self.start.saturating_add(skipped);

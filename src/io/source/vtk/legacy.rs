@@ -1,4 +1,4 @@
-//! Where the points are in a legacy file of VTK, text or big-endian bytes.
+//! Finds the points in a legacy file of VTK, text or big-endian binary.
 
 use std::io;
 
@@ -15,17 +15,17 @@ use spmesh_core::error::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ValueType {
     Number(SampleType),
-    /// Numbers of 4 or 8 bytes, whichever a `long` had where the file was written.
+    /// Numbers of 4 or 8 bytes, the length of `long` on the machine that wrote the file.
     Long,
-    /// One bit each, bytes filled up.
+    /// One bit each, padded to whole bytes.
     Bits,
     Text,
 }
 
-/// Reads the statements up to the points, and tells where these are. What follows them is not looked at.
+/// Reads the statements up to the points, and returns the place of the points. Ignores everything after them.
 ///
 /// # Errors
-/// If the file is damaged or ends before its points do; usage, if it has a sort of data that lists no points.
+/// If the file is damaged or ends within its points; usage, if its type of dataset does not list points.
 pub(in crate::source) fn read(file: &FileView, name: &str) -> Result<PointArray> {
     let mut lines = Lines::new(file.clone(), name);
     let (points, sample, writing) = read_statements(&mut lines).map_err(|e| lines.locate(e))?;
@@ -48,9 +48,9 @@ pub(in crate::source) fn read(file: &FileView, name: &str) -> Result<PointArray>
     })
 }
 
-/// Number and type of the points; what comes next are these.
+/// Number and type of the points; leaves the input at their start.
 fn read_statements(lines: &mut Lines<FileView>) -> Result<(u64, SampleType, Writing)> {
-    // The first line told the format, the second is a title of any content.
+    // The first line told the format; the second is a title with any content.
     for _ in 0..2 {
         lines.next_line()?.ok_or_else(truncated)?;
     }
@@ -88,7 +88,7 @@ fn check_dataset(name: &str) -> Result<()> {
     }
 }
 
-/// The words of the next line that is not blank, in lower case; there is one at least.
+/// The words of the next line that is not blank, in lower case; at least one.
 fn next_words(lines: &mut Lines<FileView>) -> Result<Vec<String>> {
     loop {
         let line = lines.next_line()?.ok_or_else(truncated)?;
@@ -100,20 +100,20 @@ fn next_words(lines: &mut Lines<FileView>) -> Result<Vec<String>> {
     }
 }
 
-/// What VTK adds to an array ends with a blank line.
+/// Skips the metadata that VTK adds to an array, which ends with a blank line.
 fn skip_metadata(lines: &mut Lines<FileView>) -> Result<()> {
     while !lines.next_line()?.ok_or_else(truncated)?.trim_ascii().is_empty() {}
     Ok(())
 }
 
-/// Skips `FIELD name count`, and so many arrays.
+/// Skips `FIELD name count` and its `count` arrays.
 fn skip_field(lines: &mut Lines<FileView>, words: &[String], writing: Writing) -> Result<()> {
     let arrays = words
         .get(2)
         .map_or(Err(Error::malformed("FIELD without a count")), |count| parse_integer(count.as_bytes()))?;
     for _ in 0..arrays {
         let mut words = next_words(lines)?;
-        // It belongs to the array before.
+        // The metadata belongs to the array before.
         while words[0] == "metadata" {
             skip_metadata(lines)?;
             words = next_words(lines)?;
@@ -151,7 +151,7 @@ fn skip_values(lines: &mut Lines<FileView>, values: u64, kind: ValueType, writin
     skip_bytes(lines, bytes.ok_or_else(truncated)?)
 }
 
-/// Skips a text behind its length: two bits that tell how many bytes the length has, and the length,
+/// Skips a text and the length before it: two bits for the number of bytes of the length, then the length,
 /// big-endian.
 fn skip_binary_text(lines: &mut Lines<FileView>) -> Result<()> {
     let mut bytes = [0; 8];
@@ -192,7 +192,7 @@ fn value_type(name: &[u8]) -> Result<ValueType> {
         b"unsigned_char" => SampleType::U8,
         b"short" => SampleType::I16,
         b"unsigned_short" => SampleType::U16,
-        // VTK writes its identifiers as int, whatever they are in memory.
+        // VTK writes identifiers as int, whatever their type in memory.
         b"int" | b"vtkidtype" => SampleType::I32,
         b"unsigned_int" => SampleType::U32,
         b"vtktypeint64" => SampleType::I64,

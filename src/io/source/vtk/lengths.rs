@@ -7,13 +7,13 @@ use crate::source::byte_order::ByteOrder;
 /// How lengths are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Lengths {
-    /// Whether they have 8 bytes, or else 4.
+    /// Whether they have 8 bytes instead of 4.
     pub(super) is_wide: bool,
     pub(super) order: ByteOrder,
 }
 
 impl Lengths {
-    /// Bytes of a length.
+    /// Number of bytes of a length.
     pub(super) fn len(self) -> u64 {
         if self.is_wide { 8 } else { 4 }
     }

@@ -1,8 +1,9 @@
-//! The points of VTK files: XML (VTU, VTP, VTS) and the legacy format, whatever else they hold.
+//! The points of VTK files: XML (VTU, VTP, VTS) and the legacy format. Everything else in the files is
+//! ignored.
 //!
-//! Source: "VTK file formats" (docs.vtk.org), and what VTK writes. Headers are read once; a pass then reads
-//! the arrays of points alone. The reader is this project's own: `vtkio`, the crate there is, makes a model
-//! in memory of a whole file, cells and attributes with it.
+//! Source: "VTK file formats" (docs.vtk.org), and the output of VTK. Headers are read once; a pass then reads
+//! only the arrays of points. The reader is this project's own, because the crate `vtkio` builds a model of
+//! the whole file in memory, including cells and attributes.
 
 mod blocks;
 mod elements;

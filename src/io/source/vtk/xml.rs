@@ -1,7 +1,7 @@
-//! Where the arrays of points are in an XML file of VTK.
+//! Finds the arrays of points in an XML file of VTK.
 //!
-//! `VTKFile` holds an element named after the sort of data, that holds pieces, and each piece has its points
-//! as one array: as text, as base64, or at an offset into the data that are appended to all elements.
+//! `VTKFile` holds an element named after the type of dataset, which holds pieces. Each piece has its points
+//! as one array: as text, as base64, or at an offset into the appended data after all elements.
 
 use std::io::Read;
 use std::ops::Range;
@@ -17,38 +17,38 @@ use crate::source::point_arrays::{Place, PointArray};
 use crate::source::sample_type::SampleType;
 use spmesh_core::error::{Error, Result};
 
-/// Sorts of data whose points are listed.
+/// Types of datasets that list their points.
 const DATASETS: [&str; 3] = ["UnstructuredGrid", "PolyData", "StructuredGrid"];
 
-/// End of a file; where it is missing, something was cut off.
+/// End of a file. A file without it is truncated.
 const END: &[u8] = b"</VTKFile>";
 
-/// Bytes at the end of a file in which [`END`] is looked for.
+/// Number of bytes at the end of a file in which [`END`] is searched.
 const TAIL_LEN: u64 = 256;
 
-/// What the root element says.
+/// Content of the root element's tag.
 struct FileHeader {
     dataset: String,
     lengths: Lengths,
-    /// Name of what compresses all data but text.
+    /// Name of the compressor of all data except text.
     compressor: Option<String>,
 }
 
-/// An array of points as its element describes it.
+/// An array of points, as described by its element.
 struct Described {
     piece: u64,
     points: u64,
     sample: SampleType,
     format: Format,
-    /// Byte of the file behind the tag, for messages.
+    /// Offset in the file after the tag, for messages.
     byte: u64,
 }
 
-/// Where the values of an array are.
+/// Place of an array's values.
 enum Format {
     Ascii(Range<u64>),
     Base64(Range<u64>),
-    /// Counted from the start of the appended data.
+    /// Offset from the start of the appended data.
     Appended(u64),
 }
 
@@ -58,13 +58,13 @@ struct Appended {
     is_base64: bool,
 }
 
-/// Goes over the elements of a file and tells where its points are.
+/// Reads the elements of a file, and returns the places of its points.
 ///
-/// Cost: a pass over all that is not appended. Memory: one tag, and 100 bytes for each piece.
+/// Cost: a pass over everything but appended data. Memory: one tag, and 100 bytes per piece.
 ///
 /// # Errors
-/// If the XML is damaged or cut off, there are no pieces, or an array is not described as VTK does it; usage,
-/// if the data are of a sort that lists no points, or compressed in a way that is not read.
+/// If the XML is damaged or truncated, there are no pieces, or an array is not described as VTK does it;
+/// usage, if the type of dataset does not list points, or the compressor is not supported.
 pub(in crate::source) fn read(file: &FileView) -> Result<Vec<PointArray>> {
     let mut elements = Elements::new(file)?;
     let root = elements.child()?.filter(|root| root.name == "VTKFile");
@@ -92,7 +92,7 @@ pub(in crate::source) fn read(file: &FileView) -> Result<Vec<PointArray>> {
     described.into_iter().map(place).collect()
 }
 
-/// Reads all pieces, and counts them.
+/// Reads all pieces, and returns their number.
 fn read_dataset(elements: &mut Elements, described: &mut Vec<Described>) -> Result<u64> {
     let mut pieces = 0;
     while let Some(tag) = elements.child()? {
@@ -129,7 +129,7 @@ fn read_piece(elements: &mut Elements, tag: &Tag, piece: u64, described: &mut Ve
     }
 }
 
-/// The number of points between the ends of a range along each axis.
+/// The number of points in an extent, which gives the first and last index along each axis.
 fn points_of_extent(extent: &str) -> Option<u64> {
     let ends: Option<Vec<i64>> = extent.split_ascii_whitespace().map(|end| end.parse().ok()).collect();
     let [min_x, max_x, min_y, max_y, min_z, max_z] = ends?[..] else { return None };
@@ -148,7 +148,7 @@ fn read_appended(elements: &mut Elements, tag: &Tag) -> Result<Appended> {
     Ok(Appended { start: elements.behind_underscore()?, is_base64 })
 }
 
-/// That the file was not cut off behind what is read of it.
+/// Checks that the file was not truncated after the part that is read.
 fn expect_end(file: &FileView) -> Result<()> {
     let mut tail = Vec::new();
     let mut end = file.range(file.len().saturating_sub(TAIL_LEN), file.len());
@@ -185,7 +185,7 @@ impl FileHeader {
         Ok(FileHeader { dataset, lengths: Lengths { is_wide, order }, compressor })
     }
 
-    /// LZMA is not read: how much memory its decoder needs, the compressed data say.
+    /// LZMA is not supported: the compressed data decide how much memory its decoder needs.
     fn compressor(&self) -> Result<Option<Compressor>> {
         match self.compressor.as_deref() {
             None => Ok(None),

@@ -1,4 +1,4 @@
-//! The axes of an NRRD volume: sizes, what coordinates they are, and where their samples are in the world.
+//! The axes of an NRRD volume: sizes, coordinates along them, and world coordinates of the samples.
 
 use super::fields::{Fields, integer};
 use crate::source::lines::quote;
@@ -8,7 +8,7 @@ use spmesh_core::error::{Error, Result};
 /// The sites of the volume.
 ///
 /// # Errors
-/// If there are not three or four axes of places, or too many sites.
+/// If there are not three or four axes with coordinates, or too many sites.
 pub(super) fn lattice(fields: &Fields, warnings: &mut Vec<String>) -> Result<Lattice> {
     let dimension = fields.parse("dimension", |text| match integer(text, "3 or 4")? {
         dimension @ (3 | 4) => Ok(dimension as usize),
@@ -33,7 +33,7 @@ pub(super) fn lattice(fields: &Fields, warnings: &mut Vec<String>) -> Result<Lat
     Lattice::along(lens, coordinates).map_err(located)
 }
 
-/// Which of x, y, z and t each axis is, by `kinds`.
+/// The coordinate (x, y, z or t) along each axis, by `kinds`.
 fn coordinates(fields: &Fields, dimension: usize) -> Result<[usize; 4]> {
     let kinds: Vec<String> =
         fields.get("kinds").unwrap_or("").split_whitespace().map(str::to_ascii_lowercase).collect();
@@ -53,15 +53,15 @@ fn coordinates(fields: &Fields, dimension: usize) -> Result<[usize; 4]> {
     let time = match (&of_kind("time")[..], &of_kind("list")[..]) {
         ([_, _, ..], _) => return Err(malformed("several axes are of kind time".to_string())),
         ([axis], _) | ([], [axis]) => *axis,
-        // Beside the axes of a volume of three dimensions, this one has size 1.
+        // In a volume of three dimensions this is the added axis of size 1.
         _ => 3,
     };
     let mut space = 0..3;
     Ok([0, 1, 2, 3].map(|axis| if axis == time { 3 } else { space.next().unwrap_or(3) }))
 }
 
-/// Where samples are, or why that is not known: by `space directions` and `space origin`, or by `spacings`,
-/// `axis mins` and `axis maxs`. Axes of which nothing is said keep their indices.
+/// World coordinates of samples, or why they are not known: by `space directions` and `space origin`, or by
+/// `spacings`, `axis mins` and `axis maxs`. Axes without such data keep their indices.
 pub(super) fn world(fields: &Fields) -> std::result::Result<Frame, String> {
     let text = |e: Error| e.to_string();
     let coordinates = dimension(fields).and_then(|dimension| coordinates(fields, dimension)).map_err(text)?;
@@ -84,7 +84,7 @@ fn dimension(fields: &Fields) -> Result<usize> {
 /// First sample and step of each axis.
 type Axes = Option<Vec<[f64; 2]>>;
 
-/// By vectors: each must have a component along its own axis only. `none` is for axes that are not of space.
+/// By vectors: each may have a component along its own axis only. `none` marks axes that are not spatial.
 fn by_directions(fields: &Fields) -> std::result::Result<Option<Axes>, String> {
     let Some(directions) = fields.get("space directions") else { return Ok(None) };
     let directions = vectors(directions)?;
@@ -115,7 +115,7 @@ fn by_directions(fields: &Fields) -> std::result::Result<Option<Axes>, String> {
     Ok(Some(Some(axes)))
 }
 
-/// By distances. `nan` is for axes of which nothing is known.
+/// By distances: `nan` marks axes without data.
 fn by_spacings(fields: &Fields) -> std::result::Result<Axes, String> {
     let dimension = dimension(fields).map_err(|e| e.to_string())?;
     let column = |name: &str| -> std::result::Result<Vec<Option<f64>>, String> {
@@ -137,7 +137,7 @@ fn by_spacings(fields: &Fields) -> std::result::Result<Axes, String> {
     let mut axes = Vec::new();
     for (axis, (size, center)) in sizes.zip(centers).enumerate() {
         let is_cell = center.is_some_and(|center| center.eq_ignore_ascii_case("cell"));
-        // Between the borders of cells there is one step more than between their centers.
+        // Between the outer borders of cells there is one step more than between their centers.
         let steps = if is_cell { size? } else { size? - 1.0 };
         let between =
             mins[axis].zip(maxs[axis]).filter(|_| steps > 0.0).map(|(min, max)| (max - min) / steps);
@@ -148,7 +148,7 @@ fn by_spacings(fields: &Fields) -> std::result::Result<Axes, String> {
     Ok(Some(axes))
 }
 
-/// Vectors as `(1,0,0) none (0, 2, 0)`.
+/// Parses vectors such as `(1,0,0) none (0, 2, 0)`.
 fn vectors(text: &str) -> std::result::Result<Vec<Option<Vec<f64>>>, String> {
     let mut vectors = Vec::new();
     let mut rest = text.trim_start();

@@ -7,7 +7,7 @@ use crate::source::origin::Origin;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{NRRD_FILES_MAX, NRRD_HEADER_MAX};
 
-/// Names of fields with their alternate forms, the usual one first.
+/// Names of fields with their alternative forms, the usual form first.
 const KNOWN: [&[&str]; 28] = [
     &["dimension"],
     &["type"],
@@ -43,19 +43,19 @@ const KNOWN: [&[&str]; 28] = [
 #[derive(Debug)]
 pub(super) struct Fields {
     fields: Vec<Field>,
-    /// Names of data files, from the lines behind `data file: LIST`.
+    /// Names of data files, from the lines after `data file: LIST`.
     pub listed: Vec<String>,
-    /// Bytes of the header, with the empty line.
+    /// Length of the header in bytes, with the empty line.
     pub len: u64,
     /// Whether the file is compressed as a whole.
     pub is_gzip: bool,
-    /// Whether an empty line ends the header: values may follow.
+    /// Whether an empty line ends the header, so that values may follow.
     pub is_ended: bool,
 }
 
 #[derive(Debug)]
 struct Field {
-    /// The usual form of its name.
+    /// The usual form of the field's name.
     name: String,
     description: String,
     line: u64,
@@ -66,7 +66,7 @@ impl Fields {
     /// Reads the header.
     ///
     /// # Errors
-    /// If a line is none of a header, a field is there twice, or the header is longer than
+    /// If a line is not part of a header, a field occurs twice, or the header is longer than
     /// [`NRRD_HEADER_MAX`].
     pub(super) fn read(origin: &Origin) -> Result<Fields> {
         let plain = origin.plain()?;
@@ -115,7 +115,7 @@ impl Fields {
         }
     }
 
-    /// Takes a line in. True if the lines behind it are names of files.
+    /// Adds a line. True if the following lines are names of files.
     fn take(&mut self, text: &str, line: u64) -> Result<bool> {
         let found = || {
             Error::malformed(format!("found {}, expected a field: name: description", quote(text.as_bytes())))
@@ -123,12 +123,12 @@ impl Fields {
         let at = text.find(':').ok_or_else(found)?;
         let (name, rest) = (&text[..at], &text[at + 1..]);
         if rest.starts_with('=') {
-            // A key and its value, which mean nothing to the format.
+            // A key/value pair, which has no meaning in the format.
             return Ok(false);
         }
         let name = name.trim().to_ascii_lowercase();
         let known = KNOWN.iter().find(|forms| forms.contains(&name.as_str()));
-        // Least and greatest values are not needed; there they share a row.
+        // Rows of minima and maxima, which are not needed here, hold several fields each.
         let is_one = |forms: &&&[&str]| !matches!(forms[0], "min" | "old min");
         let name = known.filter(is_one).map_or(name, |forms| forms[0].to_string());
         if let Some(first) = self.fields.iter().find(|field| field.name == name) {
@@ -143,12 +143,12 @@ impl Fields {
         Ok(is_list)
     }
 
-    /// What the field of this name says, if it is there.
+    /// The description of the field with this name, if there is one.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         self.fields.iter().find(|field| field.name == name).map(|field| field.description.as_str())
     }
 
-    /// Adds line and field to an error about the field of this name.
+    /// Adds line and field to an error about the field with this name.
     pub(super) fn locate(&self, name: &str, error: Error) -> Error {
         match self.fields.iter().find(|field| field.name == name) {
             Some(field) => error.at(format!("line {}, field {name}", field.line)),
@@ -156,22 +156,22 @@ impl Fields {
         }
     }
 
-    /// What `parse` makes of a field.
+    /// The result of `parse` for a field.
     ///
     /// # Errors
-    /// If the field is not there, or `parse` fails.
+    /// If the field is missing, or `parse` fails.
     pub(super) fn parse<T>(&self, name: &str, parse: impl Fn(&str) -> Result<T>) -> Result<T> {
         let text =
             self.get(name).ok_or_else(|| Error::malformed(format!("has no field {name}")).at("header"))?;
         parse(text).map_err(|e| self.locate(name, e))
     }
 
-    /// As [`Fields::parse`], but `default` if the field is not there.
+    /// As [`Fields::parse`], but `default` if the field is missing.
     pub(super) fn parse_or<T>(&self, name: &str, default: T, parse: impl Fn(&str) -> Result<T>) -> Result<T> {
         self.get(name).map_or(Ok(default), |text| parse(text).map_err(|e| self.locate(name, e)))
     }
 
-    /// A message for each field that is not one of the format.
+    /// A warning for each field that is not part of the format.
     pub(super) fn unknown(&self) -> impl Iterator<Item = String> {
         let unknown = self.fields.iter().filter(|field| !field.is_known);
         unknown.map(|Field { line, name, .. }| format!("line {line}: unknown field {name} is ignored"))
@@ -189,7 +189,7 @@ fn check_magic(magic: &str) -> Result<()> {
     }
 }
 
-/// The integer that `text` is.
+/// The integer that `text` denotes.
 pub(super) fn integer(text: &str, what: &str) -> Result<u64> {
     let is_integer = text.bytes().all(|byte| byte.is_ascii_digit());
     let number = text.parse().ok().filter(|_| is_integer);

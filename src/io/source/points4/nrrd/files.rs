@@ -1,4 +1,4 @@
-//! Where the values of an NRRD volume are: behind the header, in another file, or in several.
+//! The files of an NRRD volume's values: the header's own file, another file, or several.
 
 use std::path::Path;
 
@@ -9,10 +9,10 @@ use crate::source::points4::data::Part;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::NRRD_FILES_MAX;
 
-/// The files that hold the values, each as many of them.
+/// The files that hold the values, each with the same number of them.
 ///
 /// # Errors
-/// If there is none, a name makes no sense, or the values cannot be shared out evenly.
+/// If there is no file, a name makes no sense, or the values cannot be divided evenly.
 pub(super) fn parts(fields: &Fields, origin: Origin, path: Option<&Path>, sites: u64) -> Result<Vec<Part>> {
     let Some(names) = names(fields).map_err(|e| fields.locate("data file", e))? else {
         if !fields.is_ended {
@@ -35,7 +35,7 @@ pub(super) fn parts(fields: &Fields, origin: Origin, path: Option<&Path>, sites:
 
 fn part(folder: &Path, name: &str) -> Result<Part> {
     let path = folder.join(name);
-    // What is no file would be copied to a temporary one without end.
+    // Anything else, such as a device, might be spooled without end.
     if std::fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file()) {
         let message = "is not a file, expected the values of the volume";
         return Err(Error::malformed(message).of_input(path.display().to_string()));
@@ -57,12 +57,12 @@ fn names(fields: &Fields) -> Result<Option<Vec<String>>> {
             numbered(pattern, [number(min)?, number(max)?, step]).map(Some)
         }
         [] => Err(Error::malformed("expected the name of a file")),
-        // Names may contain spaces.
+        // A name may contain spaces.
         _ => Ok(Some(vec![text.to_string()])),
     }
 }
 
-/// Names of numbered files, `pattern` with numbers from `min` to `max` for its `%d` or `%03d`.
+/// Names of numbered files: `pattern` with the numbers from `min` to `max` in place of its `%d` or `%03d`.
 fn numbered(pattern: &str, [min, max, step]: [u64; 3]) -> Result<Vec<String>> {
     let expected = || {
         let found = quote(pattern.as_bytes());

@@ -1,9 +1,9 @@
-//! NRRD: a header of lines `field: description`, then the values, or the names of the files that hold them
+//! NRRD: a header of lines `field: description`, then the values or the names of the files that hold them
 //! (Teem, "Definition of NRRD File Format").
 //!
-//! Read are volumes of single numbers in three or four dimensions, in the encodings raw, gzip and text. The
-//! axis of kind `time` is t, or else the only one of kind `list`, or else the fourth; the others are x, y and
-//! z in the order of the file.
+//! Reads volumes of scalars in three or four dimensions, in the encodings raw, gzip and text. The axis of
+//! kind `time` is t; without one, a single axis of kind `list`; without that, the fourth axis. The others are
+//! x, y and z in the order of the file.
 
 mod axes;
 mod fields;
@@ -19,10 +19,10 @@ use crate::source::origin::Origin;
 use crate::source::sample_type::SampleType;
 use spmesh_core::error::{Error, Result};
 
-/// Reads the header of a volume; `path` is where it is, if it has a name.
+/// Reads the header of a volume; `path` is the file's path, if it has one.
 ///
 /// # Errors
-/// If the header is malformed (line and field are named), or the volume of a kind that is not read.
+/// If the header is malformed (line and field are named), or the kind of volume is not supported.
 pub(super) fn open(origin: Origin, path: Option<&Path>, warnings: &mut Vec<String>) -> Result<Volume> {
     let fields = Fields::read(&origin)?;
     warnings.extend(fields.unknown());
