@@ -1,10 +1,10 @@
 //! Splines on the points of a raster, row by row.
 //!
-//! On a row y = const an element is the least of a few linear functions of x. Its contribution to the spline
-//! is that times another linear function, the sum of its functions' linear factors with their coefficients,
-//! which is computed beforehand. So a row costs a few divisions for each element that it crosses, which yield
-//! the columns that are certainly inside. A pixel costs an evaluation of plain linear functions, in a loop
-//! without branches. Columns too near to an edge are evaluated as single points.
+//! On a row y = const an element is the least of a few linear functions of x. It contributes to the spline
+//! the product of this value and a linear factor: the sum of the linear factors of its functions, weighted by
+//! their coefficients, which is computed beforehand. So a row costs a few divisions for each element that it
+//! crosses, which yield the columns that are certainly inside. A pixel costs an evaluation of plain linear
+//! functions, in a loop without branches. Columns too near to an edge are evaluated as single points.
 
 use super::basis::{Basis, Scratch};
 use super::linear_simplex::{Line, LinearSimplex, lesser, scaled, value};
