@@ -31,9 +31,9 @@ pub struct CellTree {
 impl CellTree {
     /// A tree from its parts; `None` if a part is out of range or a border could be rounded.
     ///
-    /// Domain: `side` is a normal power of two; `origin` is a multiple of `side / 2^31` with `|origin| + side
-    /// < side * 2^22`. Then every border down to level 31 is a multiple of `side / 2^31` with a factor below
-    /// 2^53, which f64 represents exactly.
+    /// Domain: `side` is a normal power of two; `origin` is a multiple of `side / 2^31`, and
+    /// `|origin| + side < side * 2^22`. Then every border down to level 31 is a multiple of `side / 2^31`
+    /// with a factor below 2^53, which f64 represents exactly.
     #[must_use]
     pub fn new(dims: u8, depth: u8, origin: Point, side: f64) -> Option<Self> {
         let unit = side / FINEST_CELLS;

@@ -67,8 +67,7 @@ impl Configurations {
         Configurations { degree: 0, claim, interiors: Vec::new(), offsets, boundaries: triangles, finite }
     }
 
-    /// Sorts groups that were added in the sequence of `order` by their least knots. Domain: a degree above
-    /// 0.
+    /// Sorts groups that were added in the sequence of `order` by their least knots. Domain: not degree 0.
     pub fn sort_groups(&mut self, order: &[u32]) {
         let mut firsts = vec![(0, 0); order.len()];
         let leasts = self.interiors.chunks_exact(self.degree).map(|interior| interior[0]);

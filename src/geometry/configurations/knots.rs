@@ -2,13 +2,13 @@
 //!
 //! # Repeated knots
 //! Configurations are combinatorial: a repeated knot is two knots. To tell copies apart, the set of knots is
-//! treated as the limit of sets P(e) for e > 0 tending to 0. In P(e), the knot of *rank* j is at `p + e (j, j
-//! * j)`; its rank is the number of knots with lesser ids at the same place. For small e the knots of P(e)
-//! are distinct, and every sign is the sign of the first nonzero coefficient of a polynomial in e
-//! (`symbolic`). Knots of P(e) on one circle or line remain undecided, as in any set of distinct points. The
-//! canonical perturbation of lifts decides these, by the lexicographic order of P(e). So the result is that
-//! of an ordinary set of distinct points that then move together, and the theory applies unchanged. Triangles
-//! of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
+//! treated as the limit of sets P(e) for e > 0 tending to 0. In P(e), the knot of *rank* j is at
+//! `p + e (j, j * j)`; its rank is the number of knots with lesser ids at the same place. For small e the
+//! knots of P(e) are distinct, and every sign is the sign of the first nonzero coefficient of a polynomial in
+//! e (`symbolic`). Knots of P(e) on one circle or line remain undecided, as in any set of distinct points.
+//! The canonical perturbation of lifts decides these, by the lexicographic order of P(e). So the result is
+//! that of an ordinary set of distinct points that then move together, and the theory applies unchanged.
+//! Triangles of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
 //!
 //! Copies lie on a parabola, so no three are on a line. No four are on a circle, because their abscissae
 //! would have to sum to zero.

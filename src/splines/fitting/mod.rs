@@ -11,8 +11,7 @@
 //! | `observations`, `blocks` | the data, and parallel passes over them |
 //! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
 //! | `trend` | the linear part of a fit, which is solved on its own |
-//! | `energy`, `overlaps`, `polygon`, `control_energy` | energies that smooth: the thin plate and the control
-//! mesh |
+//! | `energy`, `overlaps`, `polygon`, `control_energy` | energies for smoothing: thin plate, control mesh |
 //! | `cross_validation` | the choice of the smoothing parameter |
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |

@@ -62,8 +62,9 @@ impl NormalEquations {
     /// shortest that observations can resolve. It does not depend on knots. On terrain, about this value
     /// predicts held-out points best.
     ///
-    /// A thin plate with total weight W on an area A multiplies waves of wave number k by 1 / (1 + lambda k^4
-    /// A / W). Here k is pi over the spacing, and n observations have a spacing of sqrt(A / n).
+    /// A thin plate with total weight W on an area A multiplies waves of wave number k by
+    /// 1 / (1 + lambda k^4 A / W). Here k is pi over the spacing, and n observations have a spacing of
+    /// sqrt(A / n).
     #[must_use]
     pub fn default_lambda(&self, basis: &Basis) -> f64 {
         let area = polygon::area(&basis.domain_corners());
