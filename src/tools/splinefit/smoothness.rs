@@ -38,7 +38,7 @@ pub struct Smoothness {
     pub order: i32,
     /// Segments with possibly fewer.
     pub candidates: Vec<Candidate>,
-    /// For degree 2, the candidates across which the gradient of some function jumps.
+    /// For degree 2, the candidates across which the value or gradient of some function jumps.
     pub folds: Option<Vec<Candidate>>,
 }
 
