@@ -1,4 +1,4 @@
-//! Bits of two or three numbers interleaved: Morton keys, and location codes of cells.
+//! Interleaved bits of two or three integers: Morton keys, and location codes of cells.
 
 /// Moves bit i to bit 2i.
 #[inline(always)]

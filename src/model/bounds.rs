@@ -50,13 +50,13 @@ impl Bounds {
         self
     }
 
-    /// The part of the box that can hold points of a region, if any; `are_whole` says that coordinates are
-    /// integers.
+    /// The smallest box that holds all points of this box in a region; `None` if there are none. `are_whole`
+    /// says that coordinates are integers.
     #[must_use]
     pub fn within<const D: usize>(&self, region: &Region<D>, are_whole: bool) -> Option<Bounds> {
         let mut bounds = *self;
         for axis in 0..D {
-            // The first coordinate that is not below the region, and the last one that is.
+            // The first coordinate inside the region, and the last one.
             let (min, max) = (region.min[axis], region.max[axis]);
             let (min, max) = if are_whole { (min.ceil(), max.ceil() - 1.0) } else { (min, max.next_down()) };
             bounds.min[axis] = bounds.min[axis].max(min);
@@ -89,7 +89,7 @@ impl Region {
 }
 
 impl Region<3> {
-    /// The box with the given lower and upper sides of the first axes, open in the others.
+    /// The region with the given lower and upper sides along the first axes, unbounded along the others.
     #[must_use]
     pub fn of_sides(lower: &[f64], upper: &[f64]) -> Self {
         let mut region = Region::EVERYTHING;
@@ -100,16 +100,16 @@ impl Region<3> {
 }
 
 impl<const D: usize> Region<D> {
-    /// The box without sides.
+    /// The region without bounds.
     pub const EVERYTHING: Region<D> = Region { min: [f64::NEG_INFINITY; D], max: [f64::INFINITY; D] };
 
-    /// The box between two corners, of which the first D coordinates count.
+    /// The region between two corners; only their first D coordinates count.
     #[must_use]
     pub fn between(min: Point, max: Point) -> Self {
         Region { min: std::array::from_fn(|axis| min[axis]), max: std::array::from_fn(|axis| max[axis]) }
     }
 
-    /// The same box in space, open in the axes that it does not have.
+    /// The same region in space, unbounded along the axes that it does not have.
     #[inline]
     #[must_use]
     pub fn in_space(&self) -> Region<3> {

@@ -31,9 +31,9 @@ pub struct CellTree {
 impl CellTree {
     /// A tree from its parts; `None` if a part is out of range or a border could be rounded.
     ///
-    /// Domain: `side` a normal power of two; `origin` a multiple of `side / 2^31` with
+    /// Domain: `side` is a normal power of two; `origin` is a multiple of `side / 2^31`, and
     /// `|origin| + side < side * 2^22`. Then every border down to level 31 is a multiple of `side / 2^31`
-    /// below 2^53 of them, which f64 represents exactly.
+    /// with a factor below 2^53, which f64 represents exactly.
     #[must_use]
     pub fn new(dims: u8, depth: u8, origin: Point, side: f64) -> Option<Self> {
         let unit = side / FINEST_CELLS;
@@ -167,7 +167,7 @@ impl CellTree {
         (first..first + (1 << self.dims)).map(CellCode)
     }
 
-    /// The cells of the deepest level inside `cell`, which are consecutive codes: first and one past last.
+    /// The range of location codes of the deepest level inside `cell`; they are consecutive.
     #[must_use]
     pub fn deepest_range(&self, cell: CellCode) -> std::ops::Range<u64> {
         let shift = self.dims * (self.depth - self.level(cell));
@@ -195,8 +195,8 @@ impl CellTree {
         self.origin[axis] + f64::from(i) * (self.side / cells_per_axis(level))
     }
 
-    /// Index of the half-open cell of `level` that holds `x`. The quotient is rounded and can be one off,
-    /// the borders are exact and put it right.
+    /// Index of the half-open cell of `level` that holds `x`. The quotient is rounded, so the index can be
+    /// off by one; the exact borders correct it.
     fn index_on_axis(&self, axis: usize, x: f64, level: u8) -> u32 {
         let cells = cells_per_axis(level);
         let quotient = (x - self.origin[axis]) / (self.side / cells);
@@ -210,7 +210,7 @@ impl CellTree {
     }
 }
 
-/// Cells per axis at `level`, which is at most 31. (`powi` is a call for a power that is not constant.)
+/// Cells per axis at `level`, which is at most 31. (`powi` with a variable exponent is a function call.)
 fn cells_per_axis(level: u8) -> f64 {
     (1u64 << level) as f64
 }
@@ -218,7 +218,7 @@ fn cells_per_axis(level: u8) -> f64 {
 /// Cells per axis at the finest level whose borders must be exact.
 const FINEST_CELLS: f64 = (1u64 << 31) as f64;
 
-/// Smallest side, as a power of two, of which `side / 2^31` is not yet subnormal.
+/// Base-2 logarithm of the smallest side for which `side / 2^31` is not subnormal.
 const LOG_SIDE_MIN: i32 = -1022 + 31;
 
 fn depth_max(dims: u8) -> Option<u8> {

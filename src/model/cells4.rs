@@ -1,34 +1,34 @@
-//! Cells of four dimensions in flat arrays: what the engines of 4D diagrams make, and what their streams
-//! carry.
+//! Cells of four dimensions in flat arrays: the output of the engines of 4D diagrams, and the contents of
+//! their streams.
 
 use spmesh_core::prefetch::prefetch;
 
 /// A point of space and time: x, y, z, t.
 pub type Point4 = [f64; 4];
 
-/// Marks an infinite cell in the word that counts its vertices.
+/// Marks a cell as infinite, in the word that counts its vertices.
 const INFINITE: u32 = 1 << 31;
 
 /// Cells of four dimensions: each a set of vertices, with the cells across its facets.
 ///
 /// A finite cell is the convex hull of its vertices. An infinite cell lies beyond a facet of the convex hull
-/// of all points: its vertices are those of that facet, and its last vertex is the faraway point, which is
-/// not listed (thesis 4.3). Vertices and neighbours are numbers of points and of cells, in increasing order.
+/// of all points: its vertices are the vertices of that facet and the faraway point, which is not listed
+/// (thesis 4.3). Vertices and neighbours are numbers of points and of cells, in increasing order.
 ///
 /// Memory: 4 bytes per vertex and per neighbour of each cell, and 12 bytes per cell.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Cells4 {
-    /// For each cell: the number of vertices, marked if it is infinite; the number of neighbours; vertices;
-    /// neighbours.
+    /// For each cell: the number of vertices, with a mark if it is infinite; the number of neighbours; the
+    /// vertices; the neighbours.
     words: Vec<u32>,
     /// Where each cell begins.
     starts: Vec<u32>,
 }
 
-/// One of [`Cells4`].
+/// One cell of [`Cells4`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cell4<'a> {
-    /// Whether the faraway point is a vertex of it, too.
+    /// Whether the faraway point is a vertex, too.
     pub is_infinite: bool,
     /// Numbers of its vertices, increasing.
     pub vertices: &'a [u32],
@@ -49,7 +49,7 @@ impl Cells4 {
         self.starts.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.starts.is_empty()
@@ -58,7 +58,7 @@ impl Cells4 {
     /// Adds a cell.
     ///
     /// # Panics
-    /// If that makes more than 2^32 words (17 GB), or for 2^31 vertices.
+    /// If the list already has 2^32 words (17 GB) or more, or the cell has 2^31 vertices or more.
     pub fn push(&mut self, cell: Cell4) {
         let Cell4 { is_infinite, vertices, neighbours } = cell;
         let count = |numbers: &[u32]| u32::try_from(numbers.len()).expect("numbers of 32 bits");
@@ -86,7 +86,7 @@ impl Cells4 {
         self.words.len() - 2 * self.len()
     }
 
-    /// Has a cell brought into the cache.
+    /// Prefetches a cell into the cache.
     #[inline(always)]
     pub fn fetch(&self, number: usize) {
         prefetch(&self.words, self.starts[number] as usize);

@@ -5,34 +5,35 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 /// The faraway point in boundaries and links (thesis 4.3): circles through it are lines. It is no knot's id.
 pub const FARAWAY: u32 = u32::MAX;
 
-/// By which lift configurations are those of the lower side of a k-set polytope; nothing is known of others.
+/// What is known about configurations: the lift for which they are the lower side of a k-set polytope, if
+/// any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Claim {
     /// Delaunay configurations.
     Delaunay,
     /// Projective configurations of the lift of the rule.
     Lifted,
-    /// Of link triangulation by any rule.
+    /// Results of link triangulation by any rule: nothing else is known.
     Any,
 }
 
 /// All configurations (B, I) of one degree k: three knots B, counterclockwise, and k knots I.
 ///
-/// Grouped by I. Interior sets are sorted, and so are groups, lexicographically; within a group come the
-/// configurations of three knots, the least first, in lexicographic order, then the *infinite* ones `[p, q,
-/// FARAWAY]`: lines with I to the left of the direction from p to q and all else, but p and q, to the right.
-/// (A knot on the line counts as left if it is between p and q, and as right otherwise.) These make all links
-/// closed; splines are defined by the others alone. The one group of degree 0 is in the order of the
-/// triangulation.
+/// They are grouped by I. Interior sets are sorted, and groups are in lexicographic order of their sets.
+/// Within a group, the configurations of three knots come first, each with its least knot first, in
+/// lexicographic order. Then come the *infinite* ones `[p, q, FARAWAY]`: lines with I to the left of the
+/// direction from p to q, and all other knots except p and q to the right. (A knot on the line counts as left
+/// if it is between p and q, and as right otherwise.) Infinite configurations close all links; only the
+/// others define splines. The one group of degree 0 is in the order of the triangulation.
 ///
 /// Shape: 12 bytes per configuration, 4 (k + 1) per group.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Configurations {
     degree: usize,
     claim: Claim,
-    /// Interior sets, one after the other.
+    /// Interior sets, concatenated.
     interiors: Vec<u32>,
-    /// For each group its first configuration; at the end their number.
+    /// For each group, its first configuration; at the end, the number of configurations.
     offsets: Vec<u32>,
     boundaries: Vec<[u32; 3]>,
     /// Number of configurations without the infinite ones.
@@ -56,8 +57,8 @@ impl Configurations {
         Configurations { degree, claim, interiors: Vec::new(), offsets, boundaries: Vec::new(), finite: 0 }
     }
 
-    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. What is near in it
-    /// should be near in the plane: so it is not sorted.
+    /// Degree 0: the triangles of a triangulation, infinite ones included, in any order. They keep their
+    /// order, which should be local: triangles that are close in the list should be close in the plane.
     pub fn of_triangles(claim: Claim, mut triangles: Vec<[u32; 3]>) -> Configurations {
         triangles.iter_mut().for_each(|triangle| *triangle = normalised(*triangle));
         triangles.sort_by_key(|triangle| triangle[2] == FARAWAY);
@@ -66,7 +67,7 @@ impl Configurations {
         Configurations { degree: 0, claim, interiors: Vec::new(), offsets, boundaries: triangles, finite }
     }
 
-    /// Puts groups in order that came by the knots of `order`, their least. Domain: a degree above 0.
+    /// Sorts groups that were added in the sequence of `order` by their least knots. Domain: not degree 0.
     pub fn sort_groups(&mut self, order: &[u32]) {
         let mut firsts = vec![(0, 0); order.len()];
         let leasts = self.interiors.chunks_exact(self.degree).map(|interior| interior[0]);
@@ -93,8 +94,8 @@ impl Configurations {
         *self = sorted;
     }
 
-    /// Makes the boundaries after the last group the group of `interior`, which is greater than those before;
-    /// nothing if there are none.
+    /// Makes the boundaries after the last group the group of `interior`, which must be greater than all
+    /// interior sets before. Adds no group if there are no boundaries.
     pub fn close_group(&mut self, interior: &[u32]) {
         debug_assert_eq!(interior.len(), self.degree);
         let start = self.offsets[self.offsets.len() - 1] as usize;
@@ -109,12 +110,12 @@ impl Configurations {
         self.offsets.push(self.boundaries.len() as u32);
     }
 
-    /// Appends boundaries to a group that [`Configurations::close_group`] is going to end.
+    /// Appends boundaries to the group that the next call of [`Configurations::close_group`] ends.
     pub fn push(&mut self, boundaries: &[[u32; 3]]) {
         self.boundaries.extend_from_slice(boundaries);
     }
 
-    /// Boundaries of all groups, one after the other.
+    /// Boundaries of all groups, concatenated.
     #[must_use]
     pub fn boundaries(&self) -> &[[u32; 3]] {
         &self.boundaries
@@ -126,22 +127,22 @@ impl Configurations {
         &self.interiors[index * self.degree..][..self.degree]
     }
 
-    /// The number of the boundary after the last one of group `index`.
+    /// The number of the first boundary after group `index`.
     #[must_use]
     pub fn group_end(&self, index: usize) -> usize {
         self.offsets[index + 1] as usize
     }
 
-    /// No configurations, to be given with [`Configurations::extend`].
+    /// An empty list, to be filled with [`Configurations::extend`].
     #[must_use]
     pub fn new(degree: usize, claim: Claim) -> Configurations {
         Configurations::empty(degree, claim)
     }
 
-    /// Appends configurations with one interior set, to the last group if that has the same set.
+    /// Appends configurations with one interior set; they join the last group if it has the same set.
     ///
-    /// Domain: groups, and boundaries in a group, in the order that the type has, and in its form; nothing is
-    /// checked.
+    /// Domain: groups, and boundaries in a group, come in the order and the form that [`Configurations`]
+    /// documents. Nothing is checked.
     ///
     /// # Errors
     /// Too many configurations.
@@ -163,7 +164,7 @@ impl Configurations {
         Ok(())
     }
 
-    /// The claim that follows from the way the configurations were made.
+    /// The claim; it follows from the way the configurations were made.
     #[must_use]
     pub fn claim(&self) -> Claim {
         self.claim
@@ -181,19 +182,20 @@ impl Configurations {
         self.finite
     }
 
-    /// Whether there is no configuration but infinite ones.
+    /// Whether there are no configurations but infinite ones.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.finite == 0
     }
 
-    /// Number of infinite configurations: of directed lines through two knots with k knots to their left.
+    /// Number of infinite configurations, that is, of directed lines through two knots with k knots to their
+    /// left.
     #[must_use]
     pub fn infinite_len(&self) -> usize {
         self.boundaries.len() - self.finite
     }
 
-    /// Number of interior sets that have a configuration, be it infinite.
+    /// Number of interior sets that have a configuration, finite or infinite.
     #[must_use]
     pub fn group_count(&self) -> usize {
         self.offsets.len() - 1
@@ -212,7 +214,7 @@ impl Configurations {
         (0..self.group_count()).map(|index| self.group(index))
     }
 
-    /// All configurations (B, I) but the infinite ones.
+    /// All configurations (B, I), without the infinite ones.
     pub fn iter(&self) -> impl Iterator<Item = ([u32; 3], &[u32])> {
         self.groups()
             .flat_map(|group| group.triangles.iter().map(move |&boundary| (boundary, group.interior)))
@@ -225,7 +227,7 @@ impl Configurations {
     }
 }
 
-/// The same triangle with the least vertex first, or with [`FARAWAY`] last.
+/// The same triangle with the least vertex first; an infinite triangle stays as it is.
 fn normalised([a, b, c]: [u32; 3]) -> [u32; 3] {
     if c == FARAWAY {
         return [a, b, c];
@@ -239,8 +241,8 @@ fn normalised([a, b, c]: [u32; 3]) -> [u32; 3] {
     [a, b, c]
 }
 
-/// The links of all sets of one size k (k-sets): the closed polygons that the configurations of degree k - 1
-/// leave around them, and that those of degree k triangulate.
+/// The links of all sets of one size k (k-sets): the closed polygons around these sets that configurations of
+/// degree k - 1 leave and configurations of degree k triangulate.
 ///
 /// Sorted by set. Shape: 4 bytes per vertex, 4 (k + 1) per set.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -282,13 +284,13 @@ impl Link<'_> {
 }
 
 impl Links {
-    /// No links, of sets of this size.
+    /// An empty list for links of sets of this size.
     #[must_use]
     pub fn new(size: usize) -> Links {
         Links { size, sets: Vec::new(), offsets: vec![0], vertices: Vec::new() }
     }
 
-    /// Appends the link of a sorted set, which is greater than those before.
+    /// Appends the link of a sorted set, which must be greater than all sets before.
     pub fn push(&mut self, set: &[u32], polygon: &[u32]) {
         debug_assert_eq!(set.len(), self.size);
         self.sets.extend_from_slice(set);

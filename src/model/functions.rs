@@ -1,20 +1,20 @@
 //! Functions that quadratic splines are made of: sums of B-splines (thesis 8.2.5 and 8.3.1).
 
-/// What a function is for; of knots at one place, it has the first.
+/// What a function is for. A place with several knots is named by its first knot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FunctionKind {
-    /// The B-spline of an edge, or, where the other half of it is in a box spline, half of it.
+    /// The B-spline of an edge, or half of it if the other half is in a box spline.
     Edge([u32; 2]),
-    /// The tent of a knot that is pulled apart, with halves of tents of edges that are linear elements.
+    /// The tent of a knot that is pulled apart, with half the tent of each linear element that ends there.
     Vertex(u32),
-    /// All B-splines between two places of which one at least is pulled apart: where both are, the tent of
+    /// All B-splines between two places of which at least one is pulled apart. If both are, it is the tent of
     /// the edge.
     Tent([u32; 2]),
-    /// The two B-splines of a crease with smooth ends, from knot to knot, which are the first two; the last
-    /// one is the knot between them.
+    /// The two B-splines of a crease with smooth ends. The crease joins the first two knots; the last one is
+    /// the knot between them.
     Crease([u32; 3]),
-    /// The box spline (ZP element) of integral one, for a face in unit coordinates, given by its corners,
-    /// counterclockwise.
+    /// The box spline (ZP element) of integral one, for a face in unit coordinates. The knots are the
+    /// corners, counterclockwise.
     Face([u32; 4]),
 }
 
@@ -23,6 +23,6 @@ pub enum FunctionKind {
 pub struct Function {
     /// What it is for.
     pub kind: FunctionKind,
-    /// The sets of links that B-splines belong to, each with a factor.
+    /// The terms: B-splines, named by the sets of their links, each with a factor.
     pub terms: Vec<([u32; 2], f64)>,
 }

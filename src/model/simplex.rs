@@ -7,8 +7,8 @@
 /// the inner side, det(p - o, q - o, r - o) > 0.
 pub const TETRAHEDRON_FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// [`TETRAHEDRON_FACETS`] as seen from the opposite corner, if the tetrahedron is positively oriented:
-/// counterclockwise.
+/// [`TETRAHEDRON_FACETS`] reversed: if the tetrahedron is positively oriented, each facet is counterclockwise
+/// as seen from the opposite corner.
 pub const TETRAHEDRON_FACETS_FROM_INSIDE: [[usize; 3]; 4] = reversed(TETRAHEDRON_FACETS);
 
 const fn reversed(mut facets: [[usize; 3]; 4]) -> [[usize; 3]; 4] {

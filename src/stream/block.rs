@@ -50,7 +50,7 @@ impl Tag {
     }
 }
 
-/// Frame of one block.
+/// The frame of one block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) tag: Option<Tag>,
@@ -61,7 +61,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Frame of a block whose payload comes in two parts.
+    /// The frame of a block whose payload comes in two parts.
     pub(super) fn of(tag: Tag, sequence: u32, payload: [&[u8]; 2]) -> Frame {
         let len = (payload[0].len() + payload[1].len()) as u32;
         let mut head = [0; 12];
@@ -92,7 +92,7 @@ impl Frame {
         bytes
     }
 
-    /// Whether the checksum fits frame and payload.
+    /// Whether the checksum matches frame and payload.
     pub(super) fn verifies(&self, payload: &[u8]) -> bool {
         self.checksum == self.checksum_with(payload)
     }
@@ -102,7 +102,7 @@ impl Frame {
     }
 }
 
-/// The records of a payload, `len` bytes each; refuses a remainder.
+/// The records of a payload, `len` bytes each. Refuses a payload that is not a whole number of records.
 pub(super) fn whole_records(bytes: &[u8], len: usize) -> Result<std::slice::ChunksExact<'_, u8>> {
     if bytes.len().is_multiple_of(len) {
         Ok(bytes.chunks_exact(len))

@@ -1,4 +1,4 @@
-//! Cells of four dimensions, put together from the words of blocks: a cell may begin in one and end in a
+//! Assembles cells of four dimensions from the words of blocks: a cell may begin in one block and end in a
 //! later one.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
@@ -9,17 +9,18 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CELL_WORDS_MAX;
 use spmesh_model::cells4::{Cell4, Cells4};
 
-/// Marks an infinite cell in the word that counts its vertices.
+/// Marks a cell as infinite, in the word that counts its vertices.
 pub(super) const INFINITE: u32 = 1 << 31;
 
-/// The words of the incomplete cell. Memory: the words that have arrived; stated counts allocate nothing.
+/// The words of the incomplete cell. Memory: the words that have arrived; counts in the input allocate
+/// nothing.
 #[derive(Debug, Default)]
 pub(super) struct CellWords {
     open: Vec<u32>,
 }
 
 impl CellWords {
-    /// The cells that a block completes; `points` came before.
+    /// The cells that a block completes; `points` points came before.
     pub(super) fn take(&mut self, points: u64, payload: &[u8]) -> Result<Cells4> {
         self.open.extend(whole_records(payload, 4)?.map(LE::read_u32));
         let (mut cells, mut rest) = (Cells4::default(), &self.open[..]);
@@ -32,7 +33,7 @@ impl CellWords {
         Ok(cells)
     }
 
-    /// That no cell is cut off.
+    /// Checks that no cell is cut off.
     pub(super) fn check_end(&self) -> Result<()> {
         match self.open.len() {
             0 => Ok(()),
@@ -52,7 +53,7 @@ fn split_cell(words: &[u32]) -> Result<Option<(Cell4<'_>, &[u32])>> {
     Ok(Some((Cell4 { is_infinite: marked & INFINITE != 0, vertices, neighbours }, after)))
 }
 
-/// That a cell has no more words than a reader may have to hold.
+/// Checks that a cell has at most `CELL_WORDS_MAX` words, which bounds the memory of a reader.
 fn check_words(vertices: u64, neighbours: u64) -> Result<()> {
     if vertices + neighbours + 2 <= CELL_WORDS_MAX {
         return Ok(());

@@ -18,7 +18,7 @@ impl ChunkCheck {
         ChunkCheck { tree, waiting: None, in_tags: false }
     }
 
-    /// Points with the bounding box `bounds`.
+    /// Adds points with the bounding box `bounds`.
     pub(crate) fn points(&mut self, bounds: Bounds) -> Result<()> {
         if self.in_tags {
             self.end()?;

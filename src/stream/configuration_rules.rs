@@ -11,7 +11,7 @@ use spmesh_model::configurations::{Claim, FARAWAY};
 #[derive(Debug, Default)]
 pub(super) struct ConfigurationRules {
     degree: Option<(u32, Claim)>,
-    /// Whether there may be one degree only.
+    /// Whether the stream may hold one degree only.
     is_alone: bool,
     /// The last group of the degree.
     group: Option<LastGroup>,
@@ -20,7 +20,7 @@ pub(super) struct ConfigurationRules {
 #[derive(Debug)]
 struct LastGroup {
     interior: Vec<u32>,
-    /// Its last boundary.
+    /// The last boundary of the group.
     boundary: Option<[u32; 3]>,
 }
 
@@ -29,7 +29,7 @@ impl ConfigurationRules {
         ConfigurationRules { is_alone: kind == Kind::Splines, ..ConfigurationRules::default() }
     }
 
-    /// The rules of the next block; `knots` came before.
+    /// Checks the next block; `knots` knots came before.
     pub(super) fn block(&mut self, block: &ConfigurationBlock, knots: u64) -> Result<()> {
         self.degree(block.degree, block.claim)?;
         for (number, (interior, boundaries)) in block.groups().enumerate() {
@@ -67,7 +67,7 @@ impl ConfigurationRules {
         Ok(())
     }
 
-    /// The next group of the degree, or the last one again if it is the first of a block.
+    /// Checks the next group of the degree. The first group of a block may continue the last group.
     fn group(&mut self, interior: &[u32], is_first: bool, knots: u64) -> Result<()> {
         if let Some(last) = &self.group {
             match interior.cmp(&last.interior) {
@@ -91,7 +91,7 @@ impl ConfigurationRules {
         Ok(())
     }
 
-    /// The next boundary of the group.
+    /// Checks the next boundary of the group.
     fn boundary(&mut self, degree: u32, boundary: [u32; 3], knots: u64) -> Result<()> {
         let group = self.group.as_mut().expect("a boundary is in a group");
         let fail = |what: &str| Err(Error::malformed(format!("boundary {boundary:?} {what}")));
@@ -111,7 +111,7 @@ impl ConfigurationRules {
         }
         if let Some(last) = group.boundary {
             let was_infinite = last[2] == FARAWAY;
-            // The start triangulation is in an order of its own.
+            // The start triangulation keeps its own order.
             let is_sorted = degree == 0 || (is_infinite && !was_infinite) || last < boundary;
             if (was_infinite && !is_infinite) || !is_sorted {
                 return fail(&format!("does not follow {last:?} in its group"));
@@ -122,7 +122,7 @@ impl ConfigurationRules {
     }
 }
 
-/// Whether a number is that of a knot; the faraway point never is.
+/// Whether a number is the number of a knot; the faraway point is none.
 fn is_knot(number: u32, knots: u64) -> bool {
     u64::from(number) < knots && number != FARAWAY
 }

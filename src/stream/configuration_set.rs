@@ -8,7 +8,7 @@ use spmesh_model::configurations::Configurations;
 use spmesh_model::functions::Function;
 use spmesh_model::points::Point2;
 
-/// Knots and their configurations, as a stream holds them.
+/// Knots and their configurations, as read from a stream.
 #[derive(Debug, Clone, Default)]
 pub struct ConfigurationSet {
     /// The knots by id, in stored coordinates.
@@ -17,17 +17,17 @@ pub struct ConfigurationSet {
     pub heights: Option<Vec<f64>>,
     /// Configurations, by increasing degree.
     pub degrees: Vec<Configurations>,
-    /// Functions that quadratic splines are made of, if the stream lists any: otherwise all B-splines of
-    /// links are.
+    /// Functions that quadratic splines are made of. If the stream lists none, the functions are all
+    /// B-splines of links.
     pub functions: Vec<Function>,
-    /// Coefficients of functions, if there is a spline.
+    /// Coefficients of functions; empty if the stream holds no spline.
     pub coefficients: Vec<f64>,
 }
 
 impl ConfigurationSet {
     /// Reads a stream of kind [`crate::Kind::Configurations`] or [`crate::Kind::Splines`] to its end.
     ///
-    /// Memory: what the stream holds.
+    /// Memory: the contents of the stream.
     ///
     /// # Errors
     /// Usage, if the stream is of another kind; otherwise as [`StreamReader::next_event`].
@@ -46,7 +46,7 @@ impl ConfigurationSet {
     }
 }
 
-/// Gathers what events hold.
+/// Collects the contents of events.
 #[derive(Debug, Default)]
 pub struct Collector {
     points: Vec<Point2>,
@@ -63,7 +63,7 @@ impl Collector {
         Collector { heights: header.has_elevation.then(Vec::new), ..Collector::default() }
     }
 
-    /// Takes the next event of a stream of configurations.
+    /// Adds the next event of a stream of configurations.
     ///
     /// # Errors
     /// Usage, if there are too many configurations.
@@ -93,7 +93,7 @@ impl Collector {
         Ok(())
     }
 
-    /// The set gathered so far.
+    /// The set collected so far.
     #[must_use]
     pub fn finish(self) -> ConfigurationSet {
         let Collector { points, heights, degrees, functions, coefficients } = self;

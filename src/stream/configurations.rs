@@ -1,4 +1,4 @@
-//! Configurations as blocks hold them: a piece of one degree.
+//! Configurations as held by blocks: a part of one degree.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
@@ -9,7 +9,7 @@ use spmesh_model::configurations::Claim;
 /// Length of degree, claim and number of groups, in bytes.
 const FIXED_LEN: usize = 12;
 
-/// Claims by their codes, with their names in text twins.
+/// Claims, at their codes, with their names in text twins.
 const CLAIMS: [(Claim, &str); 3] =
     [(Claim::Any, "any"), (Claim::Delaunay, "delaunay"), (Claim::Lifted, "lifted")];
 
@@ -23,26 +23,26 @@ pub fn claim_from_name(name: &[u8]) -> Option<Claim> {
     CLAIMS.iter().find(|(_, known)| known.as_bytes() == name).map(|(claim, _)| *claim)
 }
 
-/// Configurations of one degree that follow each other, in groups of one interior set each.
+/// Consecutive configurations of one degree, in groups of one interior set each.
 ///
-/// The first group may go on with the last one of the block before.
+/// The first group may continue the last group of the previous block.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConfigurationBlock {
     /// The size of interior sets.
     pub degree: u32,
     /// The claim of the degree.
     pub claim: Claim,
-    /// Interior sets, one after the other, each sorted.
+    /// Interior sets, concatenated; each is sorted.
     pub interiors: Vec<u32>,
     /// Number of configurations of each group.
     pub counts: Vec<u32>,
-    /// Boundaries, group by group; [`spmesh_model::configurations::FARAWAY`] is in the last place of infinite
-    /// ones.
+    /// Boundaries, group by group; those of infinite configurations have
+    /// [`spmesh_model::configurations::FARAWAY`] in the last place.
     pub boundaries: Vec<[u32; 3]>,
 }
 
 impl ConfigurationBlock {
-    /// No configurations of this degree.
+    /// A block of this degree without configurations.
     #[must_use]
     pub fn new(degree: u32, claim: Claim) -> Self {
         ConfigurationBlock {
@@ -54,9 +54,9 @@ impl ConfigurationBlock {
         }
     }
 
-    /// Appends configurations, to the last group if that has the same interior set.
+    /// Appends configurations; they join the last group if it has the same interior set.
     ///
-    /// Domain: `interior` has as many knots as the degree says.
+    /// Domain: `interior` has as many knots as the degree.
     pub fn push(&mut self, interior: &[u32], boundaries: &[[u32; 3]]) {
         debug_assert_eq!(interior.len(), self.degree as usize);
         if self.last_interior() != Some(interior) {
@@ -69,7 +69,7 @@ impl ConfigurationBlock {
         self.boundaries.extend_from_slice(boundaries);
     }
 
-    /// The groups: interior set, boundaries.
+    /// The groups: interior sets with their boundaries.
     pub fn groups(&self) -> impl Iterator<Item = (&[u32], &[[u32; 3]])> {
         let (degree, mut start) = (self.degree as usize, 0);
         self.counts.iter().enumerate().map(move |(group, &count)| {
@@ -92,19 +92,19 @@ impl ConfigurationBlock {
         self.counts.is_empty()
     }
 
-    /// Words of the payload.
+    /// Number of 32-bit words of the payload.
     pub fn words(&self) -> usize {
         3 + self.interiors.len() + self.counts.len() + 3 * self.boundaries.len()
     }
 
-    /// Takes all groups away.
+    /// Removes all groups.
     pub(super) fn clear(&mut self) {
         self.interiors.clear();
         self.counts.clear();
         self.boundaries.clear();
     }
 
-    /// Appends the payload.
+    /// Appends the encoded block to a payload.
     pub(super) fn encode(&self, payload: &mut Vec<u8>) {
         let claim = CLAIMS.iter().position(|(claim, _)| *claim == self.claim);
         let head = [self.degree, claim.expect("every claim has its code") as u32, self.counts.len() as u32];
@@ -113,7 +113,7 @@ impl ConfigurationBlock {
         words.for_each(|word| payload.extend_from_slice(&word.to_le_bytes()));
     }
 
-    /// A block whose counts fit its length and each other.
+    /// Decodes a block, and checks that its counts match its length and each other.
     pub(super) fn decode(payload: &[u8]) -> Result<Self> {
         let Some((head, rest)) = payload.split_at_checked(FIXED_LEN) else {
             return Err(Error::malformed(format!(
@@ -145,10 +145,10 @@ impl ConfigurationBlock {
     }
 }
 
-/// Checks that streams allow a degree.
+/// Checks that the format allows a degree.
 ///
 /// # Errors
-/// Malformed, if it is above the maximum.
+/// Malformed, if the degree is above the maximum.
 pub fn check_degree(degree: u32) -> Result<()> {
     if degree <= CONFIGURATION_DEGREE_MAX {
         return Ok(());

@@ -11,11 +11,11 @@ use spmesh_model::diagram4::Diagram4;
 
 /// Collects the blocks of a stream of points or cells of four dimensions.
 ///
-/// Memory: what the stream holds.
+/// Memory: the contents of the stream.
 #[derive(Debug, Clone, Default)]
 pub struct Diagram4Collector {
     diagram: Diagram4,
-    /// 32-bit words of the cells.
+    /// Number of 32-bit words of the cells.
     words: u64,
 }
 
@@ -33,7 +33,7 @@ impl Diagram4Collector {
     /// Usage, if the cells have 2^32 words or more.
     ///
     /// # Panics
-    /// At a block that streams of points and cells of four dimensions do not have.
+    /// If streams of points or cells of four dimensions do not have this block.
     pub fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Points4(block) => {
@@ -73,7 +73,7 @@ impl Diagram4Collector {
 
 /// Reads a stream of kind [`Kind::Cells4`] or [`Kind::Points4`] to its end.
 ///
-/// Memory: what the stream holds.
+/// Memory: the contents of the stream.
 ///
 /// # Errors
 /// Usage, if the stream is of another kind or its cells have 2^32 words or more; otherwise as

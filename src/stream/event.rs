@@ -17,14 +17,14 @@ pub enum Event {
     Cells(Vec<CellCode>),
     /// A piece of the mesh.
     Patch(Patch),
-    /// Labels of the next vertices that have none yet, in the order of their ids. What a label means, the
-    /// producer says.
+    /// Labels of the next vertices without a label, in the order of their ids. Their meaning is up to the
+    /// producer.
     Labels(Vec<u64>),
-    /// Points of a residual, each with its vertex id if it was written in an earlier patch.
+    /// Points of a residual, each with its vertex id if an earlier patch has the vertex.
     ResidualPoints(Vec<(Option<u64>, Point)>),
-    /// Facets between residual points (counted over all their blocks), `vertices_per_wall` numbers each, with
-    /// a final simplex on one side and one that is not final on the other. The final triangle lies to the
-    /// left of a directed edge; a facet in space is counterclockwise as seen from its final tetrahedron.
+    /// Facets between residual points (numbered over all their blocks), `vertices_per_wall` numbers each. One
+    /// side has a final simplex, the other has one that is not final. The final triangle lies to the left of
+    /// a directed edge; a facet in space is counterclockwise as seen from its final tetrahedron.
     Walls(Vec<u32>),
     /// Points of four dimensions.
     Points4(Points4),
@@ -36,7 +36,7 @@ pub enum Event {
     Configurations(ConfigurationBlock),
     /// Functions of splines, as sums of B-splines.
     Functions(Vec<Function>),
-    /// Coefficients of the next functions of a spline that have none yet.
+    /// Coefficients of the next functions of a spline without a coefficient.
     Coefficients(Vec<f64>),
     /// The end: nothing follows.
     End(Totals),
@@ -74,7 +74,7 @@ impl Patch {
         self.new.len() + self.imported.len()
     }
 
-    /// The rules that need no memory of earlier patches, but for the number of their vertices.
+    /// Checks the rules that depend only on this patch and on the number of vertices before it.
     pub(super) fn check(&self, vertices_before: u64, per_simplex: usize) -> Result<()> {
         if self.first_id != vertices_before {
             return Err(Error::malformed(format!(
@@ -122,8 +122,8 @@ fn is_increasing<T: PartialOrd>(values: &[T]) -> bool {
 /// The totals of the whole stream, as END states them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Totals {
-    /// Points: of a points stream, those in it; of a mesh, those of the input it was made from, which are
-    /// its vertices, its merged points, and its residual points that are no vertices.
+    /// Points. For a points stream, those in it. For a mesh, those of the input: its vertices, its merged
+    /// points, and its residual points that are no vertices.
     pub points: u64,
     /// Cell tags.
     pub cells: u64,
@@ -131,7 +131,7 @@ pub struct Totals {
     pub vertices: u64,
     /// Simplices; cells of four dimensions; configurations, infinite ones included.
     pub simplices: u64,
-    /// Points of the input that coincide with another and are not vertices of their own.
+    /// Points of the input that coincide with another point and are no vertices of their own.
     pub merged: u64,
     /// Residual points; coefficients of splines.
     pub residual_points: u64,
@@ -143,7 +143,7 @@ impl Totals {
     /// Number of totals.
     pub(super) const FIELDS: usize = 7;
 
-    /// The totals in the order of the END block.
+    /// The totals in their order in the END block.
     pub(super) fn fields(&self) -> [u64; Self::FIELDS] {
         [
             self.points,

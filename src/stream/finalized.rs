@@ -10,17 +10,18 @@ use spmesh_model::cells::{CellCode, CellTree};
 /// The part of a finalization tree that is final.
 ///
 /// The cells of the deepest level are consecutive location codes in Morton order, and every cell is a range
-/// of them, so the final part is a set of disjoint ranges. Ranges that touch are one: complete siblings
-/// become their parent, and a stream that tags its cells along the curve needs a handful of ranges.
+/// of them, so the final part is a set of disjoint ranges. Adjacent ranges are merged: complete siblings
+/// become their parent, and a stream that tags its cells along the curve needs only a handful of ranges.
 ///
-/// Cost: `finalize` is amortized O(log ranges). `check_point` is four comparisons while points stay in the
-/// largest open cell around the last one that was looked up, O(depth + log ranges) otherwise.
+/// Cost: `finalize` is amortized O(log ranges). `check_point` costs four comparisons while points stay in the
+/// last open cell that was looked up, and O(depth + log ranges) otherwise; it looks up the largest open cell
+/// around a point.
 #[derive(Debug, Clone)]
 pub struct FinalizedCells {
     tree: CellTree,
     /// Codes of the deepest level: start and end of each range.
     ranges: BTreeMap<u64, u64>,
-    /// An open cell: its codes and its corners, half-open. Empty corners where there is none.
+    /// The open cell of the last lookup, half-open, with its codes; it holds no point if there is none.
     open: OpenCell,
     tags: u64,
 }
@@ -33,7 +34,7 @@ struct OpenCell {
 }
 
 impl OpenCell {
-    /// Holds no point.
+    /// A cell that holds no point.
     const NONE: OpenCell = OpenCell { codes: 0..0, min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
 
     fn contains(&self, point: Point, dims: u8) -> bool {
@@ -43,7 +44,7 @@ impl OpenCell {
 }
 
 impl FinalizedCells {
-    /// A tree of which nothing is final.
+    /// A tree without final cells.
     #[must_use]
     pub fn new(tree: CellTree) -> Self {
         FinalizedCells { tree, ranges: BTreeMap::new(), open: OpenCell::NONE, tags: 0 }
@@ -55,23 +56,23 @@ impl FinalizedCells {
         &self.tree
     }
 
-    /// Number of cells that were finalized.
+    /// Number of finalized cells.
     #[must_use]
     pub fn tags(&self) -> u64 {
         self.tags
     }
 
-    /// Number of ranges that describe the final part: what memory grows with.
+    /// Number of ranges that describe the final part; memory is proportional to it.
     #[must_use]
     pub fn ranges(&self) -> usize {
         self.ranges.len()
     }
 
-    /// Makes `cell` final. Parts of it may be final already, but not all of it.
+    /// Makes `cell` final. Parts of it, but not all of it, may be final already.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is no cell of the tree, or if it is final
-    /// already: itself, an ancestor, or all of its parts.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] if `cell` is not a cell of the tree, or is final already:
+    /// by itself, through an ancestor, or through all of its parts.
     pub fn finalize(&mut self, cell: CellCode) -> Result<()> {
         if !self.tree.is_valid(cell) {
             return Err(Error::malformed(format!("location code {} is not a cell of the tree", cell.0)));
@@ -83,7 +84,7 @@ impl FinalizedCells {
         if self.open.codes.start < end && start < self.open.codes.end {
             self.open = OpenCell::NONE;
         }
-        // What starts inside or right behind goes into the new range, and so does what touches its start.
+        // Merge ranges that start inside the cell or right after it, and then a range that reaches its start.
         while let Some((&inner, &inner_end)) = self.ranges.range(start..=end).next() {
             end = end.max(inner_end);
             self.ranges.remove(&inner);
@@ -113,7 +114,7 @@ impl FinalizedCells {
         self.ranges.range(..codes.end).next_back().is_none_or(|(_, &end)| end <= codes.start)
     }
 
-    /// Whether `point` lies in the final part. No point outside of the tree's cube does.
+    /// Whether `point` lies in the final part; false for points outside of the tree's cube.
     #[must_use]
     pub fn is_final(&self, point: Point) -> bool {
         self.tree.contains(point) && self.is_final_cell(self.tree.cell_of(point, self.tree.depth()))
@@ -125,7 +126,7 @@ impl FinalizedCells {
         self.is_final_cell(CellCode::ROOT)
     }
 
-    /// Checks that a point may still come.
+    /// Checks that a point may still arrive.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if it lies in the final part, or outside of the tree's
@@ -135,19 +136,19 @@ impl FinalizedCells {
         if self.open.contains(point, self.tree.dims()) { Ok(()) } else { self.look_up(point) }
     }
 
-    /// Checks that points may still come.
+    /// Checks that points may still arrive.
     ///
     /// # Errors
-    /// As [`FinalizedCells::check_point`], for the first point that may not.
+    /// As [`FinalizedCells::check_point`], for the first invalid point.
     pub fn check_points(&mut self, points: &[Point]) -> Result<()> {
         points.iter().try_for_each(|&point| self.check_point(point))
     }
 
-    /// Checks that points with the bounding box `bounds` may still come: at once, if the box lies in one open
-    /// cell.
+    /// Checks that points with the bounding box `bounds` may still arrive. If the box lies in one open cell,
+    /// a single check is enough.
     ///
     /// # Errors
-    /// As [`FinalizedCells::check_point`], for the first point that may not.
+    /// As [`FinalizedCells::check_point`], for the first invalid point.
     pub fn check_points_in(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
         let Some(&first) = points.first() else { return Ok(()) };
         self.check_point(first)?;
@@ -158,7 +159,7 @@ impl FinalizedCells {
         self.check_points(points)
     }
 
-    /// Checks a point by its code, and remembers the largest open cell around it.
+    /// Checks a point by its location code, and remembers the largest open cell around it.
     #[cold]
     fn look_up(&mut self, point: Point) -> Result<()> {
         if !self.tree.contains(point) {

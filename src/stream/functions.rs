@@ -6,12 +6,12 @@ use super::event::Totals;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::functions::{Function, FunctionKind};
 
-/// Length of the least function in bytes: kind, number of terms, one knot, one term.
+/// Length of the shortest function in bytes: kind, number of terms, one knot, one term.
 const LEAST_LEN: usize = 4 + 4 + 4 + TERM_LEN;
 /// Length of a term: two knots and a factor.
 const TERM_LEN: usize = 16;
 
-/// Names in text twins, at the codes of kinds, and numbers of knots that kinds have.
+/// For each code of a kind, its name in text twins and its number of knots.
 const KINDS: [(&str, usize); 5] = [("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4)];
 
 /// The name of a kind in text twins, and its knots.
@@ -20,13 +20,13 @@ pub fn function_kind_parts(kind: &FunctionKind) -> (&'static str, &[u32]) {
     (KINDS[code].0, knots)
 }
 
-/// The code of the kind with this name, if there is one, and the number of its knots.
+/// The code and the number of knots of the kind with this name, if there is one.
 pub fn function_kind_of_name(name: &[u8]) -> Option<(usize, usize)> {
     let code = KINDS.iter().position(|(known, _)| known.as_bytes() == name)?;
     Some((code, KINDS[code].1))
 }
 
-/// The kind with a code and as many knots as it has.
+/// The kind with this code and these knots; `None` if there is none with this number of knots.
 pub fn function_kind(code: usize, knots: &[u32]) -> Option<FunctionKind> {
     Some(match (code, knots) {
         (0, &[p, q]) => FunctionKind::Edge([p, q]),
@@ -48,7 +48,7 @@ fn parts(kind: &FunctionKind) -> (usize, &[u32]) {
     }
 }
 
-/// Appends a function to a payload.
+/// Appends an encoded function to a payload.
 pub(super) fn encode(function: &Function, payload: &mut Vec<u8>) {
     let (code, knots) = parts(&function.kind);
     let words = [code as u32, function.terms.len() as u32];
@@ -59,7 +59,7 @@ pub(super) fn encode(function: &Function, payload: &mut Vec<u8>) {
     }
 }
 
-/// Functions that fill their block.
+/// Decodes the functions of a payload, which must fill it.
 pub(super) fn decode(mut payload: &[u8]) -> Result<Vec<Function>> {
     let mut functions = Vec::with_capacity(payload.len() / LEAST_LEN);
     while !payload.is_empty() {
@@ -96,7 +96,7 @@ fn decode_one(payload: &mut &[u8]) -> Result<Function> {
     Ok(Function { kind, terms })
 }
 
-/// Coefficients that fill their block.
+/// Decodes the coefficients of a payload, which must fill it.
 pub(super) fn decode_coefficients(payload: &[u8]) -> Result<Vec<f64>> {
     if !payload.len().is_multiple_of(8) {
         return Err(Error::malformed(format!(
@@ -114,7 +114,7 @@ pub(super) struct FunctionRules {
 }
 
 impl FunctionRules {
-    /// The rules of the next function; `knots` came before.
+    /// Checks the next function; `knots` knots came before.
     pub(super) fn function(&mut self, function: &Function, knots: u64) -> Result<()> {
         let (name, of_kind) = function_kind_parts(&function.kind);
         let fail = |what: String| Err(Error::malformed(format!("function {name} {of_kind:?} {what}")));
@@ -150,7 +150,7 @@ impl FunctionRules {
     }
 }
 
-/// That coefficients are numbers.
+/// Checks that coefficients are finite.
 pub(super) fn check_coefficients(coefficients: &[f64]) -> Result<()> {
     match coefficients.iter().find(|number| !number.is_finite()) {
         Some(number) => Err(Error::malformed(format!("the coefficient {number} is not finite"))),
@@ -158,7 +158,8 @@ pub(super) fn check_coefficients(coefficients: &[f64]) -> Result<()> {
     }
 }
 
-/// That a spline has as many coefficients as functions, or some if its functions are not listed.
+/// Checks that a spline has as many coefficients as functions, or any coefficients if its functions are not
+/// listed.
 pub(super) fn check_end(totals: &Totals) -> Result<()> {
     let Totals { vertices: functions, residual_points: coefficients, .. } = *totals;
     let is_whole = coefficients > 0 && (functions == 0 || functions == coefficients);

@@ -1,4 +1,4 @@
-//! The header: kind, coordinates, and what the producer knew beforehand.
+//! The header: kind, coordinates, and what the producer knows before the first block.
 
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -11,7 +11,8 @@ use spmesh_core::limits::HEADER_BODY_MAX;
 use spmesh_model::bounds::{Bounds, Point, Region};
 use spmesh_model::cells::CellTree;
 
-/// First bytes of every stream. The first is not ASCII, and the line ends show damage by text-mode transfer.
+/// First bytes of every stream. The first byte is not ASCII, and the line ends reveal damage by text-mode
+/// transfer.
 pub(super) const MAGIC: [u8; 8] = *b"\x89SPM\r\n\x1a\n";
 
 /// Version of the container that this code reads and writes.
@@ -53,7 +54,7 @@ impl Coordinates {
         }
     }
 
-    /// Stored coordinates of the grid point nearest to a world point. The result may lie outside of i32.
+    /// Stored coordinates of the grid point nearest to a world point. They may be out of the range of i32.
     #[must_use]
     pub fn to_stored(&self, world: Point) -> Point {
         match self {
@@ -132,7 +133,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// A header of `kind` with nothing known beforehand.
+    /// A header of `kind` that states nothing else about the contents.
     #[must_use]
     pub fn new(kind: Kind, coordinates: Coordinates, dims: u8, has_elevation: bool) -> Self {
         Header {
@@ -282,8 +283,7 @@ impl Header {
 
     /// Checks the rules between fields; writer and reader share them.
     ///
-    /// # Errors
-    /// The rule that is broken, as text.
+    /// A text about the rule that is broken.
     pub fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
@@ -333,7 +333,7 @@ impl Header {
         Ok(())
     }
 
-    /// That the geometry is one that the kind can have.
+    /// Checks that the kind can have these dimensions.
     fn check_kind(&self) -> std::result::Result<(), String> {
         let (kind, dims) = (self.kind.name(), self.dims);
         if !self.kind.is_4d() {
@@ -355,13 +355,13 @@ impl Header {
     }
 }
 
-/// Where a header body has the region: lower sides, then upper ones. That of space takes the place of a tree
-/// too.
+/// The bytes of a header body that hold the region: lower sides, then upper sides. A region of space also
+/// takes up the bytes of a tree.
 fn region_place(kind: Kind) -> Range<usize> {
     if kind == Kind::PartialTetrahedralMesh { 136..184 } else { 152..184 }
 }
 
-/// That there is no finalization tree where the kind has none.
+/// Checks that the kind may have a finalization tree if there is one.
 fn check_tree(kind: Kind, has_tree: bool) -> std::result::Result<(), String> {
     if has_tree && !kind.may_have_tree() {
         return Err(format!("a stream of kind {} has no finalization tree", kind.name()));
@@ -369,10 +369,11 @@ fn check_tree(kind: Kind, has_tree: bool) -> std::result::Result<(), String> {
     Ok(())
 }
 
-/// Whether every i32 has world coordinates of its own, from which `to_stored` gives it back.
+/// Whether every i32 has its own world coordinate, from which `to_stored` recovers it.
 ///
-/// In steps of `scale`: the sum is rounded by at most 2^-53 (2^51 + 2^31 + 1), a quarter, product, difference
-/// and quotient by 2^-21 together; the total is below the half that rounding forgives.
+/// Proof, with errors in steps of `scale`: rounding the sum costs at most 2^-53 (2^51 + 2^31 + 1), about a
+/// quarter. Rounding product, difference and quotient costs 2^-21 together. The total is below one half, so
+/// rounding to the nearest integer removes it.
 fn is_grid(scale: f64, offset: f64) -> bool {
     let steps_max = 2f64.powi(51);
     scale > 0.0 && offset.abs() <= scale * steps_max && (scale * steps_max).is_finite()
@@ -393,7 +394,7 @@ fn encode_crs(crs: &Crs) -> (u16, Vec<u8>) {
     }
 }
 
-/// Reads CRS and producer behind the fixed part of the body.
+/// Reads CRS and producer after the fixed part of the body.
 fn decode_tail(body: &[u8]) -> Result<(Crs, String)> {
     let (producer_len, crs_len) =
         (usize::from(LE::read_u16(&body[186..])), LE::read_u32(&body[188..]) as usize);

@@ -1,4 +1,4 @@
-//! The table of stream kinds: what each is called and which blocks it may hold.
+//! The table of stream kinds: the name of each kind, and the blocks it may hold.
 
 use super::block::Tag;
 
@@ -11,19 +11,19 @@ pub enum Kind {
     TriangleMesh,
     /// The final triangles of a region and its residual, to be merged with those of other regions.
     PartialTriangleMesh,
-    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; a label for each
-    /// vertex, or for none.
+    /// A tetrahedral mesh in patches, vertices finalized after their last tetrahedron; either all vertices
+    /// have a label or none has.
     TetrahedralMesh,
-    /// Points of four dimensions, each with a value or none with one.
+    /// Points of four dimensions; either all have a value or none has.
     Points4,
     /// Points of four dimensions and the cells between them.
     Cells4,
     /// Points of four dimensions and the simplices between them.
     Simplices4,
-    /// Knots, and the configurations of one or several degrees (B, I) of them; functions of quadratic
-    /// splines, if links of degree 1 make others than B-splines.
+    /// Knots, and their configurations (B, I) of one or several degrees. Functions of quadratic splines are
+    /// listed if links of degree 1 make functions other than B-splines.
     Configurations,
-    /// The same with one degree, and with coefficients for the functions.
+    /// Knots with configurations of one degree, functions as above, and their coefficients.
     Splines,
     /// The final tetrahedra of a region and its residual, to be merged with those of other regions.
     PartialTetrahedralMesh,
@@ -36,7 +36,7 @@ struct Row {
     dims: &'static [u8],
     vertices_per_simplex: usize,
     blocks: &'static [Tag],
-    /// Whether all blocks of a tag come before those of the next one in `blocks`.
+    /// Whether all blocks of a tag must come before those of the next tag in `blocks`.
     is_ordered: bool,
 }
 
@@ -150,13 +150,13 @@ impl Kind {
         ROWS.iter().find(|row| row.name == name).map(|row| row.kind)
     }
 
-    /// Code in the header.
+    /// The code in the header.
     #[must_use]
     pub fn code(self) -> u16 {
         self.row().code
     }
 
-    /// Name for people and for JSON.
+    /// The name in messages and in JSON.
     #[must_use]
     pub fn name(self) -> &'static str {
         self.row().name
@@ -180,20 +180,20 @@ impl Kind {
         !matches!(self, Kind::Points | Kind::Points4) && !self.has_knots()
     }
 
-    /// Whether its points are knots, and configurations of them follow.
+    /// Whether the points are knots, followed by their configurations.
     #[must_use]
     pub fn has_knots(self) -> bool {
         matches!(self, Kind::Configurations | Kind::Splines)
     }
 
-    /// Whether it is the mesh of a region, with a residual to be merged with others.
+    /// Whether the stream is the mesh of a region, with a residual that is merged with others.
     #[must_use]
     pub fn is_partial(self) -> bool {
         self.row().blocks.contains(&Tag::Walls)
     }
 
-    /// Whether its header may have a finalization tree. In that of a partial mesh in space the region takes
-    /// the place.
+    /// Whether the header may have a finalization tree. For a partial mesh in space, the region takes up its
+    /// bytes.
     #[must_use]
     pub fn may_have_tree(self) -> bool {
         !self.is_4d() && !self.has_knots() && self != Kind::PartialTetrahedralMesh

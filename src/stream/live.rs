@@ -23,8 +23,8 @@ impl<T: Copy> LiveVertices<T> {
         LiveVertices { live: HashMap::new(), local: Vec::new(), live_max: 0 }
     }
 
-    /// Id and value of every local vertex of `patch`, the new ones with the value that `value_of` gives them;
-    /// then forgets the vertices that the patch finalizes.
+    /// Adds the new vertices of `patch`, with the values that `value_of` gives them. Returns id and value of
+    /// each local vertex, and forgets the vertices that the patch finalizes.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if the patch uses a vertex that is finalized or unknown.
@@ -51,7 +51,7 @@ impl<T: Copy> LiveVertices<T> {
         Ok(&self.local)
     }
 
-    /// The value of a live vertex that a residual point names, and forgets the vertex: no patch follows.
+    /// Forgets a live vertex that a residual point names, and returns its value: no later patch uses it.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if the vertex is finalized or unknown, or was named
@@ -62,18 +62,18 @@ impl<T: Copy> LiveVertices<T> {
             .ok_or_else(|| Error::malformed(format!("residual point names vertex {id}, which is not live")))
     }
 
-    /// Ids and values of the vertices that are live now, in any order.
+    /// Ids and values of all live vertices, in any order.
     pub fn iter(&self) -> impl Iterator<Item = (u64, T)> + '_ {
         self.live.iter().map(|(&id, &value)| (id, value))
     }
 
-    /// Whether a vertex is live: whether a later patch may use it.
+    /// Whether a vertex is live, so that a later patch may use it.
     #[must_use]
     pub fn contains(&self, id: u64) -> bool {
         self.live.contains_key(&id)
     }
 
-    /// Number of vertices that are live now.
+    /// Number of live vertices.
     #[must_use]
     pub fn len(&self) -> usize {
         self.live.len()
@@ -85,7 +85,7 @@ impl<T: Copy> LiveVertices<T> {
         self.live.is_empty()
     }
 
-    /// Most vertices that were live at once: the width of the stream.
+    /// Greatest number of vertices that were live at once: the width of the stream.
     #[must_use]
     pub fn live_max(&self) -> usize {
         self.live_max

@@ -8,7 +8,7 @@ use super::payload::PATCH_FIXED_LEN;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
-/// How points and simplices are encoded: what [`PatchBlocks`] needs of the header of a mesh.
+/// How points and simplices are encoded: the part of a mesh header that [`PatchBlocks`] needs.
 #[derive(Debug, Clone, Copy)]
 pub struct PointCode {
     coordinates: Coordinates,
@@ -17,7 +17,7 @@ pub struct PointCode {
 }
 
 impl PointCode {
-    /// As the header says.
+    /// The encoding that a header states.
     #[must_use]
     pub fn of(header: &Header) -> Self {
         PointCode {
@@ -28,14 +28,14 @@ impl PointCode {
     }
 }
 
-/// Patches in their order, with room for their frames. What depends on earlier blocks is filled in by
-/// [`super::StreamWriter::patches`]: frames, first ids, and the ids of imported vertices, for which
-/// references stand that mean something to the caller.
+/// Encoded patches in order, with space for their frames. [`super::StreamWriter::patches`] fills in the parts
+/// that depend on earlier blocks: frames, first ids, and ids of imported vertices. Until then, the caller's
+/// own references take the place of these ids.
 ///
-/// Buffers are kept by [`PatchBlocks::clear`]: no patch is allocated.
+/// [`PatchBlocks::clear`] keeps the buffers, so that patches need no allocations.
 #[derive(Debug, Default)]
 pub struct PatchBlocks {
-    /// Frame and payload of each patch, but for its finalized vertices. Longer than `used` after a use.
+    /// Frame and payload of each patch, without its finalized vertices; the first `used` bytes count.
     bytes: Vec<u8>,
     used: usize,
     /// Finalized vertices of all patches, encoded.
@@ -52,7 +52,7 @@ struct Place {
     /// First byte of its imported vertices, and their number.
     imported: usize,
     imports: usize,
-    /// One past the last byte of its finalized vertices; those of the patch before it end where they start.
+    /// One past the last byte of its finalized vertices, which start where those of the previous patch end.
     finalized_end: usize,
 }
 
@@ -64,7 +64,7 @@ impl PatchBlocks {
         self.patches.clear();
     }
 
-    /// Bytes that the patches have room for, but for their finalized vertices.
+    /// Capacity for patches in bytes, without their finalized vertices.
     pub fn capacity(&self) -> usize {
         self.bytes.capacity()
     }
@@ -110,8 +110,8 @@ impl PatchBlocks {
         Ok(())
     }
 
-    /// Says which local vertices patch number `patch` finalizes, increasing. To be called for one patch after
-    /// the other, when all are there.
+    /// Sets the local vertices that patch number `patch` finalizes, increasing. Call it for one patch after
+    /// the other, after all patches are pushed.
     pub fn finalize(&mut self, patch: usize, locals: impl Iterator<Item = u32>) {
         let before = self.finalized.len();
         locals.for_each(|local| self.finalized.extend_from_slice(&local.to_le_bytes()));
@@ -121,7 +121,7 @@ impl PatchBlocks {
         LE::write_u32(count, ((place.finalized_end - before) / 4) as u32);
     }
 
-    /// Completes patch number `patch` as block `sequence`, with what a reference stands for told by `id_of`.
+    /// Completes patch number `patch` as block `sequence`; `id_of` maps references to ids.
     pub(super) fn complete(
         &mut self,
         patch: usize,
@@ -146,7 +146,7 @@ impl PatchBlocks {
         let start = self.used;
         self.used += len;
         if self.bytes.len() < self.used {
-            // By little: so much more memory would lie idle in each node under way.
+            // Grow by an eighth only: each node under way may leave the rest of its memory idle.
             self.bytes.reserve_exact((self.used - self.bytes.len()).max(self.used / 8));
             self.bytes.resize(self.used, 0);
         }
@@ -154,7 +154,7 @@ impl PatchBlocks {
     }
 }
 
-/// A patch ready to be written: one part behind the other.
+/// A patch ready to be written, in two parts.
 pub(super) struct EncodedPatch<'a> {
     /// Frame and payload up to the simplices.
     pub(super) block: &'a [u8],

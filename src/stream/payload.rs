@@ -1,4 +1,4 @@
-//! Payloads of blocks, decoded and checked as far as header and earlier counts allow.
+//! Decodes payloads of blocks, and checks them as far as the header and earlier counts allow.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
@@ -9,13 +9,13 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
 
-/// Id in a residual record that says: not yet a vertex.
+/// The id of a residual point that is not yet a vertex.
 const NO_VERTEX: u64 = u64::MAX;
 
 /// Length of the counts before the arrays of a patch, in bytes.
 pub(super) const PATCH_FIXED_LEN: usize = 24;
 
-/// Fills `points` with those of a block; their bounding box, if there are any.
+/// Replaces `points` by those of a block; returns their bounding box, if there are any.
 pub(super) fn points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) -> Result<Option<Bounds>> {
     points.clear();
     let _ = whole_records(bytes, header.point_len())?;
@@ -40,7 +40,7 @@ fn decode<const WIDTH: usize, const N: usize>(bytes: &[u8], points: &mut Vec<Poi
     }));
 }
 
-/// That points lie where the header says, which their bounding box tells of all of them at once; the box.
+/// Checks that points lie where the header says, by their bounding box; returns the box.
 fn check_places(header: &Header, points: &[Point]) -> Result<Option<Bounds>> {
     let Some((bounds, finite)) = extent(points) else { return Ok(None) };
     if !finite || check_place(header, bounds.min).is_err() || check_place(header, bounds.max).is_err() {
@@ -49,10 +49,10 @@ fn check_places(header: &Header, points: &[Point]) -> Result<Option<Bounds>> {
     Ok(Some(bounds))
 }
 
-/// Bounding box of points, and whether all coordinates are finite: only then it holds all of them.
+/// Bounding box of points, and whether all coordinates are finite; if not, the box may miss points.
 fn extent(points: &[Point]) -> Option<(Bounds, bool)> {
     let Bounds { mut min, mut max } = Bounds::of_point(*points.first()?);
-    // Zero times infinity or NaN is NaN, which stays in the sum.
+    // Zero times infinity or NaN is NaN, and a sum with NaN stays NaN.
     let mut poison = [0.0; 3];
     for point in points {
         for axis in 0..3 {
@@ -81,7 +81,7 @@ pub(super) fn cells(header: &Header, bytes: &[u8]) -> Result<Vec<CellCode>> {
         .collect()
 }
 
-/// A patch; `vertices_before` were written by earlier ones.
+/// Decodes a patch; `vertices_before` vertices were written by earlier patches.
 pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Result<Patch> {
     if bytes.len() < PATCH_FIXED_LEN {
         return Err(Error::malformed(format!(
@@ -116,12 +116,12 @@ pub(super) fn patch(header: &Header, vertices_before: u64, bytes: &[u8]) -> Resu
     Ok(patch)
 }
 
-/// Labels; [`super::Tally`] compares their number with that of the vertices.
+/// Decodes labels; [`super::Tally`] compares their number with the number of vertices.
 pub(super) fn labels(bytes: &[u8]) -> Result<Vec<u64>> {
     Ok(whole_records(bytes, 8)?.map(LE::read_u64).collect())
 }
 
-/// Residual points; ids must be those of `vertices` earlier ones.
+/// Decodes residual points; their ids must be among the `vertices` earlier vertices.
 pub(super) fn residual_points(
     header: &Header,
     vertices: u64,
@@ -138,7 +138,8 @@ pub(super) fn residual_points(
         .collect()
 }
 
-/// Walls of `corners` corners each, in one list, between the `residual_points` points so far.
+/// Decodes walls of `corners` corners each, concatenated, between the first `residual_points` residual
+/// points.
 pub(super) fn walls(corners: usize, residual_points: u64, bytes: &[u8]) -> Result<Vec<u32>> {
     let walls: Vec<u32> = whole_records(bytes, 4 * corners)?
         .flat_map(|record| record.chunks_exact(4).map(LE::read_u32))
@@ -162,7 +163,7 @@ pub(super) fn totals(bytes: &[u8]) -> Result<Totals> {
     }
 }
 
-/// A point that lies where the header says that all points lie.
+/// Decodes a point, and checks that it lies where the header says.
 fn point(header: &Header, record: &[u8]) -> Result<Point> {
     let mut point = [0.0; 3];
     let width = header.coordinates.width();
@@ -176,7 +177,7 @@ fn point(header: &Header, record: &[u8]) -> Result<Point> {
     Ok(point)
 }
 
-/// Appends points that this process encoded with [`super::encode_points`]: nothing is checked.
+/// Appends points that this process encoded with [`super::encode_points`]; they are not checked.
 pub fn decode_points(header: &Header, bytes: &[u8], points: &mut Vec<Point>) {
     let axes = header.coordinates_per_point();
     let records = bytes.chunks_exact(header.point_len());
@@ -200,10 +201,10 @@ fn check_point(header: &Header, point: Point) -> Result<()> {
     check_place(header, point)
 }
 
-/// Checks that a point lies in the bounding box, the tree and the region that the header states.
+/// Checks that a point lies in the bounding box, the tree and the region of the header.
 ///
 /// # Errors
-/// Malformed, if it lies outside of one.
+/// Malformed, if it lies outside of one of them.
 pub fn check_place(header: &Header, point: Point) -> Result<()> {
     let outside_of = if header.bounds.is_some_and(|bounds| !bounds.contains(point)) {
         "the header's bounding box"

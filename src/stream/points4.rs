@@ -7,12 +7,12 @@ use super::header::Header;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
-/// Points of four dimensions: either all have a value, or none has.
+/// Points of four dimensions; either all have a value, or none has.
 #[derive(Debug, Clone, Default)]
 pub struct Points4 {
     /// Coordinates x, y, z, t: finite.
     pub points: Vec<Point4>,
-    /// What was measured at each point: finite, or NaN where it is not known.
+    /// The value measured at each point: finite, or NaN if it is unknown.
     pub values: Option<Vec<f64>>,
 }
 
@@ -27,13 +27,13 @@ impl PartialEq for Points4 {
 }
 
 impl Points4 {
-    /// No points; `has_values` says whether those to come have values.
+    /// An empty list; `has_values` says whether its points will have values.
     #[must_use]
     pub fn new(has_values: bool) -> Self {
         Points4 { points: Vec::new(), values: has_values.then(Vec::new) }
     }
 
-    /// The points of a block. That coordinates are finite is left to [`super::rules4::Rules4`].
+    /// Decodes the points of a block. [`super::rules4::Rules4`] checks that coordinates are finite.
     pub(super) fn decode(header: &Header, bytes: &[u8]) -> Result<Self> {
         let mut points = Points4::new(header.has_elevation);
         for record in whole_records(bytes, header.point_len())? {
@@ -48,10 +48,10 @@ impl Points4 {
     }
 }
 
-/// Checks that a value is finite, or the canonical NaN, which means unknown.
+/// Checks that a value is finite, or the canonical NaN, which stands for an unknown value.
 ///
 /// # Errors
-/// Malformed, if it is anything else.
+/// Malformed, for any other value.
 pub fn check_value(value: f64) -> Result<()> {
     if value.is_finite() || value.to_bits() == f64::NAN.to_bits() {
         return Ok(());
@@ -63,7 +63,7 @@ pub fn check_value(value: f64) -> Result<()> {
     )))
 }
 
-/// The simplices of a block.
+/// Decodes the simplices of a block.
 pub(super) fn simplices(bytes: &[u8]) -> Result<Vec<[u32; 5]>> {
     let simplex = |record: &[u8]| std::array::from_fn(|corner| LE::read_u32(&record[4 * corner..]));
     Ok(whole_records(bytes, 20)?.map(simplex).collect())

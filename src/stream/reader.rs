@@ -22,13 +22,13 @@ use spmesh_model::bounds::{Bounds, Point};
 /// Reads one stream.
 ///
 /// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
-/// Memory: one block and its decoded event, and the words so far of a 4D cell that spans blocks.
+/// Memory: one block with its decoded event, and the incomplete words of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,
     header: Header,
     payload: Vec<u8>,
-    /// An array of points for reuse.
+    /// A buffer of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
     points_bounds: Option<Bounds>,
@@ -43,7 +43,7 @@ pub struct StreamReader<R: Read> {
 }
 
 impl<R: Read> StreamReader<R> {
-    /// Reads the header; `name` is what messages call the input.
+    /// Reads the header; messages call the input `name`.
     ///
     /// # Errors
     /// If the input is not a stream of this version, or its header is damaged.
@@ -89,18 +89,18 @@ impl<R: Read> StreamReader<R> {
         self.offset
     }
 
-    /// Bounding box of the points of the last [`Event::Points`]; none if it held no points.
+    /// Bounding box of the points of the last [`Event::Points`]; `None` if it held no points.
     pub fn points_bounds(&self) -> Option<Bounds> {
         self.points_bounds
     }
 
-    /// Takes back the array of an [`Event::Points`], to be used for a later one.
+    /// Takes back the buffer of an [`Event::Points`] for reuse.
     pub fn give_back(&mut self, points: Vec<Point>) {
         self.spare = points;
     }
 
-    /// Adds input and position to an error about the block that was read last. Errors that are not about the
-    /// input, like a full disk where the output goes, stay as they are.
+    /// Adds input and position to an error about the last block that was read. Errors about anything else,
+    /// like a full disk on the output side, stay as they are.
     pub fn locate(&self, error: Error) -> Error {
         if !matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Audit) {
             return error;
@@ -109,7 +109,7 @@ impl<R: Read> StreamReader<R> {
         error.at(format!("block {block} at byte {}", self.block_start)).of_input(&self.name)
     }
 
-    /// The next block; `None` after END. END itself comes only if the input ends there.
+    /// The next block; `None` after END. END is returned only if the input ends there.
     ///
     /// # Errors
     /// If the input ends before END, goes on after it, or a block is damaged or breaks a rule.
@@ -130,7 +130,7 @@ impl<R: Read> StreamReader<R> {
         self.decode(tag).map(Some).map_err(|error| self.locate(error))
     }
 
-    /// Reads frame and payload of a block and verifies all that does not depend on its content.
+    /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
     fn read_block(&mut self) -> Result<Tag> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
@@ -210,7 +210,7 @@ impl<R: Read> StreamReader<R> {
         Ok(event)
     }
 
-    /// Nothing follows END, so END is handed out only when the input ends there.
+    /// Checks that the input ends after END.
     fn expect_end_of_input(&mut self) -> Result<()> {
         match read_full(&mut self.input, &mut [0])? {
             0 => Ok(()),
@@ -258,7 +258,7 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
     Ok((Header::decode(kind, &bytes[PREAMBLE_LEN..end])?, (end + 4) as u64))
 }
 
-/// Reads until `buffer` is full or the input ends; the number of bytes read.
+/// Reads until `buffer` is full or the input ends; returns the number of bytes read.
 fn read_full(input: &mut impl Read, buffer: &mut [u8]) -> Result<usize> {
     let mut filled = 0;
     while filled < buffer.len() {

@@ -7,13 +7,13 @@ use super::points4::Points4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
 
-/// State against which later blocks are checked. Streams of other kinds are not checked.
+/// State against which later blocks are checked; only streams of four dimensions are checked.
 #[derive(Debug)]
 pub(super) struct Rules4 {
     kind: Kind,
-    /// The last point, where points are sorted.
+    /// The last point, if points must be sorted.
     last: Option<Point4>,
-    /// The greatest number of a neighbour.
+    /// The greatest number of a neighbour so far.
     neighbour_max: Option<u32>,
 }
 
@@ -22,7 +22,7 @@ impl Rules4 {
         Rules4 { kind, last: None, neighbour_max: None }
     }
 
-    /// Counts points: they are finite, and between cells they are sorted.
+    /// Checks and counts points: they are finite, and sorted if the stream holds cells.
     pub(super) fn points(&mut self, points: &Points4, totals: &mut Totals) -> Result<()> {
         for &point in &points.points {
             self.point(point)?;
@@ -32,13 +32,13 @@ impl Rules4 {
         Ok(())
     }
 
-    /// The rules of the next point.
+    /// Checks the next point.
     pub(super) fn point(&mut self, point: Point4) -> Result<()> {
         if let Some(value) = point.iter().find(|value| !value.is_finite()) {
             return Err(Error::malformed(format!("coordinate {value} is not finite")));
         }
         if self.kind == Kind::Cells4 {
-            // As coordinates are finite, all points compare; -0 is 0.
+            // All points are comparable, because coordinates are finite; -0 equals 0.
             if self.last.is_some_and(|last| last.partial_cmp(&point) != Some(std::cmp::Ordering::Less)) {
                 return Err(Error::malformed(format!(
                     "point {point:?} does not follow the one before it in the order of x, y, z, t"
@@ -49,12 +49,12 @@ impl Rules4 {
         Ok(())
     }
 
-    /// Counts cells.
+    /// Checks and counts cells.
     pub(super) fn cells(&mut self, cells: &Cells4, totals: &mut Totals) -> Result<()> {
         cells.iter().try_for_each(|cell| self.cell(cell, totals))
     }
 
-    /// Counts a cell.
+    /// Checks and counts a cell.
     pub(super) fn cell(&mut self, cell: Cell4, totals: &mut Totals) -> Result<()> {
         check_cell(cell, totals.vertices)?;
         self.neighbour_max = self.neighbour_max.max(cell.neighbours.last().copied());
@@ -62,7 +62,7 @@ impl Rules4 {
         Ok(())
     }
 
-    /// Counts simplices: five different points each.
+    /// Checks and counts simplices: each has five different points.
     pub(super) fn simplices(&mut self, simplices: &[[u32; 5]], totals: &mut Totals) -> Result<()> {
         for simplex in simplices {
             if let Some(vertex) = simplex.iter().find(|&&vertex| u64::from(vertex) >= totals.vertices) {
@@ -76,7 +76,7 @@ impl Rules4 {
         Ok(())
     }
 
-    /// That all neighbours are cells, of which there are as many as `totals` say.
+    /// Checks that all neighbours are among the cells counted in `totals`.
     pub(super) fn check_end(&self, totals: &Totals) -> Result<()> {
         match self.neighbour_max {
             Some(neighbour) if u64::from(neighbour) >= totals.simplices => Err(Error::malformed(format!(
@@ -88,7 +88,7 @@ impl Rules4 {
     }
 }
 
-/// The rules of one cell; `points` came before.
+/// Checks one cell; `points` points came before.
 pub(super) fn check_cell(cell: Cell4, points: u64) -> Result<()> {
     let Cell4 { is_infinite, vertices, neighbours } = cell;
     let (sort, vertices_min) = if is_infinite { ("an infinite", 4) } else { ("a finite", 5) };

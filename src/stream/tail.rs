@@ -5,7 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::event::Totals;
 
-/// Bytes of the END block.
+/// Length of the END block in bytes.
 const END_LEN: usize = FRAME_LEN + 8 * Totals::FIELDS;
 
 /// Whether the last bytes of a file are a valid END block. Nothing before it is read.

@@ -10,7 +10,8 @@ use super::rules4::Rules4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Bounds;
 
-/// Counts of the events so far, and the rules that span events. Binary streams and their text twins share it.
+/// Counts of the events so far, and the rules that span events. Binary streams and their text twins share
+/// them.
 #[derive(Debug)]
 pub struct Tally {
     totals: Totals,
@@ -48,12 +49,13 @@ impl Tally {
         }
     }
 
-    /// The counts so far. The number of points of a mesh is unknown before its end.
+    /// The counts so far. The number of points of a mesh is unknown until its end.
     pub fn totals(&self) -> &Totals {
         &self.totals
     }
 
-    /// Counts the next event, which must be one of the stream's kind. An end counts nothing.
+    /// Checks and counts the next event, which must be allowed for the kind of the stream. END is not
+    /// counted.
     ///
     /// # Errors
     /// Malformed, if a chunk holds points of several cells, if there are more labels than vertices so far, or
@@ -125,9 +127,8 @@ impl Tally {
         Ok(())
     }
 
-    /// Checks the totals that END states against those of the events before (`formats/spmesh.md` 4.14). A
-    /// mesh counts the points of the input that it was made from: each is a vertex, was merged, or waits in
-    /// the residual.
+    /// Compares the totals that END states with the events before (`formats/spmesh.md` 4.14). For a mesh,
+    /// points are those of its input: each is a vertex, was merged, or waits in the residual.
     ///
     /// # Errors
     /// Malformed, if they differ, if a vertex is neither final nor in the residual, or if only some vertices

@@ -1,4 +1,4 @@
-//! Writes triangles that are held, with their vertices, as a triangle mesh stream.
+//! Writes triangles in memory, with their vertices, as a triangle mesh stream.
 
 use std::io::Write;
 
@@ -6,17 +6,17 @@ use super::{Header, Patch, StreamWriter};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 
-/// Triangles per patch. With three vertices of its own each, a triangle takes at most 3 * (4 + 24 + 4) bytes,
-/// so a patch stays below the maximum of a block.
+/// Triangles per patch. A triangle with three new vertices takes at most 3 * (4 + 24 + 4) bytes, so a patch
+/// stays below the maximum length of a block.
 const PATCH_TRIANGLES: usize = 8000;
 
-/// Id of a vertex that no patch has so far.
+/// The id of a vertex that no patch has written yet.
 const NONE: u64 = u64::MAX;
 
-/// Writes all triangles, in their order, with the vertices below `count` that they use; `at` says where these
-/// are, stored.
+/// Writes all triangles, in their order, with the vertices that they use. Vertices are numbered below
+/// `count`; `at` gives their stored coordinates.
 ///
-/// Domain: all vertices are used, but for `merged` ones.
+/// Domain: every vertex is used, except `merged` of them.
 ///
 /// # Errors
 /// If writing fails.

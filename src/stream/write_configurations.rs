@@ -10,33 +10,33 @@ use spmesh_model::configurations::Configurations;
 use spmesh_model::functions::Function;
 use spmesh_model::points::Point2;
 
-/// Boundaries that are handed to the writer at a time.
+/// Boundaries that are passed to the writer at a time.
 const BATCH: usize = 1 << 12;
 
-/// The contents of a stream of knots, without its header.
+/// The contents of a stream of configurations or of a spline, without its header.
 #[derive(Debug, Clone, Copy)]
 pub struct Content<'a> {
-    /// The knots, in stored coordinates: integers if the header says so.
+    /// The knots, in stored coordinates; integers if the header says so.
     pub knots: &'a [Point2],
     /// The z of all knots, if the header says that they have an elevation.
     pub heights: Option<&'a [f64]>,
     /// Configurations of increasing degrees; of one degree for splines.
     pub degrees: &'a [Configurations],
-    /// Functions of quadratic splines, if they are not just B-splines of links.
+    /// Functions of quadratic splines; empty if they are the B-splines of links.
     pub functions: &'a [Function],
     /// For splines, a coefficient for each function.
     pub coefficients: &'a [f64],
 }
 
 impl<'a> Content<'a> {
-    /// Configurations alone.
+    /// The contents of a stream of configurations only.
     #[must_use]
     pub fn of(knots: &'a [Point2], degrees: &'a [Configurations]) -> Content<'a> {
         Content { knots, heights: None, degrees, functions: &[], coefficients: &[] }
     }
 }
 
-/// Writes knots, and configurations of them of increasing degrees, in world coordinates of an unknown system.
+/// Writes knots and their configurations of increasing degrees, in world coordinates of an unknown system.
 ///
 /// # Errors
 /// As [`write_content`].
@@ -58,13 +58,13 @@ pub fn configurations_header(knots: &[Point2], coordinates: Coordinates, crs: Cr
     header
 }
 
-/// Writes a stream of configurations, or of a spline, with a header of [`configurations_header`], or one like
-/// it.
+/// Writes a stream of configurations, or of a spline. The header is from [`configurations_header`], or
+/// similar.
 ///
 /// # Errors
-/// Usage, if degrees do not increase, one is too high, or heights do not fit header and knots; malformed, if
-/// a coordinate does not fit the header, configurations or functions name knots that there are not, or a
-/// spline has not one coefficient for each function; I/O.
+/// Usage, if degrees do not increase, a degree is too high, or heights do not match header and knots;
+/// malformed, if a coordinate does not fit the header, configurations or functions name unknown knots, or a
+/// spline does not have one coefficient for each function; I/O.
 pub fn write_content(header: Header, content: Content, out: impl Write) -> Result<()> {
     let Content { knots, heights, degrees, functions, coefficients } = content;
     if heights.map(<[f64]>::len) != header.has_elevation.then_some(knots.len()) {
@@ -100,7 +100,7 @@ fn write_degree<W: Write>(writer: &mut StreamWriter<W>, configurations: &Configu
     };
     let empty = ConfigurationBlock::new(degree, configurations.claim());
     let mut block = empty.clone();
-    // At least one block, so that a degree without configurations is there.
+    // Write at least one block, so that the stream also has a degree without configurations.
     for group in configurations.groups() {
         for boundaries in group.triangles.chunks(BATCH).chain(group.infinite.chunks(BATCH)) {
             block.push(group.interior, boundaries);

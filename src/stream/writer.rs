@@ -19,20 +19,20 @@ use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::CellCode;
 
-/// Payload from which a block of points is closed, in bytes: far below the maximum, so that a consumer can
-/// start early, and large enough that the frame does not count.
+/// Payload at which a block of points is closed, in bytes: far below the maximum, so that a consumer can
+/// start early, and large enough that the frame is negligible.
 const POINTS_PAYLOAD: usize = 1 << 16;
 
 /// Writes one stream.
 ///
-/// Invariant: a stream without END is incomplete to every reader. `end` writes END; `Drop` never does, so a
-/// producer that fails half way is not mistaken for a short input.
+/// Invariant: every reader rejects a stream without END as incomplete. `end` writes END and `Drop` never
+/// does, so the output of a producer that fails half way cannot be mistaken for a short stream.
 pub struct StreamWriter<W: Write> {
     output: W,
     header: Header,
     sequence: u32,
     last_tag: Option<Tag>,
-    /// Points, or other records, that wait for their block to fill, and the tag of the block.
+    /// Encoded points, or other records, until their block is full; and the tag of that block.
     points: Vec<u8>,
     points_tag: Tag,
     payload: Vec<u8>,
@@ -100,7 +100,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends points that are encoded already, as [`encode_points`] does it.
+    /// Appends points that [`encode_points`] has encoded.
     ///
     /// # Errors
     /// If writing fails.
@@ -121,7 +121,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Tags cells as final: no later point lies in them. Writes buffered points first.
+    /// Tags cells as final: no later point lies in them. Flushes buffered points first.
     ///
     /// # Errors
     /// If writing fails.
@@ -168,8 +168,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends patches that were encoded ahead, with `id_of` for the references that stand for imported
-    /// vertices; `count` is told of each patch how many new and how many finalized vertices it has.
+    /// Appends patches that were encoded ahead. `id_of` maps the references of imported vertices to ids;
+    /// `count` gets the numbers of new and of finalized vertices of each patch.
     ///
     /// # Errors
     /// If a patch is longer than a block, or writing fails.
@@ -203,8 +203,8 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends the labels of the next vertices, counted from the one after the last that has a label. They
-    /// must have been written in patches before. By the end either all vertices have labels, or none has.
+    /// Appends the labels of the next vertices without a label. Earlier patches must have these vertices. At
+    /// the end either all vertices have labels, or none has.
     ///
     /// # Errors
     /// If writing fails.
@@ -220,7 +220,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends residual points, each with its id if it is a vertex of an earlier patch.
+    /// Appends residual points, each with its id if an earlier patch has the vertex.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding, or writing fails.
@@ -237,8 +237,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends walls between residual points, which must have been written before, as the numbers of their
-    /// corners one behind the other.
+    /// Appends walls as the concatenated numbers of their corners, which are residual points written before.
     ///
     /// # Errors
     /// If writing fails.
@@ -255,8 +254,9 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes END and flushes. Streams with vertices state that `input_points` points were triangulated, of
-    /// which `merged` coincide with another one. A points stream counts its own points and ignores both.
+    /// Writes END and flushes. For streams with vertices, END states that `input_points` points were
+    /// triangulated, and that `merged` of them coincide with another one. A points stream counts its own
+    /// points and ignores both.
     ///
     /// # Errors
     /// If a 4D cell names a neighbour that does not exist, or writing or flushing fails.
@@ -342,7 +342,7 @@ fn encode_point(header: &Header, point: Point, bytes: &mut Vec<u8>) -> Result<()
     Ok(())
 }
 
-/// Appends the stored form of all `points`, as `encode_point` does it for one.
+/// Appends the stored form of all `points`, each as by `encode_point`.
 ///
 /// # Errors
 /// [`spmesh_core::error::ErrorKind::Malformed`] if a coordinate does not fit the encoding of the header.
@@ -367,7 +367,7 @@ fn f64_bytes(value: f64) -> ([u8; 8], bool) {
     (value.to_le_bytes(), value.is_finite())
 }
 
-/// Appends the first `AXES` coordinates of each point as `WIDTH` bytes; whether all of them fit.
+/// Appends the first `AXES` coordinates of each point as `WIDTH` bytes each; returns whether all of them fit.
 #[inline(always)]
 fn append<const AXES: usize, const WIDTH: usize>(
     points: &[Point],

@@ -1,5 +1,5 @@
-//! Implements the rules: each picks the apex of the triangle on an edge, which leaves a polygon on either
-//! side.
+//! Implements the rules. Each rule picks the apex of the triangle on an edge, which leaves a polygon on
+//! either side.
 
 use super::insertion::LARGE;
 use super::polygon::Triangulator;
@@ -48,15 +48,15 @@ impl<P: Predicates2> Triangulator<'_, P> {
         Ok(())
     }
 
-    /// The place whose circle with the edge has no other vertex inside, whatever is in the way: nothing is,
-    /// where all triangles are those of the lift.
+    /// The place whose circle with the edge has no other vertex inside. Visibility is not tested: where all
+    /// triangles are those of the lift, no edge is in the way.
     pub(super) fn empty_apex(&mut self, i: usize, j: usize) -> Option<usize> {
         self.best_apex(i, j, |_, _| true)
     }
 
-    /// The same among those that both ends of the edge see: the constrained Delaunay triangulation. (Of
-    /// those, one with another of them inside its circle is worse than that one; and of the right one, none
-    /// is inside.)
+    /// Like [`Triangulator::empty_apex`], among the places that both ends of the edge see: the constrained
+    /// Delaunay triangulation. (A visible place is worse than any other visible place inside its circle, and
+    /// the right one has none inside. So comparing places in turn finds it.)
     fn constrained_apex(&mut self, i: usize, j: usize) -> Option<usize> {
         self.best_apex(i, j, |this, k| this.sees(i, k) && this.sees(k, j))
     }
@@ -89,19 +89,19 @@ impl<P: Predicates2> Triangulator<'_, P> {
         (!fitting.is_empty()).then(|| fitting[random.below(fitting.len() as u64) as usize])
     }
 
-    /// Whether a triangle of three places lies in the polygon, counterclockwise.
+    /// Whether the triangle of three places is counterclockwise and lies in the polygon.
     fn fits(&mut self, i: usize, k: usize, j: usize) -> bool {
         let [a, b, c] = [i, k, j].map(|place| self.polygon[place]);
         self.plane.is_left(a, b, c) && self.sees(i, k) && self.sees(k, j)
     }
 
-    /// A seed for the set.
+    /// A seed that depends on the seed of the rule and on the set.
     fn seed(&self, seed: u64) -> u64 {
         self.set.iter().fold(seed, |seed, &knot| Random::new(seed ^ u64::from(knot)).bits())
     }
 
-    /// For each pair of places the apex of the triangulation of least weight between them (Klincsek, 1980).
-    /// Of equal weights, the first.
+    /// For each pair of places, the apex in the triangulation of least weight of the polygon between them
+    /// (Klincsek, 1980); of equal weights, the first.
     fn least_weight(&mut self) -> Vec<Option<usize>> {
         let count = self.polygon.len();
         let mut apexes = vec![None; count * count];
@@ -139,7 +139,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
             piece.rotate_left(least);
             let seen: Vec<usize> = (1..piece.len()).filter(|&at| self.sees(piece[0], piece[at])).collect();
             if let &[first, last] = &seen[..] {
-                // It sees its neighbours only: it is the tip of an ear.
+                // The least knot sees only its neighbours: it is the tip of an ear.
                 let mut tip = [piece[last], piece[0], piece[first]];
                 tip.sort_unstable();
                 self.emit(tip[0], tip[1], tip[2])?;
@@ -154,7 +154,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
         Ok(())
     }
 
-    /// Cuts ears, from the first place on.
+    /// Cuts ears, starting from the first place.
     fn cut_ears(&mut self) -> Result<()> {
         let mut left: Vec<usize> = (0..self.polygon.len()).collect();
         while left.len() > 3 {
@@ -182,7 +182,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
     }
 }
 
-/// A place that is left, between those before and after it.
+/// A remaining place, between the remaining places before and after it.
 fn around(left: &[usize], at: usize) -> [usize; 3] {
     let count = left.len();
     [left[(at + count - 1) % count], left[at], left[(at + 1) % count]]

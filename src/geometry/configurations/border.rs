@@ -1,12 +1,12 @@
 //! Repeats knots on the border and at sharp places (thesis 8.3).
 //!
-//! Splines of the configurations of degree k sum to one where every closed half-plane through a point has at
-//! least k + 1 knots. So knots on the border are repeated: corners as often as the degree needs
-//! ([`Knots::clamped`]), or all border knots once ([`Knots::pulled_apart`]). The latter suits degree 1, and
-//! so the quadratic splines of its links: they sum to one on the whole hull, and interpolate at its knots.
-//! Copies are numbered after all given knots, which keep their ids, and have the same coordinates: the
-//! symbolic perturbation of `knots` tells them apart combinatorially, so no coordinates have to be moved and
-//! restored.
+//! Splines of the configurations of degree k sum to one at a point if every closed half-plane that contains
+//! the point contains at least k + 1 knots. So knots on the border are repeated: either corners, as often as
+//! the degree needs ([`Knots::clamped`]), or all border knots, once ([`Knots::pulled_apart`]). The latter
+//! suits degree 1, and so the quadratic splines of its links: they sum to one on the whole hull, and
+//! interpolate at its knots. Copies have the coordinates of their knots, and are numbered after all given
+//! knots, which keep their ids. The symbolic perturbation of `knots` tells copies apart combinatorially, so
+//! no coordinates have to be moved and restored.
 
 use super::knots::Knots;
 use super::surface;
@@ -17,11 +17,11 @@ use spmesh_core::error::{Error, Result};
 impl Knots {
     /// The corners of the convex hull with multiplicity `degree` + 1; knots along its edges stay as they are.
     ///
-    /// Splines of the degree then sum to one on the whole hull. Corners that are already repeated get the
-    /// missing copies only.
+    /// Splines of this degree then sum to one on the whole hull. Corners that are already repeated only get
+    /// the missing copies.
     ///
     /// # Errors
-    /// Knots on one line; more knots than can be handled.
+    /// Knots on one line; too many knots.
     pub fn clamped(&self, degree: usize) -> Result<Knots> {
         let corners = self.border()?.corners;
         self.with_multiplicity(&corners, degree.saturating_add(1))
@@ -30,19 +30,19 @@ impl Knots {
     /// All knots on the border of the convex hull pulled apart: each place has two knots.
     ///
     /// # Errors
-    /// Knots on one line; more knots than can be handled.
+    /// Knots on one line; too many knots.
     pub fn pulled_apart(&self) -> Result<Knots> {
         let places = self.border()?.all;
         self.pull_apart(&places)
     }
 
-    /// The listed knots pulled apart (thesis 8.3, figure 8.7): each place has two knots. The links of either
-    /// are then triangulated from the other, whatever the rule is; Delaunay configurations do so anyway,
-    /// unless knots of the link are on one circle with the place; [`super::Start::generalised`] guarantees
-    /// it.
+    /// The listed knots pulled apart (thesis 8.3, figure 8.7): each of their places has two knots. The link
+    /// of either knot is then triangulated by diagonals from the other, whatever the rule.
+    /// [`super::Start::generalised`] guarantees this; Delaunay configurations have these diagonals anyway,
+    /// unless knots of the link are on one circle with the place.
     ///
     /// # Errors
-    /// An unknown knot; more knots than can be handled.
+    /// An unknown knot; too many knots.
     pub fn pull_apart(&self, knots: &[u32]) -> Result<Knots> {
         self.with_multiplicity(knots, 2)
     }
@@ -58,7 +58,7 @@ impl Knots {
         (0..self.len() as u32).filter(|&other| self.at(other) == self.at(id)).collect()
     }
 
-    /// Adds copies of the listed knots, until there are `count` at each place.
+    /// Adds copies of the listed knots until there are `count` knots at each of their places.
     fn with_multiplicity(&self, ids: &[u32], count: usize) -> Result<Knots> {
         if let Some(unknown) = ids.iter().find(|&&id| id as usize >= self.len()) {
             return Err(Error::usage(format!("unknown knot {unknown}: there are {}", self.len())));
@@ -82,7 +82,7 @@ impl Knots {
         Knots::new(points)
     }
 
-    /// The border of the convex hull, counterclockwise; of knots at one place the first.
+    /// The border of the convex hull, counterclockwise; of several knots at one place, only the first.
     fn border(&self) -> Result<Border> {
         let all = surface::hull(self)?;
         let mut predicates = FiniteFloatPredicates::default();

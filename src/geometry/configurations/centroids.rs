@@ -1,5 +1,5 @@
-//! Centroid triangulations: k-sets as points, configurations of two degrees as triangles (thesis 7.3 and
-//! 7.4).
+//! Centroid triangulations: the points are k-sets, the triangles are configurations of two degrees (thesis
+//! 7.3 and 7.4).
 
 use super::knots::Knots;
 use crate::predicates::Point2;
@@ -11,13 +11,13 @@ use spmesh_model::configurations::Configurations;
 #[derive(Debug, Clone, Default)]
 pub struct CentroidMesh {
     pub(super) order: usize,
-    /// The k-sets, sorted, one after the other.
+    /// The k-sets, each sorted, concatenated.
     pub(super) sets: Vec<u32>,
     /// Centroids of the k-sets, in lexicographic order of the sets. Coordinates are rounded.
     pub vertices: Vec<Point2>,
-    /// Counterclockwise. First those from the higher degree (a vertex is one knot of the boundary with the
-    /// interior), then those from the lower degree (two knots of the boundary). Triangles of copies of a knot
-    /// may be flat.
+    /// Counterclockwise. First come those from the higher degree: a vertex is the interior set and one knot
+    /// of the boundary. Then come those from the lower degree, with two knots of the boundary. Triangles of
+    /// copies of a knot may be flat.
     pub triangles: Vec<[u32; 3]>,
     /// Number of triangles from the higher degree.
     pub from_upper: usize,
@@ -27,12 +27,12 @@ impl CentroidMesh {
     /// The centroid triangulation of order k, by the union map from the configurations of degrees k - 2 and
     /// k - 1.
     ///
-    /// `lower` is `None` for the order 1, which is the start triangulation itself.
+    /// `lower` is `None` for order 1, which is the start triangulation itself.
     ///
     /// Shape: c_(k-1) + c_(k-2) triangles.
     ///
-    /// Cost: little more than linear, if no knot is in very many of the sets; 12 (k + 1) bytes per triangle
-    /// for a time.
+    /// Cost: little more than linear if no knot is in very many of the sets. Memory: 12 (k + 1) bytes per
+    /// triangle, temporarily.
     ///
     /// # Errors
     /// Degrees that are not consecutive; too many triangles.
@@ -57,8 +57,8 @@ impl CentroidMesh {
             [[a], [b], [c]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         for ([a, b, c], interior) in lower.into_iter().flat_map(Configurations::iter) {
-            // In reverse order of a, b, c: each centroid lies point-symmetrically to the corner that it
-            // lacks.
+            // Each centroid is the point reflection of the corner that its pair leaves out, so the pairs in
+            // this order are counterclockwise, too.
             [[b, c], [c, a], [a, b]].iter().for_each(|some| push_set(&mut corners, interior, some));
         }
         let mut mesh = CentroidMesh { order, from_upper: upper.len(), ..CentroidMesh::default() };
@@ -80,7 +80,7 @@ impl CentroidMesh {
     }
 
     /// Numbers the distinct sets among the corners of triangles. All knots are below `knots`. A counting sort
-    /// by least knot leaves small buckets, which are sorted.
+    /// by least knot leaves small buckets, which are then sorted.
     fn join(&mut self, corners: &[u32], knots: usize) {
         let set = |at: u32| &corners[at as usize * self.order..][..self.order];
         let mut order = by_least(corners, self.order, knots);
@@ -99,7 +99,7 @@ impl CentroidMesh {
     }
 }
 
-/// The numbers of sets of one size in the order of their first knots.
+/// The indices of sets of one size, in the order of their first knots.
 fn by_least(sets: &[u32], size: usize, knots: usize) -> Vec<u32> {
     let mut starts = vec![0u32; knots + 1];
     sets.chunks_exact(size).for_each(|set| starts[set[0] as usize + 1] += 1);

@@ -15,10 +15,10 @@ type Present = BTreeMap<u32, u32>;
 impl Start {
     /// Inserts all knots of a rank above 0.
     ///
-    /// The edge to the nearest knot of P(e) will be there, so a triangle around that one is in conflict.
-    /// Copies are inserted in random order. Then stars are small on average, those of nearest knots too,
-    /// because a knot is nearest to at most five others. In the order of ranks, each copy would take over a
-    /// large part of the star of the one before.
+    /// The edge from a copy to the nearest knot of P(e) will be in the triangulation, so a triangle around
+    /// that knot is in conflict. Copies are inserted in random order. Then stars are small on average,
+    /// including stars of nearest knots, because a knot is nearest to at most five others. In the order of
+    /// ranks, each copy would take over a large part of the star of the copy before.
     ///
     /// Cost: O(n log n) expected for n knots, whatever the number of places.
     pub(super) fn insert_copies(&mut self, knots: &Knots) {
@@ -51,7 +51,7 @@ impl Start {
         }
     }
 
-    /// For each knot a corner at it; `Corner::MAX` if it is not in the triangulation.
+    /// For each knot, a corner at it; `Corner::MAX` for knots that are not in the triangulation.
     fn corners_at(&self, count: usize) -> Vec<Corner> {
         let mut corner_at = vec![Corner::MAX; count];
         for (t, triangle) in (0..).zip(&self.triangles) {
@@ -70,8 +70,8 @@ impl Start {
         std::iter::from_fn(move || {
             let corner = next?;
             let (t, i) = (corner as usize / 3, corner as usize % 3);
-            // The edge opposite to the next vertex ends at this vertex; in the triangle across it, this
-            // vertex comes next.
+            // The edge opposite to the next vertex ends at this vertex. In the triangle across that edge,
+            // this vertex follows it.
             let neighbour = self.neighbours[t][(i + 1) % 3];
             let after = neighbour - neighbour % 3 + (neighbour % 3 + 1) % 3;
             next = (after != first).then_some(after);
@@ -81,8 +81,8 @@ impl Start {
 
     /// Replaces the triangles in conflict with a knot by a star around it.
     ///
-    /// All knots stay vertices, so the cavity has no vertex inside. Its triangles form a tree, and none is
-    /// met twice.
+    /// All knots stay vertices, so the cavity has no inner vertex. Its triangles form a tree, so none is
+    /// visited twice.
     fn insert(
         &mut self,
         plane: &mut Plane<FiniteFloatPredicates>,
@@ -124,7 +124,7 @@ impl Start {
         }
     }
 
-    /// The number of a new triangle.
+    /// Adds a triangle and returns its number.
     fn push(&mut self) -> u32 {
         self.triangles.push([0; 3]);
         self.neighbours.push([0; 3]);
@@ -132,8 +132,8 @@ impl Start {
     }
 }
 
-/// Of the knots at one place that are present, the nearest to that of a rank. A knot of rank j lies at (j,
-/// j²), so it is the next of lesser or the next of greater rank.
+/// Of the present knots at one place, the nearest to the knot of this rank. The knot of rank j lies at (j,
+/// j²), so the nearest one has the next lesser or the next greater rank.
 fn nearest(present: &Present, rank: u32) -> Option<u32> {
     let square = |other: u32| {
         let (difference, sum) = (u128::from(rank.abs_diff(other)), u128::from(rank) + u128::from(other));

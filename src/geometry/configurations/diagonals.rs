@@ -3,7 +3,7 @@
 /// Required diagonals in the links of some knots; the rule triangulates the pieces between them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Diagonals {
-    /// The knot and the ends, sorted.
+    /// Each row is a knot and the ends of a diagonal in its link; sorted.
     rows: Vec<(u32, [u32; 2])>,
 }
 
@@ -19,7 +19,7 @@ impl Diagonals {
         self.rows.is_empty()
     }
 
-    /// The ends of the diagonals in the link of a set; none unless it is a single knot.
+    /// The ends of the diagonals in the link of a set; there are some only for single knots.
     ///
     /// Cost: a binary search.
     pub fn of(&self, set: &[u32]) -> impl ExactSizeIterator<Item = [u32; 2]> + '_ {

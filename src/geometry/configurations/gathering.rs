@@ -1,15 +1,16 @@
 //! Computes links from configurations: gathers the edges opposite to corners by set (thesis 7.4).
 //!
-//! The link of J has the edge (a, b) for each configuration (vab, I) with I and v together J. A counting sort
-//! puts edges in order by the least knot of J; the few edges with the same least knot are sorted by the rest
-//! of J.
+//! The link of J has the edge (a, b) for each configuration (vab, I) such that J is the union of I and v. A
+//! counting sort groups edges by the least knot of J. The few edges with the same least knot are then sorted
+//! by the rest of J.
 
 use super::knots::Knots;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::FARAWAY;
 use spmesh_model::configurations::{Configurations, Links};
 
-/// A directed edge packed into one integer, the start in the upper half: faster to compare than two.
+/// A directed edge packed into one integer, with the start in the upper half; comparing one integer is faster
+/// than comparing two.
 type Edge = u64;
 
 fn edge(from: u32, to: u32) -> Edge {
@@ -20,10 +21,10 @@ fn ends(edge: Edge) -> [u32; 2] {
     [(edge >> 32) as u32, edge as u32]
 }
 
-/// Buffers of one least knot.
+/// Buffers for the sets with one least knot.
 #[derive(Default)]
 struct Bucket {
-    /// The sets without their least knots, one after the other.
+    /// The sets without their least knots, concatenated.
     keys: Vec<u32>,
     edges: Vec<Edge>,
     order: Vec<u32>,
@@ -32,11 +33,10 @@ struct Bucket {
     polygon: Vec<u32>,
 }
 
-/// Calls `visit` with each set, sorted, and its link, as a closed polygon of at least two vertices: sets are
-/// sorted by least knot, in the sequence of `order`, and then lexicographically. `order` is a permutation of
-/// all knots.
+/// Calls `visit` with each set, sorted, and its link, a closed polygon of at least two vertices. Sets come in
+/// the sequence of their least knots in `order`, a permutation of all knots, and then lexicographically.
 ///
-/// Cost: O(c k log c) for c configurations; 16 bytes per configuration.
+/// Cost: O(c k log c) for c configurations. Memory: 16 bytes per configuration.
 ///
 /// # Errors
 /// Those of `visit`; edges that do not make one closed polygon.
@@ -60,7 +60,7 @@ pub(super) fn for_each_link(
 /// The links that configurations leave; see [`Links`].
 ///
 /// # Errors
-/// A link that is no closed polygon, which configurations of [`super::link_triangulate`] do not have.
+/// A link that is not a closed polygon; configurations of [`super::link_triangulate`] have none.
 pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     let mut links = Links::new(configurations.degree() + 1);
     let order: Vec<u32> = (0..knots.len() as u32).collect();
@@ -71,12 +71,12 @@ pub fn links(knots: &Knots, configurations: &Configurations) -> Result<Links> {
     Ok(links)
 }
 
-/// Corners of configurations, sorted by the place of the least knot of their set in the order of visits, so
-/// that they are read sequentially.
+/// Corners of configurations, sorted by when the least knot of their set is visited, so that they are read
+/// sequentially.
 struct Corners {
-    /// Thrice the number of the configuration, and the place of the corner.
+    /// Three times the number of the configuration, plus the place of the corner.
     records: Vec<u32>,
-    /// For each place its first record.
+    /// For each visited knot, its first record.
     starts: Vec<u32>,
     /// Group of each configuration; empty for degree 0.
     groups: Vec<u32>,
@@ -118,7 +118,7 @@ impl Corners {
         Ok(Corners { records, starts, ..corners })
     }
 
-    /// Calls `visit` with the least knot of the set of each corner, and its record.
+    /// For each corner, calls `visit` with the least knot of its set, and the record of the corner.
     fn for_each(&self, configurations: &Configurations, mut visit: impl FnMut(u32, u32)) {
         for (number, boundary) in (0..).zip(configurations.boundaries()) {
             let of_interior = match self.interior(configurations, number).first() {
@@ -155,7 +155,7 @@ impl Bucket {
         }
     }
 
-    /// Puts edges in order by set, and visits the link of each.
+    /// Sorts edges by set, and visits the link of each set.
     fn visit_links(
         &mut self,
         width: usize,
@@ -202,7 +202,7 @@ fn visit_chained(
     visit(set, polygon)
 }
 
-/// Puts directed edges in order as one closed polygon without repeated vertices; whether that is possible.
+/// Sorts directed edges into one closed polygon without repeated vertices; returns whether that is possible.
 fn chain(edges: &mut [Edge], polygon: &mut Vec<u32>) -> bool {
     edges.sort_unstable();
     polygon.clear();

@@ -1,20 +1,21 @@
 //! Large links: vertices inserted in random order (Chew, "Building Voronoi diagrams for convex polygons in
-//! linear expected time", 1990; as for one cell of a higher-order Voronoi diagram by Aggarwal, Guibas, Saxe
-//! and Shor, 1989).
+//! linear expected time", 1990; Aggarwal, Guibas, Saxe and Shor, 1989, do the same for one cell of a
+//! higher-order Voronoi diagram).
 //!
-//! Planes that have the lifted knots of J below them or on them, and the lifted vertices of the link of J
-//! above or on them, are a convex cell of the dual space. Its corners at three facets of vertices are the
-//! triangles of the link, and the facet of each vertex borders on those of J in one stretch: they are its
-//! sides that are seen from the plane which touches the lift at the vertex. The same holds for any subset of
-//! the vertices. So those of a subset are a polygon in the same cyclic order, and the facet of one vertex
-//! more cuts off a tree of triangles that starts at the edge between its neighbours, which are known:
-//! vertices are taken out of the polygon in random order, and come back the other way around.
+//! Consider the planes that have the lifted knots of J on or below them, and the lifted vertices of the link
+//! of J on or above them. In dual space they form a convex cell, with facets for knots of J and for vertices.
+//! The corners of the cell where the facets of three vertices meet are the triangles of the link. The facet
+//! of each vertex borders on facets of J in one stretch: these are its sides that are visible from the plane
+//! which touches the lift at the vertex. All this holds for any subset of the vertices, too. So the vertices
+//! of a subset form a polygon in the same cyclic order. The facet of one further vertex cuts off a tree of
+//! triangles, which starts at the edge between the neighbours of the vertex. The neighbours are known:
+//! vertices are removed from the polygon in random order, and inserted in reverse order.
 //!
-//! Triangles of a part of the vertices may be clockwise, or flat: J is not within the vertices then, and
-//! their planes stand for the outside of a circle, or a half-plane. [`super::plane::Plane::is_beyond`] takes
-//! them as they are. No lift decides whether a vertex is in conflict with three others on its line. It counts
-//! as not in conflict, as if it was moved by less than all vertices before; the final triangulation has no
-//! such triangles.
+//! Triangles of a subset of the vertices may be clockwise or flat, because J need not lie within the subset.
+//! Then their planes stand for the outside of a circle, or for a half-plane;
+//! [`super::plane::Plane::is_beyond`] handles both. No lift decides whether a vertex is in conflict with
+//! three others on its line. It counts as not in conflict, as if it were moved by less than all vertices
+//! before it; the final triangulation has no such triangles.
 
 use super::polygon::Triangulator;
 use super::surface::Corner;
@@ -25,24 +26,25 @@ use spmesh_core::random::Random;
 /// Links of at least this many vertices are triangulated by insertion; for smaller ones a search is faster.
 pub(super) const LARGE: usize = 24;
 
-/// No triangle: the border of the polygon.
+/// The neighbour across the border of the polygon: no triangle.
 const OUTSIDE: Corner = Corner::MAX;
 
-/// The triangulation of a polygon into which vertices are inserted; vertices are places in the whole polygon.
+/// The triangulation of a polygon into which vertices are inserted; vertices are numbered by place in the
+/// whole polygon.
 struct Ears {
     triangles: Vec<[u32; 3]>,
-    /// The half-edge on the other side of each half-edge, or [`OUTSIDE`].
+    /// For each half-edge, the opposite half-edge, or [`OUTSIDE`].
     neighbours: Vec<[Corner; 3]>,
-    /// The half-edge from each vertex to the next of the polygon.
+    /// For each vertex, the half-edge to the next vertex of the polygon.
     edge_after: Vec<Corner>,
     /// A stack of edges to look across, with the cavity to the left.
     waiting: Vec<(u32, u32, Corner)>,
-    /// Numbers of free triangles.
+    /// Numbers of triangles that can be reused.
     free: Vec<u32>,
 }
 
 impl<P: Predicates2> Triangulator<'_, P> {
-    /// Triangulates a polygon of at least three vertices whose triangles are all those of the lift.
+    /// Triangulates a polygon of at least three vertices, of which all triangles are those of the lift.
     ///
     /// Cost: O(m) predicates expected for m vertices.
     pub(super) fn insert_vertices(&mut self) -> Result<()> {
@@ -66,7 +68,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
     }
 }
 
-/// For each place the one before and the one after it among those that come before it in `order`.
+/// For each place, its neighbours in the polygon of the places before it in `order`.
 fn neighbours(order: &[u32]) -> Vec<[u32; 2]> {
     let count = order.len() as u32;
     let mut neighbours: Vec<[u32; 2]> =
@@ -80,7 +82,7 @@ fn neighbours(order: &[u32]) -> Vec<[u32; 2]> {
 }
 
 impl Ears {
-    /// The first triangle, with space for `count` vertices.
+    /// The first triangle, with capacity for `count` vertices.
     fn of_triangle(triangle: [u32; 3], count: usize) -> Ears {
         let mut edge_after = vec![OUTSIDE; count];
         for (i, place) in (0..3).zip(triangle) {
@@ -90,8 +92,8 @@ impl Ears {
         Ears { triangles, neighbours, edge_after, waiting: Vec::new(), free: Vec::new() }
     }
 
-    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict. The
-    /// triangles form a tree, so none is met twice.
+    /// Inserts a vertex between its neighbours: a star around it replaces the triangles in conflict. These
+    /// form a tree, so none is visited twice.
     fn insert(
         &mut self,
         place: u32,
@@ -117,7 +119,7 @@ impl Ears {
         self.edge_after[before as usize] = last;
     }
 
-    /// Writes a triangle to a free number.
+    /// Stores a triangle, under a reused number if there is one.
     fn put(&mut self, triangle: [u32; 3]) -> u32 {
         if let Some(free) = self.free.pop() {
             self.triangles[free as usize] = triangle;
@@ -129,7 +131,8 @@ impl Ears {
         self.triangles.len() as u32 - 1
     }
 
-    /// Makes two half-edges one edge, or the one that starts at `from` an edge of the polygon.
+    /// Makes two half-edges opposite to each other. At the border, makes the first one the edge of the
+    /// polygon after `from`.
     fn join(&mut self, here: Corner, there: Corner, from: u32) {
         if there == OUTSIDE {
             self.edge_after[from as usize] = here;
@@ -152,7 +155,7 @@ mod tests {
     use spmesh_model::configurations::FARAWAY;
     use spmesh_model::configurations::{Claim, Configurations};
 
-    /// The triangles that one of the ways gives, in an order of their own.
+    /// The triangles that one of the two methods yields, in a canonical order.
     fn sorted(out: &[[u32; 3]]) -> Vec<[u32; 3]> {
         let mut all = out.to_vec();
         for triangle in &mut all {
@@ -163,8 +166,8 @@ mod tests {
         all
     }
 
-    /// Triangulates all links that are bounded in both ways; the number of those with more than four
-    /// vertices.
+    /// Triangulates all bounded links by both methods and compares them; returns the number of links with
+    /// more than four vertices.
     fn compare(knots: &Knots, start: Configurations, rule: &Rule, degree: usize) -> usize {
         let (claim, diagonals) = (start.claim(), Diagonals::default());
         let order: Vec<u32> = (0..knots.len() as u32).collect();
@@ -230,7 +233,8 @@ mod tests {
 
     #[test]
     fn they_agree_along_a_line() {
-        // All knots of the line are in the link of the knot next to it, and any four of them may come first.
+        // All knots of the line are in the link of the knot next to it, and any four of them may be inserted
+        // first.
         let turns: [fn([f64; 2]) -> [f64; 2]; 4] =
             [|p| p, |[x, y]| [y, x], |[x, y]| [y, -x], |[x, y]| [x + y, x - 2.0 * y]];
         for turn in turns {

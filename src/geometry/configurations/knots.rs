@@ -1,24 +1,24 @@
 //! Knots: points with ids, several of which may coincide.
 //!
 //! # Repeated knots
-//! Configurations are combinatorial: a repeated knot is two knots. To tell copies apart, the set is the limit
-//! of P(e) for e > 0 tending to 0, where the knot of *rank* j is at `p + e (j, j * j)`; the rank is the
-//! number of knots at the same place with lesser ids. For e small enough the knots of P(e) are distinct, and
-//! every sign is that of the first coefficient of a polynomial in e that is not zero (`symbolic`). Knots of
-//! P(e) on one circle or line remain undecided, as in any set of distinct points; the canonical perturbation
-//! of lifts decides these, by the lexicographic order of P(e). So the result is that of an ordinary set of
-//! distinct points that then move together, and the theory applies unchanged. Triangles of two copies and
-//! another knot are counterclockwise in P(e) and have no area at e = 0.
+//! Configurations are combinatorial: a repeated knot is two knots. To tell copies apart, the set of knots is
+//! treated as the limit of sets P(e) for e > 0 tending to 0. In P(e), the knot of *rank* j is at
+//! `p + e (j, j * j)`; its rank is the number of knots with lesser ids at the same place. For small e the
+//! knots of P(e) are distinct, and every sign is the sign of the first nonzero coefficient of a polynomial in
+//! e (`symbolic`). Knots of P(e) on one circle or line remain undecided, as in any set of distinct points.
+//! The canonical perturbation of lifts decides these, by the lexicographic order of P(e). So the result is
+//! that of an ordinary set of distinct points that then move together, and the theory applies unchanged.
+//! Triangles of two copies and another knot are counterclockwise in P(e) and have no area at e = 0.
 //!
-//! Copies lie on a parabola, no three on a line; and no four on a circle, which would need abscissae with the
-//! sum zero.
+//! Copies lie on a parabola, so no three are on a line. No four are on a circle, because their abscissae
+//! would have to sum to zero.
 
 use crate::delaunay2::{MAX_POINTS, distinct};
 use crate::predicates::{Point2, Sign, lexicographic};
 use spmesh_core::error::{Error, Result};
 use std::cmp::Ordering;
 
-/// Knots by id. Those at one place differ in rank.
+/// Knots by id; knots at one place differ in rank.
 #[derive(Debug, Clone, Default)]
 pub struct Knots {
     points: Vec<Point2>,
@@ -27,12 +27,12 @@ pub struct Knots {
 }
 
 impl Knots {
-    /// Knots at `points`, with the indices as ids.
+    /// Knots at `points`; ids are indices.
     ///
     /// Cost: a sort.
     ///
     /// # Errors
-    /// A coordinate that is not finite, more than [`MAX_POINTS`] knots.
+    /// A coordinate that is not finite; more than [`MAX_POINTS`] knots.
     pub fn new(points: Vec<Point2>) -> Result<Knots> {
         if points.len() > MAX_POINTS {
             let found = points.len();
@@ -106,7 +106,7 @@ impl Knots {
             .then_with(|| lexicographic([p[1]], [q[1]]))
     }
 
-    /// The error of a set of knots that has no triangle.
+    /// The error for knots that are all on one line.
     pub(super) fn collinear() -> Error {
         Error::usage("the knots lie on one line: configurations need three that do not")
     }

@@ -5,7 +5,7 @@ use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 use spmesh_core::error::{Error, Result};
 
-/// Replaces x² + y² in the in-circle determinant.
+/// The function that replaces x² + y² in the in-circle determinant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Lift {
     /// Values of a strictly convex function at the knots.
@@ -14,9 +14,9 @@ pub enum Lift {
     Weights(Vec<f64>),
 }
 
-/// More than enough for twelve roundings of each term.
+/// Relative error bound, larger than twelve roundings of each term.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// For sums of magnitudes in this range, no term overflows, and underflow does not matter.
+/// If the sum of magnitudes is in this range, no term overflows, and underflow is negligible.
 const TRUSTED: std::ops::Range<f64> = 1e-150..1e250;
 
 impl Lift {
@@ -26,8 +26,8 @@ impl Lift {
         }
     }
 
-    /// Checks that there is one finite value per knot, and that knots are distinct: copies have no defined
-    /// limit under a function of which only values are known.
+    /// Checks that there is one finite value per knot, and that knots are distinct: the limit of copies is
+    /// undefined under a function of which only values are known.
     pub(super) fn check(&self, knots: &Knots) -> Result<()> {
         let (found, expected) = (self.values().len(), knots.len());
         if found != expected {
@@ -44,8 +44,8 @@ impl Lift {
         Ok(())
     }
 
-    /// Positive if the last of four knots is below the plane of the others, which are counterclockwise; not
-    /// perturbed.
+    /// Positive if the last of four lifted knots is below the plane of the others, which are
+    /// counterclockwise; without perturbation.
     pub(super) fn sign(&self, knots: &Knots, ids: [u32; 4]) -> Sign {
         let d = knots.at(ids[3]);
         let value = |id: u32| self.values()[id as usize];
@@ -73,7 +73,7 @@ impl Lift {
         self.exact_sign(ids.map(|id| knots.at(id)), ids.map(value))
     }
 
-    /// The same in big integers.
+    /// [`Lift::sign`] in big integers.
     #[cold]
     fn exact_sign(&self, points: [[f64; 2]; 4], values: [f64; 4]) -> Sign {
         let mut numbers: Vec<[f64; 3]> = (0..4).map(|i| [points[i][0], points[i][1], values[i]]).collect();

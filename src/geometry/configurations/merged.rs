@@ -1,5 +1,5 @@
-//! Turns centroid triangulations of repeated knots into meshes without degenerate triangles, which every
-//! program accepts.
+//! Turns centroid triangulations of repeated knots into meshes without degenerate triangles, which all
+//! programs accept.
 
 use super::centroids::{CentroidMesh, centroid};
 use super::knots::Knots;
@@ -8,11 +8,11 @@ use crate::predicates::{FiniteFloatPredicates, Predicates2, Sign};
 use foldhash::{HashMap, HashMapExt};
 
 impl CentroidMesh {
-    /// The same with one vertex for sets that have the same places, and without flat triangles.
+    /// The same mesh with one vertex for all sets with the same places, and without flat triangles.
     ///
-    /// Triangles whose boundary has two knots at one place shrink to edges, and the others stay side by side.
-    /// Other flat triangles have knots on a line, some of them moved symbolically. They lie on the border:
-    /// inside it, other triangles would end amid an edge.
+    /// Triangles whose boundary has two knots at one place shrink to edges, and their neighbours become
+    /// adjacent. Other flat triangles have knots on a line, some of them moved symbolically. They lie on the
+    /// border: inside the mesh, other triangles would end in the middle of an edge.
     #[must_use]
     pub fn without_flat(&self, knots: &Knots) -> CentroidMesh {
         let mut predicates = FiniteFloatPredicates::default();
@@ -40,7 +40,7 @@ impl CentroidMesh {
         merged
     }
 
-    /// The three knots of the boundary that a triangle comes from: those that are not in all of its sets.
+    /// The three knots of the boundary that a triangle comes from: the knots that are not in all three sets.
     fn different(&self, corners: [u32; 3]) -> [u32; 3] {
         let [first, second, third] = corners.map(|corner| self.set(corner));
         let lacks = |set: &[u32], id: &u32| set.binary_search(id).is_err();

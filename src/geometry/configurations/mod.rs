@@ -1,15 +1,16 @@
 //! Delaunay configurations of any degree, and their generalisations (thesis 6.2.2 and chapter 7).
 //!
 //! A configuration of degree k is a pair (B, I): three knots B, and the k knots I inside their circle.
-//! [`delaunay`] and [`Start`] give those of degree 0, the triangles of a triangulation; [`link_triangulate`]
-//! goes from each degree to the next: the triangles with interior set J triangulate the polygon that those of
-//! the degree before leave around J, its link. Any rule for triangulating polygons works (proved by Schmitt,
-//! "Bivariate B-splines from convex configurations", J. Comput. System Sci. 120, 2021); [`Rule::Delaunay`]
-//! gives the Delaunay configurations. Every step asserts what the theory states about links.
+//! [`delaunay`] and [`Start`] give the configurations of degree 0, the triangles of a triangulation.
+//! [`link_triangulate`] goes from each degree to the next: the configurations of the previous degree leave a
+//! polygon around each set J, its link, and triangles with interior set J triangulate it. Any rule for
+//! triangulating polygons works (proved by Schmitt, "Bivariate B-splines from convex configurations", J.
+//! Comput. System Sci. 120, 2021); [`Rule::Delaunay`] gives the Delaunay configurations. Every step asserts
+//! what the theory states about links.
 //!
-//! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, `configurations` the
-//! arrays, `gathering` computes links from configurations; `polygon`, `rule`, `apex`, `pieces` and
-//! `insertion` triangulate links to configurations. [`special`] sets up starts and links for special splines.
+//! `knots` has the symbolic perturbation of repeated knots, `plane` the predicates, and `configurations` the
+//! arrays. `gathering` computes links from configurations; `polygon`, `rule`, `apex`, `pieces` and
+//! `insertion` triangulate links. [`special`] sets up starts and links for special splines.
 
 mod apex;
 mod border;
@@ -49,13 +50,13 @@ use spmesh_core::error::{Error, Result};
 
 /// The configurations of the next degree: every link is triangulated by `rule` (thesis, table 7.1).
 ///
-/// Domain: `configurations` are of the same knots. With [`Rule::Delaunay`] all the way from [`delaunay`] on,
-/// these are exactly the Delaunay configurations; with [`Rule::Lifted`] from [`Start::lifted`] on and the
-/// same lift, the projective ones.
+/// Domain: `configurations` are of the same knots. If [`Rule::Delaunay`] made all degrees since [`delaunay`],
+/// these are exactly the Delaunay configurations. If [`Rule::Lifted`] made all degrees since
+/// [`Start::lifted`], with the same lift, they are the projective configurations.
 ///
-/// Cost: O(c k log c) for c configurations, and what the rule costs per link of m vertices: O(m) expected
-/// decisions for [`Rule::Delaunay`] and [`Rule::Lifted`] all the way from their starts, O(m³) for others;
-/// links have about 6 vertices.
+/// Cost: O(c k log c) for c configurations, and the cost of the rule per link of m vertices. That is O(m)
+/// expected decisions for [`Rule::Delaunay`] and [`Rule::Lifted`] if they made all degrees since their
+/// starts, and O(m³) for others. Links have about 6 vertices.
 ///
 /// # Errors
 /// Parameters of the rule that do not fit the knots; a link that is neither a simple polygon nor null (kind
@@ -69,7 +70,7 @@ pub fn link_triangulate(
     step(knots, configurations, rule, &Diagonals::default())
 }
 
-/// [`link_triangulate`] with diagonals that links must have.
+/// [`link_triangulate`] with required diagonals of links.
 fn step(
     knots: &Knots,
     configurations: &Configurations,
@@ -99,7 +100,7 @@ pub fn generate(
     Ok(all)
 }
 
-/// Whether there are enough knots for configurations of a degree: three more.
+/// Checks that there are enough knots for configurations of a degree: three more than the degree.
 ///
 /// # Errors
 /// Usage, if there are too few.
@@ -134,7 +135,8 @@ impl WithPredicates2 for Step<'_> {
         };
         let mut next = Configurations::new(configurations.degree() + 1, claim);
         let mut triangulator = Triangulator::new(knots, (rule, diagonals), claim, predicates);
-        // Visits knots along a curve, so that memory accesses are local whatever the order of ids.
+        // Visits knots along a space-filling curve, so that memory accesses are local whatever the order of
+        // ids.
         let mut curve = SpatialOrder::default();
         let order: Vec<u32> =
             curve.sort(knots.points(), &Extent::of(knots.points()), Curve::Hilbert).collect();

@@ -1,14 +1,14 @@
-//! Triangulates a link that must have given diagonals: they cut it into pieces, which the rule triangulates.
+//! Triangulates a link with required diagonals: they cut it into pieces, which the rule triangulates.
 
 use super::polygon::Triangulator;
 use crate::predicates::Predicates2;
 use spmesh_core::error::{Error, Result};
 
 impl<P: Predicates2> Triangulator<'_, P> {
-    /// Triangulates the polygon so that the given diagonals are edges.
+    /// Triangulates the polygon such that the given diagonals are edges.
     ///
     /// # Errors
-    /// A segment that is no diagonal of the polygon, or crosses another.
+    /// A segment that is not a diagonal of the polygon, or crosses another one.
     pub(super) fn by_diagonals(&mut self, diagonals: Vec<[u32; 2]>) -> Result<()> {
         let mut pieces = vec![self.polygon.clone()];
         for [p, q] in diagonals {
@@ -34,7 +34,7 @@ impl<P: Predicates2> Triangulator<'_, P> {
         Ok(())
     }
 
-    /// Sets the polygon to a piece.
+    /// Makes a piece the polygon.
     fn take(&mut self, piece: &[u32]) {
         self.polygon.clear();
         self.polygon.extend_from_slice(piece);

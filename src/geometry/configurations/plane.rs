@@ -1,5 +1,5 @@
-//! Exact predicates of knots by id: copies displaced symbolically, ties broken canonically, the faraway point
-//! included.
+//! Exact predicates of knots by id: copies are displaced symbolically, ties are broken canonically, and the
+//! faraway point is handled.
 
 use super::knots::{Knots, opposite};
 use super::lift::Lift;
@@ -10,7 +10,7 @@ use spmesh_model::configurations::FARAWAY;
 /// The knots, and the predicates for them.
 pub(super) struct Plane<'a, P> {
     pub(super) knots: &'a Knots,
-    /// The convex function that takes the place of x² + y², if any.
+    /// The convex function that replaces x² + y², if any.
     pub(super) lift: Option<&'a Lift>,
     predicates: &'a mut P,
 }
@@ -35,7 +35,7 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         sign
     }
 
-    /// Whether three knots are on one line where they are, not where they are moved to.
+    /// Whether three knots are on one line at their given positions, not at the perturbed ones.
     pub(super) fn is_flat(&mut self, a: u32, b: u32, c: u32) -> bool {
         self.predicates.orient2d(self.knots.at(a), self.knots.at(b), self.knots.at(c)) == Sign::Zero
     }
@@ -45,7 +45,8 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         self.orient(a, b, c) == Sign::Positive
     }
 
-    /// Whether `d` is inside the circle of `abc`, ties broken; with a lift, whether it is below their plane.
+    /// Whether `d` is inside the circle of `abc`, with ties broken; with a lift, whether it is below their
+    /// plane.
     ///
     /// Domain: four distinct knots, abc counterclockwise in P(e).
     #[inline]
@@ -57,9 +58,9 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         self.is_beyond([a, b, c], d)
     }
 
-    /// The same for any four distinct knots: whether the lifted `d` is on the side of the plane of the others
-    /// on which it is below if abc is counterclockwise. If they are clockwise, this is above; and one side of
-    /// a vertical plane if they lie on a line. False for four knots on a line.
+    /// [`Plane::is_inside`] for any four distinct knots: whether the lifted `d` is on the side of the plane
+    /// of the others that is below for a counterclockwise abc. For a clockwise abc this side is above; for
+    /// abc on a line the plane is vertical. False for four knots on a line.
     pub(super) fn is_beyond(&mut self, [a, b, c]: [u32; 3], d: u32) -> bool {
         let ids = [a, b, c, d];
         let sign = match self.lift {
@@ -78,8 +79,8 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         }
     }
 
-    /// The sign of the derivative of the determinant with respect to the lift of the largest knot for which
-    /// it is not zero.
+    /// The sign of the derivative of the determinant with respect to the lift of a knot: the
+    /// lexicographically largest knot for which the derivative is not zero.
     fn tie(&mut self, [a, b, c, d]: [u32; 4]) -> Sign {
         let mut ranked = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
         ranked.sort_unstable_by(|p, q| self.knots.order(q.0, p.0));
@@ -87,10 +88,10 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         signs.find(|&sign| sign != Sign::Zero).unwrap_or(Sign::Negative)
     }
 
-    /// Whether `d` is in conflict with a triangle, counterclockwise, that may be infinite.
+    /// Whether `d` is in conflict with a counterclockwise triangle, which may be infinite.
     ///
-    /// The disk of an infinite triangle is the half-plane to the left of its finite edge and the open edge
-    /// itself, the limit of disks: so every knot on the border of the hull is a vertex of it.
+    /// The disk of an infinite triangle is the open half-plane to the left of its finite edge, together with
+    /// the open edge, as the limit of disks. So all knots on the border of the hull become vertices of it.
     pub(super) fn is_in_conflict(&mut self, triangle: [u32; 3], d: u32) -> bool {
         match triangle.iter().position(|&v| v == FARAWAY) {
             None => self.is_inside(triangle, d),
@@ -104,7 +105,7 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         }
     }
 
-    /// Whether `d`, on the line through `p` and `q` and neither of them, is between them.
+    /// Whether `d` is strictly between `p` and `q`, given that it is on their line.
     pub(super) fn is_between(&self, p: u32, q: u32, d: u32) -> bool {
         self.knots.order(d, p) != self.knots.order(d, q)
     }

@@ -18,12 +18,12 @@ pub(super) struct Triangulator<'a, P> {
     pub(super) rule: &'a Rule,
     /// Diagonals that links must have, whatever the rule.
     diagonals: &'a Diagonals,
-    /// Whether all degrees were triangulated by the same lift: then no diagonal can be in the way.
+    /// Whether the same lift made all degrees: then all diagonals are free.
     pub(super) is_regular: bool,
-    /// The set whose link it is.
+    /// The set that the link belongs to.
     pub(super) set: Vec<u32>,
     pub(super) polygon: Vec<u32>,
-    /// Whether two vertices of the polygon see each other: unknown, no, yes.
+    /// For each pair of vertices, whether they see each other; `None` if unknown.
     pub(super) sight: Vec<Option<bool>>,
     pub(super) stack: Vec<(usize, usize)>,
     pub(super) out: Vec<[u32; 3]>,
@@ -50,7 +50,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         }
     }
 
-    /// The triangles of a link, in `out`; none if it is null.
+    /// Triangulates a link into `out`, which stays empty if the link is null.
     ///
     /// # Errors
     /// A link that is neither null nor simple.
@@ -83,8 +83,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
     /// Triangulates a link through the faraway point; `chain` is the link without it.
     ///
     /// The hull of the other knots has a border path from the start to the end of the chain, with the set to
-    /// the left. Its edges make the infinite triangles, whatever the rule: these are half-planes, which need
-    /// no lift. Pockets lie between the path and the chain.
+    /// its left. The edges of the path make the infinite triangles, whatever the rule: these are half-planes,
+    /// which need no lift. Pockets lie between the path and the chain.
     fn unbounded(&mut self, chain: &[u32]) -> Result<()> {
         self.polygon.clear();
         self.polygon.extend_from_slice(chain);
@@ -107,8 +107,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Ok(())
     }
 
-    /// The border of the convex hull of a chain, clockwise from its first to its last vertex, with all knots
-    /// on it.
+    /// The border of the convex hull of a chain, clockwise from its first to its last vertex, including all
+    /// knots on it.
     fn hull_path(&mut self, chain: &[u32]) -> Result<Vec<u32>> {
         if chain.len() == 2 {
             return Ok(chain.to_vec());
@@ -170,7 +170,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         self.by_rule()
     }
 
-    /// Writes the triangle of three places of the polygon.
+    /// Outputs the triangle of three places of the polygon.
     pub(super) fn emit(&mut self, i: usize, j: usize, k: usize) -> Result<()> {
         let [a, b, c] = [i, j, k].map(|place| self.polygon[place]);
         if !self.plane.is_left(a, b, c) {
@@ -180,9 +180,9 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         Ok(())
     }
 
-    /// Triangulates the link of one of two knots at one place with diagonals from the other (thesis, figure
-    /// 8.7), whatever the rule. Returns whether that was possible. Delaunay configurations have these
-    /// diagonals anyway, except for ties.
+    /// If a link of a single knot contains another knot at the same place, triangulates it by diagonals from
+    /// that knot (thesis, figure 8.7), whatever the rule. Returns whether that was possible. Delaunay
+    /// configurations have these diagonals anyway, except for ties.
     fn fan_from_copy(&mut self) -> bool {
         let &[v] = &self.set[..] else { return false };
         if self.is_regular || !self.plane.knots.has_copies() {
@@ -202,7 +202,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         true
     }
 
-    /// Whether the diagonal between two places lies inside the polygon; edges count as such.
+    /// Whether the diagonal between two places lies inside the polygon, or is an edge.
     pub(super) fn sees(&mut self, i: usize, j: usize) -> bool {
         let count = self.polygon.len();
         let (i, j) = (i.min(j), i.max(j));
@@ -230,7 +230,7 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         !outside
     }
 
-    /// Whether no edge meets the diagonal but at its ends.
+    /// Whether no edge meets the diagonal except at its ends.
     fn is_free(&mut self, i: usize, j: usize) -> bool {
         let count = self.polygon.len();
         let diagonal = [i, j].map(|place| self.polygon[place]);
@@ -244,8 +244,8 @@ impl<'a, P: Predicates2> Triangulator<'a, P> {
         })
     }
 
-    /// The assertion of thesis 7.4 on a polygon, or on an open chain. Links of one knot are those of a
-    /// triangulation, which are star-shaped.
+    /// Asserts thesis 7.4: a polygon, or an open chain, is simple. Links of single knots need no test: in a
+    /// triangulation they are star-shaped.
     fn require_simple(&mut self, is_closed: bool) -> Result<()> {
         if self.set.len() == 1 {
             return Ok(());

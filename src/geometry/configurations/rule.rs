@@ -4,10 +4,10 @@ use super::knots::Knots;
 use super::lift::Lift;
 use spmesh_core::error::{Error, Result};
 
-/// Scale of coordinates and values, so that sums of differences of the largest f64 are finite. Exact except
-/// for numbers near zero.
+/// Scale of coordinates and values, so that sums of differences stay finite even for the largest f64. Scaling
+/// is exact except for numbers near zero.
 const SCALE: f64 = 1.0 / (1u64 << 40) as f64;
-/// More than any difference of scaled numbers, and small enough for long sums.
+/// Greater than any difference of scaled numbers, and small enough for long sums.
 const WEIGHT_MAX: f64 = f64::MAX * SCALE;
 
 /// How links are triangulated.
@@ -16,30 +16,32 @@ pub enum Rule {
     /// The constrained Delaunay triangulation; with the Delaunay triangulation as the start, this gives
     /// exactly the Delaunay configurations.
     Delaunay,
-    /// The same for another lift; with [`super::Start::lifted`], projective configurations (thesis 7.3).
+    /// The constrained triangulation by another lift; with [`super::Start::lifted`], projective
+    /// configurations (thesis 7.3).
     Lifted(Lift),
-    /// The least sum of lengths of edges.
+    /// The least sum of edge lengths.
     MinWeight,
-    /// Ears are cut in order, from the least knot on.
+    /// Cuts ears in order, starting from the least knot.
     Ear,
     /// As many diagonals as possible from the least knot.
     Fan,
-    /// At random, from a seed and the set, so that the order of links does not matter.
+    /// At random, by a seed and the set, so that the result does not depend on the order of links.
     Random(u64),
-    /// The least extent of edges across a direction, in degrees counterclockwise from the x axis.
+    /// The least extent of edges perpendicular to a direction, in degrees counterclockwise from the x axis.
     Aligned(f64),
-    /// Data-dependent: the least sum of differences of values, one per knot, along edges, so that edges
-    /// follow level lines.
+    /// Data-dependent, with one value per knot: the least sum of differences of values along edges, so that
+    /// edges follow level lines.
     Data(Vec<f64>),
-    /// The same for a gradient at each knot: the least sum of jumps of slope along edges.
+    /// Data-dependent, with one gradient per knot: the least sum of jumps of slope along edges.
     Gradients(Vec<[f64; 2]>),
 }
 
 impl Rule {
-    /// Whether the parameters make sense for `knots`.
+    /// Checks that the parameters fit `knots`.
     ///
     /// # Errors
-    /// An angle that is not finite, values that are not as many as knots or not finite.
+    /// An angle that is not finite; a number of values other than the number of knots; values that are not
+    /// finite.
     pub fn check(&self, knots: &Knots) -> Result<()> {
         match self {
             Rule::Lifted(lift) => lift.check(knots),

@@ -3,11 +3,11 @@
 use super::plane::Plane;
 use crate::predicates::Predicates2;
 
-/// Two edges of a polygon, or of an open chain, that have a point in common other than a common vertex.
+/// Two edges of a polygon, or of an open chain, that have a point in common other than a shared vertex.
 ///
 /// Domain: distinct vertices.
 ///
-/// Cost: O(n log n) and a test for each pair of edges that overlap in x and y.
+/// Cost: O(n log n), plus a test for each pair of edges that overlap in x and y.
 pub(super) fn crossing<P: Predicates2>(
     plane: &mut Plane<P>,
     polygon: &[u32],
@@ -36,7 +36,7 @@ pub(super) fn crossing<P: Predicates2>(
     None
 }
 
-/// Whether two edges of one polygon meet where they should not.
+/// Whether two edges of one polygon meet at a point other than a shared vertex.
 fn meet<P: Predicates2>(plane: &mut Plane<P>, e: [u32; 2], f: [u32; 2]) -> bool {
     let range = |[a, b]: [u32; 2]| {
         let (p, q) = (plane.knots.at(a)[1], plane.knots.at(b)[1]);
@@ -55,12 +55,12 @@ fn meet<P: Predicates2>(plane: &mut Plane<P>, e: [u32; 2], f: [u32; 2]) -> bool 
     plane.do_meet(e, f)
 }
 
-/// Whether the chain abc goes back on itself.
+/// Whether the chain abc turns back on itself.
 fn folds<P: Predicates2>(plane: &mut Plane<P>, a: u32, b: u32, c: u32) -> bool {
     plane.orient(a, b, c) == crate::predicates::Sign::Zero && !plane.is_between(a, c, b)
 }
 
-/// A chain or polygon of three vertices or fewer.
+/// Tests a chain or polygon of at most three vertices.
 fn flat<P: Predicates2>(plane: &mut Plane<P>, polygon: &[u32], is_closed: bool) -> Option<[[u32; 2]; 2]> {
     let &[a, b, c] = polygon else { return None };
     let is_bad = if is_closed { !plane.is_left(a, b, c) } else { folds(plane, a, b, c) };

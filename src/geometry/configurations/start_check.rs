@@ -1,8 +1,8 @@
 //! Whether triangles are a triangulation of the convex hull of all knots.
 //!
-//! They must be counterclockwise, and every directed edge must have its opposite, except for one cycle that
-//! is convex and goes around once. Then the triangles cover the inside of the cycle once (winding numbers),
-//! and edges meet at knots only.
+//! The triangles must be counterclockwise. Every directed edge must have its opposite, except for the edges
+//! of one cycle, which is convex and goes around once. Then the triangles cover the inside of the cycle once
+//! (winding numbers), and edges meet only at knots.
 
 use super::knots::Knots;
 use super::plane::Plane;
@@ -35,7 +35,7 @@ pub(super) fn check(knots: &Knots, triangles: &[[u32; 3]]) -> Result<()> {
     check_border(&mut plane, &border(triangles)?)
 }
 
-/// The edges that have a triangle to the left only, in order as one cycle.
+/// The edges with a triangle to the left only, in order as one cycle.
 pub(super) fn border(triangles: &[[u32; 3]]) -> Result<Vec<[u32; 2]>> {
     let edges = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
     let mut all: Vec<[u32; 2]> = triangles.iter().flat_map(edges).collect();

@@ -1,5 +1,4 @@
-//! Triangulations to start from: a triangulated sphere of the plane and the faraway point, with flips and
-//! insertion.
+//! Start triangulations: triangulated spheres of the plane and the faraway point, with flips and insertion.
 
 use super::knots::Knots;
 use super::lift::Lift;
@@ -12,27 +11,27 @@ use spmesh_core::random::Random;
 use spmesh_model::configurations::FARAWAY;
 use spmesh_model::configurations::{Claim, Configurations};
 
-/// A corner of a triangle, and the half-edge opposite to it: thrice the number of the triangle, and the
-/// place.
+/// A corner of a triangle, and the half-edge opposite to it: three times the number of the triangle, plus the
+/// place of the corner.
 pub(super) type Corner = u32;
 
 /// A triangulation of the convex hull of all knots; every knot is a vertex.
 #[derive(Debug, Clone)]
 pub struct Start {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The half-edge on the other side of each half-edge.
+    /// For each half-edge, the opposite half-edge.
     pub(super) neighbours: Vec<[Corner; 3]>,
     pub(super) claim: Claim,
 }
 
-/// The canonical Delaunay triangulation; of knots at one place only the first is a vertex.
+/// The canonical Delaunay triangulation; of several knots at one place, only the first is a vertex.
 fn kernel_mesh(knots: &Knots) -> Result<Triangles> {
     let mut mesh = Triangles::default();
     Kernel::new().triangulate(knots.points(), &mut mesh)?;
     if mesh.triangles().is_empty() { Err(Knots::collinear()) } else { Ok(mesh) }
 }
 
-/// Its triangles, and after them the infinite ones at the edges of the hull.
+/// The triangles of a mesh, followed by the infinite ones at the edges of the hull.
 fn triangles_of(mesh: &Triangles) -> Vec<[u32; 3]> {
     let mut triangles = Vec::with_capacity(mesh.triangles().len() + mesh.hull.len());
     triangles.extend(mesh.triangles().iter().map(|triangle| triangle.vertices));
@@ -41,7 +40,7 @@ fn triangles_of(mesh: &Triangles) -> Vec<[u32; 3]> {
     triangles
 }
 
-/// For each half-edge of [`triangles_of`], the one on the other side.
+/// For each half-edge of [`triangles_of`], the opposite half-edge.
 fn neighbours_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
     let (finite, infinite) = (mesh.triangles().len() as u32, mesh.hull.len() as u32);
     let outside: HashMap<u32, u32> = mesh.hull.iter().copied().zip(finite..).collect();
@@ -64,13 +63,14 @@ fn neighbours_of(mesh: &Triangles) -> Vec<[Corner; 3]> {
     neighbours
 }
 
-/// The border of the convex hull, counterclockwise, with all knots on it; of those at one place the first.
+/// The border of the convex hull, counterclockwise, with all knots on it; of several knots at one place, only
+/// the first.
 pub(super) fn hull(knots: &Knots) -> Result<Vec<u32>> {
     Ok(kernel_mesh(knots)?.hull)
 }
 
-/// The Delaunay triangulation of `knots` as configurations of degree 0, computed without a [`Start`] if no
-/// two knots coincide.
+/// The Delaunay triangulation of `knots` as configurations of degree 0. If no two knots coincide, it is
+/// computed without a [`Start`].
 ///
 /// Cost: little more than the kernel's.
 ///
@@ -99,11 +99,11 @@ impl Start {
         Ok(start)
     }
 
-    /// The triangulation below which no lifted knot lies (a regular triangulation): projective configurations
-    /// of degree 0.
+    /// The triangulation with no lifted knot below it (a regular triangulation): projective configurations of
+    /// degree 0.
     ///
     /// # Errors
-    /// Knots on one line, values that do not fit the knots, a lift that is not strictly convex at some knot.
+    /// Knots on one line; values that do not fit the knots; a lift that is not strictly convex at some knot.
     pub fn lifted(knots: &Knots, lift: &Lift) -> Result<Start> {
         lift.check(knots)?;
         let mut start = Start::delaunay(knots)?;
@@ -135,7 +135,7 @@ impl Start {
     ///
     /// # Errors
     /// An unknown knot, a triangle that is flat or clockwise, an edge with two triangles on one side, a
-    /// border that is not that of the convex hull, a knot that is no vertex.
+    /// border other than the border of the convex hull, a knot that is not a vertex.
     pub fn of_triangles(knots: &Knots, triangles: &[[u32; 3]]) -> Result<Start> {
         super::start_check::check(knots, triangles)?;
         let border = super::start_check::border(triangles)?;
@@ -160,8 +160,8 @@ impl Start {
         Configurations::of_triangles(self.claim, self.triangles.clone())
     }
 
-    /// Flips edges chosen at random until `count` are flipped, or none was found in many trials; the number
-    /// of flips.
+    /// Flips random edges until `count` are flipped, in at most `64 * count` trials. Returns the number of
+    /// flips.
     pub fn flip_random(&mut self, knots: &Knots, count: usize, seed: u64) -> usize {
         let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
@@ -180,8 +180,8 @@ impl Start {
         flips
     }
 
-    /// Flips edges as long as the other diagonal is nearer to the direction of `degrees`, counterclockwise
-    /// from the x axis; the number of flips.
+    /// Flips edges while the other diagonal is nearer to the direction `degrees`, counterclockwise from the x
+    /// axis. Returns the number of flips.
     pub fn flip_aligned(&mut self, knots: &Knots, degrees: f64) -> usize {
         let mut predicates = FiniteFloatPredicates::default();
         let mut plane = Plane::new(knots, None, &mut predicates);
@@ -203,17 +203,17 @@ impl Start {
         flips
     }
 
-    /// The corners around the edge opposite to a corner, counterclockwise from it, if both triangles are
-    /// finite.
+    /// The corners of the two triangles at the edge opposite to a corner, counterclockwise from that corner;
+    /// `None` if one of the triangles is infinite.
     pub(super) fn quadrilateral(&self, corner: Corner) -> Option<[u32; 4]> {
         let all = self.around(corner).corners;
         (!all.contains(&FARAWAY)).then_some(all)
     }
 
-    /// The two triangles at the edge opposite to a corner, with what is around them.
+    /// The two triangles at the edge opposite to a corner, with their corners and neighbours.
     pub(super) fn around(&self, corner: Corner) -> Around {
         let neighbour = self.neighbours[corner as usize / 3][corner as usize % 3];
-        // For a triangle as seen from a corner: its vertices, and its neighbours.
+        // The vertices and the neighbours of a triangle, starting from one of its corners.
         let seen = |from: Corner| {
             let (triangle, place) = (from as usize / 3, from as usize % 3);
             let places = [place, (place + 1) % 3, (place + 2) % 3];
@@ -230,8 +230,8 @@ impl Start {
             .is_some_and(|[v, a, w, b]| plane.is_left(v, a, w) && plane.is_left(w, b, v))
     }
 
-    /// Whether a flip leaves the stars of knots at one place what splines need there: edges without length
-    /// stay, and no triangle becomes flat but those that have such an edge.
+    /// Whether a flip keeps the stars of coinciding knots as splines need them: edges without length stay,
+    /// and no triangle becomes flat unless it has an edge without length.
     fn keeps_places(&self, plane: &mut Plane<FiniteFloatPredicates>, corner: Corner) -> bool {
         let knots = plane.knots;
         let Some([v, a, w, b]) = self.quadrilateral(corner).filter(|_| knots.has_copies()) else {
@@ -267,13 +267,13 @@ impl Start {
 /// Two triangles that share an edge.
 pub(super) struct Around {
     pub(super) triangles: [u32; 2],
-    /// Counterclockwise from a corner that is not on the edge.
+    /// Counterclockwise, starting from a corner that is not on the shared edge.
     pub(super) corners: [u32; 4],
-    /// Half-edges across the sides of the quadrilateral, from that corner on.
+    /// Half-edges across the sides of the quadrilateral, starting from that corner.
     pub(super) neighbours: [Corner; 4],
 }
 
-/// How far an edge is from a direction: the sine of the angle. An edge without length is not far from any.
+/// How far an edge is from a direction: the sine of the angle, and zero for an edge without length.
 pub(super) fn deviation(knots: &Knots, [a, b]: [u32; 2], degrees: f64) -> f64 {
     let (p, q) = (knots.at(a), knots.at(b));
     let [x, y] = [q[0] - p[0], q[1] - p[1]];
@@ -282,7 +282,7 @@ pub(super) fn deviation(knots: &Knots, [a, b]: [u32; 2], degrees: f64) -> f64 {
     if length > 0.0 { ((x * sin - y * cos) / length).abs() } else { 0.0 }
 }
 
-/// For each half-edge, the one on the other side.
+/// For each half-edge, the opposite half-edge.
 fn join(triangles: &[[u32; 3]]) -> Result<Vec<[Corner; 3]>> {
     let mut edges: Vec<(u32, u32, Corner)> = Vec::with_capacity(3 * triangles.len());
     for (t, triangle) in (0..).zip(triangles) {

@@ -1,11 +1,11 @@
-//! Signs of knots that are moved symbolically ([`super::knots`]): determinants as polynomials in e, in big
+//! Signs for symbolically displaced knots ([`super::knots`]): determinants as polynomials in e, in big
 //! integers.
 
 use super::knots::Knots;
 use crate::predicates::{Sign, exact_integers};
 use num_bigint::BigInt;
 
-/// A polynomial in e: the coefficients, the constant one first.
+/// A polynomial in e, by its coefficients from the constant one on.
 type Polynomial = Vec<BigInt>;
 
 /// Orientation of three knots of P(e); zero if they are collinear for all e.
@@ -26,7 +26,7 @@ pub(super) fn in_circle(knots: &Knots, ids: [u32; 4]) -> Sign {
     first_sign(&sum.into_iter().reduce(|sum, term| plus(&sum, &term)).unwrap_or_default())
 }
 
-/// Positions as linear polynomials. The unit of e may differ from call to call.
+/// Positions as linear polynomials in e. The unit of e may differ from call to call.
 fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[Polynomial; 2]; N] {
     let points = exact_integers::integers(ids.map(|id| knots.at(id)));
     std::array::from_fn(|i| {

@@ -1,11 +1,10 @@
-//! The union map, which makes faces of k-set polytopes of configurations, and its inverse (thesis, equations
-//! 7.3 and 7.4).
+//! The union map, which turns configurations into faces of k-set polytopes, and its inverse (thesis,
+//! equations 7.3 and 7.4).
 
-/// The sets that a configuration makes with `count` knots of its boundary at a time, each sorted, in
-/// lexicographic order: all unions of I with `count` of B.
+/// All unions of I with `count` knots of B, each sorted, in lexicographic order.
 ///
-/// Domain: disjoint sets, `count` from 1 to one less than the size of `boundary`; otherwise there are none.
-/// (The thesis has one less in equation 7.3 than in theorem 7.1.2, which is right.)
+/// Domain: disjoint sets; `count` from 1 to one less than the size of `boundary`, otherwise there are no
+/// unions. (In the thesis the bound in equation 7.3 is one less than in theorem 7.1.2, which is right.)
 #[must_use]
 pub fn union_map(boundary: &[u32], interior: &[u32], count: usize) -> Vec<Vec<u32>> {
     if count == 0 || count >= boundary.len() {
@@ -29,7 +28,7 @@ fn choose(from: &[u32], count: usize, with: Vec<u32>, sets: &mut Vec<Vec<u32>>) 
     }
 }
 
-/// A configuration and how many of its boundary are taken at a time; sets are sorted.
+/// A configuration and the number of boundary knots that are taken at a time; sets are sorted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnionSource {
     /// The boundary set B.
@@ -42,7 +41,7 @@ pub struct UnionSource {
 
 /// The preimage of `sets` under the union map; `None` if there is none.
 ///
-/// B is the union of the sets without their intersection, which is I.
+/// I is the intersection of the sets, and B is their union without I.
 #[must_use]
 pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let first = sets.first()?;
@@ -56,7 +55,8 @@ pub fn inverse_union_map(sets: &[Vec<u32>]) -> Option<UnionSource> {
     let mut given: Vec<Vec<u32>> = sets.to_vec();
     given.iter_mut().for_each(|set| set.sort_unstable());
     given.sort_unstable();
-    // If the number of unions differs, the sets are no image; compare counts before computing all unions.
+    // If the number of unions differs, the sets are not an image. Compare numbers before computing all
+    // unions.
     let expected = binomial(source.boundary.len(), source.count)?;
     let is_image =
         expected == given.len() && union_map(&source.boundary, &source.interior, source.count) == given;

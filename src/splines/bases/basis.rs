@@ -18,11 +18,11 @@ use spmesh_geometry::predicates::{Point2, area};
 /// Functions of one degree over configurations of knots.
 ///
 /// A function is a sum of B-splines with factors. A B-spline belongs to a set of k knots, its *interior set*,
-/// and consists of the simplex splines of the configurations around that set. On lines through knots
-/// functions or derivatives may jump: there they take the limit from the side of the middle of the domain.
-/// Exact predicates decide sides, so that values at knots, on lines and on the border are correct.
+/// and consists of the simplex splines of the configurations around that set. Functions or derivatives may
+/// jump across lines through knots. On such a line they take the limit from the side of the middle of the
+/// domain. Exact predicates decide sides, so values at knots, on lines and on the border are correct.
 ///
-/// Cost: one descent of a tree and a few elements for each point; for degree 2, about four elements and seven
+/// Cost: per point, one descent of a tree and a few elements; for degree 2, about four elements and seven
 /// functions are nonzero.
 #[derive(Debug, Clone)]
 pub struct Basis {
@@ -39,7 +39,7 @@ pub struct Basis {
     pub(super) tree: Tree,
 }
 
-/// Buffers for evaluations: one for each thread.
+/// Buffers for evaluations; each thread needs its own.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     values: Vec<(u32, f64)>,
@@ -60,29 +60,29 @@ impl Basis {
         self.len() == 0
     }
 
-    /// The degree of the polynomials that functions are made of, and that they reproduce.
+    /// The degree of the polynomials that functions consist of and reproduce.
     #[must_use]
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// The interior sets of the B-splines whose sum a function is, each with a factor; for degree 0, the
+    /// The B-splines that a function is the sum of, as interior sets with factors; for degree 0, the
     /// triangle.
     ///
     /// # Panics
-    /// If there is no such function; so do all methods that take the number of a function.
+    /// If there is no such function. All methods that take the number of a function panic then.
     pub fn terms(&self, function: usize) -> impl Iterator<Item = (&[u32], f64)> {
         self.sets.terms(function)
     }
 
-    /// The Greville site of a function: the mean of the knots of its interior set; the mean of several sets
-    /// by their factors; for degree 0, that of the triangle.
+    /// The Greville site of a function: the mean of the knots of its interior set. With several sets it is
+    /// the mean of their means, weighted by their factors; for degree 0, it is the centroid of the triangle.
     #[must_use]
     pub fn greville(&self, function: usize) -> Point2 {
         self.greville[function]
     }
 
-    /// The least box that contains the support of a function, from lower left to upper right: `None` for a
+    /// The bounding box of the support of a function, as lower left and upper right corner; `None` for a
     /// function that is zero.
     #[must_use]
     pub fn support(&self, function: usize) -> Option<[Point2; 2]> {
@@ -98,12 +98,11 @@ impl Basis {
         linear_simplices + self.tree.bytes() + self.elements.bytes()
     }
 
-    /// Whether a point is in the domain: the convex, closed region where functions sum to one, and reproduce
-    /// polynomials of their degree k. It is where every closed half-plane has k knots, copies counted; for
-    /// degree 0 as for degree 1, that is the convex hull.
+    /// Whether a point is in the domain: the convex, closed region where functions sum to one and reproduce
+    /// polynomials of their degree k. A point is in it if every closed half-plane that contains the point
+    /// contains at least k knots, copies counted. For degrees 0 and 1 the domain is the convex hull.
     ///
-    /// (A domain that is a segment or a point only, without an inside, is not one where functions sum to
-    /// one.)
+    /// (Functions do not sum to one on a domain without interior, that is, a segment or a point.)
     #[must_use]
     pub fn is_in_domain(&self, x: Point2) -> bool {
         let is_right = |&line: &u32| super::domain::is_right_or_on(self.domain.lines[line as usize], x);
@@ -131,8 +130,8 @@ impl Basis {
         &scratch.values
     }
 
-    /// The functions alive at a point, with values and derivatives, in order of their numbers: limits from
-    /// the middle of the domain, where there is a jump.
+    /// The functions alive at a point, with values and derivatives, in order of their numbers. At a jump
+    /// these are the limits from the side of the middle of the domain.
     ///
     /// These are the functions of [`Basis::at`].
     pub fn jets_at<'a>(&self, x: Point2, scratch: &'a mut Scratch) -> &'a [(u32, Jet)] {
@@ -157,9 +156,9 @@ impl Basis {
         jets.fold(Jet::default(), |sum, &(function, jet)| sum + jet * coefficients[function as usize])
     }
 
-    ///
+    /// Checks that there is one coefficient for each function, and that all are finite.
     /// # Errors
-    /// Not one finite coefficient for each function.
+    /// Usage, for another number of coefficients; malformed, for a coefficient that is not finite.
     pub(super) fn check_coefficients(&self, coefficients: &[f64]) -> Result<()> {
         if coefficients.len() != self.len() {
             let what = format!(
@@ -192,7 +191,7 @@ impl Basis {
         self.for_each_share(element, x, &mut scratch.knots, |function, value| add(values, function, value));
     }
 
-    /// The part of an element in the value of a spline at a point.
+    /// The contribution of an element to the value of a spline at a point.
     pub(super) fn value_of_element(
         &self,
         element: usize,
@@ -207,7 +206,8 @@ impl Basis {
         sum
     }
 
-    /// Calls `take` with functions and what the element adds to their values, if the point is inside.
+    /// If the point is inside the element, calls `take` with each function and the element's contribution to
+    /// its value.
     #[inline(always)]
     fn for_each_share(
         &self,
@@ -238,7 +238,7 @@ impl Basis {
         self.for_each_careful_share(element, x, knots, take);
     }
 
-    /// The same by the recurrence.
+    /// [`Basis::for_each_share`] by the recurrence instead of the closed form.
     #[cold]
     fn for_each_careful_share(
         &self,
@@ -307,7 +307,7 @@ impl Basis {
     }
 }
 
-/// Adds to the entry of a function.
+/// Adds a value to the entry of a function.
 #[inline(always)]
 fn add<T: std::ops::AddAssign>(all: &mut Vec<(u32, T)>, function: u32, value: T) {
     match all.iter_mut().find(|(other, _)| *other == function) {

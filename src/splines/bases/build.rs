@@ -14,19 +14,19 @@ use spmesh_geometry::predicates::{ExpansionPredicates, Extent, Point2};
 use spmesh_model::functions::Function;
 
 impl Basis {
-    /// The B-splines of degree k that the links of configurations of degree k - 1 make, in the order of
+    /// The B-splines of degree k that belong to the links of configurations of degree k - 1, in the order of
     /// links, without those that are zero everywhere.
     ///
-    /// They sum to one, and reproduce polynomials of degree k by polar forms, where every closed half-plane
-    /// has k knots.
+    /// They sum to one and reproduce polynomials of degree k, by polar forms, at every point for which each
+    /// closed half-plane that contains it contains at least k knots ([`Basis::is_in_domain`]).
     ///
     /// Domain: the configurations are of these knots.
     ///
     /// Source: Neamtu 2004; thesis 8.1.
     ///
     /// # Errors
-    /// Usage, for knots whose coordinates make areas overflow or underflow, too great a degree,
-    /// configurations that leave no links, or of which nothing is not zero.
+    /// Usage, for knots whose coordinates make areas overflow or underflow, a degree that is too great,
+    /// configurations without links, or functions that are all zero.
     pub fn new(knots: &Knots, configurations: &Configurations) -> Result<Basis> {
         check(knots, configurations)?;
         let links = configurations::links(knots, configurations)?;
@@ -79,8 +79,8 @@ impl Basis {
         Basis::of_elements(knots, configurations, sets, elements)
     }
 
-    /// Functions of degree 0: one on a triangle each, and zero elsewhere; in the order of configurations,
-    /// without flat ones.
+    /// Functions of degree 0, in the order of configurations: one inside a triangle and zero elsewhere. Flat
+    /// triangles are left out.
     ///
     /// # Errors
     /// Those of [`Basis::new`]; configurations of another degree.
@@ -160,7 +160,7 @@ impl Basis {
     }
 }
 
-/// Checks the limits that all bases have.
+/// Checks what all bases require of knots and configurations.
 fn check(knots: &Knots, configurations: &Configurations) -> Result<()> {
     if !ExpansionPredicates::covers(&Extent::of(knots.points())) {
         let what =
@@ -186,7 +186,7 @@ fn check(knots: &Knots, configurations: &Configurations) -> Result<()> {
     }
 }
 
-/// Elements, if functions belong to links.
+/// The elements of functions that belong to links.
 fn of_links(
     knots: &Knots,
     configurations: &Configurations,
@@ -209,7 +209,7 @@ fn hull(elements: &Elements, element: usize, points: &[Point2]) -> Hull {
     Hull { lower: extent.lower, upper: extent.upper, edges: hull_edges(&knots) }
 }
 
-/// The box of each function: an empty one, if it has no element.
+/// The bounding box of the support of each function; empty if it has no element.
 fn supports(elements: &Elements, hulls: &[Hull], functions: usize) -> Vec<[Point2; 2]> {
     let mut supports = vec![[[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]]; functions];
     for (at, hull) in hulls.iter().enumerate() {

@@ -1,10 +1,10 @@
 //! Values at jumps: the limit along a fixed direction.
 //!
 //! Simplex splines of degree 0, derivatives, and splines over repeated or collinear knots jump across lines
-//! through knots. On such a line closed triangles would count twice. So the value of a function at x is that
-//! at x + e d + e^2 d' for all small e > 0, where d points towards a fixed point and d' is d turned left. No
-//! line contains these points for all small e, so that all functions take the limit from the same side. With
-//! an inner point of a convex domain, d points inward on its border.
+//! through knots. On such a line closed triangles would count twice. So the value of a function at x is
+//! defined as the limit at x + e d + e^2 d' for small e > 0, where d points towards a fixed point and d' is d
+//! turned left. No line contains these points for all small e, so all functions take the limit from the same
+//! side. If the fixed point is inside a convex domain, d points inward on the border.
 
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
@@ -16,7 +16,7 @@ pub struct DirectionalLimit {
 }
 
 impl DirectionalLimit {
-    /// The limit at `x` from the direction of `from`; from the right along the x axis, if they are equal.
+    /// The limit at `x` from the direction of `from`; if they are equal, from the right along the x axis.
     #[must_use]
     pub fn new(x: Point2, from: Point2) -> DirectionalLimit {
         DirectionalLimit { x, from }

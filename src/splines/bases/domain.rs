@@ -1,47 +1,49 @@
 //! Where all functions sum to one.
 //!
-//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials where every
-//! closed half-plane has k knots at least: the *domain*. (Simplex splines of configurations of degree k need
-//! k + 1 knots; functions of degree 0 need what those of degree 1 do, the convex hull.)
+//! Functions of degree k from links of configurations of degree k - 1 reproduce polynomials in the *domain*:
+//! the points x such that every closed half-plane that contains x contains at least k knots. (Simplex splines
+//! of configurations of degree k need k + 1 knots. Functions of degree 0 have the domain of degree 1, the
+//! convex hull.)
 //!
-//! *Why they do.* Take a polynomial with the polar form P. The sum of P(J) times the B-spline of J, over all
-//! links, is configuration by configuration that of P(I, x) N(x | B, I) over those of degree k - 1, as in the
-//! thesis (6.2.2). This is what the links of degree k - 1 give with the polar form P(., x), but for the
-//! infinite configurations (p, q, I): these add terms that vanish unless x is in the hull of I, p and q, to
-//! the left of the line from p to q. No point of the domain is strictly left of a line with less than k knots
-//! to its left. So all degrees down to 0 give the same, and degree 0 is a triangulation.
+//! *Why they do.* Take a polynomial with the polar form P. The sum over all links of P(J) times the B-spline
+//! of J, rearranged by configurations, is the sum of P(I, x) N(x | B, I) over the configurations (B, I) of
+//! degree k - 1, as in thesis 6.2.2. The links of degree k - 1 with the polar form P(., x) give this sum,
+//! too, except for the infinite configurations (p, q, I). These add terms that vanish unless x is in the hull
+//! of I, p and q, to the left of the line from p to q. No point of the domain is strictly left of a line with
+//! fewer than k knots to its left. So all degrees down to 0 give the same sum, and configurations of degree 0
+//! are a triangulation.
 //!
-//! *How it is found.* The domain is what is not strictly left of the line of any infinite configuration of
-//! degree k - 1. If x is left of such a line, then the parallel to it through x has only knots to its left,
-//! and on it, that are left of the line: less than k. For the converse, let n(t) be the unit vector in the
-//! direction t, s(t) the k-th greatest of the scalar products of n(t) with knots, and g(t) the product of
-//! n(t) with x less s(t), so that x is in the domain if g is nowhere positive. While the k-th knot is the
-//! same one, g'' + g is zero. Where it changes from p to q, both are on a line with the normal n(t). Either
-//! this is an infinite configuration, with k - 1 knots to its left, or k - 2 are to its left; then s is the
-//! lesser one of the products of p and q nearby, and the slope of g increases. Now let g be positive
-//! somewhere, but not at any infinite configuration. Then g'' + g is not negative on the interval around
-//! where g is positive, so its length is pi at least (Sturm); it is more, because a single knot cannot be the
-//! k-th in a half circle of directions unless all are on one line. So g is positive in two opposite
-//! directions: less than k knots are on either side of the line through x, on it included, and there are at
-//! most 2k - 2 knots. With so few the domain is empty. Copies, and several knots on a line, are limits of
-//! knots that are moved.
+//! *How it is found.* A point is in the domain if it is not strictly left of the line of any infinite
+//! configuration of degree k - 1. If x is left of such a line, then the parallel to the line through x has
+//! only knots to its left, or on it, that are left of the line: fewer than k. For the converse, let n(t) be
+//! the unit vector in the direction t, let s(t) be the k-th greatest scalar product of n(t) with a knot, and
+//! let g(t) be the scalar product of n(t) with x, minus s(t). Then x is in the domain if g is nowhere
+//! positive. While the k-th knot stays the same, g'' + g is zero. Where it changes from p to q, both are on a
+//! line with the normal n(t). Either this line is an infinite configuration, with k - 1 knots to its left; or
+//! k - 2 knots are to its left, then s is the lesser of the products of p and q nearby, and the slope of g
+//! increases. Now let g be positive somewhere, but not at any infinite configuration. Then g'' + g is not
+//! negative on the interval where g is positive, so the length of the interval is at least pi (Sturm). It is
+//! greater than pi, because a single knot cannot be the k-th for half a circle of directions unless all knots
+//! are on one line. So g is positive in two opposite directions: fewer than k knots are on either side of the
+//! line through x, knots on the line included, and there are at most 2k - 2 knots. With so few knots the
+//! domain is empty. Copies, and several knots on a line, are limits of knots that are moved.
 
 use super::directional_limit::DirectionalLimit;
 use spmesh_geometry::configurations::{Configurations, Knots};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
-/// Closed half-planes to the right of directed lines, in common.
+/// The intersection of the closed half-planes to the right of directed lines.
 #[derive(Debug, Clone)]
 pub(super) struct Domain {
     pub(super) lines: Vec<[Point2; 2]>,
-    /// A point of the interior, if there is any.
+    /// A point of the interior, if there is one.
     pub(super) inner: Point2,
-    /// Whether nothing is inside.
+    /// Whether there are too few knots for a domain: at most 2k - 2.
     pub(super) is_empty: bool,
 }
 
 impl Domain {
-    /// Domain of the functions of links of configurations, or of the triangles of degree 0 themselves.
+    /// The domain of functions of the links of configurations, or of the triangles of degree 0.
     pub(super) fn of(knots: &Knots, configurations: &Configurations) -> Domain {
         let infinite = configurations.groups().flat_map(|group| group.infinite);
         let lines = infinite.map(|&[p, q, _]| [knots.at(p), knots.at(q)]);
@@ -61,7 +63,7 @@ impl Domain {
         domain
     }
 
-    /// The approach from inside.
+    /// The directional limit at x from inside the domain.
     #[inline(always)]
     pub(super) fn limit_at(&self, x: Point2) -> DirectionalLimit {
         DirectionalLimit::new(x, self.inner)
@@ -72,7 +74,7 @@ impl Domain {
         self.lines.iter().all(|&[p, q]| predicates.orient2d(p, q, x) == Sign::Negative)
     }
 
-    /// A point amid the corners of the domain, which are computed in plain arithmetic.
+    /// The mean of the corners of the domain, in plain arithmetic.
     fn clipped(&self, points: &[Point2]) -> Option<Point2> {
         let polygon = self.corners(points);
         let count = polygon.len() as f64;

@@ -1,11 +1,11 @@
-//! From configurations to elements: simplex splines of one degree less, each with a linear factor for some
-//! functions.
+//! From configurations to elements: simplex splines of degree k - 1, each with a linear factor for some
+//! functions of degree k.
 //!
 //! A B-spline of degree k is the sum of `area(x, f) M(x | J u f)` over the edges f of the link of its set J
 //! (thesis, equation 8.1). A configuration (B, I) of degree k - 1 is in three links, with one edge in each,
 //! and its M is the same in all of them. So it is evaluated once, as an *element*, and its three edges make
-//! the linear factors. Where knots are at one place, edges of one element cancel, and elements of different
-//! knots are the same function: they are merged.
+//! the linear factors. Where several knots are at one place, opposite edges of an element cancel, and
+//! elements of different knots are the same function and are merged.
 
 use foldhash::HashMap;
 use spmesh_geometry::configurations::{Configurations, Knots};
@@ -13,7 +13,7 @@ use spmesh_geometry::delaunay2::distinct;
 use spmesh_geometry::order::{Curve, SpatialOrder};
 use spmesh_geometry::predicates::{Extent, FiniteFloatPredicates, Point2, Predicates2, Sign, area};
 
-/// The share of a function in an element: `factor * area(x, a, b)`, for an edge ab.
+/// The linear factor of a function in an element: `factor * area(x, a, b)`, for an edge ab.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Share {
     pub(super) function: u32,
@@ -21,10 +21,10 @@ pub(super) struct Share {
     pub(super) factor: f64,
 }
 
-/// Simplex splines with their shares, in the order of a curve through the plane: flat arrays.
+/// Simplex splines with their shares in flat arrays, in the order of a space-filling curve.
 #[derive(Debug, Clone)]
 pub(super) struct Elements {
-    /// Number of knots of each.
+    /// Number of knots of each element.
     pub(super) size: usize,
     knots: Vec<u32>,
     offsets: Vec<u32>,
@@ -32,9 +32,9 @@ pub(super) struct Elements {
 }
 
 impl Elements {
-    /// Elements of all finite configurations. `functions_of` names the functions, with their factors, that
-    /// the set of a configuration, of which it gets the number, and of one of its corners belongs to. What is
-    /// zero everywhere is left out.
+    /// Elements of all finite configurations, without those that are zero everywhere. `functions_of` gets the
+    /// number of a configuration, a corner and the interior set. It passes on the functions, with their
+    /// factors, that the set with the corner added belongs to.
     pub(super) fn of_configurations(
         knots: &Knots,
         configurations: &Configurations,
@@ -68,7 +68,7 @@ impl Elements {
         &self.knots[element * self.size..][..self.size]
     }
 
-    /// The shares, those of one function next to each other, in order.
+    /// The shares of an element, in order of functions.
     pub(super) fn shares(&self, element: usize) -> &[Share] {
         &self.shares[self.offsets[element] as usize..self.offsets[element + 1] as usize]
     }
@@ -84,17 +84,17 @@ impl Elements {
     }
 }
 
-/// Elements while configurations are read.
+/// Elements while configurations are collected.
 struct Gathered<'a> {
     knots: &'a Knots,
     size: usize,
-    /// The first knots at all places; empty if no knots are at one place.
+    /// For each knot, the first knot at its place; empty if all places are distinct.
     firsts: Vec<u32>,
-    /// Knots of elements, one after the other.
+    /// Knots of elements, concatenated.
     all: Vec<u32>,
     /// Shares with their elements.
     shares: Vec<(u32, Share)>,
-    /// Elements by their places, where knots are at one place.
+    /// Elements by the first knots at their places; used where several knots are at one place.
     by_places: HashMap<Vec<u32>, u32>,
 }
 
@@ -104,7 +104,8 @@ impl<'a> Gathered<'a> {
         Gathered { knots, size, firsts, all: Vec::new(), shares: Vec::new(), by_places: HashMap::default() }
     }
 
-    /// The number of the element of some knots, or of those at the same places.
+    /// The number of the element of these knots; with several knots at one place, of the element at these
+    /// places.
     fn element(&mut self, knots: &mut [u32]) -> u32 {
         let next = (self.all.len() / self.size) as u32;
         if !self.firsts.is_empty() {
@@ -124,7 +125,7 @@ impl<'a> Gathered<'a> {
         self.shares.push((element, Share { edge, ..share }));
     }
 
-    /// The elements that are left when opposite edges have cancelled, along a curve.
+    /// The elements that have shares after opposite edges have cancelled, along a Hilbert curve.
     fn sorted(mut self) -> Elements {
         let Gathered { knots, size, .. } = self;
         cancel(&mut self.shares);
@@ -152,7 +153,7 @@ fn middle(knots: &Knots, all: &[u32]) -> Point2 {
     [0, 1].map(|axis| all.iter().map(|&id| knots.at(id)[axis] / all.len() as f64).sum())
 }
 
-/// Sorts shares by element, function and edge, sums those of one edge, and drops zeros.
+/// Sorts shares by element, function and edge, adds up shares of equal edges, and drops zeros.
 fn cancel(shares: &mut Vec<(u32, Share)>) {
     for (_, share) in shares.iter_mut() {
         if share.edge[0] > share.edge[1] {

@@ -12,7 +12,7 @@ pub(super) struct Factors {
 }
 
 impl Factors {
-    /// Those of elements that have closed forms, over supports of given sizes.
+    /// The factors of elements that have closed forms; `sizes` are the areas of their supports.
     pub(super) fn of(
         elements: &Elements,
         linear_simplices: &[LinearSimplex],

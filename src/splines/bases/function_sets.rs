@@ -35,7 +35,7 @@ impl FunctionSets {
 
     pub(super) fn greville(&self, function: usize, points: &[Point2]) -> Point2 {
         let whole: f64 = self.terms(function).map(|(_, factor)| factor).sum();
-        // Factors that sum to zero say nothing about a place.
+        // If the factors sum to zero, a weighted mean is undefined: all sets weigh the same.
         let weight = |factor: f64| {
             if whole == 0.0 { 1.0 / self.terms(function).count() as f64 } else { factor / whole }
         };

@@ -7,9 +7,9 @@ use std::ops::{Add, AddAssign, Mul};
 pub struct Jet {
     /// The value.
     pub value: f64,
-    /// Derivatives by x and y.
+    /// First derivatives with respect to x and y.
     pub gradient: [f64; 2],
-    /// Second derivatives: by x twice, by x and y, by y twice.
+    /// Second derivatives: f_xx, f_xy, f_yy.
     pub hessian: [f64; 3],
 }
 
@@ -20,7 +20,7 @@ impl Jet {
         Jet { value, ..Jet::default() }
     }
 
-    /// A function that is linear, by its value and its gradient.
+    /// The jet of a linear function with this value and gradient.
     #[must_use]
     pub fn linear(value: f64, gradient: [f64; 2]) -> Jet {
         Jet { value, gradient, hessian: [0.0; 3] }

@@ -1,25 +1,26 @@
 //! Simplex splines of degrees 0 and 1 in closed form.
 //!
-//! That of degree 1 is the length of the vertical chords of a tetrahedron, a concave function on its support:
-//! the least of linear functions, one for each edge ab of the hull of its four knots,
+//! A simplex spline of degree 1 is the length of the vertical chords of a tetrahedron, a concave function on
+//! its support. It is the least of linear functions, one for each edge ab of the hull of its four knots,
 //!
 //! ```text
 //! area(x, a, b) / (area(a, b, c) area(a, b, d)),    c and d the other knots,
 //! ```
 //!
-//! because next to ab only the triangles abc and abd are left of the recurrence. It is greatest over the
-//! fourth knot or over the crossing of the diagonals, and there it is one over the area of the hull. If c or
-//! d is on ab, there is no such function: the edge is a *wall*, at which the spline jumps to zero. A triangle
-//! has three walls and a constant value.
+//! because next to ab only the triangles abc and abd remain in the recurrence. It is greatest over the fourth
+//! knot, or over the crossing of the diagonals, and there it is one over the area of the hull. If c or d is
+//! on ab, there is no such function: the edge is a *wall*, at which the spline jumps to zero. A simplex
+//! spline of degree 0 has three walls and a constant value.
 
 use super::directional_limit::DirectionalLimit;
 use super::elements::hull_edges;
 use spmesh_geometry::predicates::{Extent, Point2, Sign, area, exact_area};
 
-/// Relative to the greatest value, the error from which on linear functions are not good enough. It is a
-/// bound: errors that occur are a tenth of it, and less.
+/// The error relative to the greatest value from which on closed forms are not accurate enough. It is a
+/// bound: actual errors are at most a tenth of it.
 const TOLERATED: f64 = f64::EPSILON * 512.0;
-/// A linear function is off by six roundings of 2^-53 at most, if its constant is off by two; and some more.
+/// A linear function is off by at most six roundings of 2^-53 if its constant is off by two; the rest is
+/// margin.
 const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// A linear function of the offset from some origin: constant, and factors of x and y.
@@ -30,7 +31,7 @@ pub(super) fn value(line: &Line, offset: Point2) -> f64 {
     line[0] + line[1] * offset[0] + line[2] * offset[1]
 }
 
-/// A simplex spline of degree 0 or 1, times the area of its support: it is one at most.
+/// A simplex spline of degree 0 or 1, times the area of its support, so that it is at most one.
 ///
 /// Shape: two cache lines, of which the first is enough for points outside of the box.
 #[derive(Debug, Clone, Copy)]
@@ -40,14 +41,14 @@ pub(super) struct LinearSimplex {
     pub(super) origin: Point2,
     /// Half the sides of the box, rounded up.
     reach: [f32; 2],
-    /// How far values of lines may be from the truth in the box, rounded up.
+    /// Bound of the error of edges in the box, rounded up.
     error: f32,
-    /// Which lines are walls: bits.
+    /// Bit mask of the lines that are walls.
     walls: u8,
     /// Whether the lines are accurate enough for values, not only as a filter for the sides of edges.
     pub(super) is_exact_enough: bool,
-    /// Linear functions that are positive inside, by coefficients: for each edge; the last one a constant, if
-    /// there are three.
+    /// Linear functions that are positive inside, one for each edge, stored coefficient by coefficient. With
+    /// three edges, the fourth function is a constant.
     lines: [[f64; 4]; 3],
 }
 
@@ -55,9 +56,9 @@ pub(super) struct LinearSimplex {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Found {
     Outside,
-    /// With the value in plain arithmetic.
+    /// The value in plain arithmetic.
     Inside(f64),
-    /// Too near to an edge for plain arithmetic; with the value if it is inside.
+    /// Too near to an edge for plain arithmetic; holds the value for a point that is inside.
     Unclear(f64),
 }
 
@@ -66,7 +67,7 @@ impl LinearSimplex {
     pub(super) fn new(knots: &[Point2], edges: &[[Point2; 2]], size: f64) -> LinearSimplex {
         let (origin, reach) = middle(knots);
         let wide = reach.map(f64::from);
-        // Without a fourth edge, the cap of a triangle, or nothing.
+        // With three edges, the fourth function is one for a triangle, and never the least for a tetrahedron.
         let mut all = [[if knots.len() == 3 { 1.0 } else { f64::INFINITY }, 0.0, 0.0]; 4];
         let (mut walls, mut error, mut error_of_values) = (0, ROUNDINGS, 0f64);
         for (at, &edge) in edges.iter().enumerate().take(4) {
@@ -79,20 +80,20 @@ impl LinearSimplex {
                 None => walls |= 1 << at,
             }
         }
-        // The terms of the area of a triangle in the box sum to its area at most.
+        // Inside the box, the terms of the area of a triangle sum to at most the area of the box.
         let of_factors = ROUNDINGS * 4.0 * wide[0] * wide[1] / size;
         let is_exact_enough = error_of_values <= TOLERATED && of_factors <= TOLERATED;
         let lines = [0, 1, 2].map(|coefficient| all.map(|line| line[coefficient]));
         LinearSimplex { origin, reach, error: rounded_up(error), walls, is_exact_enough, lines }
     }
 
-    /// Where a point is, seen from the origin.
+    /// The offset of a point from the origin.
     #[inline(always)]
     pub(super) fn offset(&self, x: Point2) -> Point2 {
         [x[0] - self.origin[0], x[1] - self.origin[1]]
     }
 
-    /// The abscissae between which the support is, at least.
+    /// Abscissae that enclose the support.
     pub(super) fn range(&self) -> [f64; 2] {
         let half = f64::from(self.reach[0]);
         [self.origin[0] - half, self.origin[0] + half]
@@ -103,7 +104,7 @@ impl LinearSimplex {
         [0, 1, 2, 3].map(|at| self.lines.map(|coefficients| coefficients[at]))
     }
 
-    /// Linear functions of which the least is the value inside.
+    /// Linear functions whose least value is the value of the spline inside; infinite for walls.
     pub(super) fn lines_of_values(&self) -> [Line; 4] {
         let edges = self.edges();
         [0, 1, 2, 3].map(|at| if self.is_wall(at) { [f64::INFINITY, 0.0, 0.0] } else { edges[at] })
@@ -114,14 +115,14 @@ impl LinearSimplex {
         self.walls >> at & 1 == 1
     }
 
-    /// How far edges may be from the truth in the box of the support.
+    /// Bound of the error of edges in the box of the support.
     #[inline(always)]
     pub(super) fn error(&self) -> f64 {
         f64::from(self.error)
     }
 
-    /// The linear function that the spline is in the neighbourhood of an offset, at which it is
-    /// [`Found::Inside`]; nothing if rounding might confuse it with another one.
+    /// The linear function that the spline is next to an offset at which it is [`Found::Inside`]; `None` if
+    /// rounding could confuse it with another one.
     pub(super) fn piece(&self, offset: Point2) -> Option<Line> {
         let values = self.values(offset);
         let (mut least, mut next, mut place) = (f64::INFINITY, f64::INFINITY, 0);
@@ -177,7 +178,7 @@ fn rounded_up(number: f64) -> f32 {
     if f64::from(near) < number { near.next_up() } else { near }
 }
 
-/// Whether a directional limit is taken inside the hull of knots.
+/// Whether a directional limit is inside the hull of knots.
 #[cold]
 pub(super) fn is_inside(at: &DirectionalLimit, knots: &[Point2]) -> bool {
     hull_edges(knots).iter().all(|&[p, q]| at.side(p, q) == Sign::Positive)
@@ -191,7 +192,7 @@ fn middle(points: &[Point2]) -> (Point2, [f32; 2]) {
     (origin, [0, 1].map(|axis| rounded_up(half(axis))))
 }
 
-/// The factor of the area of x and the edge; `None` for a wall.
+/// For an edge, the factor of `area(x, a, b)` in its linear function; `None` for a wall.
 pub(super) fn slope(knots: &[Point2], [a, b]: [Point2; 2]) -> Option<f64> {
     let [first, second] = [a, b].map(|end| knots.iter().position(|&knot| knot == end));
     let others = (0..knots.len()).filter(|&at| Some(at) != first && Some(at) != second);
@@ -208,7 +209,7 @@ pub(super) fn scaled(line: Line, factor: f64) -> Line {
     line.map(|coefficient| coefficient * factor)
 }
 
-/// The sum of the magnitudes of terms, at most, in a box around the origin.
+/// A bound of the sum of the magnitudes of terms in a box around the origin.
 fn magnitude(line: &Line, reach: Point2) -> f64 {
     line[0].abs() + line[1].abs() * reach[0] + line[2].abs() * reach[1]
 }

@@ -1,10 +1,10 @@
 //! Splines on the points of a raster, row by row.
 //!
-//! On a row y = const an element is the least of a few linear functions of x, times another one: its share of
-//! the spline, for which the coefficients of all its functions are summed beforehand. So a row costs a few
-//! divisions for each element that it crosses, which give the columns that are certainly inside, and a pixel
-//! an evaluation of plain linear functions, in a loop without branches. Columns too near to an edge are
-//! evaluated like single points.
+//! On a row y = const an element is the least of a few linear functions of x. It contributes to the spline
+//! the product of this value and a linear factor: the sum of the linear factors of its functions, weighted by
+//! their coefficients, which is computed beforehand. So a row costs a few divisions for each element that it
+//! crosses, which yield the columns that are certainly inside. A pixel costs an evaluation of plain linear
+//! functions, in a loop without branches. Columns too near to an edge are evaluated as single points.
 
 use super::basis::{Basis, Scratch};
 use super::linear_simplex::{Line, LinearSimplex, lesser, scaled, value};
@@ -17,7 +17,7 @@ use std::ops::Range;
 pub struct Raster {
     /// The point of the first column and the first row.
     pub origin: Point2,
-    /// From each column to the next, above zero; from each row to the next, of either sign.
+    /// Distance of columns, above zero, and distance of rows, of either sign.
     pub step: [f64; 2],
     /// Number of columns.
     pub columns: usize,
@@ -39,7 +39,7 @@ pub struct Row<'a> {
 }
 
 impl Raster {
-    ///
+    /// Checks that all coordinates are finite and that rows and columns are distinct.
     /// # Errors
     /// Numbers that are not finite, and steps that do not separate rows or columns.
     fn check(&self) -> Result<()> {
@@ -69,7 +69,7 @@ impl Raster {
         self.origin[1] + row as f64 * self.step[1]
     }
 
-    /// The columns from an abscissa to another, and one more on either side.
+    /// The columns between two abscissae, and one more on either side.
     fn columns_around(&self, [from, to]: [f64; 2]) -> Range<usize> {
         let place = |x: f64| (x - self.origin[0]) / self.step[0];
         // Conversions saturate, and turn NaN into zero.
@@ -82,7 +82,7 @@ impl Raster {
         first..end.max(first)
     }
 
-    /// The columns from an abscissa to another without those at the ends.
+    /// The columns between two abscissae, without the first and the last.
     fn columns_inside(&self, [from, to]: [f64; 2]) -> Range<usize> {
         let place = |x: f64| (x - self.origin[0]) / self.step[0];
         if place(to) < 1.0 || from > to {
@@ -97,13 +97,13 @@ impl Raster {
 impl Basis {
     /// Evaluates the spline with the given coefficients on a raster, and calls `visit` with each row in turn.
     ///
-    /// Values are those of [`Basis::at`] but for rounding; outside of the domain too.
+    /// Values are those of [`Basis::at`] except for rounding, outside of the domain, too.
     ///
-    /// Cost: for each row, all elements that it crosses; for each pixel, about six of them for degree 2.
+    /// Cost: per row, all elements that it crosses; per pixel, about six of them for degree 2.
     ///
     /// # Errors
-    /// A number of coefficients that is not that of functions, a coefficient that is not finite, numbers of
-    /// the raster out of range; those of `visit`.
+    /// A number of coefficients other than the number of functions, a coefficient that is not finite, a
+    /// raster with numbers out of range; errors of `visit`.
     pub fn raster(
         &self,
         coefficients: &[f64],
@@ -149,18 +149,18 @@ fn narrow(interval: &mut [f64; 2], line: [f64; 2], origin: f64) {
     }
 }
 
-/// One row after the other.
+/// The state of a sweep over the rows.
 struct Sweep<'a> {
     basis: &'a Basis,
     raster: &'a Raster,
     coefficients: &'a [f64],
-    /// The share of each element with a closed form in the spline, as a factor of it.
+    /// For each element with a closed form, its linear factor in the spline.
     factors: Vec<Line>,
     /// Elements in the order in which rows meet them.
     order: Vec<u32>,
-    /// How many of them were met.
+    /// How many elements of `order` the sweep has met.
     met: usize,
-    /// Those that the row crosses.
+    /// The elements that the row crosses.
     active: Vec<u32>,
     abscissae: Vec<f64>,
     values: Vec<f64>,
@@ -194,7 +194,7 @@ impl<'a> Sweep<'a> {
     fn evaluate(&mut self, row: usize) {
         let y = self.raster.y(row);
         let is_downward = self.raster.step[1] < 0.0;
-        // Ordinates in the direction of rows: where an element starts and ends.
+        // Least and greatest ordinate of an element, negated if rows go down.
         let extent = |at: u32| {
             let [lower, upper] = self.basis.rows_of(at as usize);
             if is_downward { [-upper, -lower] } else { [lower, upper] }
@@ -264,8 +264,8 @@ fn add_inside(linear_simplex: &LinearSimplex, factor: Line, y: f64, abscissae: &
 }
 
 impl LinearSimplex {
-    /// The abscissae outside of which a row is not in the support, and those where it certainly is; `up` is
-    /// the ordinate of the row from the origin.
+    /// The abscissae outside of which a row is certainly outside of the support, and the abscissae between
+    /// which it is certainly inside. `up` is the ordinate of the row, relative to the origin.
     fn intervals(&self, up: f64) -> [[f64; 2]; 2] {
         let (mut around, mut inside) = (self.range(), self.range());
         for line in self.edges() {
@@ -306,7 +306,7 @@ impl Basis {
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, greatest], c| [least.min(c), greatest.max(c)])
     }
 
-    /// The factor of an element with a closed form in a spline.
+    /// The linear factor of an element with a closed form in a spline.
     pub(super) fn factor_of_spline(&self, element: usize, coefficients: &[f64]) -> Line {
         let factors = self.factors.of_element(element);
         factors.iter().fold([0.0; 3], |sum, (function, line)| {

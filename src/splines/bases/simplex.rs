@@ -1,12 +1,12 @@
 //! Simplex splines by the recurrence of Micchelli (thesis 6.2.1).
 //!
-//! Normalised so that `M(x | T)` is one over the area of the triangle T inside of it, with no further factor
-//! in the recurrence: the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's
+//! Normalisation: `M(x | T)` is one over the area of the triangle T inside of it, and the recurrence has no
+//! further factor. So the integral of M is one over the binomial coefficient of k + 2 over 2. (The thesis's
 //! geometric definition has integral one, and the base case that it prints lacks the area.)
 //!
-//! The recurrence is free to choose three knots. Here they are those of the largest triangle that contains x:
-//! all terms are then positive, nothing cancels, and with areas that are accurate (`area`) so is the value,
-//! however flat sets of knots are.
+//! The recurrence may choose any three knots. Here they are the corners of the largest triangle that contains
+//! x. Then all terms are positive and nothing cancels, so with accurate areas (`area`) the value is accurate,
+//! too, however flat sets of knots are.
 
 use super::directional_limit::DirectionalLimit;
 use super::jet::Jet;
@@ -16,16 +16,15 @@ use spmesh_geometry::predicates::{Point2, Sign, area};
 /// Greatest degree of a simplex spline: sets of knots are held in 32 bits.
 pub const MAX_DEGREE: usize = 28;
 
-/// Sets of fewer knots are evaluated again rather than looked up.
+/// Results for sets of fewer knots than this are computed again rather than looked up.
 const REMEMBERED: u32 = 6;
 
 /// The simplex spline of degree `knots.len() - 3` at a point.
 ///
-/// Units: one over those of an area. Knots may be repeated; if all lie on one line, as any two do, the
-/// function is zero.
+/// Units: one over an area. Knots may be repeated; if all knots lie on one line, the function is zero.
 ///
-/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates as [`area`] has them. Relative error: about
-/// 1e-14 times the degree.
+/// Domain: at most [`MAX_DEGREE`] + 3 knots, with coordinates in the domain of [`area`]. Relative error:
+/// about 1e-14 times the degree.
 ///
 /// Cost: O(3^k) areas for degrees k up to 2, then at most one evaluation for each subset of the knots.
 ///
@@ -45,16 +44,16 @@ pub fn simplex_spline_jet(at: &DirectionalLimit, knots: &[Point2]) -> Jet {
     Evaluation::new(at, knots, true).of_all().unwrap_or_default()
 }
 
-/// The same, or nothing if the point, as it is approached, is not in the convex hull of the knots.
+/// The value with derivatives, or `None` if the directional limit is not in the convex hull of the knots.
 pub(super) fn evaluate(at: &DirectionalLimit, knots: &[Point2], has_derivatives: bool) -> Option<Jet> {
     Evaluation::new(at, knots, has_derivatives).of_all()
 }
 
-/// Subsets of one set of knots, as bits, at one point.
+/// Evaluates simplex splines of subsets of one set of knots, as bits, at one point.
 struct Evaluation<'a> {
     at: &'a DirectionalLimit,
     knots: &'a [Point2],
-    /// For each knot, to which others it has a line with the point on its left.
+    /// For each knot i, the knots j such that the point is on the left of the line from i to j.
     left: [u32; 32],
     has_derivatives: bool,
     known: HashMap<u32, Option<Jet>>,
@@ -124,7 +123,7 @@ impl<'a> Evaluation<'a> {
         };
         for i in places(set) {
             let (left, later) = (self.left[i], set & !((2 << i) - 1));
-            // From i around to j, to k, and back, with i before the others.
+            // Counterclockwise triples around the point, with i before the others.
             for j in places(left & later) {
                 places(self.left[j] & later)
                     .filter(|&k| self.left[k] >> i & 1 == 1)
@@ -135,8 +134,8 @@ impl<'a> Evaluation<'a> {
     }
 }
 
-/// The term of one knot of the triple: the recurrence, and its derivatives, in which shares are not
-/// differentiated.
+/// The contribution of one knot of the triple to the recurrence and to its derivatives. The derivatives of
+/// shares do not appear in it.
 fn term(degree: f64, share: f64, slope: [f64; 2], part: Jet) -> Jet {
     let second = |i: usize, j: usize| 0.5 * (slope[i] * part.gradient[j] + slope[j] * part.gradient[i]);
     Jet {

@@ -1,26 +1,26 @@
 //! A tree of boxes that finds the elements near a point, and the lines of the domain near it.
 //!
-//! Each inner node halves its cell at the median of the elements in it, so that clusters cost depth and not
-//! length of lists; leaves list all elements whose hulls meet their cell. A search descends from the node
-//! that a grid over the box names; where knots are evenly spread, that node is near the leaves.
+//! Each inner node halves its cell at the median of the elements in it, so that clusters make the tree deeper
+//! instead of its lists longer. Leaves list all elements whose hulls meet their cell. A search starts from a
+//! node that a grid over the box yields; where knots are evenly spread, that node is near the leaves.
 
 use super::domain::{Domain, is_right_or_on};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 
-/// Cells with so few elements are not halved.
+/// Cells with at most this number of elements are not halved.
 const FEW: usize = 6;
-/// Neither half of a cell may have more than this share of its elements, or halving it is no use.
+/// A cut is rejected if a half would keep more than this part of the elements.
 const SHARE_MAX: f64 = 0.9;
 /// Levels of the tree, at most.
 const LEVELS_MAX: usize = 48;
-/// Entries of lists per element, at most: elements that all meet in one knot cannot be told apart there.
+/// Entries of lists per element, at most: a cut cannot separate elements that meet in one knot.
 const ENTRIES_MAX: usize = 48;
-/// A bound of the rounding error of an orientation, relative to the magnitude of its products.
+/// Bound of the rounding error of an orientation, relative to the magnitude of its products.
 const MARGIN: f64 = 16.0 * f64::EPSILON;
 
 /// Cells in a row of the grid, at most.
 const SIDE_MAX: usize = 1024;
-/// Rounding moves points by less than this part of a cell of the grid.
+/// Rounding moves points by less than this part of a grid cell.
 const BORDER: f64 = 1.0 / (1 << 20) as f64;
 
 /// The axis of a node that is a leaf.
@@ -35,7 +35,7 @@ pub(super) struct Hull {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// Where the cell is cut, the first child below, as bits; of a leaf, start and end of its list of
+    /// For an inner node, the bits of the coordinate of the cut; for a leaf, start and end of its list of
     /// elements.
     data: u64,
     axis: u32,
@@ -44,7 +44,7 @@ struct Node {
 }
 
 impl Node {
-    /// A node that is given with [`Tree::close`], or replaced.
+    /// A node that is still to be replaced: by an inner node, or by [`Tree::close`].
     const OPEN: Node = Node { data: 0, axis: LEAF, next: 0 };
 
     #[inline(always)]
@@ -70,7 +70,7 @@ struct Leaf {
 pub(super) struct Tree {
     lower: Point2,
     upper: Point2,
-    /// Cells of the grid in a row, and cells per unit of either axis.
+    /// Cells in a row of the grid, and grid cells per unit along each axis.
     side: usize,
     scale: [f64; 2],
     /// The node to start from, for each cell of the grid.
@@ -99,7 +99,7 @@ struct Halves {
     elements: [Vec<u32>; 2],
 }
 
-/// The hulls and the domain that a tree is built for.
+/// The hulls and the domain that the tree is built from.
 struct TreeInput<'a> {
     hulls: &'a [Hull],
     domain: &'a Domain,
@@ -124,7 +124,7 @@ impl Tree {
         Tree { lower, upper, side: 1, scale: [0.0; 2], starts, nodes, leaves, elements, lines }
     }
 
-    /// The grid has about half as many cells as there are leaves.
+    /// Sets the grid, with about half as many cells as there are leaves.
     fn set_grid(&mut self) {
         self.side = ((self.leaves.len() as f64 / 2.0).sqrt() as usize).clamp(1, SIDE_MAX);
         self.scale = [0, 1].map(|axis| self.side as f64 / (self.upper[axis] - self.lower[axis]));
@@ -132,7 +132,7 @@ impl Tree {
             (0..self.side * self.side).map(|at| self.start([at % self.side, at / self.side])).collect();
     }
 
-    /// The last node whose cell contains a cell of the grid, and some more around it.
+    /// The deepest node whose cell contains a cell of the grid, with a margin for rounding.
     fn start(&self, place: [usize; 2]) -> u32 {
         let range = |axis: usize| {
             let (lower, step) = (self.lower[axis], 1.0 / self.scale[axis]);
@@ -152,13 +152,13 @@ impl Tree {
         }
     }
 
-    /// The elements that may have a point inside: none if it is outside of the box.
+    /// The elements that may contain a point; none if it is outside of the box.
     #[inline]
     pub(super) fn elements(&self, x: Point2) -> &[u32] {
         self.leaf(x).map_or(&[], |leaf| &self.elements[leaf.elements()])
     }
 
-    /// The lines of the domain that a point may be left of; nothing if it is outside anyway.
+    /// The lines of the domain that a point may be left of; `None` if it is certainly outside of the domain.
     #[inline]
     pub(super) fn lines(&self, x: Point2) -> Option<&[u32]> {
         let leaf = self.leaves[self.leaf(x)?.next as usize];
@@ -232,7 +232,8 @@ impl Tree {
 }
 
 impl Cell {
-    /// Drops the lines that the cell is right of; all of them if it is left of one.
+    /// Drops the lines that the cell is entirely to the right of. If the cell is entirely left of a line, it
+    /// drops all lines.
     fn keep_lines(&mut self, domain: &Domain) {
         if self.is_outside {
             self.lines.clear();
@@ -258,7 +259,7 @@ impl Cell {
         [[x, y], [right, y], [right, top], [x, top]]
     }
 
-    /// How to halve the cell, if that is of any use.
+    /// How to halve the cell; `None` if halving it does not pay.
     fn halves(&self, hulls: &[Hull]) -> Option<Halves> {
         if self.elements.len() <= FEW {
             return None;
@@ -277,7 +278,7 @@ impl Cell {
         })
     }
 
-    /// The median of the middles of elements, as far as they are in the cell.
+    /// The median of the middles of the parts of elements in the cell.
     fn cut(&self, hulls: &[Hull], axis: usize) -> f64 {
         let middle = |&at: &u32| {
             let hull = &hulls[at as usize];
@@ -294,7 +295,7 @@ impl Cell {
         let mut elements = [Vec::new(), Vec::new()];
         for &at in &self.elements {
             let hull = &hulls[at as usize];
-            // An element that meets the cell on one side of the cut meets only that half.
+            // An element entirely on one side of the cut belongs to that half only.
             match hull.side(axis, cut) {
                 Some(half) => elements[half].push(at),
                 None => {
@@ -308,7 +309,7 @@ impl Cell {
 }
 
 impl Hull {
-    /// On which side of a cut it is: below or above.
+    /// The side of a cut that the hull is on: 0 below, 1 above; `None` if it meets the cut.
     #[inline]
     fn side(&self, axis: usize, cut: f64) -> Option<usize> {
         match (self.upper[axis] < cut, self.lower[axis] > cut) {
@@ -318,7 +319,7 @@ impl Hull {
         }
     }
 
-    /// Whether the hull may have a point in a box; never wrong if it has.
+    /// Whether the hull may meet a box: true if it does, and sometimes if it does not.
     fn meets(&self, lower: Point2, upper: Point2) -> bool {
         let is_apart = |axis: usize| self.upper[axis] < lower[axis] || upper[axis] < self.lower[axis];
         if is_apart(0) || is_apart(1) {

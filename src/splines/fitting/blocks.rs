@@ -1,7 +1,7 @@
 //! A pass over observations in blocks of a fixed size, several at a time.
 //!
-//! Blocks are cut by the numbers of observations, independently of the batches of the source, and results of
-//! blocks return in order. So no result depends on the number of threads.
+//! Blocks are cut by the numbers of observations, independently of the batches of the source, and their
+//! results return in order. So no result depends on the number of threads.
 
 use super::observations::{Observation, Observations};
 use spmesh_core::error::Result;

@@ -5,10 +5,11 @@
 //! residuals of the true equations removes the effect of the ridge, as far as the equations determine the
 //! solution.
 //!
-//! A direction v that the equations do not determine has v'Mv near zero for the scaled matrix M. The function
-//! that is eliminated last of those in it has a small pivot then: about v'(M + ridge)v over the square of its
-//! part of v, which may be small. So small pivots are candidates; the solution for a unit vector at a
-//! candidate is nearly such a direction, and decides.
+//! A direction v that the equations do not determine has v'Mv near zero for the scaled matrix M. Of the
+//! functions with a part in v, the one that is eliminated last has a small pivot: about v'(M + ridge)v
+//! divided by the square of its part of v. That part may be small itself, so a small pivot only makes a
+//! function a candidate. The solution v for a unit vector at the candidate is nearly an undetermined
+//! direction, and its curvature v'Mv / v'v decides.
 
 use super::symmetric::Symmetric;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -19,19 +20,19 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use spmesh_core::error::{Error, ErrorKind, Result};
 
-/// Added to a diagonal of ones: some hundred times the rounding error of a pivot.
+/// Added to a diagonal of ones: a few hundred times the rounding error of a pivot.
 pub(super) const RIDGE: f64 = 1e-13;
-/// The ridge is multiplied by this while a pivot is still not positive: knots near one line make energies so
-/// stiff that their rounding errors exceed what other terms add.
+/// The ridge is multiplied by this factor while some pivot is not positive: knots near one line make energies
+/// so stiff that their rounding errors exceed what other terms add.
 const RIDGE_STEP: f64 = 100.0;
 const RIDGE_MAX: f64 = 1e-6;
-/// The least v'Mv / v'v of directions that are determined.
+/// Directions v with a lesser v'Mv / v'v are undetermined.
 const CURVATURE_MIN: f64 = 1e-12;
-/// Steps of refinement: for pivots that are not weak, each multiplies the error by the relative error that
-/// the ridge causes.
+/// Steps of refinement. For pivots that are not weak, each step multiplies the error by the relative error
+/// that the ridge causes.
 const REFINEMENTS: usize = 3;
 
-/// The order of elimination for a pattern of entries, and the pattern of factors.
+/// The order of elimination for a sparsity pattern, and the pattern of its factors.
 #[derive(Debug)]
 pub(super) struct Elimination {
     symbolic: SymbolicCholesky<usize>,
@@ -43,7 +44,7 @@ pub(super) struct Elimination {
 pub(super) struct Factor<'a> {
     elimination: &'a Elimination,
     matrix: &'a Symmetric,
-    /// The factors of rows and columns.
+    /// The factors that scale rows and columns.
     scale: Vec<f64>,
     values: Vec<f64>,
 }
@@ -58,11 +59,11 @@ impl Elimination {
         Ok(Elimination { symbolic, entries: matrix.entries_len() })
     }
 
-    /// Factors of a matrix with the pattern.
+    /// Factors a matrix with this pattern.
     ///
     /// # Errors
-    /// Not enough memory; a pivot that is not positive for all the ridge: entries that are no normal
-    /// equations.
+    /// Not enough memory; a pivot that is not positive even with the greatest ridge, which normal equations
+    /// do not have.
     pub(super) fn factor<'a>(&'a self, matrix: &'a Symmetric) -> Result<Factor<'a>> {
         debug_assert_eq!(self.entries, matrix.entries_len());
         let scale: Vec<f64> =
@@ -107,7 +108,7 @@ impl Factor<'_> {
         solution
     }
 
-    /// The solution of the equations with the ridge.
+    /// The solution of the equations with the ridge, without refinement.
     pub(super) fn solve_once(&self, right: &[f64]) -> Vec<f64> {
         let symbolic = &self.elimination.symbolic;
         let count = right.len();
@@ -123,12 +124,12 @@ impl Factor<'_> {
         x
     }
 
-    /// The functions that are not determined, given those eliminated before, in order of their numbers; with
-    /// the curvature v'Mv / v'v in the direction that they are not determined in.
+    /// The functions that are not determined, given those eliminated before, in order of their numbers. Each
+    /// comes with the curvature v'Mv / v'v in its undetermined direction.
     pub(super) fn weak(&self) -> Vec<(usize, f64)> {
         let symbolic = &self.elimination.symbolic;
         let original = symbolic.perm().map(|order| order.arrays().0);
-        // Directions have a part of more than one over the root of the number of functions in some function.
+        // A unit vector has a part of at least 1 / sqrt(number of functions) in some function.
         let pivot_min = 10.0 * CURVATURE_MIN * self.scale.len() as f64;
         let candidates = self.pivots().into_iter().enumerate().filter(|&(_, pivot)| pivot < pivot_min);
         let functions = candidates.map(|(place, _)| original.map_or(place, |order| order[place]));
@@ -140,7 +141,7 @@ impl Factor<'_> {
         weak
     }
 
-    /// v'Mv / v'v for the solution v for a unit vector.
+    /// v'Mv / v'v, where v is the solution for the unit vector of a function.
     fn curvature(&self, function: usize) -> f64 {
         let mut unit = vec![0.0; self.scale.len()];
         if self.matrix.at(function, function) == 0.0 {
@@ -217,7 +218,7 @@ mod tests {
     fn functions_that_add_nothing_are_weak() {
         for (count, reach) in [(30, 2), (300, 100)] {
             let mut matrix = matrix(count, reach);
-            // The last row becomes a copy of nothing: no entry but those that are zero.
+            // The last row keeps only zeros.
             let last = count - 1;
             for row in 0..count {
                 for at in matrix.offsets[row]..matrix.offsets[row + 1] {

@@ -1,9 +1,9 @@
 //! The bending energy of the control mesh of a spline.
 //!
-//! The thin-plate energy is blind where splines can be folded, for functions that depend on each other, and
-//! for those too small to have an area; and splines of degree 0 and 1 have none. The control mesh has the
-//! coefficients as elevations at the triangulated Greville sites. It depends on every coefficient, and is
-//! flat only for linear functions.
+//! The thin-plate energy does not see folds, linear dependences of functions, or functions too small to have
+//! an area. Splines of degrees 0 and 1 have no thin-plate energy. The control mesh has the coefficients as
+//! elevations at the triangulated Greville sites. Its bending depends on every coefficient, and is zero only
+//! for linear functions.
 
 use super::energy::thin_plate;
 use super::polygon;
@@ -14,12 +14,12 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2::{self, Triangulation};
 use spmesh_geometry::predicates::{Point2, area};
 
-/// The share of the control mesh in [`bending`]: so little that creases can fold where observations require
-/// it.
+/// The share of the control mesh in [`bending`], small enough that creases can fold where observations
+/// require it.
 const SHARE: f64 = 1e-3;
 
-/// The matrix of an energy that determines all splines but linear functions: the thin-plate energy, from
-/// degree 2 on, with a thousandth of [`control_bending`]; and that itself below.
+/// The matrix of an energy that is zero only for linear functions. From degree 2 on, it is the thin-plate
+/// energy plus a thousandth of [`control_bending`]; below, it is [`control_bending`].
 ///
 /// Units: those of [`thin_plate`].
 ///
@@ -30,12 +30,12 @@ pub fn bending(basis: &Basis) -> Result<Symmetric> {
     if basis.degree() < 2 { Ok(control) } else { Ok(thin_plate(basis)?.plus(SHARE, &control)) }
 }
 
-/// The matrix of how much the control mesh bends: the sum over inner edges of d^2 / L^2, where d is by how
-/// much the diagonals of the quadrilateral at the edge miss each other, and L^2 the sum of their squares.
-/// With L^2 as an area, that is like the square of a second derivative times the area; but the quadrilateral
-/// itself may be as flat as it likes, which sites along the border often make it.
+/// The matrix of the bending of the control mesh: the sum over inner edges of d^2 / L^2. Here d is the
+/// vertical distance between the diagonals of the quadrilateral at the edge where they cross, and L^2 is the
+/// sum of their squared lengths. With L^2 as an area, this is like the square of a second derivative times
+/// the area. But the quadrilateral itself may be arbitrarily flat, as it often is at sites along the border.
 ///
-/// Coefficients of functions with one Greville site are tied to each other.
+/// Functions with the same Greville site have their coefficients tied to each other.
 ///
 /// Units: one over an area.
 ///
@@ -50,7 +50,7 @@ pub fn control_bending(basis: &Basis) -> Result<Symmetric> {
     let mut rows = Rows::new(basis.len(), 1);
     for_each_hinge(&mesh, |corners| {
         let [p, q, r, s] = corners.map(|id| sites[id as usize]);
-        // The affine dependence of four points: area of the others each, with signs.
+        // The affine dependence of four points: the factor of each is the signed area of the others.
         let dependence = [area(q, r, s), -area(p, r, s), area(p, q, s), -area(p, q, r)];
         let half = 0.5 * dependence.iter().map(|share| share.abs()).sum::<f64>();
         let diagonals = polygon::square_of_side(p, q) + polygon::square_of_side(r, s);
@@ -78,7 +78,7 @@ fn for_each_hinge(mesh: &Triangulation, mut visit: impl FnMut([u32; 4])) {
     }
 }
 
-/// Adds `factor` times the square of a sum of coefficients with factors of their own.
+/// Adds `factor` times the square of the sum of `shares[i]` times the coefficient of `functions[i]`.
 fn add_square<const N: usize>(rows: &mut Rows, functions: [u32; N], shares: [f64; N], factor: f64) {
     for (i, &first) in functions.iter().enumerate() {
         for (j, &second) in functions.iter().enumerate() {

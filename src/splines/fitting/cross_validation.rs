@@ -12,13 +12,14 @@ use std::num::NonZeroUsize;
 
 /// Up to this number of functions, traces are exact.
 const EXACT_MAX: usize = 256;
-/// Random vectors for a trace: its relative error is about a percent then.
+/// Random vectors for the estimate of a trace; the relative error is then about a percent.
 const PROBES: usize = 24;
-/// The range that is looked at first, as powers of ten times [`Equations::unit`]: from this, in steps, to its
-/// opposite. Planes bend so much less than functions do that they take a great factor.
+/// The first trials: powers of ten times [`Equations::unit`], with exponents from `LEAST` to `-LEAST` in
+/// steps of `STEP`. The range is this wide because planes bend so much less than functions that they take a
+/// great factor.
 const LEAST: f64 = -9.0;
 const STEP: f64 = 1.5;
-/// How near the logarithm to base 10 gets to the best one.
+/// Accuracy of the best `lambda`, in its logarithm to base 10.
 const TOLERANCE: f64 = 0.05;
 
 /// A `lambda` that was tried.
@@ -26,7 +27,7 @@ const TOLERANCE: f64 = 0.05;
 pub struct Trial {
     /// The factor of the energy.
     pub lambda: f64,
-    /// An estimate of the mean square of the error at observations that were not used; weighted.
+    /// An estimate of the weighted mean square error at observations that were not used.
     pub score: f64,
 }
 
@@ -35,20 +36,20 @@ pub struct Trial {
 pub struct Choice {
     /// The best one.
     pub best: Trial,
-    /// All, in order of `lambda`; those that leave functions undetermined are not among them.
+    /// All trials, in order of `lambda`, except those that leave functions undetermined.
     pub trials: Vec<Trial>,
 }
 
-/// Chooses by generalised cross-validation: the least of (S / n) / (1 - t / n)^2, for n observations, the
-/// weighted sum S of squares of residuals, and the trace t of the matrix that smooths.
+/// Chooses by generalised cross-validation: the least (S / n) / (1 - t / n)^2, for n observations, the
+/// weighted sum S of squared residuals, and the trace t of the smoothing matrix.
 ///
-/// `seed` is for the random vectors that estimate the trace (Hutchinson 1990) of more than 256 functions;
-/// below, it is exact.
+/// For more than 256 functions, the trace is estimated with random vectors (Hutchinson 1990), which `seed`
+/// determines. For fewer functions it is exact.
 ///
 /// Cost: about 25 factorisations. Source: Craven and Wahba 1979.
 ///
 /// # Errors
-/// Those of [`Equations::solve`], if no `lambda` will do.
+/// Those of [`Equations::solve`], if it fails for every `lambda`.
 pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<Choice> {
     let normal = equations.normal();
     search(equations.unit(), |lambda| {
@@ -65,8 +66,10 @@ pub fn generalised_cross_validation(equations: &Equations, seed: u64) -> Result<
 
 /// The effective number of parameters for a `lambda`: the trace of the smoothing matrix.
 ///
+/// Accuracy: exact up to 256 functions, about a percent above.
+///
 /// # Errors
-/// Those of [`Equations::solve`]. Accuracy: exact up to 256 functions, about a percent above.
+/// Those of [`Equations::solve`].
 pub fn degrees_of_freedom(equations: &Equations, lambda: f64, seed: u64) -> Result<f64> {
     equations.with_factor(lambda, |factor| {
         equations.check(factor, lambda)?;
@@ -74,7 +77,7 @@ pub fn degrees_of_freedom(equations: &Equations, lambda: f64, seed: u64) -> Resu
     })
 }
 
-/// The trace of F^-1 N.
+/// The trace of F^-1 N, for the factored matrix F and the matrix N of the normal equations.
 fn trace(factor: &Factor, matrix: &Symmetric, seed: u64) -> f64 {
     let count = matrix.len();
     if count <= EXACT_MAX {
@@ -97,7 +100,7 @@ fn trace(factor: &Factor, matrix: &Symmetric, seed: u64) -> f64 {
 /// Observations in folds, to be left out one fold at a time.
 #[derive(Debug)]
 pub struct Folds {
-    /// The equations of all folds but one, and of that one.
+    /// For each fold, the equations of all other folds, and its own.
     problems: Vec<(NormalEquations, NormalEquations)>,
     weight: f64,
 }
@@ -105,7 +108,7 @@ pub struct Folds {
 impl Folds {
     /// Divides observations into folds, by their numbers and a seed, in one pass.
     ///
-    /// Memory: twice that of normal equations for each fold.
+    /// Memory: that of two sets of normal equations for each fold.
     ///
     /// # Errors
     /// Fewer than two folds; a fold without observations; those of [`NormalEquations::of`].
@@ -132,21 +135,19 @@ impl Folds {
         Ok(Folds { problems, weight })
     }
 
-    /// Chooses the `lambda` for which folds that are left out are predicted best, by the weighted mean of
-    /// squares of errors.
+    /// Chooses the `lambda` that predicts folds best from the others, by the weighted mean square error.
     ///
-    /// Cost: about 25 factorisations per fold. Relative to the mean square of values, scores are good to
-    /// about 1e-15.
+    /// Cost: about 25 factorisations per fold. Accuracy of scores: about 1e-15 of the mean square of values.
     ///
     /// # Errors
-    /// Those of [`Equations::solve`], if no `lambda` will do.
+    /// Those of [`Equations::solve`], if it fails for every `lambda`.
     pub fn choose(&self, basis: &Basis, energy: &Symmetric) -> Result<Choice> {
         let equations: Vec<Equations> = self
             .problems
             .iter()
             .map(|(kept, _)| Equations::new(basis, kept, Some(energy)))
             .collect::<Result<_>>()?;
-        // In units of all observations: each fold leaves out a part of their weight, and of lambda.
+        // In units of all observations: without one fold, weights and lambda are scaled down alike.
         let unit = equations.iter().map(Equations::unit).sum::<f64>() / (equations.len() - 1) as f64;
         search(unit, |lambda| {
             let mut sum = 0.0;
@@ -159,7 +160,7 @@ impl Folds {
     }
 }
 
-/// The least score: great steps first, then golden sections around the best of them.
+/// The least score: by coarse steps first, then by golden sections around the best step.
 fn search(unit: f64, mut score: impl FnMut(f64) -> Result<f64>) -> Result<Choice> {
     if unit <= 0.0 {
         return Err(Error::usage("the energy of all functions is zero: there is nothing to choose"));

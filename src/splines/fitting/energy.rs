@@ -1,14 +1,14 @@
 //! The thin-plate energy of splines: the integral of f_xx^2 + 2 f_xy^2 + f_yy^2 over the domain.
 //!
 //! Second derivatives count where they exist. Functions may have edges along creases, linear elements and
-//! collinear knots, and on the borders between grids: folds there have no energy, which is the purpose of
+//! collinear knots, and on the borders between grids. Folds there have no energy, which is the purpose of
 //! creases. (The same holds along any edge between two knots that are pulled apart: an edge that cuts off a
 //! corner of the border lets the corner fold, and then functions other than planes have zero energy.)
 //!
-//! For degree 2 the matrix is exact but for rounding, and for triangles that are almost flat: second
-//! derivatives are constants on triangles (`spline::basis::bends`), and what any two triangles have in common
-//! is a polygon with an area. For other degrees it is a quadrature on parts of the triangles of a Delaunay
-//! triangulation of the knots, which is not exact, as functions have other borders than these.
+//! For degree 2 the matrix is exact except for rounding and for triangles that are almost flat: second
+//! derivatives are constants on triangles (`bases::basis::bends`), and the intersection of two triangles is a
+//! polygon with an area. For other degrees the matrix is a quadrature on parts of the triangles of a Delaunay
+//! triangulation of the knots. It is not exact, because functions have other borders than these triangles.
 
 use super::overlaps::{self, Rectangle};
 use super::polygon::{self, Clipper, Polygon};
@@ -19,9 +19,9 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::delaunay2;
 use spmesh_geometry::predicates::Point2;
 
-/// Triangles whose area is a lesser part of the square of their longest side are left out. Three knots in
-/// line, but for rounding errors, make second derivatives so great on so little an area that nothing is known
-/// of their energy; it is that of a fold.
+/// Triangles whose area is less than this part of the square of their longest side are left out. Three knots
+/// that are on a line except for rounding errors make second derivatives so great, on so little area, that
+/// their energy cannot be computed; it is the energy of a fold.
 const AREA_MIN: f64 = 1e-6;
 /// Each triangle of knots is divided into the square of this number of triangles for quadrature.
 const DIVISIONS: usize = 4;
@@ -32,7 +32,7 @@ const RULE: [(f64, f64); 2] = [
     (0.091_576_213_509_770_74, 0.109_951_743_655_321_87),
 ];
 
-/// The matrix E of the thin-plate energy: that of a spline with coefficients c is c'Ec.
+/// The matrix E of the thin-plate energy: a spline with coefficients c has the energy c'Ec.
 ///
 /// Units: those of c squared over an area.
 ///
@@ -60,7 +60,7 @@ pub fn thin_plate(basis: &Basis) -> Result<Symmetric> {
     Ok(Symmetric::of_rows(&rows, |_| true))
 }
 
-/// A constant on a polygon.
+/// Second derivatives that are constant on a polygon.
 struct Plateau {
     polygon: Polygon,
     hessians: Vec<(u32, [f64; 3])>,
@@ -95,7 +95,8 @@ fn add_exact(basis: &Basis, domain: &[Point2], rows: &mut Rows) {
         }
         for first in &a.hessians {
             for second in &b.hessians {
-                // A function meets itself in both orders.
+                // Off the diagonal, an entry stands for both orders of two functions; on the diagonal, both
+                // orders are one function.
                 let factor = if first.0 == second.0 { 2.0 } else { 1.0 };
                 add(rows, first, second, factor * size);
             }
@@ -108,7 +109,8 @@ fn is_flat(corners: &[Point2; 3]) -> bool {
     polygon::area(corners).abs() < AREA_MIN * square(0).max(square(1)).max(square(2))
 }
 
-/// Adds the energy that two functions have in common where the second derivatives are these.
+/// Adds the product of the second derivatives of two functions, where these are constant on an area of
+/// `size`.
 fn add(rows: &mut Rows, first: &(u32, [f64; 3]), second: &(u32, [f64; 3]), size: f64) {
     let ((i, a), (j, b)) = (first, second);
     let product = a[0] * b[0] + 2.0 * a[1] * b[1] + a[2] * b[2];

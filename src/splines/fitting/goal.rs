@@ -9,17 +9,17 @@ use spmesh_core::error::{Error, Result};
 pub struct Goal {
     /// Greatest magnitude of residuals that is good enough. Units: those of values.
     pub tolerance: f64,
-    /// Most places of knots: copies on the border do not count.
+    /// Greatest number of places of knots; copies on the border do not count.
     pub max_knots: usize,
-    /// The factor of the energy, in units of [`default_lambda`](super::NormalEquations::default_lambda): not
-    /// zero, so that gaps in the data are bridged.
+    /// The factor of the energy, in units of [`default_lambda`](super::NormalEquations::default_lambda). It
+    /// must not be zero, so that the energy bridges gaps in the data.
     pub smoothing: f64,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
 }
 
 impl Goal {
-    /// A goal with as much smoothing as observations can bear.
+    /// A goal with the default smoothing, least squares, and these limits.
     #[must_use]
     pub fn new(tolerance: f64, max_knots: usize) -> Goal {
         Goal { tolerance, max_knots, smoothing: 1.0, loss: None }
@@ -52,6 +52,6 @@ pub struct Round {
     pub greatest: f64,
     /// Root of the mean square of residuals.
     pub root_mean_square: f64,
-    /// Number of residuals above the tolerance, but for rejected observations.
+    /// Number of residuals above the tolerance, without those of rejected observations.
     pub above: u64,
 }

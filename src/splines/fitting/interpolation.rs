@@ -9,17 +9,17 @@ use faer::{Conj, Mat, MatMut};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_geometry::predicates::Point2;
 
-/// The greatest condition that leaves digits: equations beyond are taken for singular.
+/// The greatest condition that leaves correct digits: equations beyond are treated as singular.
 const CONDITION_MAX: f64 = 1e14;
-/// Steps of the estimate of a norm; it is found in two nearly always.
+/// Steps of the estimate of a norm; it nearly always converges in two.
 const STEPS: usize = 5;
-/// Up to this number of functions, the condition in the 2-norm is computed: it takes a full matrix.
+/// Up to this number of functions, the condition in the 2-norm is computed; this takes a full matrix.
 const FULL_MAX: usize = 2_000;
 
 /// The square equations of interpolation, factored.
 pub struct Interpolation<'a> {
     basis: &'a Basis,
-    /// The values of functions alive, site by site.
+    /// For each site, the functions that are alive there with their values, concatenated.
     offsets: Vec<usize>,
     functions: Vec<usize>,
     values: Vec<f64>,
@@ -32,9 +32,8 @@ impl<'a> Interpolation<'a> {
     ///
     /// Cost: a sparse LU factorisation.
     ///
-    /// # Errors
-    /// Two sites at one place, a function that is zero at all sites, or sites at which functions depend on
-    /// each other, with the place; not enough memory.
+    /// Two sites at one place, a function that is zero at all sites, or functions that depend on each other
+    /// at the sites, each with its place; not enough memory.
     pub fn new(basis: &'a Basis) -> Result<Interpolation<'a>> {
         let (mut offsets, mut functions, mut values) = (vec![0], Vec::new(), Vec::new());
         let mut scratch = Scratch::default();
@@ -69,7 +68,7 @@ impl<'a> Interpolation<'a> {
     /// Coefficients of the spline that has these values at Greville sites, in the order of functions.
     ///
     /// # Errors
-    /// Another number of values; one that is not finite, with its place.
+    /// Another number of values than functions; a value that is not finite, with its place.
     pub fn of_values(&self, values: &[f64]) -> Result<Vec<f64>> {
         if values.len() != self.basis.len() {
             let (found, needed) = (values.len(), self.basis.len());
@@ -81,19 +80,19 @@ impl<'a> Interpolation<'a> {
             return Err(Error::malformed(what).at(format!("site {x} {y}")));
         }
         let mut coefficients = self.solve(values.to_vec());
-        // One step of refinement: partial pivoting may lose a digit or two.
+        // One step of refinement, because partial pivoting may lose a digit or two.
         let product = self.times(&coefficients);
         let residual = values.iter().zip(product).map(|(value, found)| value - found).collect();
         coefficients.iter_mut().zip(self.solve(residual)).for_each(|(c, step)| *c += step);
         Ok(coefficients)
     }
 
-    /// Coefficients of the spline that has, at Greville sites, the values of the function that is linear on
-    /// the triangles of a mesh and has these values at its points.
+    /// Coefficients of the spline that interpolates a mesh at Greville sites: its values are those of the
+    /// function that is linear on the triangles of the mesh and has these values at its points.
     ///
     /// # Errors
     /// Another number of values than points; sites outside of the hull of the points, with their number and
-    /// the place of the first; a value that is not finite.
+    /// the place of the first one; a value that is not finite.
     pub fn of_points(&self, mesh: &Mesh, values: &[f64]) -> Result<Vec<f64>> {
         if values.len() != mesh.points().len() {
             let (found, needed) = (values.len(), mesh.points().len());
@@ -117,7 +116,7 @@ impl<'a> Interpolation<'a> {
     }
 
     /// Estimate of the condition of the equations in the 1-norm. It is a lower bound, and rarely less than a
-    /// third of the truth.
+    /// third of the exact value.
     ///
     /// Source: Hager 1984; Higham, "Accuracy and Stability of Numerical Algorithms", 2002, algorithm 15.1.
     #[must_use]
@@ -163,7 +162,7 @@ impl<'a> Interpolation<'a> {
         x
     }
 
-    /// The greatest sum of a column.
+    /// The 1-norm of the matrix: the greatest absolute column sum.
     fn norm(&self) -> f64 {
         let mut sums = vec![0.0; self.basis.len()];
         self.functions.iter().zip(&self.values).for_each(|(&function, value)| sums[function] += value.abs());
@@ -171,7 +170,7 @@ impl<'a> Interpolation<'a> {
     }
 
     /// Estimate of the 1-norm of the inverse, and the function with the greatest coefficient in the column
-    /// that has it.
+    /// that attains it.
     fn inverse_norm(&self) -> (f64, usize) {
         let count = self.basis.len();
         let mut x = vec![1.0 / count as f64; count];
@@ -191,7 +190,7 @@ impl<'a> Interpolation<'a> {
             x = vec![0.0; count];
             x[place] = 1.0;
         }
-        // Higham's second vector, for matrices that the first steps are blind for.
+        // Higham's second vector, for matrices whose norm the first steps underestimate.
         let last = (count.max(2) - 1) as f64;
         let alternating = |i: usize| (1.0 + i as f64 / last) * if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let y = self.solve((0..count).map(alternating).collect());
@@ -229,7 +228,7 @@ pub fn interpolate(basis: &Basis, f: impl FnMut(Point2) -> f64) -> Result<Vec<f6
     Interpolation::new(basis)?.of_function(f)
 }
 
-/// Refuses functions that are zero at all sites, and sites at one place, before anything is divided by zero.
+/// Refuses functions that are zero at all sites, and coincident sites, before factors are divided by zero.
 fn check_sites(basis: &Basis, functions: &[usize], values: &[f64]) -> Result<()> {
     let mut is_alive = vec![false; basis.len()];
     let alive = functions.iter().zip(values).filter(|&(_, &value)| value != 0.0);

@@ -1,8 +1,8 @@
 //! Placement of knots: on grids, and next to residuals.
 //!
-//! Knots inside are moved at random, by a fixed seed, so that no three are on a line and splines are smooth.
-//! The border is pulled apart, so that splines could fold along *border chords*: inner edges that join two
-//! knots of the border. Such edges get a knot, too.
+//! Inner knots are moved at random, with a fixed seed, so that no three are on a line and splines are smooth.
+//! Knots of the border are pulled apart, so that splines could fold along *border chords*: inner edges that
+//! join two knots of the border. Each border chord gets a knot, too.
 
 use super::mesh::Mesh;
 use super::observations::Observations;
@@ -14,19 +14,19 @@ use spmesh_geometry::predicates::Point2;
 const CELLS_FIRST: usize = 4;
 /// How far knots are moved, in cells.
 const MOVED: f64 = 0.2;
-/// Least number of knots: those of the first grid, and one for each corner that an edge cuts off.
+/// Least number of knots: those of the first grid, and one for each corner that an edge may cut off.
 pub const KNOTS_MIN: usize = (CELLS_FIRST + 1) * (CELLS_FIRST + 1) + 4;
 /// Most cells of a grid.
 const EVEN_MAX: f64 = 5e7;
-/// Attempts to place knots so that there is no border chord.
+/// Attempts to place knots without border chords.
 const ATTEMPTS: usize = 4;
 
-/// Knots on a grid over the box of all observations, with cells of about this side; those inside are moved a
+/// Knots on a grid over the box of all observations, with cells of about this side. Inner knots are moved a
 /// little.
 ///
 /// # Errors
-/// A side that is not above zero, or makes more than 50 million knots; observations in no area; those of the
-/// source.
+/// A side that is not above zero or makes more than 50 million cells; observations that span no area; those
+/// of the source.
 pub fn grid_knots<O: Observations + ?Sized>(observations: &O, side: f64) -> Result<Vec<Point2>> {
     if side.is_nan() || side <= 0.0 {
         return Err(Error::usage(format!("cells of {side}: expected a number above zero")));
@@ -42,7 +42,7 @@ pub fn grid_knots<O: Observations + ?Sized>(observations: &O, side: f64) -> Resu
     Ok([places, middles].concat())
 }
 
-/// The box of all observations that count.
+/// The bounding box of all observations, those of weight zero included.
 pub(super) fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Point2; 2]> {
     let (mut lower, mut upper) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let (mut reader, mut batch, mut index) = (observations.read()?, Vec::new(), 0u64);
@@ -71,14 +71,14 @@ pub(super) fn bounds<O: Observations + ?Sized>(observations: &O) -> Result<[Poin
     Ok([lower, upper])
 }
 
-/// The grid of the first round: its cells are about square.
+/// The grid of the first round, with cells that are about square.
 pub(super) fn first_grid([lower, upper]: [Point2; 2]) -> Vec<Point2> {
     let sides = [0, 1].map(|axis| upper[axis] - lower[axis]);
     let longest = sides[0].max(sides[1]);
     grid([lower, upper], sides.map(|side| ((side / longest * CELLS_FIRST as f64).round() as usize).max(2)))
 }
 
-/// The corners of the box and knots along its sides, exactly, and moved ones inside.
+/// The grid points of a box: exact on its border, moved at random inside.
 fn grid([lower, upper]: [Point2; 2], cells: [usize; 2]) -> Vec<Point2> {
     let mut random = Random::new(1);
     let mut places = Vec::with_capacity((cells[0] + 1) * (cells[1] + 1));
@@ -94,21 +94,21 @@ fn grid([lower, upper]: [Point2; 2], cells: [usize; 2]) -> Vec<Point2> {
     places
 }
 
-/// A number between -1 and 1.
+/// A random number between -1 and 1.
 fn unit(random: &mut Random) -> f64 {
     2.0 * (random.bits() as f64 / u64::MAX as f64) - 1.0
 }
 
-/// A number at a part of the way; the ends themselves at zero and one.
+/// Linear interpolation; exact at parts zero and one.
 fn between(from: f64, to: f64, part: f64) -> f64 {
     if part == 1.0 { to } else { from + part * (to - from) }
 }
 
-/// Adds knots near the middles of border chords while at most `added_max` are added; otherwise drops the
-/// knots that cause such chords.
+/// Adds knots near the middles of border chords while at most `added_max` knots are added; beyond, drops the
+/// knots that cause border chords.
 ///
-/// New knots never create edges between known ones, so that at least one end of each chord is new, except at
-/// the very start.
+/// New knots never create edges between known ones, so at least one end of each chord is new, except at the
+/// very start.
 pub(super) fn break_border_chords(
     known: &[Point2],
     mut added: Vec<Point2>,
@@ -137,8 +137,8 @@ pub(super) fn break_border_chords(
     Ok(added)
 }
 
-/// Inner edges that join two knots of the border, each with a place next to its middle. The middle itself
-/// would put knots on one line, which makes splines less smooth.
+/// Border chords, each with a place near its middle. Exactly at the middle, knots would be on a line, which
+/// makes splines less smooth.
 fn border_chords(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     let mut is_border = vec![false; mesh.points().len()];
     mesh.hull().iter().for_each(|&knot| is_border[knot as usize] = true);
@@ -147,7 +147,7 @@ fn border_chords(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
         let (vertices, corners) = (mesh.vertices(triangle), mesh.corners(triangle));
         for [from, to] in mesh.inner_edges(triangle) {
             let ends = [vertices[from], vertices[to]];
-            // Each edge is one of two triangles.
+            // Each inner edge belongs to two triangles: count it once.
             if ends[0] < ends[1] && ends.iter().all(|&end| is_border[end as usize]) {
                 let (p, q, apex) = (corners[from], corners[to], corners[3 - from - to]);
                 found.push((ends, [0, 1].map(|axis| 0.9 * p[axis].midpoint(q[axis]) + 0.1 * apex[axis])));
@@ -157,8 +157,8 @@ fn border_chords(mesh: &Mesh) -> Vec<([u32; 2], Point2)> {
     found
 }
 
-/// The knot for a residual in a triangle: about halfway between its place and the middle. Exactly there,
-/// knots of several rounds for one residual would be on a line with a corner.
+/// The knot for a residual in a triangle: about halfway between the residual and the middle of the triangle.
+/// Exactly halfway, knots of several rounds for one residual would be on a line with a corner.
 pub(super) fn knot_for_residual(mesh: &Mesh, triangle: u32, worst: Point2, random: &mut Random) -> Point2 {
     let corners = mesh.corners(triangle);
     let mut share = || 1.0 + MOVED * unit(random);
@@ -167,7 +167,7 @@ pub(super) fn knot_for_residual(mesh: &Mesh, triangle: u32, worst: Point2, rando
     let places = corners.into_iter().chain([worst]).zip(shares);
     let knot = places
         .fold([0.0; 2], |sum, (place, share)| [0, 1].map(|axis| sum[axis] + share / whole * place[axis]));
-    // In the circle over an edge of the border, a knot would make a flat triangle (Ruppert 1995).
+    // In the diametral circle of a border edge, a knot would make a flat triangle (Ruppert 1995).
     let is_near = |&[p, q]: &[Point2; 2]| {
         (p[0] - knot[0]) * (q[0] - knot[0]) + (p[1] - knot[1]) * (q[1] - knot[1]) <= 0.0
     };

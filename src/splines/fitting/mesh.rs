@@ -31,7 +31,7 @@ impl Mesh {
         &self.points
     }
 
-    /// Vertices of the hull, counterclockwise, those on its edges included.
+    /// Vertices of the hull, counterclockwise, including vertices on its edges.
     pub(super) fn hull(&self) -> &[u32] {
         &self.triangulation.hull
     }
@@ -56,7 +56,7 @@ impl Mesh {
         self.sides(triangle, false).map(move |ends| ends.map(|end| corners[end]))
     }
 
-    /// The edges of a triangle with another triangle beyond, as pairs of places among its corners.
+    /// The edges that a triangle shares with another one, as pairs of places among its corners.
     pub(super) fn inner_edges(&self, triangle: u32) -> impl Iterator<Item = [usize; 2]> {
         self.sides(triangle, true)
     }
@@ -67,10 +67,11 @@ impl Mesh {
         (0..3).filter(is_wanted).map(|side| [(side + 1) % 3, (side + 2) % 3])
     }
 
-    /// A triangle that contains x, if any does: the walk starts at `near`, which becomes the triangle.
+    /// A triangle that contains x, if there is one: the walk starts at `near`, and sets it to the triangle
+    /// found.
     ///
-    /// Cost: the number of triangles between. It ends, because the triangulation is regular: each step is to
-    /// a triangle whose circle has less power at x (Edelsbrunner 1990).
+    /// Cost: proportional to the number of triangles between. The walk ends, because the triangulation is
+    /// regular: each step leads to a triangle whose circle has less power at x (Edelsbrunner 1990).
     pub(super) fn locate(&self, x: Point2, near: &mut u32) -> Option<u32> {
         let mut predicates = FiniteFloatPredicates::default();
         loop {
@@ -87,11 +88,13 @@ impl Mesh {
         }
     }
 
-    /// The value at x of the function that is linear on triangles and has these values at points; nothing
+    /// The value at x of the function that is linear on triangles and has these values at points; `None`
     /// outside of the hull.
     ///
-    /// `near` is a triangle to begin at, and becomes the one that was found; at first it is 0. Panics if
-    /// there are fewer values than points, or no such triangle.
+    /// The search starts from the triangle `near`, at first 0, and sets it to the triangle found.
+    ///
+    /// # Panics
+    /// If there are fewer values than points, or no triangle `near`.
     #[must_use]
     pub fn interpolate(&self, values: &[f64], x: Point2, near: &mut u32) -> Option<f64> {
         let triangle = self.locate(x, near)?;

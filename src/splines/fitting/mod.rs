@@ -2,16 +2,16 @@
 //!
 //! [`interpolate`] passes through values at Greville sites. All other fits are least squares of scattered
 //! [`Observations`], which are read as often as needed and never held: [`NormalEquations`] have the size of
-//! the basis. [`Equations`] solves them, smoothed by an energy ([`bending`]), mostly that of a thin plate.
-//! [`generalised_cross_validation`] and [`Folds`] choose how much to smooth. [`robust()`] reduces the weight
-//! of gross errors, and [`refine()`] also finds the knots.
+//! the basis. [`Equations`] solves them, smoothed by an energy ([`bending`]), which is mainly that of a thin
+//! plate. [`generalised_cross_validation`] and [`Folds`] choose how much to smooth. [`robust()`] reduces the
+//! weight of gross errors, and [`refine()`] also finds the knots.
 //!
 //! | files | what they hold |
 //! |---|---|
 //! | `observations`, `blocks` | the data, and parallel passes over them |
 //! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
 //! | `trend` | the linear part of a fit, which is solved on its own |
-//! | `energy`, `overlaps`, `polygon`, `control_energy` | what smooths: the thin plate and the control mesh |
+//! | `energy`, `overlaps`, `polygon`, `control_energy` | energies for smoothing: thin plate, control mesh |
 //! | `cross_validation` | the choice of the smoothing parameter |
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |

@@ -1,12 +1,12 @@
 //! Normal equations of weighted least squares, in one pass over the observations.
 //!
-//! With the values of functions at an observation as a row of A, its weight on the diagonal of W and its
-//! value in z, they are A'WA c = A'Wz for the coefficients c. Memory is that of A'WA, about 10 entries per
-//! function of degree 2, and of a few blocks of observations.
+//! Let A have the values of functions at an observation as a row, W its weight on the diagonal, and z its
+//! value. Then the coefficients c solve A'WA c = A'Wz. Memory: A'WA, about 10 entries per function of degree
+//! 2, and a few blocks of observations.
 //!
-//! Each round has two steps. Blocks of observations are evaluated, in any thread; then each thread adds all
-//! of them, in their order, to the rows that it has. So each entry is a sum in the order of observations,
-//! whatever the number of threads.
+//! Each round has two steps. First, threads evaluate blocks of observations in parallel. Then each thread
+//! adds all blocks, in their order, to the rows that it owns. So each entry is a sum in the order of
+//! observations, whatever the number of threads.
 
 use super::blocks::{self, Block};
 use super::observations::{Observation, Observations};
@@ -18,7 +18,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use std::num::NonZeroUsize;
 
-/// Normal equations, with the sums that residuals follow from.
+/// Normal equations, with the sums that give the residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalEquations {
     /// A'WA.
@@ -38,10 +38,10 @@ pub struct NormalEquations {
 impl NormalEquations {
     /// The equations of all observations.
     ///
-    /// Cost: one pass, an evaluation of the basis for each observation.
+    /// Cost: one pass, with one evaluation of the basis per observation.
     ///
     /// # Errors
-    /// Those of the source; numbers that are not finite, weights that are negative, with the number of the
+    /// Those of the source; numbers that are not finite, or negative weights, with the number of the
     /// observation.
     pub fn of<O: Observations + ?Sized>(
         basis: &Basis,
@@ -51,27 +51,27 @@ impl NormalEquations {
         Ok(Parts::unweighed(basis, observations, threads, 1, |_| 0)?.sum(|_| true))
     }
 
-    /// The sum of the weighted squares of residuals of coefficients. Relative to z'Wz it is good to about
-    /// 1e-15.
+    /// The weighted sum of squared residuals for these coefficients. Accuracy: about 1e-15 of z'Wz.
     #[must_use]
     pub fn residual_square(&self, coefficients: &[f64]) -> f64 {
         let mixed: f64 = self.right.iter().zip(coefficients).map(|(right, c)| right * c).sum();
         (self.square - 2.0 * mixed + self.matrix.form(coefficients)).max(0.0)
     }
 
-    /// The default `lambda`: it halves waves as long as two distances of observations, the shortest that
-    /// observations can resolve. It does not depend on knots. On terrain, about this value predicts held-out
-    /// points best.
+    /// The default `lambda`. It halves the amplitude of waves as long as two spacings of observations, the
+    /// shortest that observations can resolve. It does not depend on knots. On terrain, about this value
+    /// predicts held-out points best.
     ///
-    /// Thin plates of a weight W on an area A keep 1 / (1 + lambda k^4 A / W) of waves with the number k,
-    /// which is pi over the distance here; n observations are at distances of the root of A / n.
+    /// A thin plate with total weight W on an area A multiplies waves of wave number k by
+    /// 1 / (1 + lambda k^4 A / W). Here k is pi over the spacing, and n observations have a spacing of
+    /// sqrt(A / n).
     #[must_use]
     pub fn default_lambda(&self, basis: &Basis) -> f64 {
         let area = polygon::area(&basis.domain_corners());
         self.weight * area / (self.count as f64 * std::f64::consts::PI.powi(2)).powi(2)
     }
 
-    /// Refuses equations of no observation.
+    /// Refuses equations without observations.
     pub(super) fn check(&self) -> Result<()> {
         if self.count > 0 {
             return Ok(());
@@ -88,7 +88,7 @@ impl NormalEquations {
     }
 }
 
-/// The weight of an observation, and its residual if it is wanted.
+/// The weight of an observation, and its residual if requested.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Weighed {
     pub(super) weight: f64,
@@ -100,12 +100,12 @@ pub(super) struct Weighed {
 #[derive(Debug, Clone)]
 pub(super) struct Parts {
     rows: Rows,
-    /// A'Wz: those of all parts for each function.
+    /// A'Wz: for each function, the values of all parts.
     right: Vec<f64>,
     totals: Vec<Totals>,
 }
 
-/// Numbers of one part.
+/// Sums over one part.
 #[derive(Debug, Clone, Copy, Default)]
 struct Totals {
     square: f64,
@@ -118,7 +118,7 @@ struct Totals {
 #[derive(Default)]
 struct Evaluated {
     parts: Vec<u32>,
-    /// Weights, and values.
+    /// Weights and values of observations.
     weighted: Vec<[f64; 2]>,
     offsets: Vec<u32>,
     alive: Vec<(u32, f64)>,
@@ -126,7 +126,7 @@ struct Evaluated {
     totals: Vec<Totals>,
 }
 
-/// The rows of one thread: functions whose number, modulo the number of threads, is that of the thread.
+/// The rows of one thread: those of functions whose number is `turn` modulo the number of threads.
 struct Shard {
     turn: usize,
     turns: usize,
@@ -136,8 +136,8 @@ struct Shard {
 }
 
 impl Parts {
-    /// The equations of `count` parts, with the weights of observations; `part_of` says which part an
-    /// observation is in, by its number.
+    /// The equations of `count` parts, with the weights of observations. `part_of` maps the number of an
+    /// observation to its part.
     pub(super) fn unweighed<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
@@ -152,8 +152,8 @@ impl Parts {
         Parts::of(basis, observations, threads, count, part_of, weigh, |_| ())
     }
 
-    /// The same with other weights: `weigh` gets the number of an observation, the observation, and the
-    /// functions alive; `see` gets the residuals that it returns, in order.
+    /// Like [`Parts::unweighed`], with other weights: `weigh` gets the number of an observation, the
+    /// observation and the functions alive there; `see` gets the residuals that `weigh` returns, in order.
     pub(super) fn of<O: Observations + ?Sized>(
         basis: &Basis,
         observations: &O,
@@ -188,7 +188,7 @@ impl Parts {
         Ok(Parts { rows, right, totals })
     }
 
-    /// The equations of some parts together.
+    /// The normal equations of several parts together.
     pub(super) fn sum(&self, is_summed: impl Fn(usize) -> bool) -> NormalEquations {
         let mut totals = Totals::default();
         let chosen = self.totals.iter().enumerate().filter(|&(part, _)| is_summed(part));

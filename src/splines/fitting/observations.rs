@@ -3,17 +3,18 @@
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 
-/// Observations that a list hands out at a time.
+/// Observations per batch of a list in memory.
 const BATCH: usize = 1 << 13;
 
 /// A value at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// Where.
+    /// The place of the observation.
     pub point: Point2,
     /// The measured value.
     pub value: f64,
-    /// How much it counts: as one over a variance, or as a number of equal observations. Not negative.
+    /// How much the observation counts: the reciprocal of a variance, or a number of equal observations. Not
+    /// negative.
     pub weight: f64,
 }
 
@@ -51,7 +52,7 @@ pub trait Observations {
 
 /// One pass over observations.
 pub trait ObservationReader {
-    /// Appends some of the next observations; none at the end.
+    /// Appends the next observations; appends none at the end.
     ///
     /// # Errors
     /// If they cannot be read, or are malformed.

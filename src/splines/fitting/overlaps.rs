@@ -2,18 +2,19 @@
 
 use spmesh_geometry::predicates::Point2;
 
-/// Up to this number of boxes, each is compared with each.
+/// Up to this number of boxes, all pairs are compared.
 const FEW: usize = 16;
-/// A cut is rejected if a half keeps more than this part of the boxes.
+/// A cut is rejected if a half would keep more than this part of the boxes.
 const SHARE_MAX: f64 = 0.8;
 
 /// A box from lower left to upper right.
 pub(super) type Rectangle = [Point2; 2];
 
-/// Calls `visit` once for each pair of different boxes that have a point in common, the lesser number first.
+/// Calls `visit` once for each pair of different boxes that have a point in common, with the lesser number
+/// first.
 ///
-/// The plane is halved at medians recursively. A pair is reported by the part that contains the lower left
-/// corner of the common box. Cost: O(n log n), and that of pairs.
+/// The plane is halved at medians recursively. The part that contains the lower left corner of the
+/// intersection reports the pair. Cost: O(n log n), plus the number of pairs.
 pub(super) fn for_each_pair(boxes: &[Rectangle], visit: &mut impl FnMut(u32, u32)) {
     let all: Vec<u32> = (0..boxes.len() as u32).collect();
     Search { boxes, visit }.search(all, [[f64::NEG_INFINITY; 2], [f64::INFINITY; 2]]);
@@ -50,7 +51,7 @@ impl<V: FnMut(u32, u32)> Search<'_, V> {
         }
     }
 
-    /// The better of two cuts, if any is of use.
+    /// The better of two cuts; `None` if both are rejected.
     fn halves(&self, some: &[u32], part: Rectangle) -> Option<(usize, f64, [Vec<u32>; 2])> {
         let greatest = (SHARE_MAX * some.len() as f64) as usize;
         let halved = |axis: usize| {

@@ -2,7 +2,7 @@
 
 use spmesh_geometry::predicates::Point2;
 
-/// Corners, counterclockwise.
+/// The corners of a convex polygon, counterclockwise.
 pub(super) type Polygon = Vec<Point2>;
 
 /// Twice the signed area of a triangle.
@@ -17,7 +17,7 @@ pub(super) fn area(polygon: &[Point2]) -> f64 {
     0.5 * rest.windows(2).map(|edge| twice_area(first, edge[0], edge[1])).sum::<f64>()
 }
 
-/// The square of the distance of two corners.
+/// The squared distance of two corners.
 #[inline]
 pub(super) fn square_of_side(p: Point2, q: Point2) -> f64 {
     (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
@@ -44,7 +44,7 @@ impl Clipper {
         &self.current
     }
 
-    /// Keeps what is not to the right of a line (Sutherland and Hodgman, 1974).
+    /// Keeps the part that is not to the right of a line (Sutherland and Hodgman, 1974).
     fn keep_left(&mut self, p: Point2, q: Point2) {
         self.next.clear();
         let Some(&last) = self.current.last() else { return };

@@ -1,8 +1,9 @@
 //! Medians and other quantiles of magnitudes, from one pass, in a fixed amount of memory.
 
-/// Bits of a number that make its class, besides its sign: 11 of the exponent, 7 of the fraction.
+/// Number of bits, below the sign, that determine the class of a number: 11 of the exponent, 7 of the
+/// fraction.
 const CLASS_BITS: u32 = 18;
-/// Bits below them.
+/// Bits below the class bits.
 const SHIFT: u32 = 63 - CLASS_BITS;
 
 /// Counts of magnitudes in classes of equal relative width. Memory: 2 MB.
@@ -25,16 +26,16 @@ impl QuantileSketch {
         self.total += 1;
     }
 
-    /// The median of magnitudes, the lower one of two. Accuracy: as [`QuantileSketch::quantile`].
+    /// The lower median of magnitudes. Accuracy: as [`QuantileSketch::quantile`].
     #[must_use]
     pub fn median(&self) -> Option<f64> {
         self.quantile(0.5)
     }
 
-    /// The least magnitude that a part of all magnitudes is not above: the middle of its class, which is half
-    /// a percent off at most. `None` without numbers.
+    /// The least magnitude q such that `part` of all magnitudes are at most q. It is rounded to the middle of
+    /// its class, at most half a percent off. `None` without numbers.
     ///
-    /// Domain: parts above zero, and up to one.
+    /// Domain: 0 < `part` <= 1.
     #[must_use]
     pub fn quantile(&self, part: f64) -> Option<f64> {
         let enough = (part * self.total as f64).ceil() as u64;
@@ -44,7 +45,7 @@ impl QuantileSketch {
             below >= enough
         };
         let class = self.counts.iter().position(is_reached).filter(|_| self.total > 0)? as u64;
-        // Zero is the only number of its class in practice, and exact data have no other residual.
+        // In practice zero is the only number of its class, and for exact data it is the only residual.
         let middle = if class == 0 { 0 } else { 1 << (SHIFT - 1) };
         Some(f64::from_bits((class << SHIFT) + middle))
     }

@@ -1,9 +1,9 @@
 //! The search for knots: fits that add knots until residuals are small enough.
 //!
-//! The knots begin as a coarse grid over the box of the data. Each round fits a spline, and looks for the
-//! greatest residual in each triangle of knots (`triangle_residuals`). Where it is above the tolerance, a new
+//! The first knots are a coarse grid over the box of the data. Each round fits a spline, and finds the
+//! greatest residual in each triangle of knots (`triangle_residuals`). Where it exceeds the tolerance, a new
 //! knot is placed about halfway between the residual and the middle of the triangle: close to the residual,
-//! and away from knots and edges. Next to the border, the knot is the middle of the border edge instead
+//! and away from knots and edges. Next to the border, the new knot is the middle of the border edge instead
 //! (`knot_placement`).
 
 use super::control_energy::bending;
@@ -18,27 +18,26 @@ use super::triangle_residuals::TriangleResiduals;
 use spmesh_core::error::Result;
 use std::num::NonZeroUsize;
 
-/// A spline with knots of its own.
+/// A spline and the knots that were found for it.
 #[derive(Debug)]
 pub struct Refined {
     /// Knots and functions.
     pub space: SplineSpace,
     /// Coefficients.
     pub coefficients: Vec<f64>,
-    /// All rounds; the last one is that of the result.
+    /// All rounds; the last one describes the result.
     pub rounds: Vec<Round>,
-    /// Whether all residuals are within the tolerance, but for rejected observations. If not, knots were used
-    /// up, or there were too few observations to add more.
+    /// Whether all residuals are within the tolerance, except those of rejected observations. If not, the
+    /// search reached the maximum of knots, or there were too few observations to add more.
     pub is_reached: bool,
 }
 
-/// Fits a spline with as many knots as a goal takes.
+/// Fits a spline, and adds knots until a goal is reached.
 ///
-/// Cost: two passes over the observations for each round, of which there are about ten; with a loss, ten
-/// times as many.
+/// Cost: about ten rounds of two passes over the observations each; with a loss, ten times as many passes.
 ///
 /// # Errors
-/// Goals out of range; observations without an area; those of [`NormalEquations::of`] and
+/// Goals out of range; observations that span no area; those of [`NormalEquations::of`] and
 /// [`Equations::solve`].
 pub fn refine<O: Observations + ?Sized>(
     observations: &O,
@@ -67,10 +66,10 @@ pub fn refine<O: Observations + ?Sized>(
     }
 }
 
-/// A fit over the knots of a round.
+/// The fit over the knots of one round.
 struct Solution {
     coefficients: Vec<f64>,
-    /// Observations whose residual is greater, for a weight of one, are rejected.
+    /// Observations whose residual, times the root of the weight, is greater are rejected.
     limit: f64,
 }
 

@@ -7,29 +7,29 @@ use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
 
-/// A residual: the value of an observation less that of the spline.
+/// A residual: the value of an observation minus the value of the spline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
     /// The number of the observation.
     pub index: u64,
-    /// Where.
+    /// Its place.
     pub point: Point2,
-    /// Value less spline.
+    /// Value minus spline.
     pub residual: f64,
     /// Weight of the observation.
     pub weight: f64,
 }
 
-/// Residuals of all observations in the domain, in numbers.
+/// Summary of the residuals of all observations in the domain.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Summary {
     /// Number of observations in the domain.
     pub count: u64,
-    /// Number of observations outside of it.
+    /// Number of observations outside of the domain.
     pub outside: u64,
-    /// The residual of greatest magnitude, the first one of several.
+    /// The residual of greatest magnitude; the first one if there are several.
     pub worst: Option<Residual>,
-    /// Root of the mean square, weights not counted.
+    /// Root of the mean square, not weighted.
     pub root_mean_square: f64,
     /// Mean.
     pub mean: f64,
@@ -41,10 +41,10 @@ pub(super) fn value(coefficients: &[f64], alive: &[(u32, f64)]) -> f64 {
     alive.iter().map(|&(function, value)| coefficients[function as usize] * value).sum()
 }
 
-/// Calls `visit` with all residuals in the domain, in order; the number of observations outside.
+/// Calls `visit` with all residuals in the domain, in order; returns the number of observations outside.
 ///
 /// # Errors
-/// Those of the source; another number of coefficients than functions.
+/// Those of the source; a number of coefficients other than the number of functions.
 pub fn for_each_residual<O: Observations + ?Sized>(
     basis: &Basis,
     coefficients: &[f64],
@@ -76,7 +76,7 @@ pub fn for_each_residual<O: Observations + ?Sized>(
     Ok(outside)
 }
 
-/// Residuals in numbers: one pass.
+/// Summarises residuals in one pass.
 ///
 /// # Errors
 /// Those of [`for_each_residual`].

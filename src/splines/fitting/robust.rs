@@ -10,36 +10,36 @@ use crate::bases::Basis;
 use spmesh_core::error::{Error, Result};
 use std::num::NonZeroUsize;
 
-/// Where Huber's loss becomes linear, in standard deviations: 95 % efficient for normal errors.
+/// Where Huber's loss becomes linear, in standard deviations; 95 % efficient for normal errors.
 const HUBER: f64 = 1.345;
-/// Where Tukey's loss becomes constant: 95 % efficient, too. Observations beyond are *rejected*, for either
-/// loss.
+/// Where Tukey's loss becomes constant, in standard deviations; 95 % efficient, too. With either loss,
+/// observations beyond are *rejected*.
 const TUKEY: f64 = 4.685;
-/// Standard deviations in a median of magnitudes, for normal errors.
+/// Standard deviations per median of magnitudes, for normal errors.
 const DEVIATIONS: f64 = 1.482_602_218_505_602;
-/// Least scale, relative to the root of the mean square of values: that of rounding.
+/// Least scale, relative to the root of the mean square of values: about the rounding error.
 const SCALE_MIN: f64 = 1e-12;
-/// Root of the mean square of changes of coefficients, in scales, that ends the rounds.
+/// The rounds end when the root of the mean square change of coefficients is at most this number of scales.
 const CHANGE_MAX: f64 = 1e-2;
-/// Rounds for one loss, at most...
+/// Greatest number of rounds for one loss...
 const ROUNDS_MAX: usize = 50;
-/// ...and where knots are added after it: coefficients may still change, but gross errors can be told from
-/// others.
+/// ...and for fits to which knots will be added: coefficients may still change, but gross errors can be told
+/// from other residuals.
 pub(super) const ROUNDS_FEW: usize = 6;
 
 /// The loss function of residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loss {
-    /// Squares near zero, then linear: convex, so that there is one best fit, which gross errors still pull a
-    /// little.
+    /// Quadratic near zero, then linear. The loss is convex, so there is one best fit, but gross errors still
+    /// pull it a little.
     Huber,
-    /// Tukey's biweight: constant from 4.685 scales on, so that gross errors do not count at all. Huber's fit
-    /// is the start.
+    /// Tukey's biweight: constant from 4.685 scales on, so that gross errors do not count at all. The
+    /// iteration starts from Huber's fit.
     Tukey,
 }
 
 impl Loss {
-    /// The factor of the weight of an observation whose residual is this number of scales.
+    /// The factor of the weight of an observation whose residual is `scales` scales.
     fn factor(self, scales: f64) -> f64 {
         match self {
             Loss::Huber if scales <= HUBER => 1.0,
@@ -58,19 +58,19 @@ pub struct RobustFit {
     /// Standard deviation of an observation of weight one, from the median of the magnitudes of all
     /// residuals.
     pub scale: f64,
-    /// Passes over the observations, that of the normal equations included.
+    /// Passes over the observations, including the pass for the normal equations.
     pub passes: usize,
-    /// Whether coefficients settled.
+    /// Whether the coefficients converged.
     pub has_converged: bool,
 }
 
 /// Fits with a loss; `energy` is multiplied by `lambda`.
 ///
-/// Cost: a pass and a factorisation per round, about 10 rounds for a loss. Source: Holland and Welsch 1977.
+/// Cost: a pass and a factorisation per round, about 10 rounds per loss. Source: Holland and Welsch 1977.
 ///
 /// # Errors
-/// Those of [`NormalEquations::of`] and [`Equations::solve`]; in particular, functions all of whose
-/// observations are rejected are not determined if nothing is smoothed.
+/// Those of [`NormalEquations::of`] and [`Equations::solve`]. Without smoothing, functions whose observations
+/// are all rejected are not determined.
 pub fn robust<O: Observations + ?Sized>(
     basis: &Basis,
     observations: &O,
@@ -83,7 +83,7 @@ pub fn robust<O: Observations + ?Sized>(
     robust_from(&plain, basis, observations, loss, energy, lambda, threads)
 }
 
-/// The same from the normal equations of all observations, where they are known: a pass less.
+/// [`robust()`] from known normal equations of all observations, which saves a pass.
 ///
 /// # Errors
 /// Those of [`robust()`].
@@ -106,8 +106,8 @@ impl RobustFit {
         TUKEY * self.scale
     }
 
-    /// Calls `visit` with all rejected observations, in order: those whose residual, multiplied by the root
-    /// of the weight, is greater than 4.685 scales. One pass; the number of rejected ones.
+    /// Calls `visit` with all rejected observations, in order: those whose residual, times the root of the
+    /// weight, is greater than 4.685 scales. Returns their number. One pass.
     ///
     /// # Errors
     /// Those of [`residuals::for_each_residual`].
@@ -136,7 +136,7 @@ pub(super) struct Rounds<'a, O: ?Sized> {
     pub(super) energy: Option<&'a Symmetric>,
     pub(super) lambda: f64,
     pub(super) threads: NonZeroUsize,
-    /// So many rounds for one loss, at most.
+    /// Greatest number of rounds for one loss.
     pub(super) most: usize,
 }
 
@@ -157,8 +157,8 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(found)
     }
 
-    /// Rounds with one loss. A round weighs with the scale that the round before has seen, and measures the
-    /// next one.
+    /// Iterates with one loss. Each round weighs observations by the scale that the previous round measured,
+    /// and measures the scale for the next one.
     fn improve(&self, fit: &mut RobustFit, loss: Loss, scale_min: f64) -> Result<()> {
         fit.has_converged = false;
         for _ in 0..self.most {
@@ -166,7 +166,7 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
             let coefficients = self.solve(&normal)?;
             let squares = coefficients.iter().zip(&fit.coefficients).map(|(a, b)| (a - b) * (a - b));
             let change = (squares.sum::<f64>() / coefficients.len() as f64).sqrt();
-            // While the scale shrinks, coefficients are on their way, however slowly.
+            // While the scale still shrinks, coefficients have not converged, however slowly they change.
             let is_still = change <= CHANGE_MAX * scale.max(scale_min) && scale >= 0.98 * fit.scale;
             fit.coefficients = coefficients;
             fit.passes += 1;
@@ -180,7 +180,7 @@ impl<O: Observations + ?Sized> Rounds<'_, O> {
         Ok(())
     }
 
-    /// The equations with weights of residuals, and the scale of these.
+    /// The normal equations, weighted by residuals, and the scale of the residuals.
     fn weighted(&self, fit: &RobustFit, loss: Loss) -> Result<(NormalEquations, f64)> {
         let mut sketch = QuantileSketch::default();
         let parts = Parts::of(

@@ -1,6 +1,7 @@
 //! Rows of symmetric sparse matrices while entries are added to them.
 
-/// The upper triangle of a symmetric matrix, or of several with entries at the same places, its *parts*.
+/// The upper triangle of a symmetric matrix, or of several matrices with entries at the same places, its
+/// *parts*.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     parts: usize,
@@ -9,9 +10,9 @@ pub(super) struct Rows {
 
 #[derive(Debug, Clone, Default)]
 struct Row {
-    /// In order.
+    /// Increasing.
     columns: Vec<u32>,
-    /// Those of all parts for each column.
+    /// For each column, the values of all parts.
     values: Vec<f64>,
 }
 
@@ -26,7 +27,7 @@ impl Rows {
 
     /// Adds `factor` times the values in `entries`, which are in order of columns, to a row.
     ///
-    /// A row has few columns, which neighbours in the list of entries have next to each other: a walk finds
+    /// A row has few columns, and consecutive entries are close to each other in it, so a linear walk finds
     /// them.
     #[inline]
     pub(super) fn add(&mut self, row: usize, part: usize, factor: f64, entries: &[(u32, f64)]) {
@@ -51,7 +52,7 @@ impl Rows {
         columns.iter().map(|&column| column as usize).zip(values.chunks_exact(self.parts))
     }
 
-    /// Rows that were added to in turn by several: row i is in number i modulo their count.
+    /// Merges the rows of several shards: row i is in shard i modulo their number.
     pub(super) fn interleaved(shards: Vec<Rows>) -> Rows {
         let parts = shards.first().map_or(1, |rows| rows.parts);
         let count = shards.iter().map(Rows::len).sum();

@@ -18,15 +18,16 @@ pub struct Undetermined {
     pub function: usize,
     /// Its Greville site.
     pub site: Point2,
-    /// How much equations change, relative to their diagonal, along the direction that it is not determined
-    /// in: about 1e-13, or zero without any observation.
+    /// The change of the equations along the undetermined direction, relative to their diagonal: about 1e-13,
+    /// or zero without any observation.
     pub curvature: f64,
 }
 
 /// A penalised least squares problem: (A'WA + lambda E) c = A'Wz for all `lambda`.
 ///
-/// E is the thin-plate energy or another energy. If weights are one over variances and `lambda` is one, c'Ec
-/// acts as prior knowledge; a greater `lambda` makes smoother splines, up to the plane of least squares.
+/// E is the thin-plate energy or another energy. If weights are reciprocal variances and `lambda` is one,
+/// c'Ec acts as prior knowledge. A greater `lambda` makes smoother splines; the limit is the least-squares
+/// plane.
 #[derive(Debug)]
 pub struct Equations<'a> {
     basis: &'a Basis,
@@ -35,12 +36,12 @@ pub struct Equations<'a> {
     elimination: Elimination,
     /// Coefficients of the linear function that is nearest to the observations.
     trend: Vec<f64>,
-    /// The right side of the equations for the rest.
+    /// The right side of the equations for the difference from the trend.
     right: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
-    /// The problem of a basis; `energy` may be missing for a `lambda` of zero.
+    /// The equations of a basis. For a `lambda` of zero, `energy` may be `None`.
     ///
     /// # Errors
     /// No observation in the domain; matrices of another basis; not enough memory.
@@ -76,8 +77,8 @@ impl<'a> Equations<'a> {
     /// The coefficients for a `lambda`.
     ///
     /// # Errors
-    /// Functions that are not determined, with their number and the place of the first; a `lambda` that is
-    /// negative, or not finite, or not zero without an energy.
+    /// Functions that are not determined, with their number and the place of the first one; a `lambda` that
+    /// is negative or not finite, or above zero without an energy.
     pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
         self.with_factor(lambda, |factor| {
             self.check(factor, lambda)?;
@@ -89,8 +90,8 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// All functions that are not determined, in order; several that depend on each other have all but one
-    /// listed.
+    /// All functions that are not determined, in order. Of several functions that depend on each other, all
+    /// but one are listed.
     ///
     /// # Errors
     /// A `lambda` as in [`Equations::solve`].
@@ -98,9 +99,9 @@ impl<'a> Equations<'a> {
         self.with_factor(lambda, |factor| Ok(self.named(factor)))
     }
 
-    /// A `lambda` that makes observations and energy count alike, for the median of functions: a unit without
-    /// dimensions for all others. It is zero without an energy. (Traces would be those of the few functions
-    /// with knots near lines, which are stiff.)
+    /// The `lambda` for which observations and energy count alike: the median ratio of their diagonals. It
+    /// serves as the unit of `lambda`, and is zero without an energy. (The ratio of traces would depend on
+    /// the few functions with knots near lines, which are stiff.)
     #[must_use]
     pub fn unit(&self) -> f64 {
         let Some(energy) = self.energy else { return 0.0 };
@@ -113,7 +114,7 @@ impl<'a> Equations<'a> {
         *ratios.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
-    /// Does something with the factors for a `lambda`.
+    /// Calls `work` with the factored equations for a `lambda`.
     pub(super) fn with_factor<T>(&self, lambda: f64, work: impl FnOnce(&Factor) -> Result<T>) -> Result<T> {
         if !(lambda >= 0.0 && lambda.is_finite()) {
             return Err(Error::usage(format!("lambda {lambda}: expected a finite number, not negative")));
@@ -128,13 +129,13 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The coefficients for factors.
+    /// The coefficients from the factored equations.
     pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
         let rest = factor.solve(&self.right);
         self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
     }
 
-    /// Refuses factors that leave functions undetermined.
+    /// Refuses factored equations that leave functions undetermined.
     pub(super) fn check(&self, factor: &Factor, lambda: f64) -> Result<()> {
         self.refuse(&self.named(factor), lambda)
     }
@@ -174,7 +175,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// Coefficients of the spline that is nearest to observations, for a given `lambda`: one pass.
+/// Coefficients of the least-squares spline, smoothed by `lambda`, in one pass.
 ///
 /// # Errors
 /// Those of [`NormalEquations::of`], [`bending`] and [`Equations::solve`].

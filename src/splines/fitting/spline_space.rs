@@ -11,20 +11,20 @@ use spmesh_geometry::predicates::Point2;
 /// Places of knots with their triangulation, and the functions of degree 2 over them.
 #[derive(Debug)]
 pub struct SplineSpace {
-    /// The triangulation of places.
+    /// The triangulation of the places.
     pub mesh: Mesh,
     /// The places, and after them the copies that pull some of them apart.
     pub knots: Knots,
-    /// Delaunay configurations of degree 1, but for what features change.
+    /// Delaunay configurations of degree 1, except where features change them.
     pub configurations: Configurations,
-    /// Functions as sums of B-splines, of which those of knots at one place are collected.
+    /// Functions as sums of B-splines; the B-splines of knots at one place are collected.
     pub functions: Vec<Function>,
-    /// The functions, to be evaluated.
+    /// The basis that evaluates the functions.
     pub basis: Basis,
 }
 
 impl SplineSpace {
-    /// Over distinct places.
+    /// The space over distinct places.
     ///
     /// # Errors
     /// Places on one line, coordinates that are not finite, and those of [`features`] and
@@ -33,7 +33,7 @@ impl SplineSpace {
         SplineSpace::with_features(places, Features::default())
     }
 
-    /// Over distinct places, with features between some of them.
+    /// The space over distinct places, with features between some of them.
     ///
     /// # Errors
     /// Those of [`SplineSpace::of`].

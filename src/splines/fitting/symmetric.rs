@@ -5,15 +5,15 @@ use super::rows::Rows;
 /// A symmetric sparse matrix. Shape: 16 bytes per entry of the upper triangle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Symmetric {
-    /// For each row its first entry; at the end the number of entries.
+    /// For each row, the index of its first entry; at the end, the number of entries.
     pub(super) offsets: Vec<usize>,
-    /// Columns of entries, none less than the row; the diagonal is always there, and first.
+    /// Columns of entries, from the row on; the diagonal is always there, and first.
     pub(super) columns: Vec<usize>,
     pub(super) values: Vec<f64>,
 }
 
 impl Symmetric {
-    /// The sums of some parts of rows.
+    /// The sum of some parts of rows.
     pub(super) fn of_rows(rows: &Rows, is_summed: impl Fn(usize) -> bool) -> Symmetric {
         let mut matrix = Symmetric { offsets: vec![0], columns: Vec::new(), values: Vec::new() };
         for row in 0..rows.len() {
@@ -100,13 +100,13 @@ impl Symmetric {
         product
     }
 
-    /// The quadratic form of a vector.
+    /// The quadratic form x'Mx.
     #[must_use]
     pub fn form(&self, x: &[f64]) -> f64 {
         self.times(x).iter().zip(x).map(|(product, x)| product * x).sum()
     }
 
-    /// This plus `factor` times another of the same size; entries are those of both.
+    /// This matrix plus `factor` times another of the same size; it has the entries of both.
     pub(super) fn plus(&self, factor: f64, other: &Symmetric) -> Symmetric {
         debug_assert_eq!(self.len(), other.len());
         let mut sum = Symmetric { offsets: vec![0], columns: Vec::new(), values: Vec::new() };
@@ -127,7 +127,7 @@ impl Symmetric {
         sum
     }
 
-    /// The matrix with rows and columns multiplied by factors, and something added to the diagonal.
+    /// The matrix with rows and columns multiplied by factors, and a constant added to the diagonal.
     pub(super) fn scaled(&self, factors: &[f64], to_diagonal: f64) -> Symmetric {
         let mut scaled = self.clone();
         for row in 0..self.len() {

@@ -1,18 +1,18 @@
-//! The linear function that is nearest to observations.
+//! The least-squares linear function.
 //!
-//! Linear functions do not bend, so that the smoothest splines are near to one. A great `lambda` times the
-//! rounding errors of its bending would outweigh all observations. So the linear part is computed on its own,
-//! and the equations are solved for the rest.
+//! Linear functions do not bend, so the smoothest splines are close to a linear function. With a great
+//! `lambda`, the rounding errors of its bending energy would outweigh all observations. So the linear part is
+//! computed on its own, and the equations are solved for the difference.
 
 use super::normal_equations::NormalEquations;
 use crate::bases::Basis;
 
-/// Directions whose part of a diagonal is less than this are left out: observations on a line have no slope
+/// Pivots below this part of the diagonal are treated as zero: observations on a line determine no slope
 /// across it.
 const PIVOT_MIN: f64 = 1e-9;
 
-/// Coefficients of the linear function that is nearest to the observations: linear themselves, by Greville
-/// sites.
+/// Coefficients of the least-squares linear function. A linear function has its own values at Greville sites
+/// as coefficients.
 pub(super) fn trend(basis: &Basis, normal: &NormalEquations) -> Vec<f64> {
     let columns = linear_functions(basis);
     let products: Vec<Vec<f64>> = columns.iter().map(|column| normal.matrix.times(column)).collect();
@@ -25,7 +25,7 @@ pub(super) fn trend(basis: &Basis, normal: &NormalEquations) -> Vec<f64> {
     (0..basis.len()).map(|i| (0..3).map(|k| factors[k] * columns[k][i]).sum()).collect()
 }
 
-/// One, x and y at Greville sites, from their middle, in units of their extent.
+/// The functions 1, x and y at Greville sites, centred and scaled to their extent.
 fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
     let of_axis = |axis: usize| {
         let all: Vec<f64> = (0..basis.len()).map(|function| basis.greville(function)[axis]).collect();
@@ -37,7 +37,7 @@ fn linear_functions(basis: &Basis) -> [Vec<f64>; 3] {
     [vec![1.0; basis.len()], of_axis(0), of_axis(1)]
 }
 
-/// Solves three equations with a positive semidefinite matrix; unknowns that it does not determine are zero.
+/// Solves three equations with a positive semidefinite matrix; undetermined unknowns are zero.
 fn solve(mut rows: [[f64; 4]; 3]) -> [f64; 3] {
     let diagonal = [0, 1, 2].map(|i| rows[i][i]);
     let mut is_known = [false; 3];
@@ -75,7 +75,7 @@ mod tests {
         for (found, expected) in found.iter().zip([1.0, 2.0, 3.0]) {
             assert!((found - expected).abs() < 1e-14);
         }
-        // The third is the sum of the others: there is no part of its own.
+        // The third column is the sum of the others, so that its unknown is undetermined.
         let found = solve([[4.0, 2.0, 6.0, 8.0], [2.0, 5.0, 7.0, 12.0], [6.0, 7.0, 13.0, 20.0]]);
         assert_eq!(found, [1.0, 2.0, 0.0]);
     }

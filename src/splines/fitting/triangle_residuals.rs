@@ -1,7 +1,7 @@
 //! Residuals of one round of the search for knots, triangle by triangle, and the next knots.
 //!
 //! Gross errors would attract knots. So with a loss, fits are robust, and rejected observations cause no knot
-//! unless they are a large part of a triangle.
+//! unless they are a large part of their triangle.
 
 use super::goal::{Goal, Round};
 use super::knot_placement::knot_for_residual;
@@ -14,10 +14,10 @@ use spmesh_core::random::Random;
 use spmesh_geometry::predicates::Point2;
 use std::num::NonZeroUsize;
 
-/// Least number of observations in a triangle that gets a knot, which brings two or three functions.
+/// Least number of observations in a triangle that gets a knot; a knot adds two or three functions.
 const OBSERVATIONS_MIN: u32 = 3;
-/// From this part on, rejected observations of a triangle are taken for a lack of knots, not for gross
-/// errors.
+/// From this part of a triangle's observations on, rejected ones are attributed to a lack of knots, not to
+/// gross errors.
 const REJECTED_MIN: f64 = 0.25;
 
 /// The residuals of a round in each triangle.
@@ -31,8 +31,8 @@ pub(super) struct TriangleResiduals {
 struct Inside {
     observations: u32,
     rejected: u32,
-    /// The greatest residual above the tolerance, if any is: of observations that are not rejected, and of
-    /// those that are.
+    /// The greatest residual above the tolerance, if any: first among observations that are not rejected,
+    /// second among those that are.
     worst: [Option<Residual>; 2],
 }
 
@@ -46,8 +46,8 @@ impl Inside {
         }
     }
 
-    /// The observation that a knot is added for. A rejected one counts if there are many, because then they
-    /// are no gross errors.
+    /// The observation that a knot is added for. Rejected observations count only if there are many of them
+    /// in the triangle.
     fn knot_request(&self) -> Option<Residual> {
         if self.observations < OBSERVATIONS_MIN {
             return None;
@@ -93,7 +93,7 @@ impl TriangleResiduals {
         Ok(TriangleResiduals { round, triangles })
     }
 
-    /// The next knots, those of greatest residuals first: no more than there are already.
+    /// The next knots, for the greatest residuals first; at most as many as there are already.
     pub(super) fn knots(&self, mesh: &Mesh, goal: &Goal) -> Vec<Point2> {
         let candidates = (0u32..)
             .zip(&self.triangles)

@@ -6,19 +6,20 @@ use super::{POINTS_PAYLOAD, StreamWriter, Tag};
 use crate::ConfigurationBlock;
 use spmesh_core::error::Result;
 
-/// Words from which a block takes no further configuration.
+/// A block of this many words takes no further configuration.
 const WORDS: usize = POINTS_PAYLOAD / 4;
 
-/// Configurations that wait for their block to fill.
+/// Configurations that are buffered until their block is full.
 pub(super) struct Waiting {
     block: ConfigurationBlock,
-    /// Whether no block of the degree was written: one is, even if it has no configurations.
+    /// Whether no block of the degree has been written yet. A degree without configurations gets a block,
+    /// too.
     is_news: bool,
 }
 
 impl<W: Write> StreamWriter<W> {
-    /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. Blocks
-    /// are cut by their length, independently of the cuts of `block`.
+    /// Appends configurations; all knots must have been written before, with [`StreamWriter::points`]. The
+    /// writer divides them into blocks by length, independently of `block`.
     ///
     /// # Errors
     /// Malformed, if degrees, interior sets or boundaries are out of order or name unknown knots; I/O.
@@ -54,7 +55,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes the buffered configurations, and keeps the degree open.
+    /// Writes the buffered configurations; the degree stays open.
     pub(super) fn flush_configurations(&mut self) -> Result<()> {
         let Some(waiting) = &mut self.waiting else { return Ok(()) };
         if waiting.block.is_empty() && !waiting.is_news {

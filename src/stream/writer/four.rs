@@ -9,12 +9,12 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::{Cell4, Point4};
 
 impl<W: Write> StreamWriter<W> {
-    /// Appends points of four dimensions, with a value for each if the header says that points have one.
-    /// Every NaN says that a value is not known.
+    /// Appends points of four dimensions, with a value for each if the header says that points have one. Any
+    /// NaN stands for an unknown value.
     ///
     /// # Errors
-    /// If a number is not finite, the points of a stream of cells are not sorted, there is not one value for
-    /// each point, or writing fails.
+    /// If a coordinate or a value is infinite, a coordinate is NaN, the points of a stream of cells are not
+    /// sorted, the number of values differs from the number of points, or writing fails.
     pub fn points4(&mut self, points: &[Point4], values: Option<&[f64]>) -> Result<()> {
         let value_count = self.header.has_elevation.then_some(points.len());
         if values.map(<[f64]>::len) != value_count {
@@ -42,11 +42,10 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends a cell; all points must have been written before. Neighbours may be cells that are still to
-    /// come.
+    /// Appends a cell; all points must have been written before. Neighbours may be written later.
     ///
     /// # Errors
-    /// If its lists are not increasing, too short, or name points that there are not; or if writing fails.
+    /// If its lists are not increasing, are too short, or name unknown points; or if writing fails.
     pub fn cell4(&mut self, cell: Cell4) -> Result<()> {
         self.start_records(Tag::Cells4)?;
         self.rules4.cell(cell, &mut self.totals)?;
@@ -63,7 +62,7 @@ impl<W: Write> StreamWriter<W> {
     /// which must all have been written before.
     ///
     /// # Errors
-    /// If a simplex has a vertex twice or one that is no point, or writing fails.
+    /// If a simplex repeats a vertex or names an unknown point, or writing fails.
     pub fn simplices4(&mut self, simplices: &[[u32; 5]]) -> Result<()> {
         self.start_records(Tag::Simplices4)?;
         self.rules4.simplices(simplices, &mut self.totals)?;
@@ -74,7 +73,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Lets the records that follow wait for a block with this tag.
+    /// Flushes records with another tag, so that the next records go to a block with this tag.
     fn start_records(&mut self, tag: Tag) -> Result<()> {
         if self.points_tag != tag {
             self.flush_points()?;
@@ -83,7 +82,7 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Writes the block if a record of `len` bytes does not fit.
+    /// Flushes the block if a record of `len` bytes does not fit.
     fn flush_if_full(&mut self, len: usize) -> Result<()> {
         if self.points.len() + len > POINTS_PAYLOAD { self.flush_points() } else { Ok(()) }
     }

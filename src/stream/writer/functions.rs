@@ -11,8 +11,8 @@ impl<W: Write> StreamWriter<W> {
     /// Appends functions as sums of B-splines; all configurations must have been written before.
     ///
     /// # Errors
-    /// If functions do not follow each other, name knots that there are not, have no terms, or too many for a
-    /// block; or if writing fails.
+    /// If functions are out of order, name unknown knots, or have no terms or too many for a block; or if
+    /// writing fails.
     pub fn functions(&mut self, functions: &[Function]) -> Result<()> {
         self.flush_points()?;
         self.flush_configurations()?;
@@ -31,7 +31,7 @@ impl<W: Write> StreamWriter<W> {
 
     /// Appends coefficients of a spline; all functions must have been written before.
     ///
-    /// # Errors
+    /// If a coefficient is not finite, or writing fails.
     /// If one is not finite, or writing fails.
     pub fn coefficients(&mut self, coefficients: &[f64]) -> Result<()> {
         self.flush_points()?;

@@ -5,10 +5,10 @@ use spmesh_splines::bases::Jet;
 
 /// An attribute of a spline at a point.
 ///
-/// Where a spline is level, aspect and both curvatures are NaN.
+/// Aspect and both curvatures are NaN where a spline is level.
 ///
-/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures (those that Evans,
-/// 1972, and Shary, 1995, have too): normal curvatures, positive where the surface is convex upwards.
+/// Source: Florinsky, "Digital Terrain Analysis", 2016, chapter 2, for the curvatures, which Evans, 1972, and
+/// Shary, 1995, define, too: normal curvatures, positive where the surface is convex upwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Attribute {
     /// The value itself. Units: those of elevations.
@@ -17,11 +17,11 @@ pub enum Attribute {
     Slope,
     /// The direction of steepest descent, in degrees clockwise from north, from 0 to 360.
     Aspect,
-    /// Curvature of the section along the steepest descent: where it is positive, flow accelerates.
-    /// Units: 1 over those of coordinates.
+    /// Curvature of the section along the steepest descent; flow accelerates where it is positive. Units: 1
+    /// over the unit of coordinates.
     ProfileCurvature,
-    /// Curvature of the section across the steepest descent: where it is positive, flow diverges.
-    /// Units: the same.
+    /// Curvature of the section across the steepest descent; flow diverges where it is positive. Units: 1
+    /// over the unit of coordinates.
     TangentialCurvature,
     /// Both derivatives, by x and by y.
     Gradient,
@@ -41,13 +41,13 @@ impl Attribute {
         }
     }
 
-    /// Whether there is one number at a point.
+    /// Whether the attribute is a single number.
     #[must_use]
     pub fn is_single(self) -> bool {
         self.columns().len() == 1
     }
 
-    /// The number at a point, the first one of two; from a jet in world coordinates.
+    /// The attribute at a point, or its first number if it has two, from a jet in world coordinates.
     #[must_use]
     pub fn of(self, jet: &Jet) -> f64 {
         let [p, q] = jet.gradient;
@@ -68,7 +68,7 @@ impl Attribute {
         }
     }
 
-    /// All numbers at a point, in the order of columns.
+    /// All numbers of the attribute at a point, in the order of columns.
     pub fn all(self, jet: &Jet) -> impl Iterator<Item = f64> {
         let second = (self == Attribute::Gradient).then_some(jet.gradient[1]);
         [self.of(jet)].into_iter().chain(second)

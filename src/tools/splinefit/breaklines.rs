@@ -1,4 +1,4 @@
-//! Breaklines and corners: polylines of the world become knots with features between them.
+//! Breaklines and corners: turns polylines in world coordinates into knots with features between them.
 
 use super::distinct_points::without_copies;
 use spmesh_core::error::{Error, Result};
@@ -8,14 +8,14 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Polyline, PolylineKind};
 use spmesh_splines::fitting::SplineSpace;
 
-/// Knots nearer to a polyline than this part of the usual distance of knots are left out: they would form
+/// Places nearer to a polyline than this part of the usual distance of knots are left out: they would form
 /// slivers.
 const NEAR: f64 = 0.35;
 
-/// Functions over places, with features along polylines, both in world coordinates.
+/// The spline space over places, with features along polylines, both in world coordinates.
 ///
 /// Segments that are longer than the usual distance of knots are divided, so that splines can bend along
-/// them, and places near to segments are left out, but for those on the border of the convex hull.
+/// them. Places near segments are left out, except those on the border of the convex hull.
 ///
 /// # Errors
 /// Usage, if polylines cross where they have no common vertex, touch the border in ways that
@@ -41,7 +41,7 @@ pub(super) fn space(places: &[Point2], polylines: &[Polyline]) -> Result<SplineS
     SplineSpace::with_features(knots.places, features)
 }
 
-/// The side of a square for each place.
+/// The usual distance of knots: the side of a square whose area is the mean area per place.
 fn usual_distance(places: &[Point2]) -> Result<f64> {
     let mesh = delaunay2::triangulate(places)?;
     let twice_area = |[a, b, c]: [Point2; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -61,7 +61,7 @@ fn length([p, q]: [Point2; 2]) -> f64 {
     ((q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)).sqrt()
 }
 
-/// The vertices of a polyline, and more between them.
+/// The vertices of a polyline, with further vertices on long segments.
 fn divide(polyline: &Polyline, distance: f64) -> Vec<Point2> {
     if polyline.kind == PolylineKind::Corner {
         return polyline.vertices.clone();
@@ -80,7 +80,7 @@ fn divide(polyline: &Polyline, distance: f64) -> Vec<Point2> {
     divided
 }
 
-/// Places that are not near to any segment, and those of the border.
+/// Places that are not near any segment, and those on the border.
 fn far_places(places: &[Point2], divided: &[Vec<Point2>], near: f64) -> Result<Vec<Point2>> {
     let mut is_kept = vec![true; places.len()];
     let cells = Cells::of(places, near);
@@ -106,7 +106,7 @@ fn distance_to([p, q]: [Point2; 2], x: Point2) -> f64 {
     length([[p[0] + part * along[0], p[1] + part * along[1]], x])
 }
 
-/// Places by square cells.
+/// Places by the square cells that contain them.
 struct Cells {
     side: f64,
     places: foldhash::HashMap<[i64; 2], Vec<u32>>,
@@ -125,7 +125,7 @@ impl Cells {
         x.map(|coordinate| (coordinate / self.side).floor() as i64)
     }
 
-    /// Calls `visit` with all places in cells around the box of a segment, which is no longer than a few
+    /// Calls `visit` with all places in cells around the bounding box of a segment, which spans at most a few
     /// cells.
     fn for_each_near(&self, [p, q]: [Point2; 2], mut visit: impl FnMut(u32)) {
         let ([a, b], [c, d]) = (self.cell(p), self.cell(q));
@@ -137,14 +137,14 @@ impl Cells {
     }
 }
 
-/// Knots by place.
+/// Knots, found by place.
 struct Knots {
     places: Vec<Point2>,
     ids: foldhash::HashMap<[u64; 2], u32>,
 }
 
 impl Knots {
-    /// Both zeros are one.
+    /// The bits of the coordinates, with -0 as +0.
     fn key(place: Point2) -> [u64; 2] {
         place.map(|coordinate| (coordinate + 0.0).to_bits())
     }
@@ -153,7 +153,7 @@ impl Knots {
         self.ids = (0..).zip(&self.places).map(|(id, &place)| (Knots::key(place), id)).collect();
     }
 
-    /// The knot at a place, which becomes one.
+    /// The knot at a place; adds one if there is none.
     fn id(&mut self, place: Point2) -> u32 {
         let next = self.places.len() as u32;
         let id = *self.ids.entry(Knots::key(place)).or_insert(next);

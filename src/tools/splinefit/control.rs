@@ -11,13 +11,13 @@ use spmesh_stream::{Coordinates, Crs, Header, Kind, write_triangles};
 
 /// The control mesh of a spline, in world coordinates.
 ///
-/// It is the Delaunay triangulation of Greville sites, where the thesis has the triangulation of centroids:
-/// these are the same vertices, and collected functions have no other vertices.
+/// It is the Delaunay triangulation of Greville sites; the thesis has the triangulation of centroids instead.
+/// The vertices are the same, and collected functions have no other vertices.
 #[derive(Debug)]
 pub struct ControlMesh {
     /// For each function its Greville site and its coefficient.
     pub points: Vec<Point>,
-    /// Counterclockwise triangles of functions; of several with one site, the first is a vertex.
+    /// Counterclockwise triangles of functions; of several functions with one site, the first is the vertex.
     pub triangles: Vec<[u32; 3]>,
     merged: u64,
     crs: Crs,
@@ -46,7 +46,7 @@ impl ControlMesh {
         })
     }
 
-    /// Writes it as a triangle mesh stream.
+    /// Writes the control mesh as a triangle mesh stream.
     ///
     /// # Errors
     /// If writing fails.

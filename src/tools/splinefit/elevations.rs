@@ -1,4 +1,4 @@
-//! Points of files as observations of their elevation.
+//! Points of files as observations of elevation.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_io::source::{Input, PointReader};
@@ -26,7 +26,7 @@ impl<'a> Elevations<'a> {
         Ok(Elevations { input })
     }
 
-    /// A pass that does not borrow this value.
+    /// Starts a pass that does not borrow this value.
     ///
     /// # Errors
     /// Those of [`Input::read`].

@@ -15,13 +15,13 @@ use spmesh_splines::fitting::{
     self, Goal, Interpolation, KNOTS_MIN, Mesh, Observation, Observations, RobustFit, Round, SplineSpace,
 };
 
-/// Without a tolerance, this part of the range of elevations is one.
+/// The default tolerance, as a part of the range of elevations.
 const TOLERANCE_PART: f64 = 0.0025;
-/// Residuals below this part of the greatest elevation are rounding errors.
+/// Residuals below this part of the greatest magnitude of elevations are rounding errors.
 const ROUNDING: f64 = 1e-9;
-/// The default maximum of knots...
+/// The default maximum of knots is this number...
 const KNOTS_MAX: usize = 20_000;
-/// ...but at most one for this number of points: two or three functions belong to a knot.
+/// ...but at most one knot per this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
 
 /// A spline that was fitted.
@@ -39,12 +39,11 @@ pub struct Fitted {
 pub struct Report {
     /// Points of the input.
     pub points: u64,
-    /// The search for knots, if they were not given.
+    /// The search for knots; `None` if they were given or on a grid.
     pub search: Option<Search>,
     /// The smoothing and the reason for it; `None` if values were interpolated.
     pub chosen: Option<SmoothingChoice>,
-    /// Of a robust fit, the standard deviation of a point of weight one, and whether coefficients
-    /// settled.
+    /// Of a robust fit: the standard deviation of a point of weight one, and whether coefficients converged.
     pub scale: Option<(f64, bool)>,
     /// Residuals of the points.
     pub residuals: Statistics,
@@ -61,10 +60,11 @@ pub struct Search {
     pub is_reached: bool,
 }
 
-/// Fits a spline to points. `done` is told how many points were read since the start, in all passes together.
+/// Fits a spline to points. `done` gets the number of points read so far, in all passes together.
 ///
-/// Without knots, the fit searches for them. With points as knots, functions are quadratic and the border is
-/// pulled apart, so that the domain is the convex hull.
+/// If no knots are given, they are on a grid with `options.step`, and otherwise the fit searches for them.
+/// Over points as knots, functions are quadratic and the border is pulled apart, so that the domain is the
+/// convex hull.
 ///
 /// # Errors
 /// Usage, if options exclude each other, or points do not determine the spline; those of reading.
@@ -107,7 +107,7 @@ pub fn fit(
 }
 
 impl Fitted {
-    /// Writes the points that were rejected, as lines of x, y, elevation and residual; their number, which is
+    /// Writes the rejected points, as lines of x, y, elevation and residual. Returns their number, which is
     /// zero if the fit is not robust.
     ///
     /// # Errors
@@ -118,11 +118,11 @@ impl Fitted {
     }
 }
 
-/// A search for knots.
+/// Searches for knots.
 fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Layout, Search)> {
     check_degree(options)?;
     let own_max = (points.count() / POINTS_PER_KNOT).min(KNOTS_MAX as u64) as usize;
-    // A plane at one height has residuals that are rounding errors of it.
+    // At a constant elevation, residuals are its rounding errors.
     let [low, high] = points.range();
     let rounding = ROUNDING * low.abs().max(high.abs());
     let own_tolerance = (TOLERANCE_PART * (high - low)).max(rounding).max(f64::MIN_POSITIVE);
@@ -144,7 +144,7 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     Ok((Layout::of_space(space, frame), search))
 }
 
-/// Knots on a grid.
+/// Places knots on a grid.
 fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout> {
     check_degree(options)?;
     let frame = Frame::world(points.crs().clone());
@@ -167,7 +167,7 @@ fn check_degree(options: &Options) -> Result<()> {
     }
 }
 
-/// Coefficients of least squares, smoothed or weighed.
+/// Coefficients by least squares, with smoothing or robust weights.
 fn approximate(
     layout: &Layout,
     all: &PointsInFrame,
@@ -184,7 +184,7 @@ fn approximate(
     Ok((robust.coefficients.clone(), chosen, Some(robust)))
 }
 
-/// Coefficients of the spline that has at Greville sites the values of the triangulated points.
+/// Coefficients of the spline that interpolates the triangulated points at Greville sites.
 fn interpolate(layout: &Layout, all: &PointsInFrame) -> Result<Vec<f64>> {
     let (mut reader, mut held) = (all.read()?, Vec::new());
     let mut known = None;

@@ -6,8 +6,8 @@ use spmesh_io::source::crs_name;
 use spmesh_splines::bases::Jet;
 use spmesh_stream::{Coordinates, Crs};
 
-/// The coordinate frame of knots. Steps along x and y are equal, so that directions and shapes are those of
-/// the world.
+/// The coordinate frame of knots. Steps along x and y are equal, so that directions and shapes are the same
+/// as in the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
     /// How knots are stored.
@@ -17,13 +17,13 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame of world coordinates themselves.
+    /// The frame of world coordinates.
     #[must_use]
     pub fn world(crs: Crs) -> Frame {
         Frame { coordinates: Coordinates::F64, crs }
     }
 
-    /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise, with the
+    /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise; and the
     /// map from stored points to points of the frame.
     pub(super) fn of(coordinates: Coordinates, crs: Crs) -> (Frame, impl Fn(Point2) -> Point2) {
         let is_even = match coordinates {
@@ -35,7 +35,7 @@ impl Frame {
         (frame, place)
     }
 
-    /// A place of the world, not rounded to the grid of knots.
+    /// The stored coordinates of a place in the world, not rounded to the grid of knots.
     #[inline]
     #[must_use]
     pub fn to_stored(&self, world: Point2) -> Point2 {
@@ -47,7 +47,7 @@ impl Frame {
         }
     }
 
-    /// Where a stored place is in the world.
+    /// The world coordinates of a stored place.
     #[must_use]
     pub fn to_world(&self, stored: Point2) -> Point2 {
         to_world(&self.coordinates, stored)
@@ -62,7 +62,7 @@ impl Frame {
         }
     }
 
-    /// A jet by world coordinates, from one by stored coordinates. Values are those of the world already.
+    /// Converts a jet with respect to stored coordinates to world coordinates. Values are the same in both.
     #[must_use]
     pub fn jet_to_world(&self, jet: Jet) -> Jet {
         let step = self.step();
@@ -73,10 +73,10 @@ impl Frame {
         }
     }
 
-    /// Adopts the reference system of the points if that of the knots is unknown.
+    /// Adopts the reference system of the points if the reference system of the knots is unknown.
     ///
     /// # Errors
-    /// Usage, if both are known and are not the same.
+    /// Usage, if both are known and differ.
     pub(super) fn join(&mut self, crs: &Crs) -> Result<()> {
         match (&self.crs, crs) {
             (_, Crs::Unknown) => Ok(()),

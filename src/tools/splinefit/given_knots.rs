@@ -9,10 +9,10 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::{Input, Opened, Polyline};
 use spmesh_splines::fitting::SplineSpace;
 
-/// Functions over given knots.
+/// The layout of functions over given knots.
 ///
 /// # Errors
-/// Knots on one line; a degree that is not there; those of reading.
+/// Knots on one line; a degree that the file does not have; those of reading.
 pub(super) fn layout(
     source: Opened,
     name: &str,
@@ -54,7 +54,7 @@ fn of_points(input: &Input, polylines: &[Polyline]) -> Result<Layout> {
     if polylines.is_empty() {
         return Ok(Layout::of_space(SplineSpace::of(places)?, frame));
     }
-    // Polylines have vertices that are on no grid.
+    // Vertices of polylines are not on a grid, so coordinates of the world are used.
     let places: Vec<Point2> = places.into_iter().map(|stored| frame.to_world(stored)).collect();
     Ok(Layout::of_space(breaklines::space(&places, polylines)?, Frame::world(frame.crs)))
 }

@@ -20,13 +20,13 @@ use spmesh_stream::{
 pub struct Layout {
     /// The coordinate frame of the knots.
     pub frame: Frame,
-    /// The knots, stored.
+    /// The knots, in stored coordinates.
     pub knots: Knots,
-    /// Configurations of one degree less than that of the functions.
+    /// Configurations of one degree less than the functions.
     pub configurations: Configurations,
-    /// Functions as sums of B-splines, if they are not just B-splines of links.
+    /// Functions as sums of B-splines; empty if they are the B-splines of links.
     pub functions: Vec<Function>,
-    /// All functions, to be evaluated.
+    /// The basis that evaluates all functions.
     pub basis: Basis,
 }
 
@@ -40,17 +40,18 @@ pub struct Spline {
 }
 
 impl Layout {
-    /// From a spline space whose knots are in a frame.
+    /// The layout of a spline space with knots in the given frame.
     pub(super) fn of_space(space: SplineSpace, frame: Frame) -> Layout {
         let SplineSpace { knots, configurations, functions, basis, .. } = space;
         Layout { frame, knots, configurations, functions, basis }
     }
 
-    /// Builds a layout from a set of knots. Of several degrees it takes that for splines of degree `degree`;
-    /// without one, that of the functions listed, or else the highest.
+    /// Builds a layout from a set of knots. Of several degrees, it takes the configurations for splines of
+    /// degree `degree`. If that is `None`, it takes those of the functions listed, or else the highest
+    /// degree.
     ///
     /// # Errors
-    /// Usage, if the degree is not there; those of [`Basis`].
+    /// Usage, if the set lacks the degree; those of [`Basis`].
     fn of_set(set: ConfigurationSet, header: &Header, degree: Option<usize>) -> Result<Layout> {
         let ConfigurationSet { points, mut degrees, functions, .. } = set;
         let wanted = match degree {
@@ -81,10 +82,10 @@ impl Layout {
         Ok(Layout { frame, knots, configurations, functions, basis })
     }
 
-    /// Reads a stream of configurations, or of a spline, with its coefficients if it has some.
+    /// Reads a stream of configurations, or of a spline. The coefficients are empty if it has none.
     ///
     /// # Errors
-    /// As [`Layout::of_set`]; if the stream is damaged.
+    /// Those of [`Layout::of_set`]; a damaged stream.
     pub(super) fn read(
         mut source: Box<dyn EventSource>,
         name: &str,
@@ -103,10 +104,10 @@ impl Layout {
         finish().map_err(|error| error.of_input(name))
     }
 
-    /// Opens a file of configurations, or of a spline, with its coefficients if it has some.
+    /// Opens a file of configurations, or of a spline. The coefficients are empty if it has none.
     ///
     /// # Errors
-    /// Usage, if it is something else; as [`open_knots`].
+    /// Usage, if the file is something else; those of [`open_knots`].
     pub fn open(path: &Path) -> Result<(Layout, Vec<f64>)> {
         let name = name_of(path);
         match open_knots(path, &SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() })? {
@@ -118,7 +119,7 @@ impl Layout {
         }
     }
 
-    /// Number of different places of knots.
+    /// Number of distinct places of knots.
     #[must_use]
     pub fn places(&self) -> usize {
         (0..self.knots.len() as u32).filter(|&id| self.knots.rank(id) == 0).count()
@@ -129,7 +130,7 @@ impl Spline {
     /// Opens a file ("-" is standard input).
     ///
     /// # Errors
-    /// Usage, if it is no spline; as [`Layout::open`].
+    /// Usage, if the file is not a spline; those of [`Layout::open`].
     pub fn open(path: &Path) -> Result<Spline> {
         let (layout, coefficients) = Layout::open(path)?;
         if coefficients.is_empty() {
@@ -144,7 +145,7 @@ impl Spline {
         Ok(Spline { layout, coefficients })
     }
 
-    /// Writes a stream of a spline.
+    /// Writes the spline as a stream.
     ///
     /// # Errors
     /// As [`write_content`].

@@ -9,22 +9,22 @@ use spmesh_splines::fitting::Loss;
 /// Options of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// How much to smooth; without it, as little as leaves no coefficient undetermined.
+    /// How to smooth. If `None`, given knots are smoothed only if points do not determine all functions,
+    /// other knots always, both with the default `lambda`.
     pub smoothing: Option<Smoothing>,
     /// The loss function of a robust fit; `None` for least squares.
     pub loss: Option<Loss>,
-    /// Whether values at Greville sites are to be those of the triangulated points.
+    /// Whether the spline interpolates the triangulated points at Greville sites.
     pub interpolates: bool,
-    /// Greatest residual that needs no further knot, where knots are not given. Units: those of elevations.
+    /// Greatest residual that needs no further knot, in a search for knots. Units: those of elevations.
     pub tolerance: Option<f64>,
-    /// Most places of knots, where knots are not given.
+    /// Greatest number of places of knots, in a search for knots.
     pub max_knots: Option<usize>,
-    /// Side of the cells of a grid of knots, where these are neither given nor looked for. Units: those of
-    /// the world.
+    /// Side of the cells of a grid of knots, which replaces the search. Units: those of the world.
     pub step: Option<f64>,
-    /// Along which splines are not smooth, where knots come without configurations.
+    /// Polylines along which splines are not smooth; for knots without configurations.
     pub polylines: Vec<Polyline>,
-    /// Degree of splines, where knots come with configurations of several degrees.
+    /// Degree of splines, for knots with configurations of several degrees.
     pub degree: Option<usize>,
     /// Seed of random numbers: folds, and estimates of traces.
     pub seed: u64,
@@ -60,7 +60,7 @@ pub enum Smoothing {
     Folds(usize),
 }
 
-/// Folds, if nothing else is said.
+/// The default number of folds.
 const FOLDS: usize = 5;
 
 impl FromStr for Smoothing {

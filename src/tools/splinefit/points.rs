@@ -11,16 +11,16 @@ use spmesh_io::source::{Input, SourceOptions};
 use spmesh_splines::fitting::{Observation, ObservationReader, Observations};
 use spmesh_stream::Crs;
 
-/// Up to this number, points that are read again and again are held: 32 bytes each. Most sources take longer
-/// to decode...
+/// Up to this number, points that many passes read are held in memory, with 32 bytes each: most sources take
+/// longer to decode...
 const HELD_OFTEN: usize = 1 << 23;
-/// ...but a few passes more do not matter, so that memory does not depend on the number of points.
+/// ...and up to this number if few passes read them. A few more passes are cheap, and memory stays bounded.
 const HELD_SELDOM: usize = 1 << 20;
-/// Elevations in a sample, at least, if there are as many.
+/// Least size of the sample of elevations, if there are as many points.
 const SAMPLE: usize = 1 << 12;
-/// The part of elevations beyond each end of their range.
+/// The part of elevations that is cut off at each end of their range.
 const OUTSIDE: f64 = 0.02;
-/// Points in a batch that are held.
+/// Points per batch of held points.
 const BATCH: usize = 1 << 14;
 
 /// The points of an input with their weights, in world coordinates.
@@ -29,17 +29,17 @@ pub struct Points {
     input: Input,
     weights: Option<Vec<f64>>,
     held: Option<Vec<Observation>>,
-    /// Some elevations, in order.
+    /// A sample of elevations, sorted.
     sample: Vec<f64>,
     count: u64,
 }
 
 impl Points {
-    /// Opens files and reads them once; `weights` are those of points, in their order; `often` tells whether
-    /// many passes will follow.
+    /// Opens files and reads them once. `weights` are the weights of the points, in their order; `often` says
+    /// whether many passes will follow.
     ///
-    /// Memory: 32 bytes per point up to 8 million points if so, and up to one million otherwise; more are
-    /// read again for each pass.
+    /// Memory: 32 bytes per point up to 8 million points if `often`, and up to one million otherwise. More
+    /// points are not held, but read again in each pass.
     ///
     /// # Errors
     /// As [`Input::open`]; no elevation; another number of weights.
@@ -98,7 +98,7 @@ impl Points {
         self.input.notices()
     }
 
-    /// The system of coordinates.
+    /// The coordinate reference system.
     #[must_use]
     pub fn crs(&self) -> &Crs {
         &self.input.description().crs
@@ -110,8 +110,7 @@ impl Points {
         self.count
     }
 
-    /// An elevation that most points are above, and one that most are below, from a sample: a few gross
-    /// errors change little.
+    /// The range of most elevations, estimated from a sample, so that a few gross errors change it little.
     #[must_use]
     pub fn range(&self) -> [f64; 2] {
         let ends = [OUTSIDE, 1.0 - OUTSIDE];
@@ -119,7 +118,7 @@ impl Points {
         ends.map(|part| self.sample.get(place(part)).copied().unwrap_or(0.0))
     }
 
-    /// The points in a frame; `done` is told how many were read in all passes together.
+    /// The points in a frame; `done` gets the number of points read so far, in all passes together.
     pub fn in_frame<'a>(&'a self, frame: &'a Frame, done: &'a dyn Fn(u64)) -> PointsInFrame<'a> {
         PointsInFrame { points: self, frame, read: Cell::new(0), done }
     }
@@ -139,7 +138,7 @@ impl Points {
 #[derive(Default)]
 struct Sample {
     taken: Vec<f64>,
-    /// Elevations to pass over before the next one that is taken, and after each one.
+    /// Elevations to skip before the next one is taken, and between later ones.
     left: u64,
     stride: u64,
 }
@@ -192,7 +191,8 @@ impl ObservationReader for Weighed<'_> {
         let first = observations.len();
         self.reader.append(observations)?;
         if let Some(weights) = self.weights {
-            // If there are too few, the rest keeps weight one; `check_weights` refuses the input at the end.
+            // If there are too few weights, the other points keep weight one; `check_weights` refuses the
+            // input at the end.
             let own = weights.iter().skip(self.next);
             observations[first..].iter_mut().zip(own).for_each(|(one, &weight)| one.weight = weight);
         }
@@ -233,11 +233,11 @@ impl ObservationReader for Moved<'_> {
     }
 }
 
-/// World coordinates and elevations of points, by increasing numbers.
+/// Reads world coordinates and elevations of points by increasing number.
 pub(super) struct Cursor<'a> {
     reader: Box<dyn ObservationReader + 'a>,
     batch: Vec<Observation>,
-    /// The number of the first one in the batch.
+    /// The number of the first point in the batch.
     first: u64,
 }
 
@@ -249,7 +249,7 @@ impl<'a> Cursor<'a> {
     /// The point with this number; numbers must not decrease from call to call.
     ///
     /// # Errors
-    /// As its source; if there are fewer points than before.
+    /// Those of the source; fewer points than in the first pass.
     pub(super) fn at(&mut self, index: u64) -> Result<(Point2, f64)> {
         while index >= self.first + self.batch.len() as u64 {
             self.first += self.batch.len() as u64;

@@ -1,4 +1,4 @@
-//! Splines in the cells of a grid.
+//! Evaluates splines in the cells of a grid.
 
 use std::io::{Seek, Write};
 use std::num::NonZeroUsize;
@@ -12,7 +12,7 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
 use spmesh_splines::bases::{Raster, Scratch};
 
-/// Rows that a thread evaluates at a time: enough to make up for the start of a sweep, which looks at all
+/// Rows that a thread evaluates at a time: enough to outweigh the start of a sweep, which looks at all
 /// elements.
 const ROWS_PER_THREAD: usize = 64;
 
@@ -27,10 +27,10 @@ impl Spline {
 }
 
 /// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data.
-/// The number of cells without data.
+/// Returns the number of cells without data.
 ///
 /// # Errors
-/// Usage, if there is more than one number per cell; if writing fails.
+/// Usage, for an attribute of several numbers; if writing fails.
 pub fn write_raster<W: Write + Seek>(
     spline: &Spline,
     attribute: Attribute,
@@ -65,7 +65,7 @@ pub fn write_raster<W: Write + Seek>(
     Ok(unknown)
 }
 
-/// Writes a line for each cell in the domain: its centre and the attribute; row by row from the top.
+/// Writes a line for each cell in the domain, row by row from the top: its centre and the attribute.
 ///
 /// # Errors
 /// If writing fails.
@@ -92,13 +92,13 @@ pub fn write_table(
     Ok(outside)
 }
 
-/// Rows that are evaluated some at a time, by several threads.
+/// Rows of a grid, evaluated band by band by several threads.
 struct Bands<'a> {
     spline: &'a Spline,
     attribute: Attribute,
     grid: &'a Grid,
     threads: NonZeroUsize,
-    /// The first row of the band that is there.
+    /// The first row of the current band.
     first: usize,
     values: Vec<f64>,
 }
@@ -129,7 +129,7 @@ impl Bands<'_> {
         outcome.map(drop)
     }
 
-    /// Rows from a number on.
+    /// Evaluates the rows from `first` on.
     fn evaluate_part(&self, first: usize, values: &mut [f64]) -> Result<()> {
         let columns = self.grid.columns as usize;
         let rows = first..first + values.len() / columns;

@@ -11,7 +11,7 @@ use spmesh_splines::fitting::{self, Residual, RobustFit};
 /// The first line of a list.
 const TITLE: &str = "x y z residual\n";
 
-/// Writes all points in the domain; their number.
+/// Writes all points in the domain with their residuals. Returns their number.
 ///
 /// # Errors
 /// If points cannot be read, or the list cannot be written.
@@ -28,7 +28,7 @@ pub fn write_residuals(
     list.finish()
 }
 
-/// Writes the points that a robust fit rejects; their number.
+/// Writes the points that a robust fit rejects. Returns their number.
 ///
 /// # Errors
 /// As [`write_residuals`].
@@ -48,7 +48,7 @@ pub(super) fn write_rejected(
 struct List<'a> {
     cursor: Cursor<'a>,
     output: &'a mut dyn Write,
-    /// The number of lines, or why there are no more.
+    /// The number of lines written, or the first error.
     written: Result<u64>,
 }
 

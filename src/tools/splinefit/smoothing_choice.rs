@@ -12,17 +12,17 @@ use spmesh_splines::fitting::{self, Choice, Equations, Folds, NormalEquations, S
 pub struct SmoothingChoice {
     /// The factor of the thin-plate energy, in world coordinates.
     pub lambda: f64,
-    /// Number of functions that points leave undetermined without smoothing, if that was looked at.
+    /// Number of functions that points leave undetermined without smoothing; `None` if it was not needed.
     pub undetermined: Option<usize>,
     /// The trials of cross-validation; `lambda` in world coordinates.
     pub choice: Option<Choice>,
 }
 
-/// Equations whose `lambda` is known.
+/// Normal equations with a chosen `lambda`.
 pub(super) struct Problem {
     pub(super) normal: NormalEquations,
     pub(super) energy: Option<Symmetric>,
-    /// In stored coordinates.
+    /// For stored coordinates.
     pub(super) lambda: f64,
     pub(super) chosen: SmoothingChoice,
 }
@@ -33,11 +33,12 @@ impl Problem {
     }
 }
 
-/// Sets up the equations of points, and chooses. Given knots are smoothed if points do not determine all
-/// functions, others always.
+/// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are smoothed only if
+/// points do not determine all functions, other knots always.
 ///
-/// In stored coordinates, second derivatives are those of the world times a step squared, and areas are
-/// smaller by as much: so the energy is that of the world times a step squared, and lambda is divided by it.
+/// In stored coordinates, second derivatives are those of the world times the step squared, and areas are
+/// those of the world divided by the step squared. So the energy is that of the world times the step squared,
+/// and `lambda` is divided by the step squared.
 ///
 /// # Errors
 /// Those of [`NormalEquations::of`], [`fitting::bending`] and [`Equations::solve`].

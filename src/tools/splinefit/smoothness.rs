@@ -1,10 +1,10 @@
 //! Where splines are less smooth than their degree allows.
 //!
-//! A function of degree k is a sum of simplex splines of k + 3 knots each. One of these has k + 1 - m
-//! continuous derivatives across a line that m of its knots are on: k - 1 across most lines, less where knots
-//! are repeated or on a line with others. A sum may be smoother, as box splines are, and tents of knots that
-//! are pulled apart. So the segments between such knots are *candidates*; for degree 2, derivatives on both
-//! sides of each candidate are compared.
+//! A function of degree k is a sum of simplex splines of k + 3 knots each. A simplex spline has k + 1 - m
+//! continuous derivatives across a line through m of its knots: k - 1 across most lines, fewer where knots
+//! are repeated or more than two are on the line. A sum may be smoother, as box splines are, and tents of
+//! knots that are pulled apart. So segments between such knots are only *candidates*; for degree 2,
+//! derivatives on both sides of each candidate are compared.
 //!
 //! Source: Micchelli 1979; thesis 6.1.
 
@@ -14,11 +14,12 @@ use spmesh_geometry::configurations::{self, Rule};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign, lexicographic};
 use spmesh_splines::bases::{Jet, Scratch};
 
-/// Parts of a segment at which derivatives are compared: no simple ones, at which other lines may cross.
+/// Parts of a segment at which derivatives are compared. They are not simple fractions, at which other lines
+/// may cross.
 const PARTS: [f64; 3] = [0.216_541, 0.487_312, 0.809_733];
-/// How far beside a segment they are, relative to its length.
+/// Distance of the places of comparison from the segment, relative to its length.
 const BESIDE: f64 = 1e-5;
-/// The least change of a derivative, relative to what functions have there, that is no rounding error.
+/// Smaller changes of a derivative, relative to the magnitude of functions there, are rounding errors.
 const CHANGE_MIN: f64 = 1e-4;
 
 /// A segment across which derivatives may jump.
@@ -26,23 +27,23 @@ const CHANGE_MIN: f64 = 1e-4;
 pub struct Candidate {
     /// Its ends, in stored coordinates.
     pub ends: [Point2; 2],
-    /// Number of derivatives that are continuous for certain: -1 if values may jump.
+    /// Number of derivatives that are certainly continuous; -1 if values may jump.
     pub order: i32,
 }
 
 /// How smooth the functions of a layout are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Smoothness {
-    /// Number of continuous derivatives across all other lines.
+    /// Number of continuous derivatives across all lines that have no candidate.
     pub order: i32,
-    /// Segments that may be different.
+    /// Segments with possibly fewer.
     pub candidates: Vec<Candidate>,
-    /// Those across which the gradient of some function jumps, for degree 2.
+    /// For degree 2, the candidates across which the value or gradient of some function jumps.
     pub folds: Option<Vec<Candidate>>,
 }
 
 impl Smoothness {
-    /// Examines all functions inside of their domain.
+    /// Examines all functions inside their domain.
     ///
     /// # Errors
     /// As [`configurations::link_triangulate`].
@@ -59,14 +60,14 @@ impl Smoothness {
     }
 }
 
-/// Segments between knots on lines with more of them than two, each with its least order.
+/// Segments between knots on lines through more than two knots, each with its least order.
 fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
     let knots = &layout.knots;
     let next = configurations::link_triangulate(knots, &layout.configurations, &Rule::Delaunay)?;
     let (mut found, mut predicates) = (Vec::new(), FiniteFloatPredicates::default());
     for (boundary, interior) in next.iter() {
         let [a, b, c] = boundary.map(|id| knots.at(id));
-        // Those without area count for nothing.
+        // Configurations without area have no part in functions.
         if predicates.orient2d(a, b, c) == Sign::Zero {
             continue;
         }
@@ -81,7 +82,7 @@ fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
     Ok(found)
 }
 
-/// The lines through more than two of some knots.
+/// The lines through more than two of some knots of one simplex spline.
 fn lines(all: &[Point2], predicates: &mut impl Predicates2, found: &mut Vec<Candidate>) {
     for (place, &p) in all.iter().enumerate() {
         for &q in all[place + 1..].iter().filter(|&&q| q != p) {
@@ -97,22 +98,22 @@ fn lines(all: &[Point2], predicates: &mut impl Predicates2, found: &mut Vec<Cand
     }
 }
 
-/// A place on a segment, and one beside it.
+/// The place at a part of a segment, moved to its left by `beside` times its length.
 fn places([p, q]: [Point2; 2], part: f64, beside: f64) -> Point2 {
     let along = [q[0] - p[0], q[1] - p[1]];
     [p[0] + part * along[0] - beside * along[1], p[1] + part * along[1] + beside * along[0]]
 }
 
-/// Whether a segment has places inside of the domain on both sides.
+/// Whether there are places inside the domain on both sides of a segment.
 fn is_inside(layout: &Layout, candidate: &Candidate) -> bool {
     let is_in = |part: f64, beside: f64| layout.basis.is_in_domain(places(candidate.ends, part, beside));
     PARTS.iter().any(|&part| is_in(part, 2.0 * BESIDE) && is_in(part, -2.0 * BESIDE))
 }
 
-/// Whether values or gradients of a function change across a segment.
+/// Whether the value or the gradient of a function changes across a segment.
 ///
-/// Functions are polynomials of degree 2 next to it, so that their gradients are linear, and limits are those
-/// of the line through two places, unless another knot line is between.
+/// Functions are polynomials of degree 2 next to the segment unless another knot line is close. So their
+/// gradients are linear, and two places on one side give the limit at the segment by extrapolation.
 fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bool {
     let basis = &layout.basis;
     let [p, q] = candidate.ends;
@@ -132,7 +133,7 @@ fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bo
         functions.dedup();
         functions.iter().any(|&function| {
             let (a, b) = (left.gradient(function), right.gradient(function));
-            // Functions are at most about one, so that a gradient of one over the length is a great one.
+            // Functions are at most about one, so a gradient of one over the length is large.
             let change = ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt() * length;
             let step = (left.value(function) - right.value(function)).abs();
             change > CHANGE_MIN || step > CHANGE_MIN
@@ -140,7 +141,7 @@ fn folds_at(layout: &Layout, candidate: &Candidate, scratch: &mut Scratch) -> bo
     })
 }
 
-/// The functions alive at two places on one side of a segment, one twice as far from it as the other.
+/// The functions alive at two places on one side of a segment, `far` at twice the distance of `near`.
 struct Side {
     near: Vec<(u32, Jet)>,
     far: Vec<(u32, Jet)>,
@@ -151,7 +152,7 @@ impl Side {
         jet_of(&self.near, function).value
     }
 
-    /// The limit at the segment.
+    /// The gradient of a function, extrapolated to the segment.
     fn gradient(&self, function: u32) -> [f64; 2] {
         let (near, far) = (jet_of(&self.near, function).gradient, jet_of(&self.far, function).gradient);
         [0, 1].map(|axis| 2.0 * near[axis] - far[axis])

@@ -7,25 +7,25 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_splines::fitting::{self, QuantileSketch};
 use std::num::NonZeroUsize;
 
-/// The parts for which percentiles are reported.
+/// The quantiles that are reported.
 pub const PERCENTILES: [f64; 5] = [0.5, 0.75, 0.9, 0.95, 0.99];
 
-/// Statistics of residuals (elevations less values) of the points in the domain.
+/// Statistics of the residuals (elevation minus value) of the points in the domain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     /// Number of points in the domain.
     pub count: u64,
-    /// Number of points outside of it.
+    /// Number of points outside of the domain.
     pub outside: u64,
     /// Mean.
     pub mean: f64,
     /// Root of the mean square.
     pub root_mean_square: f64,
-    /// Greatest magnitude, and the place of the first point that has it, in world coordinates.
+    /// Greatest magnitude.
     pub greatest: f64,
-    /// Where that is.
+    /// The place of the first point with the greatest magnitude, in world coordinates.
     pub worst: Option<Point2>,
-    /// Quantiles of magnitudes for [`PERCENTILES`]: the first one is their median. Accuracy: half a percent.
+    /// Quantiles of magnitudes for [`PERCENTILES`]; the first one is the median. Accuracy: half a percent.
     pub percentiles: [f64; 5],
 }
 
@@ -62,7 +62,7 @@ impl Statistics {
             root_mean_square: (square / divisor).sqrt(),
             greatest,
             worst,
-            // A class may end above the greatest magnitude.
+            // A class may end above the greatest magnitude, so quantiles are limited to it.
             percentiles: PERCENTILES.map(|part| sketch.quantile(part).unwrap_or(0.0).min(greatest)),
         })
     }

@@ -6,17 +6,17 @@ use spmesh_core::error::Result;
 use spmesh_io::raster::Window;
 use spmesh_splines::fitting::Interpolation;
 
-/// Up to this number of functions the condition is computed from singular values; above it is estimated.
+/// Up to this number of functions, the condition is computed from singular values; beyond, it is estimated.
 const EXACT_MAX: usize = 500;
 
-/// A layout in numbers, in world coordinates.
+/// A summary of a layout, in world coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
     /// Degree of functions.
     pub degree: usize,
     /// Number of knots.
     pub knots: usize,
-    /// Number of different places of knots.
+    /// Number of distinct places of knots.
     pub places: usize,
     /// Number of functions.
     pub functions: usize,
@@ -26,7 +26,7 @@ pub struct Summary {
     pub domain: Option<Window>,
     /// How well values at Greville sites determine a spline.
     pub condition: Condition,
-    /// How smooth functions are, and where less.
+    /// How smooth functions are, and where they are less smooth.
     pub smoothness: Smoothness,
 }
 
@@ -35,9 +35,9 @@ pub struct Summary {
 pub enum Condition {
     /// In the 2-norm.
     Exact(f64),
-    /// An estimate in the 1-norm, from below.
+    /// A lower estimate in the 1-norm.
     Estimate(f64),
-    /// Why there is none.
+    /// The reason why there is none.
     None(String),
 }
 

@@ -9,8 +9,8 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::source::Input;
 use spmesh_splines::bases::{Jet, Scratch};
 
-/// Writes a line for each site, in their order; `nan` outside of the domain, where a spline is not
-/// extrapolated. Returns the number of sites, and the number of sites outside.
+/// Writes a line for each site, in their order. Outside of the domain, where a spline is not extrapolated,
+/// the attribute is `nan`. Returns the number of sites, and the number of sites outside.
 ///
 /// # Errors
 /// If sites cannot be read, or lines cannot be written.

@@ -8,21 +8,21 @@ use spmesh_model::configurations::{FARAWAY, Link, Links};
 use spmesh_model::functions::{Function, FunctionKind};
 use std::collections::BTreeMap;
 
-/// The functions to collect.
+/// The special functions that B-splines are collected into.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Collection {
     /// Faces with a box spline.
     pub(super) faces: Vec<[u32; 4]>,
-    /// Creases with smooth ends: the ends, and the knot between.
+    /// Creases with smooth ends: the two ends, and the knot between them.
     pub(super) creases: Vec<[u32; 3]>,
-    /// Linear elements, by the first knots at their ends, the lesser one first.
+    /// Linear elements, by the first knots at their ends, with the lesser one first.
     pub(super) lines: HashSet<[u32; 2]>,
 }
 
 /// Knots by place.
 struct Places {
     firsts: Vec<u32>,
-    /// Whether there are others at the place of a first knot.
+    /// For each first knot of a place, whether the place has further knots.
     is_apart: Vec<bool>,
 }
 
@@ -36,7 +36,7 @@ impl Places {
         Places { firsts, is_apart }
     }
 
-    /// The function that the B-spline of two knots belongs to because of coinciding knots, if any.
+    /// The function that collects the B-spline of two knots because of coinciding knots, if any.
     fn kind(&self, [p, q]: [u32; 2]) -> Option<FunctionKind> {
         let [p, q] = [p, q].map(|id| self.firsts[id as usize]);
         if p == q {
@@ -46,8 +46,8 @@ impl Places {
         is_tent.then_some(FunctionKind::Tent([p.min(q), p.max(q)]))
     }
 
-    /// Whether the edges of a link go back and forth between places, such as those of copies: its B-spline is
-    /// zero then.
+    /// Whether the edges of a link cancel as directed edges between places, as for links of copies. Then its
+    /// B-spline is zero.
     fn encloses_nothing(&self, link: &Link) -> bool {
         let at_places =
             link.edges().map(|edge| edge.map(|id| (id != FARAWAY).then(|| self.firsts[id as usize])));
@@ -88,7 +88,7 @@ impl Collection {
         Ok(terms.into_iter().map(|(kind, terms)| Function { kind, terms }).collect())
     }
 
-    /// A tent of a linear element goes half to each end (scenario 3).
+    /// The functions that share a function: half of a linear element's tent goes to each end (scenario 3).
     fn shares_of(&self, kind: FunctionKind) -> Vec<(FunctionKind, f64)> {
         match kind {
             FunctionKind::Tent(ends) if self.lines.contains(&ends) => {
@@ -98,7 +98,7 @@ impl Collection {
         }
     }
 
-    /// Creases and faces by their edges.
+    /// Creases and faces by the edges whose B-splines they collect.
     fn by_edge(&self) -> HashMap<[u32; 2], Vec<FunctionKind>> {
         let mut special: HashMap<[u32; 2], Vec<FunctionKind>> = HashMap::default();
         let mut add = |[p, q]: [u32; 2], kind| special.entry([p.min(q), p.max(q)]).or_default().push(kind);

@@ -1,15 +1,15 @@
 //! Configurations whose B-splines sum to box splines, the ZP elements, inside grids (thesis 8.2).
 //!
 //! Each cell of a grid is split along the same diagonal. The link of a knot amid four cells is then a
-//! hexagon; of this, its two neighbours along the diagonals are cut as ears, and the diamond of the other
-//! four is split (figure 8.3). Links of diagonals are null then, and the ZP element of a face is half the sum
-//! of the B-splines of its four sides (theorem 8.2.4; the printed factor 1/4! is that of another
-//! normalisation), for either diagonal and either split.
+//! hexagon. Its two corners that are neighbours along diagonals are cut as ears, and the diamond of the other
+//! four corners is split (figure 8.3). Then links of diagonals are null, and the ZP element of a face is half
+//! the sum of the B-splines of its four sides, for either diagonal and either split (theorem 8.2.4; the
+//! printed factor 1/4! belongs to another normalisation).
 //!
 //! Constrained Delaunay triangulation and the rule determine the rest: links of knots on the border of a
 //! grid, and everything between grids (8.2.5). A face has a box spline if all its corners are surrounded by
-//! cells. The thesis drops all B-splines between such knots; here the half that no box spline takes remains a
-//! function, so that all sum to one.
+//! cells. The thesis drops all B-splines between such knots. Here the half that no box spline takes remains a
+//! function, so that all functions sum to one.
 
 use super::Special;
 use super::basis::Collection;
@@ -22,24 +22,25 @@ use crate::predicates::{FiniteFloatPredicates, Point2, Predicates2, Sign};
 use foldhash::{HashMap, HashSet};
 use spmesh_core::error::{Error, Result};
 
-/// Which way cells, and the diamonds in links, are split.
+/// The directions in which cells, and the diamonds in links, are split.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ZpSplit {
-    /// Cells are split from (1, 0) to (0, 1), not from (0, 0) to (1, 1).
+    /// Cells are split from (1, 0) to (0, 1) instead of from (0, 0) to (1, 1).
     pub is_falling: bool,
-    /// Diamonds are split from (0, -1) to (0, 1), not from (-1, 0) to (1, 0).
+    /// Diamonds are split from (0, -1) to (0, 1) instead of from (-1, 0) to (1, 0).
     pub is_upright: bool,
 }
 
 /// A grid of parallelograms: knots at `origin + i steps[0] + j steps[1]`.
 ///
-/// Coordinates are rounded. Steps that make them exact keep lines straight, and knots of patches that meet at
-/// one place.
+/// Coordinates are rounded. With steps that make them exact, lines stay straight, and knots of touching
+/// patches stay at one place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// The first knot.
     pub origin: Point2,
-    /// From each knot to the next of its row, and of its column; the second is counterclockwise of the first.
+    /// The steps to the next knot of a row, and of a column; the second step is counterclockwise of the
+    /// first.
     pub steps: [Point2; 2],
     /// Numbers of cells in a row and in a column.
     pub cells: [u32; 2],
@@ -48,12 +49,12 @@ pub struct Patch {
 /// A cell by its corners, counterclockwise from the lower left, in the coordinates of its grid.
 type Cell = [u32; 4];
 
-/// ZP configurations where `knots` have integer coordinates: cells are unit squares all of whose corners are
-/// knots.
+/// ZP configurations where `knots` have integer coordinates. Cells are unit squares whose corners are all
+/// knots, none of them repeated. A square that has further knots inside or on its sides is triangulated, but
+/// is not a cell.
 ///
 /// # Errors
-/// Knots without such a square; knots of which several cells contain others still make a triangulation, but
-/// no cell.
+/// Usage, if no such square exists.
 pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
     let places = distinct(knots.points());
     let repeated: HashSet<u32> =
@@ -80,8 +81,8 @@ pub fn zp(knots: &Knots, split: ZpSplit) -> Result<Special> {
 /// (thesis 8.2.5).
 ///
 /// `more` are knots between the grids. Knots of the patches come first, row by row; where patches touch,
-/// those at one place are one. Cells with knots on their sides (T-junctions of patches) or inside do not
-/// count as cells.
+/// knots at one place are merged. A square with knots on its sides (T-junctions of patches) or inside is not
+/// a cell.
 ///
 /// # Errors
 /// Numbers that are not finite, steps that are not counterclockwise, too many knots, grid lines that cross.
@@ -100,7 +101,7 @@ pub fn patches(patches: &[Patch], more: &[Point2], split: ZpSplit) -> Result<Spe
 }
 
 impl Patch {
-    /// Number of knots including this patch; `before` excludes it.
+    /// Checks the patch. Returns the number of knots with this patch; `before` is the number without it.
     fn check(&self, before: u64) -> Result<u64> {
         let [[a, b], [c, d]] = self.steps;
         if !self.steps.iter().chain([&self.origin]).flatten().all(|number| number.is_finite()) {
@@ -139,7 +140,7 @@ impl Patch {
     }
 }
 
-/// Points without repetition.
+/// Distinct points.
 #[derive(Default)]
 struct Merged {
     points: Vec<Point2>,
@@ -149,7 +150,7 @@ struct Merged {
 impl Merged {
     fn id(&mut self, point: Point2) -> u32 {
         let next = self.points.len() as u32;
-        // Adding zero makes negative zeros positive.
+        // Adding zero turns -0 into +0.
         let id = *self.ids.entry(point.map(|c| (c + 0.0).to_bits())).or_insert(next);
         if id == next {
             self.points.push(point);
@@ -158,7 +159,7 @@ impl Merged {
     }
 }
 
-/// Cells of grids in one triangulation.
+/// Combines the cells of grids into one triangulation.
 fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special> {
     let mut predicates = FiniteFloatPredicates::default();
     let mut mesh = Constrained::new(&knots, Start::delaunay(&knots)?, &mut predicates);
@@ -194,7 +195,7 @@ fn of_cells(knots: Knots, grids: &[Vec<Cell>], split: ZpSplit) -> Result<Special
     Ok(Special { knots, start, diagonals: Diagonals::new(rows), collection })
 }
 
-/// The error of a side of a cell that crosses one of another grid.
+/// The error for a side of a cell that crosses a side of another grid's cell.
 #[cold]
 fn crossing(patch: usize, [p, q]: [Point2; 2]) -> Error {
     let ([a, b], [c, d]) = (p, q);
@@ -204,7 +205,7 @@ fn crossing(patch: usize, [p, q]: [Point2; 2]) -> Error {
     Error::usage(what).at(format!("patch {patch}"))
 }
 
-/// The error of two grids that have something in common amid cells of both.
+/// The error for two grids whose cells share an inner knot.
 #[cold]
 fn overlap(first: usize, second: usize, [x, y]: Point2) -> Error {
     let what =
@@ -212,7 +213,7 @@ fn overlap(first: usize, second: usize, [x, y]: Point2) -> Error {
     Error::usage(what)
 }
 
-/// Whether the triangulation has just two triangles in a cell, of whole sides.
+/// Whether all sides of a cell are edges, and it consists of just two triangles.
 fn is_empty(mesh: &Constrained, &[a, b, c, d]: &Cell) -> bool {
     let has_sides = [[a, b], [b, c], [c, d], [d, a]].iter().all(|&side| mesh.is_fixed(side));
     let [lower, upper] = [mesh.apex(a, b), mesh.apex(c, d)];
@@ -239,7 +240,7 @@ fn inner_knots(cells: &[Cell]) -> HashMap<u32, [u32; 4]> {
     corners.chunk_by(|p, q| p.0 == q.0).filter_map(around).collect()
 }
 
-/// Figure 8.3: two ears and a diamond.
+/// The diagonals of figure 8.3: two ears and a diamond.
 fn diagonals_around(knot: u32, around: [u32; 4], split: ZpSplit) -> [(u32, [u32; 2]); 3] {
     let [right, above, left, below] = around;
     let ears =

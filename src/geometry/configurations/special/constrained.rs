@@ -1,7 +1,7 @@
-//! Segments that a triangulation must have as edges: a constrained Delaunay triangulation, by flips.
+//! Constrained Delaunay triangulation, by flips: given segments become edges.
 //!
-//! Edges that cross a segment are flipped until none is left (Sloan, "A fast algorithm for generating
-//! constrained Delaunay triangulations", Computers & Structures 47, 1993), then new edges are flipped until
+//! Edges that cross a segment are flipped until none crosses it (Sloan, "A fast algorithm for generating
+//! constrained Delaunay triangulations", Computers & Structures 47, 1993). Then new edges are flipped until
 //! they are constrained Delaunay.
 
 use crate::configurations::knots::Knots;
@@ -14,17 +14,18 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_model::configurations::FARAWAY;
 use std::collections::VecDeque;
 
-/// A triangulation with edges that stay.
+/// A triangulation with fixed edges, which are never flipped.
 pub(super) struct Constrained<'a> {
     start: Start,
     plane: Plane<'a, FiniteFloatPredicates>,
     /// A corner at each knot.
     corner_at: Vec<Corner>,
-    /// Edges that stay, the lesser end first.
+    /// Fixed edges, with the lesser end first.
     fixed: HashSet<[u32; 2]>,
 }
 
-/// The first part of a segment: the next knot on it, and the edges that it crosses before, right end first.
+/// The first part of a segment: the next knot on it, and the edges that it crosses before that knot, each
+/// with its right end first.
 struct Passage {
     to: u32,
     crossed: Vec<[u32; 2]>,
@@ -38,15 +39,15 @@ impl<'a> Constrained<'a> {
         all
     }
 
-    /// The triangulation.
+    /// The triangulation, without a claim to be Delaunay.
     pub(super) fn into_start(self) -> Start {
         self.start.generalised()
     }
 
-    /// Makes the segment between two knots an edge that stays; the knots on the way from `a` to `b`, both
-    /// included: where others lie on the segment, it is several edges.
+    /// Makes the segment between two knots a fixed edge, or several edges if other knots lie on it. Returns
+    /// the knots on the way from `a` to `b`, both included.
     ///
-    /// Cost: the square of the number of edges it crosses, which is small for typical segments.
+    /// Cost: quadratic in the number of edges that the segment crosses, which is small for typical segments.
     ///
     /// # Errors
     /// A segment that crosses another.
@@ -69,8 +70,9 @@ impl<'a> Constrained<'a> {
         Ok(path)
     }
 
-    /// The error of a segment that crosses an edge that stays. One of no length is at a knot that the segment
-    /// goes through. Of coinciding knots it names the first: others may be copies that the user did not give.
+    /// The error for a segment that crosses a fixed edge. An edge without length means that the segment
+    /// passes through a knot. Of coinciding knots the error names the first: others may be copies that the
+    /// user did not give.
     #[cold]
     fn crossing(&self, ends: [u32; 2], edge: [u32; 2]) -> Error {
         let firsts = distinct(self.plane.knots.points());
@@ -83,21 +85,21 @@ impl<'a> Constrained<'a> {
         Error::usage(format!("{what}: add a knot where they cross, or leave one out")).at(segment(ends))
     }
 
-    /// Whether an edge stays.
+    /// Whether an edge is fixed.
     pub(super) fn is_fixed(&self, [a, b]: [u32; 2]) -> bool {
         self.fixed.contains(&[a.min(b), a.max(b)])
     }
 
-    /// The third knot of the triangle to the left of an edge; `None` if there is no such edge, or nothing to
-    /// the left.
+    /// The third knot of the triangle to the left of an edge; `None` if there is no such edge, or only an
+    /// infinite triangle to the left.
     pub(super) fn apex(&self, a: u32, b: u32) -> Option<u32> {
         let corner = self.corner(a, b)? as usize;
         let apex = self.start.triangles[corner / 3][corner % 3];
         (apex != FARAWAY).then_some(apex)
     }
 
-    /// Puts a knot that is no vertex yet on an edge, or next to it; the two knots opposite to the edge, left
-    /// and right.
+    /// Inserts a knot that is not a vertex yet on an edge, or near it; the halves of the edge are fixed.
+    /// Returns the two knots opposite to the edge, left and right.
     ///
     /// # Errors
     /// No such edge; an edge on the border; a knot that is too far from the edge.
@@ -114,7 +116,7 @@ impl<'a> Constrained<'a> {
             }
         }
         self.start.split(corner, middle);
-        // One of the new triangles, and with it all around the new vertex.
+        // Update corners from one new triangle first, then from all triangles around the new vertex.
         self.note(self.start.triangles.len() as u32 - 1);
         let around: Vec<u32> = self.start.star(self.corner_at[middle as usize]).map(|c| c / 3).collect();
         around.into_iter().for_each(|triangle| self.note(triangle));
@@ -123,7 +125,7 @@ impl<'a> Constrained<'a> {
         Ok([v, w])
     }
 
-    /// Remembers the corners of a triangle.
+    /// Updates the corners at the vertices of a triangle.
     fn note(&mut self, triangle: u32) {
         for (place, v) in (0..).zip(self.start.triangles[triangle as usize]) {
             if let Some(corner) = self.corner_at.get_mut(v as usize) {
@@ -166,7 +168,8 @@ impl<'a> Constrained<'a> {
         self.plane.orient(a, b, v) == Sign::Zero && !self.plane.is_between(v, b, a)
     }
 
-    /// From the triangle of `corner` across the edge from `p` to `q`, and on.
+    /// Walks along the segment from the triangle of `corner` across the edge from `p` to `q`, and on to the
+    /// next knot.
     fn walk(&mut self, [a, b]: [u32; 2], corner: Corner, [mut p, mut q]: [u32; 2]) -> Option<Passage> {
         let mut crossed = Vec::new();
         let mut corner = corner;
@@ -190,12 +193,12 @@ impl<'a> Constrained<'a> {
         None
     }
 
-    /// Flips edges until none crosses the segment; the edges that came of it.
+    /// Flips edges until none crosses the segment; returns the new edges.
     fn clear(&mut self, [a, b]: [u32; 2], crossed: Vec<[u32; 2]>) -> Result<Vec<[u32; 2]>> {
         let mut fresh = Vec::new();
         let count = crossed.len();
-        // Each round of the queue flips an edge at least, and each pair of crossing edges is made once at
-        // most.
+        // Each round of the queue flips at least one edge, and each pair of crossing edges arises at most
+        // once.
         let mut left = count.saturating_mul(count).saturating_mul(count).saturating_add(8);
         let mut waiting: VecDeque<[u32; 2]> = crossed.into();
         while let Some([p, q]) = waiting.pop_front() {
@@ -216,7 +219,7 @@ impl<'a> Constrained<'a> {
         Ok(fresh)
     }
 
-    /// Flips the edges given, and what is around them, until all that do not stay are Delaunay.
+    /// Flips the given edges and edges around them until all edges that are not fixed are Delaunay.
     fn restore(&mut self, mut waiting: Vec<[u32; 2]>) {
         while let Some([p, q]) = waiting.pop() {
             let Some(corner) = self.corner(p, q).filter(|_| !self.is_fixed([p, q])) else { continue };
@@ -228,7 +231,7 @@ impl<'a> Constrained<'a> {
         }
     }
 
-    /// The ends of the edge that is new.
+    /// Flips an edge, and returns the ends of the new edge.
     fn flip(&mut self, corner: Corner) -> [u32; 2] {
         let neighbour = self.start.neighbours[corner as usize / 3][corner as usize % 3];
         self.start.flip(corner);
@@ -239,7 +242,7 @@ impl<'a> Constrained<'a> {
 }
 
 impl Start {
-    /// Puts a vertex on the edge opposite to a corner: four triangles take the place of two.
+    /// Inserts a vertex on the edge opposite to a corner: four triangles replace two.
     fn split(&mut self, corner: Corner, middle: u32) {
         let Around { triangles: [t, u], corners: [v, a, w, b], neighbours: [va, aw, wb, bv] } =
             self.around(corner);
@@ -254,12 +257,12 @@ impl Start {
     }
 }
 
-/// Where in the input a segment is: for error messages.
+/// Names a segment in error messages.
 pub(super) fn segment([a, b]: [u32; 2]) -> String {
     format!("segment from knot {a} to knot {b}")
 }
 
-/// The error of a segment with a knot on it.
+/// The error for a segment with a knot on it.
 #[cold]
 pub(super) fn through(ends: [u32; 2], knot: u32) -> Error {
     Error::usage(format!("knot {knot} is on it: name it, too, between the two")).at(segment(ends))

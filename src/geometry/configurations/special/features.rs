@@ -1,4 +1,4 @@
-//! Sharp corners, creases and linear elements on splines that are smooth elsewhere (thesis 8.3.1).
+//! Sharp corners, creases and linear elements of splines that are smooth elsewhere (thesis 8.3.1).
 
 use super::Special;
 use super::basis::Collection;
@@ -13,10 +13,10 @@ use spmesh_core::error::{Error, Result};
 /// A polyline of knots along which splines have a crease.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Crease {
-    /// Ids of knots along it, two at least.
+    /// Ids of at least two knots along the crease.
     pub knots: Vec<u32>,
-    /// Whether the crease is sharp up to its ends, which are pulled apart like all its knots, and can be
-    /// interpolated at; otherwise each edge has a further knot in its middle, and no knot is pulled apart.
+    /// Whether the crease is sharp up to its ends. If so, all its knots are pulled apart, and splines
+    /// interpolate there. Otherwise each edge has a further knot in its middle, and no knot is pulled apart.
     pub has_sharp_ends: bool,
 }
 
@@ -27,22 +27,22 @@ pub struct Features {
     pub corners: Vec<u32>,
     /// Creases (scenario 2).
     pub creases: Vec<Crease>,
-    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. A closed one
-    /// without knots inside makes a triangle if it has three edges, or a polygon.
+    /// Linear elements (scenario 3): splines interpolate values along these polylines linearly. A closed
+    /// polyline without knots inside makes a linear triangle if it has three edges, or a polygon.
     pub lines: Vec<Vec<u32>>,
 }
 
-/// Configurations for features: their knots are pulled apart, and their segments are edges.
+/// Configurations for features: knots of sharp features are pulled apart, and segments are edges.
 ///
-/// All functions sum to one, so that one of them alone cannot be sharp: of a crease with smooth ends, the
-/// B-splines of the knot between and the knots opposite to the edge are sharp, too, and the sum of all three
-/// is smooth. (The thesis has one.)
+/// All functions sum to one, so one of them alone cannot be sharp. At a crease with smooth ends, the
+/// B-splines of the middle knot with the knots opposite to the edge are sharp, too, and the sum of all three
+/// functions is smooth. (The thesis has one sharp function.)
 ///
-/// Copies come after the knots given, and after them one knot for each edge of creases with smooth ends, in
-/// their order: the middle of the edge as near as numbers allow. Its link has the edge itself as a diagonal.
+/// Copies are numbered after the given knots. After the copies follows one knot for each edge of creases with
+/// smooth ends, in their order: the middle of the edge, as exactly as f64 allows. Its link has the edge
+/// itself as a diagonal.
 ///
-/// # Errors
-/// Unknown knots; polylines of fewer than two knots; segments that cross, that have other knots on them, or
+/// Unknown knots; polylines of fewer than two knots; segments that cross, have other knots on them, or have
 /// no length; creases with smooth ends at knots that are pulled apart, or on the border. The error names the
 /// polyline and the segment.
 pub fn features(knots: &Knots, features: &Features) -> Result<Special> {
@@ -105,7 +105,7 @@ impl Features {
     }
 }
 
-/// The edge between the first two knots at each place stays.
+/// Fixes the edge between the first two knots at each place.
 fn fix_copies(mesh: &mut Constrained, firsts: &[u32]) -> Result<()> {
     let mut has_second = vec![false; firsts.len()];
     for (id, &first) in (0..).zip(firsts).filter(|&(id, &first)| id != first) {
@@ -116,7 +116,7 @@ fn fix_copies(mesh: &mut Constrained, firsts: &[u32]) -> Result<()> {
     Ok(())
 }
 
-/// A segment without knots between its ends, but for copies of them.
+/// Fixes a segment, and checks that no knots are between its ends except copies of them.
 fn fix(mesh: &mut Constrained, firsts: &[u32], ends: [u32; 2]) -> Result<()> {
     let path = mesh.fix(ends[0], ends[1])?;
     match path.iter().map(|&knot| firsts[knot as usize]).find(|knot| !ends.contains(knot)) {
@@ -125,7 +125,7 @@ fn fix(mesh: &mut Constrained, firsts: &[u32], ends: [u32; 2]) -> Result<()> {
     }
 }
 
-/// A knot in each edge of creases with smooth ends.
+/// Adds a knot in each edge of creases with smooth ends.
 fn smooth_creases(
     features: &Features,
     apart: Knots,

@@ -1,10 +1,10 @@
 //! Special configurations of degree 1, for quadratic splines with box splines or sharp features (thesis,
 //! chapter 8).
 //!
-//! A [`Special`] holds knots, a triangulation of them, and diagonals that links of some knots must have.
-//! [`zp`] and [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2), [`features()`] makes corners
-//! and creases sharp, and linear elements linear (8.3.1). [`Special::functions`] sums the B-splines of degree
-//! 2 that belong together, such as those of coinciding knots.
+//! A [`Special`] holds knots, a triangulation of them, and required diagonals of links of some knots. [`zp`]
+//! and [`patches`] reproduce box splines on grids (`boxes`, thesis 8.2). [`features()`] makes corners and
+//! creases sharp, and linear elements linear (8.3.1). [`Special::functions`] sums the B-splines of degree 2
+//! that belong together, such as those of coinciding knots.
 
 mod basis;
 mod boxes;
@@ -26,16 +26,16 @@ use spmesh_model::configurations::{Configurations, Links};
 /// Knots with a start and required diagonals for special configurations of degree 1.
 #[derive(Debug, Clone)]
 pub struct Special {
-    /// The knots: the given ones, with the same ids, and after them those that were added.
+    /// The knots: the given ones, with the same ids, followed by added ones.
     pub knots: Knots,
     /// The triangulation.
     pub start: Start,
-    /// Diagonals that links of single knots must have.
+    /// Required diagonals of links of single knots.
     pub diagonals: Diagonals,
     collection: Collection,
 }
 
-/// The functions that quadratic splines are made of, if nothing is special except coinciding knots: as
+/// The functions that quadratic splines are made of, where nothing is special except coinciding knots; as
 /// [`Special::functions`].
 ///
 /// # Errors
@@ -45,7 +45,8 @@ pub fn functions(knots: &Knots, links: &Links) -> Result<Vec<Function>> {
 }
 
 impl Special {
-    /// All degrees from 0 to `degree`, in order: `rule` triangulates what the required diagonals leave open.
+    /// All degrees from 0 to `degree`, in order; `rule` triangulates the parts of links that the required
+    /// diagonals leave open.
     ///
     /// # Errors
     /// Those of [`super::generate`].
@@ -63,8 +64,8 @@ impl Special {
     /// The functions that quadratic splines are made of, as sums of B-splines; `links` are those of degree 1.
     ///
     /// The shares of each B-spline sum to one, so the functions sum to one where the B-splines do. B-splines
-    /// of null links are zero and left out; that of a link through the faraway point is made of its finite
-    /// edges.
+    /// of null links are zero and left out. The B-spline of a link through the faraway point consists of its
+    /// finite edges.
     ///
     /// # Errors
     /// Links of another size.

@@ -1,17 +1,18 @@
-//! Where second derivatives of quadratic functions are constant.
+//! Second derivatives of quadratic functions, as constants on triangles.
 //!
-//! An element of degree 1 is linear on triangles: its four knots are the corners of a quadrilateral, whose
-//! diagonals cross, or one is in the triangle of the others; to that point, the *apex*, each edge of the hull
-//! makes a triangle (`linear_simplex`). Functions are products with linear factors, so that their second
-//! derivatives there are constant. Those of a function are the sums over all of its elements, almost
-//! everywhere: where it has an edge, along collinear knots, there are none.
+//! An element of degree 1 is linear on triangles. Its four knots are either the corners of a quadrilateral,
+//! whose diagonals cross, or one knot is in the triangle of the others. The crossing, or the inner knot, is
+//! the *apex*: each edge of the hull makes a triangle with it (`linear_simplex`). Functions are products of
+//! elements with linear factors, so their second derivatives are constant on these triangles. The second
+//! derivatives of a function are the sums over all its elements almost everywhere; on its edges, along
+//! collinear knots, they do not exist.
 
 use super::Basis;
 use crate::bases::elements::{Share, hull_edges};
 use crate::bases::linear_simplex::slope;
 use spmesh_geometry::predicates::{Point2, area};
 
-/// Second derivatives of some functions, as far as they come from one element, on a triangle.
+/// The contributions of one element to the second derivatives of its functions, on a triangle.
 #[derive(Debug, Clone)]
 pub(crate) struct Bend {
     /// Counterclockwise.
@@ -21,7 +22,7 @@ pub(crate) struct Bend {
 }
 
 impl Basis {
-    /// The second derivatives of all functions as sums of constants on triangles. Domain: degree 2.
+    /// The contributions of all elements to second derivatives, triangle by triangle. Domain: degree 2.
     pub(crate) fn bends(&self) -> impl Iterator<Item = Bend> {
         debug_assert_eq!(self.degree, 2);
         (0..self.elements.len()).flat_map(move |element| {
@@ -44,7 +45,7 @@ impl Basis {
         &self.points
     }
 
-    /// The corners of the domain, counterclockwise, in plain arithmetic; none if it is empty.
+    /// The corners of the domain, counterclockwise, in plain arithmetic; none if the domain is empty.
     pub fn domain_corners(&self) -> Vec<Point2> {
         if self.domain.is_empty { Vec::new() } else { self.domain.corners(&self.points) }
     }
@@ -73,7 +74,7 @@ impl Basis {
     }
 }
 
-/// The point that is a corner of all triangles.
+/// The point that all triangles of an element have as a corner.
 fn apex(knots: &[Point2], edges: &[[Point2; 2]]) -> Option<Point2> {
     if edges.len() == 3 {
         let mut rest = knots.to_vec();
@@ -91,7 +92,7 @@ fn apex(knots: &[Point2], edges: &[[Point2; 2]]) -> Option<Point2> {
     Some([0, 1].map(|axis| p[axis] + share * (r[axis] - p[axis])))
 }
 
-/// The gradient of `area(x, a, b)` by x.
+/// The gradient of `area(x, a, b)` with respect to x.
 fn gradient_of_area([a, b]: [Point2; 2]) -> Point2 {
     [0.5 * (a[1] - b[1]), 0.5 * (b[0] - a[0])]
 }
