@@ -210,8 +210,8 @@ fn among(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
     first(low)..first(high)
 }
 
-/// Where a row enters and leaves a triangle. An edge includes its lower end only, so a row crosses no edge or
-/// two.
+/// Where a row enters and leaves a triangle. An edge includes its lower end only, so a row crosses either two
+/// edges or none.
 fn crossing([a, b, c]: [[f64; 3]; 3], y: f64) -> Option<[f64; 2]> {
     let mut found = [0.0; 2];
     let mut count = 0;

@@ -21,7 +21,7 @@ pub enum Fill {
 /// Whether something is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// If single ones can be told apart.
+    /// If single items can be told apart.
     Auto,
     /// In any case.
     Always,
@@ -62,7 +62,7 @@ pub struct Options {
     pub extent: Option<Bounds>,
     /// Seen obliquely, with elevations, rather than from above.
     pub oblique: bool,
-    /// Light of hillshades.
+    /// Whether the view is oblique, with elevations, rather than from above.
     pub light: Light,
     /// The range of elevations that the colours span; that of the stream if `None`.
     pub range: Option<[f64; 2]>,

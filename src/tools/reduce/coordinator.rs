@@ -44,7 +44,8 @@ const PIECES_AHEAD: usize = 3;
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;
 
-/// Capacity up to which blocks are kept, in bytes: after a few large nodes, all of them would be as large.
+/// Capacity up to which blocks are kept for reuse, in bytes: without a limit, all of them would grow to the
+/// size of the largest nodes.
 const KEPT_BLOCKS_MAX: usize = 4 << 20;
 
 /// Runs `run` with `workers` threads that triangulate. The calling thread triangulates the root when they
@@ -70,7 +71,7 @@ where
         last @ (Ok(Piece::End(_)) | Err(_)) => ControlFlow::Break(last),
         piece => ControlFlow::Continue(piece),
     };
-    // Outside of the scope: a failure must not wait for an input that stays silent.
+    // Started outside of the scope: a failure must not wait for an input that stays silent.
     let pieces = parallel::produce("reader", PIECES_AHEAD, next)?;
     std::thread::scope(move |scope| {
         let (pool, channels) = WorkerPool::start::<B, D>(scope, sequencer, run.rules, workers, &buffers)?;
