@@ -77,7 +77,7 @@ use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind};
 
-/// Audit of one stream of two or three dimensions: pass it every event, then get the report. Those of four
+/// Audit of one stream of two or three dimensions: pass it every event, then get the report. Streams of four
 /// dimensions have [`diagram::StreamAudit`], configurations [`configurations::StreamAudit`].
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each

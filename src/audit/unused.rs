@@ -9,7 +9,7 @@ use super::exact::space::{are_collinear, orientation};
 
 /// Vertices that were finalized without a simplex.
 ///
-/// Memory: that of these vertices. If there are simplices, the first such vertex is a violation.
+/// Memory: these vertices. If there are simplices, the first such vertex is a violation.
 #[derive(Debug, Default)]
 pub(super) struct Unused<const D: usize> {
     corners: Vec<Corner<D>>,

@@ -8,10 +8,10 @@
 //!
 //! A vertex on the boundary of a mesh that is right has no simplex in some directions, and one in all others.
 //!
-//! The direction is that of an axis, infinitesimally off towards the next ones: no facet contains it, and
-//! which facets face it are comparisons in the plane and signs of projected triangles in space. From a corner
-//! of a simplex the direction leads into the simplex if all facets at this corner face away from it, hence
-//! the one opposite faces it. So a simplex counts for one corner at most.
+//! The direction is that of an axis, infinitesimally off towards the next ones, so that no facet contains it.
+//! Comparisons in the plane, and signs of projected triangles in space, decide which facets face it. From a
+//! corner of a simplex the direction leads into the simplex if all facets at this corner face away from it,
+//! hence the one opposite faces it. So a simplex counts for one corner at most.
 
 use super::check::{Check, Violation};
 use super::vertices::Vertex;
@@ -35,7 +35,7 @@ pub(super) enum Place {
 /// opposite to each corner whether its outer side faces the direction.
 pub(super) fn corner_of<const N: usize>(is_facing: [bool; N]) -> Option<(usize, Place)> {
     let facing = is_facing.iter().rev().fold(0u32, |bits, &is_facing| bits << 1 | u32::from(is_facing));
-    // Which one it is is unpredictable, so no branch depends on it.
+    // Which case it is is unpredictable, so no branch depends on it.
     let is_ahead = facing.is_power_of_two();
     let odd = if is_ahead { facing } else { facing ^ ((1 << N) - 1) };
     let place = if is_ahead { Place::Ahead } else { Place::Behind };

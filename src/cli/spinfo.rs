@@ -55,8 +55,8 @@ pub struct Flags {
     /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation. Triangle and
     /// tetrahedral meshes are proved as they pass, holding only the live vertices and the boundary of the
     /// mesh so far. Cells and simplices of four dimensions and configurations are held whole. In four
-    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it
-    /// may be any
+    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and its simplices
+    /// may resolve ties in any way
     #[arg(
         long,
         value_enum,

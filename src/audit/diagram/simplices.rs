@@ -1,5 +1,5 @@
-//! Simplicial complexes that claim to be Delaunay: the same proof, with ties between cospherical points as
-//! they are.
+//! Simplicial complexes that claim to be Delaunay: the same proof, but ties between cospherical points may be
+//! resolved in any way.
 
 use std::cmp::Ordering;
 
@@ -116,7 +116,8 @@ impl SimplicesAudit<'_> {
         Ok(())
     }
 
-    /// Every facet belongs to two simplices and is locally Delaunay, or is on the boundary, which is convex.
+    /// Checks that every facet belongs to two simplices and is locally Delaunay, or is on the boundary.
+    /// Checks that the boundary is convex.
     fn check_facets(&mut self) -> Result<FacetCounts, Violation> {
         let mut sides: Vec<Side> = Vec::with_capacity(5 * self.simplices.len());
         for (number, simplex) in (0..).zip(self.simplices) {
@@ -174,7 +175,7 @@ impl SimplicesAudit<'_> {
         }
     }
 
-    /// Every ridge of the boundary is between two facets of it, and not concave.
+    /// Checks that every ridge of the boundary is between two facets of it, and not concave.
     fn check_boundary(&mut self, boundary: &[Side]) -> Result<(), Violation> {
         let mut ridges: Vec<([u32; 3], usize)> = Vec::with_capacity(4 * boundary.len());
         for (i, ([p, q, r, s], _)) in boundary.iter().enumerate() {

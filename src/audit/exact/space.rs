@@ -47,9 +47,8 @@ pub(crate) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).all(|sign| sign == Ordering::Equal)
 }
 
-/// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is
-/// counterclockwise seen from, for any infinitesimal e: whether the first component of its normal that is not
-/// zero is positive.
+/// Whether the side from which the triangle `a`, `b`, `c` is counterclockwise faces the direction (1, e, e²)
+/// for any infinitesimal e: whether the first nonzero component of its normal is positive.
 pub(crate) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
 }
@@ -257,7 +256,7 @@ mod tests {
         assert_eq!(orientation([0.0; 3], [1e300, 0.0, 0.0], [1e300, 1e300, 1e-300], up).sign, Ordering::Less);
     }
 
-    /// At the edge of what is evaluated in 128 bits, and right behind it.
+    /// At the limit of what is evaluated in 128 bits, and just beyond it.
     #[test]
     fn the_largest_integers_of_each_route_are_right() {
         for bits in [23, 24, 25, 39, 40, 41, 42, 52, 60] {

@@ -40,8 +40,8 @@
 //! test of the audit itself, and because a fault found at its vertex is easier to understand than one found
 //! in the hull at the end.
 //!
-//! *Facets and edges that are closed are forgotten.* One that comes again has tetrahedra where others are, so
-//! that something is covered twice, as above; so the audit need not remember it.
+//! *Facets and edges that are closed are forgotten.* If one comes again, its tetrahedra lie where others are,
+//! so that something is covered twice, as above. So the audit need not remember it.
 
 mod census;
 mod edges;
@@ -108,7 +108,7 @@ impl TetrahedraAudit {
         if self.tetrahedra.seen().tetrahedra > 0 { self.unused.check_none("tetrahedron") } else { Ok(()) }
     }
 
-    /// A label follows its vertex.
+    /// Checks that labels follow their vertices.
     pub(super) fn labels(&mut self, labels: &[u64], ledger: &mut Ledger) -> Result<(), Violation> {
         ledger.add(Check::Labels, labels.len() as u64);
         self.labels += labels.len() as u64;
@@ -143,7 +143,7 @@ impl TetrahedraAudit {
         self.tetrahedra.vertices.live_max()
     }
 
-    /// The mesh is a ball and its surface a sphere.
+    /// Checks that the mesh is a ball and its surface a sphere.
     fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let seen = self.tetrahedra.seen();
         let (hull_facets, hull_vertices) = (self.tetrahedra.facets.len() as u64, self.hull.len());
@@ -189,11 +189,11 @@ fn finalize(
     check_link(vertex)
 }
 
-/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It
-/// is wound once.
+/// Checks that the link of an inner vertex is a sphere and the link of a vertex of the hull a disk, by
+/// Euler's relation, and that the link is wound once.
 ///
-/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three
-/// triangles' sides are one edge, or half an edge if it is inner.
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet. Of its edges,
+/// inner ones are sides of two triangles, and border edges of one.
 fn check_link(vertex: &Vertex<Star>) -> Result<(), Violation> {
     let Star { tetrahedra, edges, open, winding } = vertex.star;
     // Twice V - E + F, with 2 E = 3 F + border.

@@ -54,8 +54,8 @@ unsafe impl GlobalAlloc for CountingHeap {
     }
 }
 
-/// Runs `work`, and returns the peak of the bytes that this thread held above those before; `None` without
-/// [`CountingHeap`].
+/// Runs `work`. Also returns the peak of this thread's heap memory in bytes above the level before; `None`
+/// without [`CountingHeap`].
 pub fn peak_during<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
     let (before, outer) = (LIVE.get(), PEAK.get());
     PEAK.set(before);
