@@ -6,7 +6,7 @@
 //! circle or sphere: the link is one cycle or one sphere, wound once. (Two fans that close at one vertex
 //! count two, and so does a fan that goes around twice before it closes.)
 //!
-//! A vertex on the boundary of a mesh that is right has no simplex in some directions, and one in all others.
+//! A vertex on the boundary of a correct mesh has no simplex in some directions, and one in all others.
 //!
 //! The direction is that of an axis, infinitesimally off towards the next ones, so that no facet contains it.
 //! Comparisons in the plane, and signs of projected triangles in space, decide which facets face it. From a
@@ -16,8 +16,8 @@
 use super::check::{Check, Violation};
 use super::vertices::Vertex;
 
-/// How many simplices a vertex has ahead, in the direction, and behind, in the opposite one; 65,535 means
-/// that many or more.
+/// How many simplices a vertex has ahead, which means in the direction, and behind, in the opposite
+/// direction; 65,535 means that many or more.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Winding {
     ahead: u16,

@@ -64,7 +64,7 @@ pub struct Options {
     pub oblique: bool,
     /// Whether the view is oblique, with elevations, rather than from above.
     pub light: Light,
-    /// The range of elevations that the colours span; that of the stream if `None`.
+    /// The range of elevations that the colours span; the range of the stream if `None`.
     pub range: Option<[f64; 2]>,
     /// The elevation at which the two halves of a diverging colour map meet.
     pub middle: Option<f64>,

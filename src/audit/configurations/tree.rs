@@ -39,8 +39,7 @@ impl Tree {
     }
 }
 
-/// Sorts ids until the two halves of each range are on either side of the middle of the longer side of its
-/// box.
+/// Sorts ids so that each range is split at its median along the longer side of its box, and finds the boxes.
 fn build(points: &[Xy], ids: &mut [u32], node: usize, boxes: &mut Vec<[Xy; 2]>) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for &id in ids.iter() {

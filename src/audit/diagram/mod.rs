@@ -42,8 +42,8 @@
 //! Let a point be on or inside of the sphere of a cell. Its lift is on or below the hyperplane of the cell.
 //! Outside of the cell, that hyperplane is below the function, which has the height of the lift at every
 //! given point. So the point is in the cell and on the sphere, hence at a corner; and since points are
-//! distinct, it is that vertex. So spheres are empty, each cell has all points of its sphere, and there are no other
-//! cells.
+//! distinct, it is that vertex. So spheres are empty, each cell has all points of its sphere, and
+//! there are no other cells.
 //!
 //! *Infinite cells.* Each facet of the boundary has one, with its neighbours across ridges. The order of
 //! cells is canonical, so no other diagram of the points passes.

@@ -17,8 +17,8 @@ use spmesh_model::cells4::Point4;
 /// are empty.
 ///
 /// A simplex `a`, `b`, `c`, `d`, `e` is positive if det(b - a, c - a, d - a, e - a) is. Ties are allowed:
-/// points may be on the spheres of simplices that do not have them. The proof is that of diagrams (see the
-/// module), where "strictly convex" becomes "convex".
+/// points may be on the spheres of simplices that do not have them. The proof is the proof for diagrams (see
+/// the module), where "strictly convex" becomes "convex".
 ///
 /// Domain: any points and simplices, however wrong. If all points lie in a hyperplane there are no simplices.
 ///

@@ -1,6 +1,6 @@
 //! The boundary of a whole tetrahedral mesh: one convex surface, once around.
 //!
-//! The open facets are what is left of the boundaries of all tetrahedra, so they form a closed surface: along
+//! The open facets are the sum of the boundaries of all tetrahedra, so they form a closed surface: along
 //! every edge as many facets go one way as the other. Let every edge belong to two facets, let none of them
 //! be concave; let a point `o` lie strictly inside of every facet's plane; and let a ray from `o` leave
 //! through one facet only.

@@ -121,7 +121,7 @@ fn check_stream(path: &Path) -> Result<()> {
 /// The form of a mesh in space at a path: given by its name, or the default.
 ///
 /// # Errors
-/// Usage, if the name asks for one that does not hold such a mesh.
+/// Usage, if the name implies a format that cannot hold the mesh.
 fn form(path: &Path, is_surface: bool) -> Result<Form> {
     match Format::from_path(path) {
         None => Ok(if is_surface { Form::Ply } else { Form::Vtu }),

@@ -15,7 +15,7 @@ use crate::error::Result;
 /// Memory: all results.
 ///
 /// # Errors
-/// The error of the first item that has one, in the order of the items, whatever the number of threads.
+/// The error of the first item that fails, in the order of the items, whatever the number of threads.
 ///
 /// # Panics
 /// If `work` panics.

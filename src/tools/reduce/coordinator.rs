@@ -6,7 +6,7 @@
 //! until it is written, or until it has passed its points up. A node under way needs no further input, so it
 //! always comes to an end, and no two threads wait for each other.
 //!
-//! The threads, the reader and the buffer pools are those of [`spmesh_core::parallel`]. The coordinator is
+//! The threads, the reader and the buffer pools come from [`spmesh_core::parallel`]. The coordinator does
 //! not, because no shape there fits: results make new jobs, jobs have two priorities, and a third thread
 //! reports what is written.
 

@@ -1,5 +1,5 @@
-//! Points that are not finalized yet, with walls around the holes: what a node triangulates, and what it
-//! passes up.
+//! Points that are not finalized yet, with walls around the holes: the input of a node, and its output for
+//! the node above.
 
 use spmesh_model::bounds::Point;
 

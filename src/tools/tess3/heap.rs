@@ -14,8 +14,8 @@ thread_local! {
 /// The system's allocator, with counts per thread. A program that reports these counts installs it as its
 /// global allocator.
 ///
-/// A sweep works on several files at a time, and the system knows the memory of the whole process only; the
-/// heap of each thread tells how much each file took.
+/// A sweep works on several files at a time. The system reports the memory of the whole process only; the
+/// heap of each thread is the memory that each file took.
 #[derive(Debug)]
 pub struct CountingHeap;
 
