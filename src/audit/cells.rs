@@ -1,7 +1,7 @@
 //! The part of space that is tagged final, as intervals of the deepest cells in Morton order.
 //!
-//! The arithmetic is its own: a point is located by halving the cube. Every border is exact, because the tree
-//! admits no others.
+//! The audit locates points with arithmetic of its own, by halving the cube. Every border is exact, because
+//! the tree admits no others.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -29,7 +29,8 @@ impl CodeSet {
         self.ends.insert(start, end);
     }
 
-    /// Whether all of `codes` are held. Intervals that touch are merged, so that one must hold them.
+    /// Whether the set holds all of `codes`. Intervals that touch are merged, so one interval must hold them
+    /// all.
     pub(super) fn covers(&self, codes: Range<u64>) -> bool {
         self.ends.range(..=codes.start).next_back().is_some_and(|(_, &end)| end >= codes.end)
     }

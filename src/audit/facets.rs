@@ -16,8 +16,7 @@ pub(super) enum Meeting<T> {
     Twice(T),
 }
 
-/// Facets of `N` corners between their simplex and that of their twin, each with data of its simplex: at
-/// least the apex.
+/// Open facets of `N` corners, whose twin has not come yet, each with data of its simplex: at least the apex.
 ///
 /// Memory: the boundary of the simplices seen so far, which is the front of the stream and the hull.
 #[derive(Debug)]
@@ -38,8 +37,8 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         OpenFacets { open: HashMap::default() }
     }
 
-    /// Adds a facet. Its twin has the opposite order: an edge the other direction, a triangle that is
-    /// counterclockwise seen from outside of one tetrahedron the same seen from outside of the other.
+    /// Adds a facet. Its twin has the opposite order: an edge runs in the other direction; a triangle is
+    /// counterclockwise seen from outside of its own tetrahedron, which is on the other side.
     pub(super) fn meet(&mut self, facet: [u64; N], simplex: T) -> Meeting<T> {
         let (sorted, is_increasing) = increasing(facet);
         match self.open.entry(sorted) {
@@ -66,7 +65,7 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         }
     }
 
-    /// The open facets in the order that their simplices have them, with what is known of these, in no order.
+    /// The open facets, in no order: the corners in the order of the simplex, and the data of the simplex.
     pub(super) fn iter(&self) -> impl Iterator<Item = ([u64; N], T)> + '_ {
         self.open.iter().map(|(&sorted, side)| {
             let mut facet = sorted;
@@ -77,7 +76,7 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         })
     }
 
-    /// The open facet with the smallest ids, in the order that its simplex has them.
+    /// The open facet with the smallest ids, with its corners in the order of its simplex.
     pub(super) fn first(&self) -> Option<[u64; N]> {
         self.iter().map(|(facet, _)| facet).min_by_key(|&facet| increasing(facet).0)
     }

@@ -6,8 +6,8 @@ use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
 
-/// Counts of a stream, gathered event by event. It also verifies a rule for which the reader of the container
-/// has no memory: nothing comes again after its finalization.
+/// Counts of a stream, gathered event by event. It also verifies a rule that the reader of the container does
+/// not check, because that takes memory: nothing comes again after its finalization.
 #[derive(Debug, Default)]
 pub struct Inventory {
     live: LiveVertices<()>,

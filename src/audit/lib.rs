@@ -27,11 +27,13 @@
 //! that branches at a vertex, or has a second sheet there, is refused at that vertex instead of at the end.
 //!
 //! *Directed edges are unique*, because two triangles to the left of one edge would overlap. An edge that is
-//! used again while it is open is reported at once, one that is used again later by its consequences.
+//! used again while it is open is reported at once; an edge that is used again later is found by its
+//! consequences.
 //!
-//! So the mesh is a triangulation of its vertices. Every interior edge is locally Delaunay, hence by
-//! Delaunay's lemma the whole is; with the perturbed lifts the same lemma shows that it is the canonical one,
-//! of which there is one only. Euler's relation follows too, and is checked as a test of the audit itself.
+//! So the mesh is a triangulation of its vertices. Every interior edge is locally Delaunay, so by Delaunay's
+//! lemma the whole triangulation is Delaunay. With the perturbed lifts the same lemma shows that it is the
+//! canonical triangulation, which is unique. Euler's relation follows too, and is checked as a test of the
+//! audit itself.
 
 mod cells;
 mod check;
@@ -77,7 +79,7 @@ use spmesh_core::error::Error;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind};
 
-/// Audit of one stream of two or three dimensions: pass it every event, then get the report. Those of four
+/// Audit of one stream of two or three dimensions: pass it every event, then get the report. Streams of four
 /// dimensions have [`diagram::StreamAudit`], configurations [`configurations::StreamAudit`].
 ///
 /// Domain: the events must come from a [`spmesh_stream::StreamReader`], which has checked the form of each

@@ -75,8 +75,8 @@ impl MeshAudit {
     }
 }
 
-/// An inner vertex has no open edge and its triangles go around it once; a vertex of the hull has one open
-/// edge in and one out.
+/// Checks a finalized vertex: an inner vertex has no open edge and its triangles go around it once; a vertex
+/// of the hull has one open edge in and one out.
 fn finalize(
     vertex: &Vertex<Fans>,
     hull: &mut Hull,

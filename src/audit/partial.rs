@@ -41,7 +41,7 @@ pub(super) trait FinalSimplices<const D: usize> {
 
     fn facets_mut(&mut self) -> &mut OpenFacets<D, Corner<D>>;
 
-    /// From the order that a wall has its corners in to that of its simplex, and back.
+    /// Converts the corners of a facet between the order of a wall and the order of its simplex.
     fn turned(facet: [u64; D]) -> [u64; D];
 }
 
@@ -141,7 +141,7 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
         Err(Violation::new(Check::Region, message).with(id, at))
     }
 
-    /// The residual points with an id are the live vertices, each once and where the vertex is.
+    /// Checks that the residual points with an id are the live vertices, each once and where the vertex is.
     fn check_written(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let fail = |message: String| Violation::new(Check::Residual, message);
         let mut seen: HashSet<u64, RandomState> = HashSet::default();
@@ -168,7 +168,7 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
         }
     }
 
-    /// No two residual points are at one place; elevation does not count.
+    /// Checks that no two residual points are at one place; elevation does not count.
     fn check_distinct(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let place =
             |at: Point| -> [f64; 3] { std::array::from_fn(|axis| if axis < D { at[axis] } else { 0.0 }) };
@@ -187,8 +187,8 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
         }
     }
 
-    /// Every wall is an open facet, and every open facet has a wall: a final simplex lies on the same side of
-    /// both.
+    /// Checks that every wall is an open facet and every open facet has a wall, with the final simplex on the
+    /// same side of both.
     fn check_walls(&mut self, ledger: &mut Ledger) -> Result<(), Violation> {
         let [simplex, facet] = S::NAMES;
         for wall in self.walls.chunks_exact(D) {

@@ -14,7 +14,7 @@ use spmesh_stream::Patch;
 /// A vertex of a triangle.
 pub(super) type Corner = corner::Corner<2>;
 
-/// Directed edges between their triangle and that of their twin, with the third corner of their triangle.
+/// Directed edges whose twin has not come yet, with the third corner of their triangle.
 pub(super) type OpenEdges = OpenFacets<2, Corner>;
 
 /// The standard for the edges of a triangulation.
@@ -22,14 +22,15 @@ pub(super) type OpenEdges = OpenFacets<2, Corner>;
 pub enum Standard {
     /// Interior edges are locally Delaunay.
     Delaunay,
-    /// They are, and ties are resolved canonically, so that the triangulation is unique.
+    /// Interior edges are locally Delaunay, and ties are resolved canonically, so that the triangulation is
+    /// unique.
     Canonical,
 }
 
 /// The triangles around a vertex.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Fans {
-    /// Number of open edges that start at the vertex, and of those that end there.
+    /// Numbers of open edges that start at the vertex, and that end there.
     pub(super) leaving: u32,
     pub(super) entering: u32,
     /// Whether a triangle has the vertex.

@@ -9,7 +9,7 @@ use super::exact::space::{are_collinear, orientation};
 
 /// Vertices that were finalized without a simplex.
 ///
-/// Memory: that of these vertices. If there are simplices, the first such vertex is a violation.
+/// Memory: these vertices. If there are simplices, the first such vertex is a violation.
 #[derive(Debug, Default)]
 pub(super) struct Unused<const D: usize> {
     corners: Vec<Corner<D>>,
@@ -25,7 +25,7 @@ impl<const D: usize> Unused<D> {
         self.corners.len() as u64
     }
 
-    /// Proves that there are none, as it must be beside any `simplex`.
+    /// Proves that there are none. A mesh with a `simplex` may have none.
     pub(super) fn check_none(&self, simplex: &str) -> Result<(), Violation> {
         let Some(corner) = self.corners.first() else { return Ok(()) };
         let message = format!("no {simplex} uses vertex {}", corner.id);

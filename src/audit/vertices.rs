@@ -8,7 +8,7 @@ use super::check::{Check, Ledger, Violation};
 use spmesh_model::bounds::Point;
 use spmesh_stream::Patch;
 
-/// A vertex with what is known of its star, the simplices that have it.
+/// A vertex with data about its star, the simplices that have it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Vertex<S> {
     pub(super) id: u64,
@@ -16,7 +16,7 @@ pub(super) struct Vertex<S> {
     pub(super) star: S,
 }
 
-/// Live vertices, and those of the patch at hand in the order of their local indices.
+/// Live vertices, and the vertices of the current patch in the order of their local indices.
 ///
 /// Memory: the width of the stream.
 #[derive(Debug, Default)]

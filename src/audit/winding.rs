@@ -6,18 +6,18 @@
 //! circle or sphere: the link is one cycle or one sphere, wound once. (Two fans that close at one vertex
 //! count two, and so does a fan that goes around twice before it closes.)
 //!
-//! A vertex on the boundary of a mesh that is right has no simplex in some directions, and one in all others.
+//! A vertex on the boundary of a correct mesh has no simplex in some directions, and one in all others.
 //!
-//! The direction is that of an axis, infinitesimally off towards the next ones: no facet contains it, and
-//! which facets face it are comparisons in the plane and signs of projected triangles in space. From a corner
-//! of a simplex the direction leads into the simplex if all facets at this corner face away from it, hence
-//! the one opposite faces it. So a simplex counts for one corner at most.
+//! The direction is that of an axis, infinitesimally off towards the next ones, so that no facet contains it.
+//! Comparisons in the plane, and signs of projected triangles in space, decide which facets face it. From a
+//! corner of a simplex the direction leads into the simplex if all facets at this corner face away from it,
+//! hence the one opposite faces it. So a simplex counts for one corner at most.
 
 use super::check::{Check, Violation};
 use super::vertices::Vertex;
 
-/// How many simplices a vertex has ahead, in the direction, and behind, in the opposite one; 65,535 means
-/// that many or more.
+/// How many simplices a vertex has ahead, which means in the direction, and behind, in the opposite
+/// direction; 65,535 means that many or more.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Winding {
     ahead: u16,
@@ -35,7 +35,7 @@ pub(super) enum Place {
 /// opposite to each corner whether its outer side faces the direction.
 pub(super) fn corner_of<const N: usize>(is_facing: [bool; N]) -> Option<(usize, Place)> {
     let facing = is_facing.iter().rev().fold(0u32, |bits, &is_facing| bits << 1 | u32::from(is_facing));
-    // Which one it is is unpredictable, so no branch depends on it.
+    // Which case it is is unpredictable, so no branch depends on it.
     let is_ahead = facing.is_power_of_two();
     let odd = if is_ahead { facing } else { facing ^ ((1 << N) - 1) };
     let place = if is_ahead { Place::Ahead } else { Place::Behind };

@@ -38,7 +38,8 @@ pub(super) struct CellFlags {
 }
 
 impl CellFlags {
-    /// The cells of what is covered if nothing is said: `window` is asked for it only then.
+    /// The grid that the flags ask for. `window` returns the extent of the data; it is called only if no flag
+    /// states the extent.
     pub(super) fn grid(&self, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {
         match (&self.like, self.window()?) {
             (Some(like), _) => Grid::of_file(like),
@@ -47,7 +48,7 @@ impl CellFlags {
         }
     }
 
-    /// How large cells are.
+    /// The size of the cells.
     fn cells(&self) -> Cells {
         match (self.step, self.columns, self.rows) {
             (Some(step), ..) => Cells::Step { step, anchor: self.align.unwrap_or([0.0; 2]) },
@@ -57,7 +58,7 @@ impl CellFlags {
         }
     }
 
-    /// What the raster covers, if that is said.
+    /// The window of `--bounds`, if it is given.
     fn window(&self) -> Result<Option<Window>> {
         self.bounds.map(window_of).transpose()
     }
@@ -96,10 +97,10 @@ impl RasterFlags {
         Ok(RasterOptions { format, no_data, has_overviews: cog, temp_dir })
     }
 
-    /// That nothing is said about a raster where there is none.
+    /// Checks that no flag for rasters is given when the output is not a raster.
     ///
     /// # Errors
-    /// Usage, if something is.
+    /// Usage, if `--cog` or `--no-data` is given.
     pub(super) fn check_unused(&self) -> Result<()> {
         if self.cog || self.no_data.is_some() {
             return Err(Error::usage(

@@ -69,9 +69,8 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 /// Delaunay configurations of any degree, and their generalisation.
 ///
 /// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point
-/// streams) or a triangle mesh stream, and writes the configurations of all degrees up to one, which
-/// bivariate splines are defined by. The result is exact, whatever lies on one circle, on one line or in one
-/// place.
+/// streams) or a triangle mesh stream, and writes the configurations of all degrees up to --degree, which
+/// define bivariate splines. The result is exact, even if points are cocircular, collinear or coincident.
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = format!("{EXAMPLES}{NOTES}"))]
 pub struct Flags {
@@ -113,8 +112,8 @@ pub struct Flags {
     #[arg(long, value_name = "KNOTS")]
     pull_apart: Option<Places>,
 
-    /// Make box splines where knots are on the integer grid, or on --patches: zp, and how squares and links
-    /// are split: :falling for the other diagonal of squares, :upright for that of links
+    /// Make box splines where knots are on the integer grid, or on --patches: zp, optionally with :falling
+    /// for the other diagonal of squares and :upright for the other diagonal of links
     #[arg(long = "box", value_name = "zp[:falling][:upright]", conflicts_with = "features")]
     boxes: Option<BoxName>,
 

@@ -50,8 +50,8 @@ pub struct Flags {
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// All coordinates are multiples of Q, like 0.1: compute with the integer multiples, and write these. The
-    /// coordinates themselves are rounded to f64, so that points of a grid would not be cospherical
+    /// All coordinates are multiples of Q, like 0.1: compute with the integer multiples, and write these.
+    /// Otherwise coordinates are rounded to f64, so that points of a grid are not exactly cospherical
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 
@@ -67,7 +67,7 @@ pub struct Flags {
     #[command(flatten)]
     common: Common,
 
-    // Last, as their headings would hold for flags that come after them.
+    // Last, because their headings would apply to all flags after them.
     #[command(flatten)]
     source: SourceFlags,
 

@@ -131,10 +131,10 @@ pub fn parse_size(text: &str) -> Result<u64, String> {
     if (1.0..9e18).contains(&bytes) { Ok(bytes as u64) } else { Err(format!("{text:?} is out of range")) }
 }
 
-/// `N` numbers between commas.
+/// Parses `N` numbers, separated by commas.
 ///
 /// # Errors
-/// If there are others, or something else.
+/// If the number of fields is not `N`, or a field is not a number.
 pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     let numbers = numbers.map_err(|_| format!("{text:?} are not {N} numbers between commas"))?;
@@ -142,8 +142,8 @@ pub fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     numbers.try_into().map_err(|_| format!("found {found} numbers, expected {N} between commas"))
 }
 
-/// A box of space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or one of the plane, MINX,MINY,MAXX,MAXY, which is
-/// infinitely high.
+/// Parses a box in space, MINX,MINY,MINZ,MAXX,MAXY,MAXZ, or in the plane, MINX,MINY,MAXX,MAXY; a box in the
+/// plane is infinitely high.
 ///
 /// # Errors
 /// If the text is anything else.

@@ -59,7 +59,7 @@ impl Progress {
         Progress { bar, json, unit }
     }
 
-    /// Shows that the pass `name` is going on, of which no more is known.
+    /// Shows that the pass `name` is running, without a count.
     #[must_use]
     pub fn waiting(common: &Common, name: &str) -> Self {
         let progress = Self::counting("points", common, name, None);

@@ -1,5 +1,4 @@
-//! What the streaming triangulators have in common, in the plane and in space: flags, runs, and what they
-//! say.
+//! The common part of the streaming triangulators in the plane and in space: flags, runs and messages.
 
 mod report;
 
@@ -18,7 +17,7 @@ use spmesh_model::bounds::Region;
 use spmesh_reduce::{Duplicates, Options, Part, Stats};
 use spmesh_stream::StreamReader;
 
-/// The flags of both.
+/// The flags of both triangulators.
 #[derive(Debug, Args)]
 pub(super) struct Shared<const D: usize> {
     /// Stream of points, or with --merge partial meshes; - is stdin
@@ -57,40 +56,40 @@ pub(super) struct Shared<const D: usize> {
     common: Common,
 }
 
-/// What a region is given by, in the plane and in space.
+/// The value name of `--region`, in the plane and in space.
 const REGION: [&str; 2] = ["MINX,MINY,MAXX,MAXY", "MINX,MINY,MINZ,MAXX,MAXY,MAXZ"];
 
-/// What a cell is given by, in the plane and in space.
+/// The value name of `--cell`, in the plane and in space.
 const CELL: [&str; 2] = ["LEVEL/COLUMN/ROW", "LEVEL/COLUMN/ROW/LAYER"];
 
-/// The name for so many dimensions.
+/// The value name for a number of dimensions.
 const fn names(both: [&'static str; 2], dimensions: usize) -> &'static str {
     if dimensions == 2 { both[0] } else { both[1] }
 }
 
-/// A stream that is read.
+/// The reader of an input stream.
 type Reader = StreamReader<Box<dyn Read + Send>>;
 
-/// What is told how much is done.
+/// Receives the number of points done.
 type Done<'d> = dyn FnMut(u64) + 'd;
 
-/// What was written, and what is to be said of it.
+/// The output, to be committed, and the counts of the run.
 type Ran = Result<(Output, Stats), Error>;
 
-/// Makes a mesh of points.
+/// Triangulates points.
 type Reduce<const D: usize> = fn(Reader, Output, &Options<D>, &mut Done) -> Ran;
 
-/// Makes a mesh of partial ones.
+/// Merges partial meshes.
 type Merge<const D: usize> = fn(Vec<Reader>, Output, Option<Part<D>>, &mut Done) -> Ran;
 
 /// A program of D dimensions.
 pub(super) struct Tool<const D: usize> {
     pub(super) name: &'static str,
-    /// What it does, for the progress.
+    /// The name of the pass in the progress display.
     pub(super) verb: &'static str,
-    /// What simplices are called.
+    /// The name of the simplices in messages.
     pub(super) simplices: &'static str,
-    /// Why there may be none: too few points, or all of them in less than D dimensions.
+    /// Reasons for a mesh without simplices: too few points, or all points in fewer than D dimensions.
     pub(super) reasons: [&'static str; 2],
     pub(super) reduce: Reduce<D>,
     pub(super) merge: Merge<D>,
@@ -144,7 +143,7 @@ impl<const D: usize> Tool<D> {
         Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
     }
 
-    /// Says what may surprise.
+    /// Prints notices about results that may surprise.
     fn tell(&self, flags: &Shared<D>, stats: &Stats, is_partial: bool) {
         let say = |message: String| notice(self.name, &flags.common, &message);
         if stats.simplices == 0 && !is_partial {
@@ -160,7 +159,7 @@ impl<const D: usize> Tool<D> {
 }
 
 impl<const D: usize> Shared<D> {
-    /// The part that a run is about, or the region of what is merged.
+    /// The part of a partial run, or the region of a merge.
     fn part(&self) -> Result<Option<Part<D>>, Error> {
         let part = self.cell.or(self.region.map(Part::Region));
         match (self.partial, part) {
@@ -182,7 +181,7 @@ pub(super) fn open_stream(path: &Path) -> Result<Reader, Error> {
     StreamReader::new(input, name)
 }
 
-/// The D least coordinates and the D greatest ones.
+/// Parses the D least coordinates, then the D greatest.
 fn parse_region<const D: usize>(text: &str) -> Result<Region<D>, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     let sides = numbers.ok().filter(|numbers| numbers.len() == 2 * D);
@@ -199,7 +198,7 @@ fn parse_region<const D: usize>(text: &str) -> Result<Region<D>, String> {
     }
 }
 
-/// A level and D places.
+/// Parses a level and D indices.
 fn parse_cell<const D: usize>(text: &str) -> Result<Part<D>, String> {
     let parse = || {
         let (level, places) = text.split_once('/')?;

@@ -14,7 +14,7 @@ pub(super) fn seconds(rows: impl IntoIterator<Item = Row<Duration>>) -> Vec<Row<
     rows.into_iter().map(|(label, key, time)| (label, key, time.as_secs_f64())).collect()
 }
 
-/// Says how long a run took, and counts.
+/// Prints the time of a run and its counts.
 pub(super) fn print(format: StatsFormat, time: Duration, counts: impl IntoIterator<Item = Row<u64>>) {
     let times = seconds([("time (s)", "seconds", time)]);
     match format {
@@ -35,7 +35,7 @@ pub(super) fn lines(times: &[Row<f64>], counts: impl IntoIterator<Item = Row<u64
     text
 }
 
-/// The same for programs.
+/// Entries of a JSON object: times, then counts.
 pub(super) fn entries(times: &[Row<f64>], counts: impl IntoIterator<Item = Row<u64>>) -> Map<String, Value> {
     let times = times.iter().map(|&(_, key, seconds)| (key.to_string(), seconds.into()));
     times.chain(counts.into_iter().map(|(_, key, count)| (key.to_string(), count.into()))).collect()

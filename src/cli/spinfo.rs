@@ -55,8 +55,8 @@ pub struct Flags {
     /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation. Triangle and
     /// tetrahedral meshes are proved as they pass, holding only the live vertices and the boundary of the
     /// mesh so far. Cells and simplices of four dimensions and configurations are held whole. In four
-    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and simplices of it
-    /// may be any
+    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and its simplices
+    /// may resolve ties in any way
     #[arg(
         long,
         value_enum,
@@ -144,17 +144,17 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
-/// What is to be found out about the promises of a stream.
+/// The proof that the flags ask for.
 enum Proof {
-    /// Nothing.
+    /// None.
     None,
-    /// Whether all are kept.
+    /// That a mesh or a stream of points keeps all its promises.
     Audit(Box<Audit>),
-    /// Whether cells or simplices of four dimensions are what they claim to be.
+    /// That cells or simplices of four dimensions are what they claim to be.
     Diagram(Box<StreamAudit>),
-    /// Whether configurations are what they claim to be.
+    /// That configurations are what they claim to be.
     Configurations(Box<config_audit::StreamAudit>),
-    /// How often they are not.
+    /// A count of the violations in a tetrahedral mesh.
     Census(Box<Census>, Standard),
 }
 
@@ -189,7 +189,7 @@ impl Proof {
         }
     }
 
-    /// What is said when all was read; an audit of fewer than four dimensions has spoken before.
+    /// The violation that is found at the end of the stream. [`Proof::Audit`] fails earlier, at the event.
     fn verdict(&mut self) -> Option<Error> {
         match self {
             Proof::Diagram(audit) => {

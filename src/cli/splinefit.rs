@@ -48,7 +48,7 @@ reproduce polynomials of degree k. Outside of the domain nothing is evaluated: s
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 \
 malformed or truncated input, 5 not enough memory, 141 output closed by its reader.";
 
-/// The message after the number of bytes of a failed allocation.
+/// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";
 
 /// Bivariate splines fitted to scattered points.
@@ -93,7 +93,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }?)
 }
 
-/// How many threads evaluate.
+/// The flag for the number of threads that evaluate.
 #[derive(Debug, Clone, Args)]
 struct Threads {
     /// Threads that evaluate functions [default: one per core, at most 8]; results do not depend on them
@@ -107,7 +107,7 @@ impl Threads {
     }
 }
 
-/// Refuses two inputs from stdin; inputs have names for messages.
+/// Refuses two inputs from stdin. Each input comes with its name in messages.
 fn check_stdin<'a>(inputs: impl IntoIterator<Item = (&'a str, &'a Path)>) -> Result<()> {
     let mut of_stdin = inputs.into_iter().filter(|(_, path)| path.as_os_str() == "-");
     match (of_stdin.next(), of_stdin.next()) {

@@ -203,7 +203,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     Ok(Finished { stats, failure: None })
 }
 
-/// Refuses what would need several outputs.
+/// Refuses runs that need several outputs.
 fn check_models(structure: &Structure, options: &Options, flags: &Flags) -> Result<()> {
     let models = structure.models.len();
     if options.product == Product::Mesh && flags.selection.wants_all_models() && models > 1 {
@@ -277,7 +277,7 @@ impl Flags {
         })
     }
 
-    /// What decides on the content of the outputs.
+    /// The options that determine the content of the outputs, as text.
     fn options_text(&self) -> String {
         let mut text = self.selection.to_string();
         if let Some(radius) = &self.alpha {

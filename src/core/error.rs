@@ -122,5 +122,5 @@ impl fmt::Display for Error {
     }
 }
 
-/// Without a source: the message includes the cause, which would be printed twice.
+/// `source` stays `None`: the message includes the cause, which would otherwise be printed twice.
 impl std::error::Error for Error {}

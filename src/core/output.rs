@@ -19,8 +19,7 @@ const BUFFER_LEN: usize = 1 << 18;
 /// Permissions of a new file, narrowed by the umask of the process.
 const FILE_MODE: u32 = 0o666;
 
-/// Bytes after which the system starts to write a file to the disk, so that the commit waits for few bytes
-/// only.
+/// Write-back to the disk starts after every so many bytes, so that the commit waits for few bytes only.
 const WRITE_BACK_LEN: u64 = 8 << 20;
 
 /// Prefix of the name of an incomplete file, if it needs a name.
@@ -66,7 +65,7 @@ impl Output {
                     "refusing to write binary data to a terminal: redirect it, pipe it, or use --output",
                 ));
             }
-            // Not through `Stdout`, whose line buffering would search binary data for line ends.
+            // Bypasses `Stdout`, whose line buffering would search binary data for line ends.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
             return Ok(Output { name: "stdout".into(), sink, written: 0, write_back_end: 0 });
@@ -172,7 +171,7 @@ fn folder_of(path: &Path) -> &Path {
 fn open_unnamed(folder: &Path) -> Option<File> {
     let flags = OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC;
     let file = File::from(rustix::fs::open(folder, flags, Mode::from_raw_mode(FILE_MODE)).ok()?);
-    // The file gets its name through /proc, which may not be mounted: better to know before the work.
+    // The file gets its name through /proc: check that it is mounted before the work begins.
     descriptor_path(&file).exists().then_some(file)
 }
 
@@ -186,8 +185,8 @@ fn descriptor_path(file: &File) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", file.as_raw_fd()))
 }
 
-/// Links the unnamed file to its name. A link cannot replace an existing file: then the file is linked to a
-/// temporary name, which is renamed.
+/// Links the unnamed file to its name. A link cannot replace an existing file; if there is one, the file is
+/// linked to a temporary name, which is then renamed.
 fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
     file.sync_all()?;

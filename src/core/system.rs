@@ -32,7 +32,7 @@ pub fn widen_pipe(_file: &impl AsFd) {}
 const LARGE_BLOCK: libc::c_int = 1 << 18;
 
 /// From now on, large blocks of memory go back to the system when they are freed. By default, glibc raises
-/// its threshold with the first large blocks that are freed, and then keeps such blocks, for each thread.
+/// its threshold when the first large blocks are freed, and then keeps blocks of that size for each thread.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn give_back_large_blocks() {
     // SAFETY: the call takes integers and only changes where later blocks lie.
@@ -63,7 +63,7 @@ extern "C" fn exit_with_message(_signal: libc::c_int) {
     unsafe { libc::_exit(code.into()) };
 }
 
-/// Starts to write `len` bytes of a file from `offset` on to the disk, without waiting for the end of it.
+/// Starts to write `len` bytes of a file from `offset` on to the disk, and does not wait for completion.
 #[cfg(target_os = "linux")]
 pub(crate) fn start_write_back(file: &impl AsFd, offset: u64, len: u64) {
     let (Ok(offset), Ok(len)) = (offset.try_into(), len.try_into()) else { return };
@@ -93,7 +93,7 @@ pub fn is_in_memory(folder: &Path) -> bool {
     rustix::fs::statfs(folder).is_ok_and(|found| matches!(found.f_type as u32, TMPFS | RAMFS))
 }
 
-/// `false`: this system is not asked.
+/// `false`: not determined on this system.
 #[cfg(not(target_os = "linux"))]
 #[must_use]
 pub fn is_in_memory(_folder: &Path) -> bool {

@@ -35,9 +35,9 @@ pub(super) struct Pixels {
 /// Samples of the pixels of a rectangle. They are values, not colours, because the length of a stream and its
 /// range of elevations may be known only at its end.
 ///
-/// A sample has the value of the last triangle there; with depths, that of the nearest one. Two triangles
-/// with a common edge compute from the same numbers where it crosses a row of samples, so no sample between
-/// them is left out.
+/// A sample has the value of the last triangle there; with depths, the value of the nearest triangle. Two
+/// triangles with a common edge compute from the same numbers where it crosses a row of samples, so no sample
+/// between them is left out.
 ///
 /// Memory: 52 bytes for each pixel, 68 with depths.
 #[derive(Debug)]
@@ -210,8 +210,8 @@ fn among(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
     first(low)..first(high)
 }
 
-/// Where a row enters and leaves a triangle. An edge includes its lower end only, so a row crosses no edge or
-/// two.
+/// Where a row enters and leaves a triangle. An edge includes its lower end only, so a row crosses either two
+/// edges or none.
 fn crossing([a, b, c]: [[f64; 3]; 3], y: f64) -> Option<[f64; 2]> {
     let mut found = [0.0; 2];
     let mut count = 0;

@@ -24,7 +24,7 @@ type Times = [u64; 2];
 
 /// The cells that points lie in, at a level where cells are still visible.
 ///
-/// Memory: proportional to the number of cells in the picture, and that of [`FinalizedCells`].
+/// Memory: proportional to the number of cells in the picture, plus the memory of [`FinalizedCells`].
 #[derive(Debug)]
 pub(super) struct Cells {
     tree: CellTree,
@@ -106,8 +106,8 @@ impl Cells {
         Ok(())
     }
 
-    /// All cells. The middle of a cell has the colour of its first point. The border of a final cell has that
-    /// of its last point; that of an open cell is not filled.
+    /// All cells. The middle of a cell has the colour of its first point. The border of a final cell has the
+    /// colour of its last point; the border of an open cell is not filled.
     pub(super) fn vectors(&self, scene: &Scene, colours: &Colours) -> String {
         let colour = |time: u64| hex(colours.of(time as f64, 1.0));
         let mut text = "<g id=\"cells\" stroke=\"#fff\" stroke-width=\"0.5\">\n".to_string();

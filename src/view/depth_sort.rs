@@ -39,7 +39,7 @@ impl PartialEq for Ready {
 
 impl Eq for Ready {}
 
-/// The numbers of triangles, each after those that it may hide.
+/// The indices of triangles in drawing order: each comes after all triangles that it may hide.
 ///
 /// Of two triangles with a common edge, the one behind that edge comes first. In a Delaunay triangulation,
 /// this relation has no cycles (Edelsbrunner, "An acyclicity theorem for cell complexes in d dimensions",

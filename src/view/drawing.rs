@@ -1,4 +1,4 @@
-//! From a stream to pictures: of its end, or of moments before.
+//! From a stream to pictures of its end or of earlier moments.
 
 use std::io::Read;
 
@@ -38,14 +38,14 @@ const FINAL: Mark = Mark {
 };
 const OPEN: Mark = Mark { shape: Shape::Area, colour: [255; 3], words: "open cell" };
 
-/// Takes a picture that is complete.
+/// Receives a complete picture.
 pub type Take<'a> = dyn FnMut(&Picture) -> Result<()> + 'a;
 
 /// Draws a stream and calls `take` with the pictures of `moments`; without [`Moments::at`], the last one
 /// shows the end. Calls `progress` with the number of points or vertices read. Reads the stream to its end in
 /// any case.
 ///
-/// Memory: that of [`super`].
+/// Memory: see [`super`].
 ///
 /// # Errors
 /// Usage, if the stream cannot be drawn in the plane, or lacks what the options ask for; if it is malformed
@@ -241,7 +241,7 @@ impl<'a> Drawing<'a> {
         Ok(Picture { svg: scene.sheet.svg(&map, &furniture), title, frame })
     }
 
-    /// Whether an oblique view is of all kept triangles, so that it needs room for nothing else.
+    /// Whether the picture is an oblique view of the kept triangles alone, so that it can be fitted to them.
     fn is_tight(&self) -> bool {
         self.options.oblique && self.moments == Moments::default() && !self.triangles.kept.is_empty()
     }

@@ -21,7 +21,7 @@ pub enum Fill {
 /// Whether something is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// If single ones can be told apart.
+    /// If single items can be told apart.
     Auto,
     /// In any case.
     Always,
@@ -62,9 +62,9 @@ pub struct Options {
     pub extent: Option<Bounds>,
     /// Seen obliquely, with elevations, rather than from above.
     pub oblique: bool,
-    /// Light of hillshades.
+    /// Whether the view is oblique, with elevations, rather than from above.
     pub light: Light,
-    /// The range of elevations that the colours span; that of the stream if `None`.
+    /// The range of elevations that the colours span; the range of the stream if `None`.
     pub range: Option<[f64; 2]>,
     /// The elevation at which the two halves of a diverging colour map meet.
     pub middle: Option<f64>,

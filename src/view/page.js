@@ -3,17 +3,19 @@
 
 const LEAST_ZOOM = 2 ** -2;
 const ZOOM_STEP = 2;
-// Of the picture's width and height: how far an arrow moves, and how much of the map stays in sight.
+// As parts of the picture's width and height: how far an arrow key moves, and how much of the map stays in
+// sight.
 const MOVE_STEP = 1 / 8;
 const IN_SIGHT = 1 / 4;
 const WHEEL_PIXELS_TO_DOUBLE = 300;
 const PINCH_PIXELS_TO_DOUBLE = 60;
-// Pixels of a line and of a page of the wheel, which some mice count in.
+// Some mice report wheel steps in lines or pages: pixels per unit of each mode.
 const WHEEL_PIXELS = [1, 16, 400];
-// A map of more paths than this takes longer to draw than a frame lasts. Units: characters.
+// Drawing a map with longer paths takes more than a frame. Units: characters.
 const LIGHT_PATHS = 100_000;
 const PATH_CHARACTERS = 50;
-// It is drawn again when it has rested for so long, or has been moved by half of the picture or zoomed by two.
+// A heavy map is drawn again after resting this long, moving by half the picture, or zooming by a factor of
+// two.
 const REST_MILLISECONDS = 100;
 const STEP_MILLISECONDS = 160;
 // Browsers refuse an address that changes with every frame.
@@ -24,7 +26,7 @@ const stage = document.querySelector('.page-stage');
 const svg = stage.querySelector('svg');
 const map = svg.querySelector('#map');
 const { width, height } = svg.viewBox.baseVal;
-// A picture that is not seen from above has no world coordinates: its own take their place, and are not shown.
+// An oblique view has no world coordinates: picture coordinates replace them, and are not shown.
 const isPlan = stage.dataset.unit !== undefined;
 const [left, top, unit] = isPlan ? ['left', 'top', 'unit'].map((name) => Number(stage.dataset[name])) : [0, 0, 1];
 const shown = Object.fromEntries([...document.querySelectorAll('[data-show]')].map((part) => [part.dataset.show, part]));
@@ -34,12 +36,12 @@ const furniture = arranged();
 const drawScaleBar = scaleBar();
 
 let view = HOME;
-// Where a step that is under way ends: the next one starts there.
+// The view that the step under way ends at; the next step starts there.
 let goal = HOME;
-// The view that paths are drawn for, and the one that they have been brought to since.
+// The view that the paths were drawn for, and the view that they have been moved to since.
 let drawn = HOME;
 let seen = null;
-// From the window to the picture; asked only when sizes change, because the answer can cost a layout.
+// From the window to the picture. Measured only when sizes change, because measuring can force a layout.
 let placement = { a: 1, d: 1, e: 0, f: 0 };
 // Where the mouse is, in units of the picture.
 let pointer = null;
@@ -54,8 +56,8 @@ function clamp(value, least, greatest) {
   return Math.min(Math.max(value, least), greatest);
 }
 
-// Browsers draw in single precision, of 24 bits: up to this zoom corners are off by a quarter of a unit. And a unit is
-// still many steps of a double of the largest coordinate.
+// Browsers draw in single precision, of 24 bits: up to this zoom, corners are off by at most a quarter of a
+// unit. At this zoom, a unit still spans many steps of a double at the largest coordinate.
 function greatestZoom() {
   const size = Math.max(width, height);
   const farthest = Math.max(Math.abs(left), Math.abs(top), unit * size);
@@ -77,7 +79,7 @@ function moved({ zoom, x, y }, right, down) {
   return kept({ zoom, x: x + right, y: y + down });
 }
 
-// Between two views, around the one place that is drawn at the same place in both.
+// A view between two views. The zoom centre is the one place that both draw at the same place.
 function between(from, to, part) {
   const zoom = from.zoom * (to.zoom / from.zoom) ** part;
   const share = from.zoom === to.zoom ? part : (zoom - from.zoom) / (to.zoom - from.zoom);
@@ -105,12 +107,12 @@ function pixelSize() {
   return (unit / view.zoom) * placement.a;
 }
 
-// As many digits as tell two steps apart, and no more than a double has.
+// As many digits as tell places a step apart from each other, and at most as many as a double has.
 function coordinateText(value, step) {
   const decimals = Math.max(0, Math.ceil(-Math.log10(step)));
   const leading = Math.floor(Math.log10(Math.abs(value) || step));
   if (decimals > 9 || leading >= 15) {
-    // A plus sign would be a blank in an address.
+    // In an address, a plus sign would mean a space.
     return value.toExponential(clamp(leading + decimals, 0, 15)).replace('+', '');
   }
   const text = value.toFixed(Math.min(decimals, 15 - Math.max(leading, 0)));
@@ -135,7 +137,8 @@ function lengthText(length) {
   return length < 1e8 ? String(Number(length.toPrecision(3))) : length.toExponential(0).replace('+', '');
 }
 
-// The bar of the picture, drawn again at most as long, for any zoom.
+// Returns a function that redraws the scale bar of the picture for the current zoom, at most as long as at
+// first.
 function scaleBar() {
   const bar = furniture.querySelector('#scale path');
   const text = furniture.querySelector('#scale text');
@@ -186,7 +189,7 @@ function render() {
   map.setAttribute('transform', `matrix(${view.zoom} 0 0 ${view.zoom} ${view.x} ${view.y})`);
 }
 
-// From where the paths are drawn to where they should be.
+// The transform from the view that the paths are drawn for to the current view.
 function slip() {
   const scale = view.zoom / drawn.zoom;
   return { scale, x: view.x - scale * drawn.x, y: view.y - scale * drawn.y };
@@ -197,7 +200,7 @@ function isNearDrawn() {
   return scale > 1 / 2 && scale < 2 && Math.abs(x) < width / 2 && Math.abs(y) < height / 2;
 }
 
-// Moves what is drawn, as a whole, which costs little.
+// Moves the drawn map as a whole, which costs little.
 function slide() {
   const { scale, x, y } = slip();
   svg.style.transform = `matrix(${scale}, 0, 0, ${scale}, ${x / placement.a}, ${y / placement.d})`;
@@ -379,7 +382,7 @@ stage.addEventListener('wheel', (event) => {
 
 // Gives the furniture a layer of its own, above that of the map, and the sheet its shape.
 function arranged() {
-  // The stage says it to those who listen; browsers would show it wherever the mouse rests.
+  // The stage has the title for screen readers; browsers would show it wherever the mouse rests.
   svg.querySelector(':scope > title')?.remove();
   svg.removeAttribute('role');
   const above = svg.cloneNode(false);
@@ -403,5 +406,5 @@ measure();
 show(viewOfAddress());
 new ResizeObserver(measure).observe(stage);
 addEventListener('hashchange', () => show(viewOfAddress()));
-// Keys work at once; the outline appears with the first of them.
+// Keys work at once; the focus outline appears with the first key.
 stage.focus({ focusVisible: false });

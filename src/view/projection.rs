@@ -46,7 +46,7 @@ impl View {
         Ok((sheet, View::Plan(frame)))
     }
 
-    /// An oblique view of a box that has room for some points in it.
+    /// An oblique view of a box, with room for the given points in it.
     ///
     /// # Errors
     /// As [`Sheet::of`].
@@ -71,7 +71,7 @@ impl View {
         Ok((sheet, View::Oblique(oblique)))
     }
 
-    /// The place of a point on the sheet, and its depth, which only compares points.
+    /// The place of a point on the sheet, and its depth, which serves only to compare points.
     pub(super) fn place(&self, at: Point) -> [f64; 3] {
         match self {
             View::Plan(frame) => {

@@ -40,7 +40,7 @@ impl Scene {
         Scene::oblique_of(bounds, (0..8).map(corner), width)
     }
 
-    /// An oblique view of a box with room for some points in it.
+    /// An oblique view of a box, with room for the given points in it.
     ///
     /// # Errors
     /// Usage, if coordinates overflow.

@@ -25,7 +25,7 @@ fn times(digit: f64, power: i32) -> f64 {
 pub(super) fn ticks([low, high]: [f64; 2], count: usize) -> (Vec<f64>, f64) {
     let step = round_above((high - low) / (count as f64 + 0.5));
     let [first, last] = [(low / step).ceil(), (high / step).floor()];
-    // Only the ends, where rounding swallows the step or no multiple lies between them.
+    // Return only the ends if rounding swallows the step or no multiple lies between them.
     let is_fine = step.is_normal() && last >= first && last - first <= 2.0 * count as f64 && low + step > low;
     if !is_fine {
         return (if low < high { vec![low, high] } else { vec![low] }, high - low);

@@ -13,7 +13,7 @@ pub struct Configurations {
     claim: Claim,
     /// Interior sets, one after the other.
     interiors: Vec<u32>,
-    /// For each group, the number of boundaries up to its last.
+    /// For each group, the number of boundaries up to and including its last.
     ends: Vec<u32>,
     boundaries: Vec<[u32; 3]>,
     infinite: usize,
@@ -23,7 +23,7 @@ pub struct Configurations {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group<'a> {
     pub(super) interior: &'a [u32],
-    /// Finite and infinite ones.
+    /// Boundaries of finite and of infinite configurations.
     pub(super) boundaries: &'a [[u32; 3]],
 }
 

@@ -72,8 +72,8 @@ fn is_inside(knots: &Knots, [a, b, c]: [u32; 3], d: u32) -> bool {
     sign == Ordering::Greater
 }
 
-/// Positions with a number for e: one that exceeds no coefficient of a determinant of these points, which is
-/// less than 2^(4 bits + 16) with ranks counted.
+/// Positions scaled to integers, with e = 2^-shift: 1 / e exceeds all coefficients of a determinant of these
+/// points, which are less than 2^(4 bits + 16) with ranks counted.
 pub(super) fn moved<const N: usize>(knots: &Knots, ids: [u32; N]) -> [[BigInt; 2]; N] {
     let points = integers(ids.map(|id| knots.points()[id as usize]));
     let bits = points.as_flattened().iter().map(BigInt::bits).max().unwrap_or(0).max(64);

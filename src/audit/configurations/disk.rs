@@ -11,7 +11,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The inside of a circle: where `slope y - curve y²` is positive, with `y = x - origin`.
 ///
-/// Of a circle through knots at one place, which are moved symbolically, this is the term of lowest order.
+/// For a circle through knots at one place, which are moved symbolically, these are the terms of lowest
+/// order.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Disk {
     origin: Xy,
@@ -33,7 +34,7 @@ impl Disk {
         let to = |i: usize| [0, 1].map(|axis| at[turned(i)][axis] - origin[axis]);
         let is_same = |i: usize| at[turned(i)] == origin;
         let (p, q) = (if is_same(1) { moved(1) } else { to(1) }, if is_same(2) { moved(2) } else { to(2) });
-        // Squares of lengths, of the order of the term.
+        // Squares of lengths; zero for symbolic moves, whose squares are of higher order.
         let (k, l) = (if is_same(1) { 0.0 } else { square(p) }, if is_same(2) { 0.0 } else { square(q) });
         let slope = [q[1] * k - p[1] * l, p[0] * l - q[0] * k];
         let curve = p[0] * q[1] - p[1] * q[0];

@@ -14,8 +14,9 @@ pub struct FacetCounts {
     pub both_upper: usize,
 }
 
-/// The facets (F, J) of degree k + 1 that configurations of degrees k and k + 1 have, one row each: J sorted,
-/// F sorted, and whether it is from the higher degree and runs from the lesser to the greater end.
+/// The facets (F, J) of degree k + 1 that configurations of degrees k and k + 1 have. Each is one row: J
+/// sorted, F sorted, whether the facet is from the higher degree, and whether it runs from the lesser to the
+/// greater end.
 struct Rows {
     width: usize,
     words: Vec<u32>,
@@ -47,10 +48,10 @@ pub fn check_facets(lower: &Configurations, upper: &Configurations) -> Result<Fa
     rows.count()
 }
 
-/// Checks the same of degree 0 alone: every edge has a triangle on each side.
+/// Checks the facets of degree 0 alone: every edge has a triangle on each side.
 ///
 /// # Errors
-/// Another degree; the first edge that violates it (kind [`ErrorKind::Audit`]).
+/// If the degree is not 0; the first edge that violates it (kind [`ErrorKind::Audit`]).
 pub fn check_start(start: &Configurations) -> Result<FacetCounts> {
     if start.degree() != 0 {
         return Err(Error::usage(format!("degree {} is not that of a triangulation", start.degree())));

@@ -69,8 +69,8 @@ impl Knots {
 
 /// The rank of each knot, or nothing if all places are different.
 ///
-/// Sorted by place, then by id, the knots at one place are a run, in which each has as many lesser ids before
-/// it as its rank says. The order of places is that of numbers, for which -0 and 0 are the same.
+/// When sorted by place, then by id, the knots at one place are a run. The rank of a knot is the number of
+/// knots before it in its run. Places are ordered as numbers, for which -0 and 0 are equal.
 fn ranks(points: &[Xy]) -> Vec<u32> {
     let place_order = |a: u32, b: u32| lexicographic(points[a as usize], points[b as usize]);
     let mut ids: Vec<u32> = (0..points.len() as u32).collect();

@@ -1,10 +1,10 @@
 //! Checks of configurations, with knots, ranks and arrays of their own: none of the code that makes
 //! configurations is used.
 //!
-//! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word: what splines need, by
-//! whatever rule the configurations were made. [`check_circles`] is the definition of Delaunay
-//! configurations, [`check_centroids`] what makes centroid triangulations planar. [`StreamAudit`] checks all
-//! of them for a stream.
+//! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word. Splines need exactly
+//! that, whatever the rule of the configurations. [`check_circles`] is the definition of Delaunay
+//! configurations. [`check_centroids`] proves that centroid triangulations are planar. [`StreamAudit`] checks
+//! all of them for a stream.
 
 mod arrays;
 mod circles;

@@ -1,12 +1,12 @@
 //! Checks that centroid triangulations are planar.
 //!
 //! The centroid triangulation of order k + 1 has the (k + 1)-sets as vertices, at their centroids. A
-//! configuration (B, I) of degree k is the triangle of the sets I + b, one of degree k - 1 that of the sets
-//! I + B - b; both are homothetic to B. An edge is a facet (F, J): it joins J with either knot of F. So
-//! triangles are counterclockwise if boundaries are; and if facets match ([`super::check_facets`]), then
-//! every edge has a triangle on each side, but for those that an infinite configuration of degree k has. If
-//! these make one convex polygon that goes around once, the triangles tile it: the argument is that of
-//! [`crate`].
+//! configuration (B, I) of degree k is the triangle of the sets I + b; a configuration of degree k - 1 is the
+//! triangle of the sets I + B - b. Both are homothetic to B. An edge is a facet (F, J): it joins J with
+//! either knot of F. So triangles are counterclockwise if boundaries are. If facets match
+//! ([`super::check_facets`]), then every edge has a triangle on each side, except the edges of infinite
+//! configurations of degree k. If these edges make one convex polygon that goes around once, the triangles
+//! tile it, by the argument of [`crate`].
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -33,9 +33,10 @@ impl BorderEdge<'_> {
     }
 }
 
-/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order
-/// k + 1 is a convex polygon; edges may be in line. With matching facets, and the same of degree k - 1, that
-/// triangulation is planar. Copies of a knot count as the limit that [`Knots`] has.
+/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order k
+/// + 1 is a convex polygon; edges may be in line. If facets match and the boundaries of degree k - 1 are
+/// counterclockwise too, that triangulation is planar. Copies of a knot count as the limit that [`Knots`]
+/// defines.
 ///
 /// Cost: an orientation per configuration, big integers for each infinite one.
 ///
@@ -70,8 +71,8 @@ fn border<'a>(knots: &Knots, configurations: &'a Configurations) -> Result<Vec<B
     Ok(edges)
 }
 
-/// That the edges are those of one polygon that turns left by less than half a turn at each vertex, and once
-/// in all.
+/// Checks that the edges are one polygon that turns left by less than half a turn at each vertex, and once
+/// around in all.
 fn check_convex(knots: &Knots, edges: &[BorderEdge]) -> Result<()> {
     let fail = |what: String| Err(Error::new(ErrorKind::Audit, what));
     let mut starts: HashMap<Vec<u32>, usize> = HashMap::new();
@@ -101,7 +102,8 @@ fn check_convex(knots: &Knots, edges: &[BorderEdge]) -> Result<()> {
     Ok(())
 }
 
-/// Signs of cross product and scalar product of two edges, and the half of the turn that either points to.
+/// Signs of the cross product and the scalar product of two edges, and for each edge the half of all
+/// directions that it is in.
 fn corner(knots: &Knots, edges: [&BorderEdge; 2]) -> [Ordering; 4] {
     let points = moved(knots, [edges[0].from, edges[0].to, edges[1].from, edges[1].to]);
     let zero = BigInt::ZERO;

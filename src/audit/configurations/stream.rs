@@ -42,12 +42,13 @@ pub struct DegreeProof {
     pub finite: usize,
     /// Configurations of two knots and the faraway point.
     pub infinite: usize,
-    /// Circles have their interior sets inside and nothing else: of what claims to be Delaunay.
+    /// Whether circles were checked: only configurations that claim to be Delaunay have only their interior
+    /// sets inside.
     pub has_circles: bool,
-    /// Facets match and the centroid triangulation is planar: of degree 0, and where the degree below is in
-    /// the stream.
+    /// Counts of facets, which match, so that the centroid triangulation is planar; `None` unless the degree
+    /// is 0 or the degree below is in the stream.
     pub facets: Option<FacetCounts>,
-    /// There are as many as theory has it: where all degrees below are in the stream.
+    /// Whether their number was checked against theory, which takes all degrees below in the stream.
     pub is_counted: bool,
 }
 
@@ -134,9 +135,9 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
     Ok(proof)
 }
 
-/// That there are 2 (k + 1) n - (k + 1) (k + 2) - e configurations of degree k, where e is the number of
-/// infinite ones of degrees up to k. It follows from Euler's relation of all centroid triangulations,
-/// whatever the rule (D. T. Lee's count of Voronoi vertices of order k is the Delaunay case).
+/// Checks that there are 2 (k + 1) n - (k + 1) (k + 2) - e configurations of degree k, where e is the number
+/// of infinite configurations of degrees up to k. It follows from Euler's relation of all centroid
+/// triangulations, whatever the rule (D. T. Lee's count of Voronoi vertices of order k is the Delaunay case).
 fn check_count(knots: &Knots, configurations: &Configurations, lines: usize) -> Result<()> {
     let (next, count) = (configurations.degree() as i128 + 1, configurations.finite_len() as i128);
     let expected = 2 * next * knots.len() as i128 - next * (next + 1) - lines as i128;

@@ -6,10 +6,11 @@ use crate::exact::plane::Xy;
 /// Most points of a box without boxes inside.
 const LEAF: usize = 16;
 
-/// A balanced tree: each box has the points of a range, and the boxes of either half of it inside.
+/// A balanced tree of boxes. Each box is the bounding box of a range of points; its two children have the
+/// halves of the range.
 pub(super) struct Tree {
     ids: Vec<u32>,
-    /// Box `i` contains those of 2 i + 1 and 2 i + 2; from least to greatest coordinates.
+    /// Least and greatest coordinates of each box. Box `i` has the children 2 i + 1 and 2 i + 2.
     boxes: Vec<[Xy; 2]>,
 }
 
@@ -21,7 +22,7 @@ impl Tree {
         Tree { ids, boxes }
     }
 
-    /// Calls `take` with all points that a disk may contain, and others, until it returns false.
+    /// Calls `take` with all points that a disk may contain, and possibly others, until it returns false.
     pub(super) fn for_each_in(&self, disk: &Disk, mut take: impl FnMut(u32) -> bool) {
         let mut waiting = vec![(0, 0..self.ids.len())];
         while let Some((node, range)) = waiting.pop() {
@@ -38,8 +39,7 @@ impl Tree {
     }
 }
 
-/// Sorts ids until the two halves of each range are on either side of the middle of the longer side of its
-/// box.
+/// Sorts ids so that each range is split at its median along the longer side of its box, and finds the boxes.
 fn build(points: &[Xy], ids: &mut [u32], node: usize, boxes: &mut Vec<[Xy; 2]>) {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for &id in ids.iter() {

@@ -81,8 +81,8 @@ impl<'a> CellsAudit<'a> {
         self.proof
     }
 
-    /// The vertices are on one sphere, and those of the neighbours of greater numbers outside: one of each is
-    /// enough.
+    /// Checks that the vertices are on one sphere, and that neighbours with greater numbers lie outside; one
+    /// vertex of each neighbour is enough.
     fn check_sphere(&mut self, number: usize, cell: Cell4) -> Result<(), Violation> {
         let mut asked = cell.vertices.to_vec();
         let later = cell.neighbours.iter().map(|&neighbour| neighbour as usize);
@@ -119,7 +119,7 @@ impl<'a> CellsAudit<'a> {
         }
     }
 
-    /// What the cell shares with a neighbour is a facet of both, and they lie on opposite sides of it.
+    /// Checks that the cell and a neighbour share a facet of both, and lie on opposite sides of it.
     fn check_facet(&mut self, number: usize, beyond: usize) -> Result<(), Violation> {
         let (cell, other) = (self.cells.get(number), self.cells.get(beyond));
         let mut asked: Vec<u32> = common(cell.vertices, other.vertices).collect();
@@ -165,7 +165,8 @@ impl<'a> CellsAudit<'a> {
         Err(self.violation(claim, message, &[number, beyond]))
     }
 
-    /// The facets close up. Counts ridges and edges, unless a neighbour of less number has done so.
+    /// Checks that the facets close up. Counts ridges and edges, except those that a neighbour with a lower
+    /// number has counted.
     fn check_faces(&mut self, number: usize, cell: Cell4) -> Result<(), Violation> {
         self.faces.facets.clear();
         for &beyond in cell.neighbours {
@@ -189,7 +190,8 @@ impl<'a> CellsAudit<'a> {
         Ok(())
     }
 
-    /// The neighbours of the infinite cell at this facet of the current cell are those across its ridges.
+    /// Checks that the neighbours of the infinite cell at a facet of the current cell are those across the
+    /// ridges of the facet.
     fn check_boundary(&self, facet: usize, beyond: usize) -> Result<(), Violation> {
         let cell = self.cells.get(beyond);
         let (finite, around) = (self.cells.get(cell.neighbours[0] as usize), &cell.neighbours[1..]);

@@ -8,8 +8,8 @@ use spmesh_model::cells4::Point4;
 /// A point `o` inside of a cell, and the cells that do not contain it.
 ///
 /// It is a vertex of the cell moved towards four others, infinitely less towards each than towards the one
-/// before. So it is in no hyperplane through given points, and its side is that of the first of the five that
-/// is not in the hyperplane either.
+/// before. So it is in no hyperplane through given points, and lies on the side of the first of these five
+/// vertices that is not in the hyperplane.
 ///
 /// Memory: a byte per cell.
 #[derive(Debug, Default)]
@@ -35,7 +35,7 @@ impl Covering {
         Ok(Covering { five: [vertices[0], b, c, d, e], is_outside: vec![false; cells] })
     }
 
-    /// Without cells all points lie in a hyperplane.
+    /// Checks that all points lie in a hyperplane, as they must if there are no cells.
     pub(super) fn check_flat(sites: &mut Sites, points: &[Point4]) -> Result<(), Violation> {
         let all: Vec<u32> = (0..).take(points.len()).collect();
         let Some(four) = sites.ask(&all, &Independent) else { return Ok(()) };
@@ -49,8 +49,8 @@ impl Covering {
         self.five
     }
 
-    /// Records the side of `o` at a facet between two cells. No facet of the boundary may have it
-    /// beyond.
+    /// Records on which side of a facet `o` lies. At a facet of the boundary, it must be the side of the
+    /// cell.
     pub(super) fn pass(
         &mut self,
         near: usize,
@@ -72,7 +72,7 @@ impl Covering {
         Err(violation.at(points, facet).at(points, &self.five))
     }
 
-    /// Exactly one cell contains `o`.
+    /// Checks that exactly one cell contains `o`.
     pub(super) fn check<'a>(
         &self,
         points: &[Point4],

@@ -71,7 +71,7 @@ struct Meetings {
 impl Meetings {
     /// Finds the pairs that share at least `least` numbers. All numbers are below `end`.
     ///
-    /// Cost: per number in a set, the sets that it is in.
+    /// Cost: for each number in a set, the number of sets that contain it.
     fn find(&mut self, sets: &Lists, end: usize, least: u32) {
         self.pairs.clear();
         self.common.clear();
@@ -117,12 +117,13 @@ pub(super) struct Faces {
 impl Faces {
     /// Proves that the facets are all facets of the cell, provided that each is a facet.
     ///
-    /// A ridge is what two facets share, unless that is less than three vertices. It is a polygon, and has as
-    /// many edges as vertices. If each of them is shared with another ridge of the facet, then the ridges of
-    /// the facet are complete, because they are connected through edges; and if all ridges of all facets are
-    /// shared with another facet, then the facets are complete, because they are connected through ridges.
+    /// Two facets share a ridge if they have at least three vertices in common. A ridge is a polygon, and has
+    /// as many edges as vertices. If each of its edges is shared with another ridge of the facet, then the
+    /// ridges of the facet are complete, because they are connected through edges. If all ridges of all
+    /// facets are shared with another facet, then the facets are complete, because they are connected through
+    /// ridges.
     ///
-    /// Calls `edge` for each edge with the three facets it was found in, maybe more than once.
+    /// Calls `edge` for each edge with the three facets that it was found in, possibly more than once.
     pub(super) fn check(
         &mut self,
         vertices: usize,

@@ -64,12 +64,13 @@ pub(super) fn check_cells(points: &[Point4], cells: &Cells4) -> Result<usize, Vi
     Ok(finite)
 }
 
-/// Finite cells first, then by vertices; no two are the same.
+/// Whether a cell follows the previous one: finite cells come first, then vertices decide, and no two cells
+/// are equal.
 fn is_in_order(previous: Cell4, cell: Cell4) -> bool {
     (previous.is_infinite, previous.vertices) < (cell.is_infinite, cell.vertices)
 }
 
-/// Numbers are in range, increasing, and as many as any cell has.
+/// Checks that numbers are in range and increasing, and at least as many as any cell has.
 fn check_lists(cell: Cell4, points: usize, cells: usize) -> Result<(), String> {
     check_list("vertices", cell.vertices, points, if cell.is_infinite { 4 } else { 5 })?;
     check_list("neighbours", cell.neighbours, cells, 5)

@@ -5,45 +5,48 @@
 //! is a face of two dimensions.
 //!
 //! *The facets of a cell are known.* What a cell shares with a neighbour spans a hyperplane, and all other
-//! vertices of the cell are strictly on one side: so it is a facet, with all its corners. All facets are
-//! there: two facets of a polytope share a ridge exactly if they share three vertices, since no three points
-//! of a sphere are on a line; a ridge of k vertices has k edges; so if k different edges of each ridge are
-//! shared with other ridges of a facet, the ridges found are closed under adjacency in the border of the
-//! facet, which is connected, and are all that the facet has. Then the facets found are closed under
-//! adjacency in the border of the cell, and are all that it has.
+//! vertices of the cell are strictly on one side: so it is a facet, with all its corners. No facet is
+//! missing. Two facets of a polytope share a ridge exactly if they share three vertices, since no three
+//! points of a sphere are on a line, and a ridge of k vertices has k edges. So if k different edges of each
+//! ridge are shared with other ridges of a facet, the ridges found are closed under adjacency in the border
+//! of the facet. That border is connected, so they are all ridges of the facet. Then the facets found are
+//! closed under adjacency in the border of the cell, and are all facets of the cell.
 //!
 //! *The cells cover a star.* Every facet belongs to two cells on opposite sides of it that name each other,
 //! or to one cell and an infinite one, and then it is on the *boundary*. Let `o` be a point in no hyperplane
 //! of a facet, strictly inside of the hyperplane of every facet of the boundary, and inside of one cell only.
 //! Along a ray from `o` that meets no ridge, as almost all do, the number of cells around is 1 at first and 0
 //! far away. It does not change at facets between two cells, and decreases by one at facets of the boundary,
-//! which it crosses outwards only. So it crosses one of them, and the number is 1 before and 0 after: no two
-//! cells overlap, and the cells cover a solid that is a star around `o`. In particular no facet belongs to a
-//! third cell, and near a point inside of a ridge of the boundary are exactly two facets of the boundary,
-//! because these cover the directions from `o` once.
+//! which the ray crosses outwards only. So the ray crosses one of them, and the number is 1 before and 0
+//! after: no two cells overlap, and the cells cover a solid that is a star around `o`. In particular no facet
+//! belongs to a third cell, and near a point inside of a ridge of the boundary are exactly two facets of the
+//! boundary, because these cover the directions from `o` once.
 //!
-//! *The star is convex.* An infinite cell has one neighbour for each ridge of its facet, with which it shares
-//! exactly that: these are the two. No vertex of a neighbour lies beyond the hyperplane of the facet. If the
-//! solid were not convex, a segment between two of its inner points would leave it, also after any small
-//! change of these points, and the plane through them and `o` would avoid all edges of the boundary. It cuts
-//! a polygon from the solid that is a star around `o`, so simple, and whose corners are in ridges of the
-//! boundary. None is concave; but a simple polygon without a concave corner is convex. So the cells tile the
-//! convex hull of the points, all of which are vertices.
+//! *The star is convex.* An infinite cell has one neighbour for each ridge of its facet, and shares exactly
+//! that ridge with it: their two facets are the two at the ridge. No vertex of a neighbour lies beyond the
+//! hyperplane of the facet. If the solid were not convex, a segment between two of its inner points would
+//! leave it, also after any small change of these points, and the plane through them and `o` would avoid all
+//! edges of the boundary. The plane cuts a polygon from the solid that is a star around `o`, so simple, and
+//! whose corners are in ridges of the boundary. None of the corners is concave; but a simple polygon without
+//! a concave corner is convex. So the cells tile the convex hull of the points, all of which are vertices.
 //!
 //! *It is the Delaunay diagram.* Lift the points to the paraboloid. The lifts of the vertices of a cell are
 //! in a hyperplane, which is the graph of a function on the cell. Cells that share a facet agree there, so
-//! all of these make one function on the hull: two cells at any point are linked by a path near it that
-//! crosses facets only. At a facet between two cells the function is strictly convex, because vertices of one
-//! cell that are not on the facet are outside of the sphere of the other. (One vertex is enough: the
-//! difference of the two powers is linear, and zero on the facet.) So it is convex along almost all segments,
-//! hence everywhere, and its graph is the lower hull of the lifts; and the cells are where it is linear. A
-//! point on or inside of the sphere of a cell has its lift on or below the hyperplane of the cell, which is
-//! below the function outside of the cell, and the function has the lift's height at all points. So it is in
-//! the cell and on the sphere, hence at a corner, and points are distinct: it is that vertex. So spheres are
-//! empty, each cell has all points of its sphere, and there are no other cells.
+//! the functions of all cells make one function on the hull: two cells at any point are linked by a path near
+//! it that crosses facets only. At a facet between two cells the function is strictly convex, because
+//! vertices of one cell that are not on the facet are outside of the sphere of the other. (One vertex is
+//! enough: the difference of the two powers is linear, and zero on the facet.) So the function is convex
+//! along almost all segments, hence everywhere. Its graph is the lower hull of the lifts, and the cells are
+//! where it is linear.
 //!
-//! *Infinite cells* are one for each facet of the boundary of each cell, with their neighbours across ridges.
-//! Hence the order of cells being canonical, no other diagram of the points passes.
+//! Let a point be on or inside of the sphere of a cell. Its lift is on or below the hyperplane of the cell.
+//! Outside of the cell, that hyperplane is below the function, which has the height of the lift at every
+//! given point. So the point is in the cell and on the sphere, hence at a corner; and since points are
+//! distinct, it is that vertex. So spheres are empty, each cell has all points of its sphere, and
+//! there are no other cells.
+//!
+//! *Infinite cells.* Each facet of the boundary has one, with its neighbours across ridges. The order of
+//! cells is canonical, so no other diagram of the points passes.
 //!
 //! Euler's relation follows. It is checked as a test of the audit itself.
 

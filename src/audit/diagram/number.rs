@@ -43,9 +43,9 @@ exact!(BigInt, BigInt::ZERO);
 /// A number with an error bound: the true value differs from `value` by at most `error`.
 ///
 /// One rounding errs by at most 2^-53 times the rounded result, and a product that underflows by at most
-/// 2^-1075 on top. The bounds are rounded themselves, in at most six operations: [`GROWTH`] makes up for
-/// that, and [`TINY`], which is part of every error, for all underflow. After an overflow, the error is
-/// infinite or NaN, and the sign is unknown.
+/// 2^-1075 on top. The bounds are rounded themselves, in at most six operations, which [`GROWTH`] covers.
+/// [`TINY`] is part of every error and covers all underflow. After an overflow, the error is infinite or NaN,
+/// and the sign is unknown.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ball {
     value: f64,
@@ -110,8 +110,8 @@ mod tests {
         assert_eq!(TINY, 2f64.powi(-1000));
     }
 
-    /// The same expression of random numbers of all sizes, in integers: the ball holds it, and is not much
-    /// too large.
+    /// Evaluates the same expression of random numbers of all sizes in integers: the ball holds the value,
+    /// and is not much too large.
     #[test]
     fn balls_hold_the_true_value() {
         let mut state = 7_u64;

@@ -1,5 +1,5 @@
-//! Simplicial complexes that claim to be Delaunay: the same proof, with ties between cospherical points as
-//! they are.
+//! Simplicial complexes that claim to be Delaunay: the same proof, but ties between cospherical points may be
+//! resolved in any way.
 
 use std::cmp::Ordering;
 
@@ -17,8 +17,8 @@ use spmesh_model::cells4::Point4;
 /// are empty.
 ///
 /// A simplex `a`, `b`, `c`, `d`, `e` is positive if det(b - a, c - a, d - a, e - a) is. Ties are allowed:
-/// points may be on the spheres of simplices that do not have them. The proof is that of diagrams (see the
-/// module), where "strictly convex" becomes "convex".
+/// points may be on the spheres of simplices that do not have them. The proof is the proof for diagrams (see
+/// the module), where "strictly convex" becomes "convex".
 ///
 /// Domain: any points and simplices, however wrong. If all points lie in a hyperplane there are no simplices.
 ///
@@ -116,7 +116,8 @@ impl SimplicesAudit<'_> {
         Ok(())
     }
 
-    /// Every facet belongs to two simplices and is locally Delaunay, or is on the boundary, which is convex.
+    /// Checks that every facet belongs to two simplices and is locally Delaunay, or is on the boundary.
+    /// Checks that the boundary is convex.
     fn check_facets(&mut self) -> Result<FacetCounts, Violation> {
         let mut sides: Vec<Side> = Vec::with_capacity(5 * self.simplices.len());
         for (number, simplex) in (0..).zip(self.simplices) {
@@ -174,7 +175,7 @@ impl SimplicesAudit<'_> {
         }
     }
 
-    /// Every ridge of the boundary is between two facets of it, and not concave.
+    /// Checks that every ridge of the boundary is between two facets of it, and not concave.
     fn check_boundary(&mut self, boundary: &[Side]) -> Result<(), Violation> {
         let mut ridges: Vec<([u32; 3], usize)> = Vec::with_capacity(4 * boundary.len());
         for (i, ([p, q, r, s], _)) in boundary.iter().enumerate() {

@@ -10,7 +10,7 @@ use spmesh_model::cells4::Point4;
 pub(super) trait Question {
     type Answer;
 
-    /// Whether no number in the answer has more than 127 bits.
+    /// Whether all numbers in the computation of the answer fit in 127 bits.
     fn fits(&self, extent: Extent) -> bool;
 
     /// Number of vectors that [`Extent::first`] covers.

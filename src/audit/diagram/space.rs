@@ -22,8 +22,9 @@ pub(super) enum Roundness {
     Flat,
     /// This vertex of the cell is not on the sphere of the others.
     Off(usize),
-    /// The cell is round. What is there for the other point that is furthest inside: `Greater` if all are
-    /// strictly outside, `Equal` if this one is on the sphere, `Less` if it is inside.
+    /// The cell is round, with the orientation `turn`. `worst` is the other point that is furthest inside,
+    /// and `others` says where it lies: `Greater` strictly outside, as all others then are, `Equal` on the
+    /// sphere, `Less` inside.
     Round { turn: Ordering, others: Ordering, worst: usize },
 }
 
@@ -100,16 +101,16 @@ pub(super) enum Separation {
     SameSide(usize),
     /// This vertex of a facet around is beyond.
     Concave(usize),
-    /// All vectors are on their sides. Whether the point moved from the first of the five towards the others
-    /// by infinitesimals lies on the side of the cell.
+    /// All vectors are on their sides. `is_near` tells whether the first of the five points, moved by
+    /// infinitesimals towards the others, lies on the side of the cell.
     Good { is_near: bool },
 }
 
 impl Question for Facet {
     type Answer = Separation;
 
-    /// The normal has at most 6 m^3 of the vectors in the facet, and its product with any other 24 m^3 n: for
-    /// m = 2^20 and n = 2^62 less than 2^127.
+    /// Let m bound the vectors in the facet, and n the others. The normal has components of at most 6 m^3,
+    /// and its product with another vector is at most 24 m^3 n: for m = 2^20 and n = 2^62 less than 2^127.
     fn fits(&self, extent: Extent) -> bool {
         extent.first <= 1 << 20 && extent.rest <= 1 << 62
     }
@@ -161,14 +162,14 @@ impl Question for Facet {
     }
 }
 
-/// Which of some points are five in general position, or how many dimensions they span. All are given
-/// relative to the first.
+/// Finds points in general position: the first point and four others, or `None` if all points are in a
+/// hyperplane. All are given relative to the first.
 pub(super) struct Independent;
 
 impl Question for Independent {
     type Answer = Option<[usize; 4]>;
 
-    /// A volume has at most 24 m^4.
+    /// A volume is at most 24 m^4.
     fn fits(&self, extent: Extent) -> bool {
         extent.first.max(extent.rest) <= 1 << 30
     }

@@ -93,7 +93,7 @@ impl Violation {
         self
     }
 
-    /// Adds those of the numbered points that there are.
+    /// Adds the points with these numbers; numbers out of range are left out.
     pub(super) fn at(mut self, points: &[Point4], numbers: &[u32]) -> Self {
         let known = numbers.iter().filter_map(|&number| Some((number, *points.get(number as usize)?)));
         self.vertices.extend(known);

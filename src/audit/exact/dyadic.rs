@@ -1,9 +1,9 @@
-//! Coordinates as integers: times a common power of two, all of them exactly.
+//! Coordinates as exact integers: all of them multiplied by a common power of two.
 
 use num_bigint::BigInt;
 
-/// The first points relative to the last, times a common power of two, where no such difference exceeds 2^61.
-/// The last point itself comes out as zero.
+/// The first points relative to the last, times a common power of two; `None` if a difference exceeds 2^61.
+/// The last point itself becomes zero.
 pub(super) fn small_differences<const N: usize, const D: usize>(
     points: [[f64; D]; N],
 ) -> Option<[[i64; D]; N]> {
@@ -21,14 +21,14 @@ pub(super) fn small_differences<const N: usize, const D: usize>(
     Some(differences)
 }
 
-/// The points themselves, where all coordinates are integers below 2^62.
+/// The points themselves; `None` unless all coordinates are integers below 2^62.
 fn whole<const N: usize, const D: usize>(points: &[[f64; D]; N]) -> Option<[[i128; D]; N]> {
     let is_whole = |value: f64| value.abs() < (1i64 << 62) as f64 && value as i64 as f64 == value;
     let all = points.as_flattened().iter().all(|&value| is_whole(value));
     all.then(|| points.map(|point| point.map(|value| i128::from(value as i64))))
 }
 
-/// The points times a power of two, where they are then below 2^124.
+/// The points times a power of two; `None` unless they are then below 2^124.
 fn scaled<const N: usize, const D: usize>(points: &[[f64; D]; N]) -> Option<[[i128; D]; N]> {
     let (dyadics, unit) = dyadics(points);
     let fits = |value: &Dyadic| value.mantissa == 0 || value.exponent - unit <= 70;

@@ -1,10 +1,10 @@
 //! The audit's own exact arithmetic: orientation, in-circle, in-sphere, and how the canonical triangulation
 //! breaks ties.
 //!
-//! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Else the
-//! coordinates are multiplied by a common power of two that makes them integers, and where their differences
-//! have at most 61 bits the determinants are evaluated in integers of fixed width. What is left goes to
-//! big integers.
+//! Three steps, each with its proof. A *filter* in f64 decides where its error bound allows. Otherwise the
+//! coordinates are multiplied by a common power of two that makes them integers. If their differences have at
+//! most 61 bits, the determinants are evaluated in integers of fixed width. All other cases go to big
+//! integers.
 
 pub(super) mod dyadic;
 pub(super) mod plane;
@@ -20,7 +20,7 @@ pub(super) struct Decided {
     pub(super) exactly: bool,
 }
 
-/// What the filter says, or what exact arithmetic says where it says nothing.
+/// The result of the filter, or of exact arithmetic if the filter leaves it open.
 fn decided(filtered: Option<Ordering>, exact: impl FnOnce() -> Ordering) -> Decided {
     match filtered {
         Some(sign) => Decided { sign, exactly: false },
@@ -31,8 +31,8 @@ fn decided(filtered: Option<Ordering>, exact: impl FnOnce() -> Ordering) -> Deci
 /// Half a unit in the last place of 1: the largest relative error of one rounding.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
-/// The sign of a determinant that errs by at most `error`, if that tells. Infinities and what is no number do
-/// not.
+/// The sign of a determinant with an error of at most `error`; `None` if the error leaves it open, or is
+/// infinite or NaN.
 fn decide(determinant: f64, error: f64) -> Option<Ordering> {
     if determinant > error {
         Some(Ordering::Greater)

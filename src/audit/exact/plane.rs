@@ -24,13 +24,13 @@ pub(crate) fn in_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Decided {
 }
 
 /// Whether `d`, which lies on the circle of the counterclockwise triangle `a`, `b`, `c`, counts as inside or
-/// outside after the symbolic perturbation: every lift x² + y² is raised by an infinitesimal, those of
-/// lexicographically larger points infinitely more. `Equal` if no perturbation separates them, which takes
-/// four points on a line.
+/// outside after the symbolic perturbation: every lift x² + y² is raised by an infinitesimal, and the lifts
+/// of lexicographically larger points by infinitely more. `Equal` if no perturbation separates them, which
+/// takes four points on a line.
 ///
 /// The in-circle determinant is linear in the lifts, so that the largest point whose coefficient is not zero
-/// decides: the coefficient of a vertex of the triangle is the orientation of the three other points with the
-/// vertex replaced by `d`; that of `d` is minus the orientation of the triangle.
+/// decides. The coefficient of a vertex of the triangle is the orientation of the three other points with the
+/// vertex replaced by `d`; the coefficient of `d` is minus the orientation of the triangle.
 pub(crate) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
     let mut by_rank = [(a, [d, b, c]), (b, [a, d, c]), (c, [a, b, d]), (d, [a, c, b])];
     by_rank.sort_by(|(p, _), (q, _)| lexicographic(*q, *p));

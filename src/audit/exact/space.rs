@@ -25,12 +25,13 @@ pub(crate) fn in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Decided {
 }
 
 /// Whether `e`, which lies on the sphere of the positive tetrahedron `a`, `b`, `c`, `d`, counts as inside or
-/// outside after the symbolic perturbation: every lift x² + y² + z² is raised by an infinitesimal, those of
-/// lexicographically larger points infinitely more.
+/// outside after the symbolic perturbation: every lift x² + y² + z² is raised by an infinitesimal, and the
+/// lifts of lexicographically larger points by infinitely more.
 ///
 /// The in-sphere determinant is linear in the lifts, so that the largest point whose coefficient is not zero
-/// decides: the coefficient of a vertex of the tetrahedron is the orientation of the tetrahedron with the
-/// vertex replaced by `e`; that of `e` is minus the orientation of the tetrahedron, which is not zero.
+/// decides. The coefficient of a vertex of the tetrahedron is the orientation of the tetrahedron with the
+/// vertex replaced by `e`; the coefficient of `e` is minus the orientation of the tetrahedron, which is not
+/// zero.
 pub(crate) fn in_raised_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> Ordering {
     let mut by_rank =
         [(a, [e, b, c, d]), (b, [a, e, c, d]), (c, [a, b, e, d]), (d, [a, b, c, e]), (e, [b, a, c, d])];
@@ -47,9 +48,8 @@ pub(crate) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).all(|sign| sign == Ordering::Equal)
 }
 
-/// Whether the triangle `a`, `b`, `c` faces the direction (1, e, e²) with the side that it is
-/// counterclockwise seen from, for any infinitesimal e: whether the first component of its normal that is not
-/// zero is positive.
+/// Whether the side from which the triangle `a`, `b`, `c` is counterclockwise faces the direction (1, e, e²)
+/// for any infinitesimal e: whether the first nonzero component of its normal is positive.
 pub(crate) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
     normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
 }
@@ -116,7 +116,7 @@ fn estimated_in_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz, e: Xyz) -> (f64, f64, f64
     let (ab, bc, cd, da) = (minor(a, b), minor(b, c), minor(c, d), minor(d, a));
     let (ac, bd) = (minor(a, c), minor(b, d));
     let [az, bz, cz, dz] = [a[2], b[2], c[2], d[2]];
-    // Three by three minors, those of bcd and so on, each times the lift of the fourth point.
+    // The 3 x 3 minors bcd, cda and so on, each of which is multiplied by the lift of the fourth point.
     let bcd = bz * cd.0 - cz * bd.0 + dz * bc.0;
     let cda = cz * da.0 + dz * ac.0 + az * cd.0;
     let dab = dz * ab.0 + az * bd.0 + bz * da.0;
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(orientation([0.0; 3], [1e300, 0.0, 0.0], [1e300, 1e300, 1e-300], up).sign, Ordering::Less);
     }
 
-    /// At the edge of what is evaluated in 128 bits, and right behind it.
+    /// At the limit of what is evaluated in 128 bits, and just beyond it.
     #[test]
     fn the_largest_integers_of_each_route_are_right() {
         for bits in [23, 24, 25, 39, 40, 41, 42, 52, 60] {
@@ -313,7 +313,7 @@ mod tests {
         );
     }
 
-    /// In place of the largest point any other may be taken; the others then decide.
+    /// The largest point decides, whichever argument it is. If its coefficient is zero, the next one decides.
     #[test]
     fn ties_are_broken_by_the_largest_point() {
         let [a, b, c, d, e] = CUBE;
@@ -325,7 +325,7 @@ mod tests {
         assert_eq!(in_raised_sphere(b, f, c, d, a), Ordering::Less);
     }
 
-    /// Facets that contain the direction of x, or those of x and y, are told apart by the next axis.
+    /// Facets that contain the direction of x, or the directions of x and y, are told apart by the next axis.
     #[test]
     fn facets_face_a_direction_near_the_first_axis() {
         let [o, x, y, z, _] = CUBE;

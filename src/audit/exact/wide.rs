@@ -66,7 +66,7 @@ impl Sub for Wide {
 impl Mul for Wide {
     type Output = Wide;
 
-    /// Modulo 2^320 the product of two's complements is that of the numbers.
+    /// Modulo 2^320, the product of the two's complements is the two's complement of the product.
     fn mul(self, other: Wide) -> Wide {
         let mut product = [0u64; LIMBS];
         for i in 0..LIMBS {

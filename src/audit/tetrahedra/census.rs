@@ -1,7 +1,7 @@
 //! Counts the faults of a tetrahedral mesh, by exact and by plain floating-point arithmetic.
 //!
-//! For meshes made in rounded arithmetic, which are known to have faults: how many, and would a check in
-//! rounded arithmetic have found them?
+//! It serves meshes made in rounded arithmetic, which are known to have faults: it tells how many there are,
+//! and whether a check in rounded arithmetic would have found them.
 
 use std::cmp::Ordering;
 

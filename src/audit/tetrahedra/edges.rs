@@ -44,7 +44,7 @@ impl OpenEdges {
         }
     }
 
-    /// Number of edges so far. One that tetrahedra went all around counts again if others come.
+    /// Number of edges so far. An edge that was dropped counts again if another tetrahedron has it.
     pub(super) fn seen(&self) -> u64 {
         self.seen
     }

@@ -6,9 +6,9 @@ use foldhash::fast::RandomState;
 
 /// Edges (`N` = 2) or facets (`N` = 3) that a later tetrahedron may have too, as increasing ids.
 ///
-/// Memory: up to twice as many as there have been between live vertices, and some thousand. Those of
-/// finalized vertices are swept out each time that the number has doubled, so that forgetting costs a
-/// constant per face.
+/// Memory: twice the maximal number of faces between live vertices, or some thousand faces if that is more.
+/// Faces of finalized vertices are swept out whenever the number of faces has doubled, so that a sweep costs
+/// constant time per face.
 #[derive(Debug, Default)]
 pub(super) struct SeenFaces<const N: usize> {
     faces: HashSet<[u64; N], RandomState>,
@@ -25,7 +25,7 @@ impl<const N: usize> SeenFaces<N> {
         self.seen += u64::from(self.faces.insert(face));
     }
 
-    /// Whether the face was added, and its vertices have been live since.
+    /// Whether the face was added. Reliable as long as its vertices are live.
     pub(super) fn contains(&self, face: [u64; N]) -> bool {
         self.faces.contains(&face)
     }

@@ -1,6 +1,6 @@
 //! The boundary of a whole tetrahedral mesh: one convex surface, once around.
 //!
-//! The open facets are what is left of the boundaries of all tetrahedra, so they form a closed surface: along
+//! The open facets are the sum of the boundaries of all tetrahedra, so they form a closed surface: along
 //! every edge as many facets go one way as the other. Let every edge belong to two facets, let none of them
 //! be concave; let a point `o` lie strictly inside of every facet's plane; and let a ray from `o` leave
 //! through one facet only.
@@ -19,8 +19,8 @@
 //!
 //! Conversely all of this holds of a convex solid, for any `o` inside. The audit takes a corner of a
 //! tetrahedron, moved into the tetrahedron by infinitesimals: towards its second corner, infinitely less
-//! towards the third, and less again towards the fourth. Then the side of `o` of a plane or line is that of
-//! the first of the four corners which is not on it, and no coordinates are computed.
+//! towards the third, and less again towards the fourth. Then `o` lies on the same side of a plane
+//! or line as the first of the four corners off it, and no coordinates are computed.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -122,7 +122,7 @@ enum Edge {
 }
 
 impl Edge {
-    /// Every edge belongs to two facets, and is convex or flat.
+    /// Checks that every edge belongs to two facets, and is convex or flat.
     fn check(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         match self {
             Edge::Torn { ends, facets } => {
@@ -184,7 +184,7 @@ impl Surface {
         Edge::Whole { ends, facet: self.facets[one].map(|i| self.corners[i]), opposite }
     }
 
-    /// The point `o` lies strictly inside of every facet's plane.
+    /// Checks that the point `o` lies strictly inside of every facet's plane.
     fn check_inside(&self, inside: &[Corner; 4], ledger: &mut Ledger) -> Result<(), Violation> {
         for facet in &self.facets {
             let [a, b, c] = facet.map(|i| self.corners[i]);
@@ -206,10 +206,10 @@ impl Surface {
         Ok(())
     }
 
-    /// The ray from `o` in the direction of x leaves through one facet.
+    /// Checks that the ray from `o` in the direction of x leaves through one facet.
     ///
-    /// As `o` is inside of all planes, the ray leaves through the facets that face its direction and, seen
-    /// along it, contain `o`. Seen so, `o` is on no line through two points.
+    /// As `o` is inside of all planes, the ray leaves through the facets that face its direction and contain
+    /// `o` when seen along the ray. Seen that way, `o` is on no line through two points.
     fn check_once(&self, inside: &[Corner; 4], ledger: &mut Ledger) -> Result<(), Violation> {
         let along = |corner: Corner| [corner.at[1], corner.at[2]];
         let is_left = |p: Corner, q: Corner| {

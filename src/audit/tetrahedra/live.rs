@@ -17,8 +17,8 @@ use spmesh_stream::Patch;
 /// opposite to corner 0 first.
 pub(super) const FACETS: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-/// The edges of a tetrahedron. Those as far from either end of the list are opposite to each other, and the
-/// facets at one are opposite to the corners of the other.
+/// The edges of a tetrahedron. Edges at the same distance from the two ends of the list are opposite to each
+/// other; the facets at an edge are opposite to the corners of the opposite edge.
 pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
 /// The tetrahedra around a vertex: the size of its link so far.
@@ -43,7 +43,7 @@ pub(crate) struct LiveTetrahedra {
     tetrahedra_seen: u64,
 }
 
-/// How much came so far.
+/// Counts so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Seen {
     pub(super) vertices: u64,
@@ -111,9 +111,9 @@ impl LiveTetrahedra {
         Ok(())
     }
 
-    /// Takes note of the edge between two vertices, with their ids and local indices; of each of its two
-    /// facets, whether its twin was there. If one was, so was the edge; and if the other was not, it has as
-    /// many open facets as before.
+    /// Updates the edge between two vertices, given by their ids and local indices. `is_shared` tells for
+    /// each of the tetrahedron's two facets at the edge whether its twin was there. If one twin was there,
+    /// the edge is not new; if only one was, the edge has as many open facets as before.
     fn edge(&mut self, [p, q]: [(u64, usize); 2], is_shared: [bool; 2]) {
         let ids = edge(p.0, q.0);
         match is_shared {

@@ -11,25 +11,26 @@
 //! No two tetrahedra overlap and none is missing.
 //!
 //! *No two vertices coincide, and none lies in an edge, a facet or a tetrahedron of others.* Seen from a
-//! vertex, its tetrahedra are positive triangles on a small sphere, joined side to side. If it has no open
-//! facets, they have no border, so they cover every direction equally often, which is at least once: all of
-//! its neighbourhood. If it has, it is a corner of the surface, which passes each of its positions once, and
-//! the border of the triangles is the outline of the convex cone inside of the surface there; so they cover
-//! the directions inside of the cone once more often than the others, which is at least once. A tetrahedron
-//! around the place that is not one of these, or that of a second vertex there, would cover directions inside
-//! of the hull a second time. In particular a vertex on the hull has open facets, so it is a corner of the
-//! surface, also inside of a flat part of it.
+//! vertex, its tetrahedra are positive triangles on a small sphere, joined side to side. If the vertex has no
+//! open facets, the triangles have no border, so they cover every direction equally often, which is at least
+//! once: all of its neighbourhood. If it has open facets, it is a corner of the surface, which passes each of
+//! its positions once, and the border of the triangles is the outline of the convex cone inside of the
+//! surface there. So the triangles cover the directions inside of the cone once more often than the others,
+//! which is at least once. Another tetrahedron around the place, or a tetrahedron of a second vertex there,
+//! would cover directions inside of the hull a second time. In particular a vertex on the hull has open
+//! facets, so it is a corner of the surface, also inside of a flat part of it.
 //!
 //! *Oriented facets are unique*, because two tetrahedra on one side of a facet would overlap. A facet that is
-//! used again while it is open is reported at once, one that is used again later by its consequences.
+//! used again while it is open is reported at once; a facet that is used again later is found by its
+//! consequences.
 //!
 //! So the mesh is a tetrahedralization of its vertices. Lift them to the paraboloid: the piecewise linear
-//! function over the hull that interpolates the lifts is convex across every interior facet, because that is
-//! locally Delaunay. Along a segment between two points of the hull, which lies in it, a function that is
-//! convex at each facet crossed is convex; segments that meet an edge are limits of others. So the function
-//! is convex, the graph is the lower hull of the lifted vertices, and the whole is Delaunay. With perturbed
-//! lifts the same argument shows that the tetrahedra are those of the canonical tetrahedralization, of which
-//! there is one only: no five perturbed lifts lie in a hyperplane if four of the points are not in a plane.
+//! function over the hull that interpolates the lifts is convex across every interior facet, because the
+//! facet is locally Delaunay. A segment between two points of the hull lies in the hull, and a function that
+//! is convex at each facet crossed is convex along the segment; segments that meet an edge are limits of
+//! others. So the function is convex, its graph is the lower hull of the lifted vertices, and the whole is
+//! Delaunay. With perturbed lifts the same argument shows that the tetrahedralization is the canonical one.
+//! That is unique: no five perturbed lifts lie in a hyperplane if four of the points are not in a plane.
 //!
 //! *Flat parts of the hull.* There the boundary facets are the Delaunay triangulation in their plane,
 //! canonical if the mesh is. This needs no check: the sphere of the tetrahedron at a boundary facet is empty,
@@ -40,8 +41,8 @@
 //! test of the audit itself, and because a fault found at its vertex is easier to understand than one found
 //! in the hull at the end.
 //!
-//! *Facets and edges that are closed are forgotten.* One that comes again has tetrahedra where others are, so
-//! that something is covered twice, as above; so the audit need not remember it.
+//! *Facets and edges that are closed are forgotten.* If one comes again, its tetrahedra lie where others are,
+//! so that something is covered twice, as above. So the audit need not remember it.
 
 mod census;
 mod edges;
@@ -108,7 +109,7 @@ impl TetrahedraAudit {
         if self.tetrahedra.seen().tetrahedra > 0 { self.unused.check_none("tetrahedron") } else { Ok(()) }
     }
 
-    /// A label follows its vertex.
+    /// Checks that labels follow their vertices.
     pub(super) fn labels(&mut self, labels: &[u64], ledger: &mut Ledger) -> Result<(), Violation> {
         ledger.add(Check::Labels, labels.len() as u64);
         self.labels += labels.len() as u64;
@@ -143,7 +144,7 @@ impl TetrahedraAudit {
         self.tetrahedra.vertices.live_max()
     }
 
-    /// The mesh is a ball and its surface a sphere.
+    /// Checks that the mesh is a ball and its surface a sphere.
     fn check_euler(&self, ledger: &mut Ledger) -> Result<(), Violation> {
         let seen = self.tetrahedra.seen();
         let (hull_facets, hull_vertices) = (self.tetrahedra.facets.len() as u64, self.hull.len());
@@ -189,11 +190,11 @@ fn finalize(
     check_link(vertex)
 }
 
-/// The link of an inner vertex is a sphere, that of a vertex of the hull a disk: so says Euler's relation. It
-/// is wound once.
+/// Checks that the link of an inner vertex is a sphere and the link of a vertex of the hull a disk, by
+/// Euler's relation, and that the link is wound once.
 ///
-/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet; three
-/// triangles' sides are one edge, or half an edge if it is inner.
+/// A link has a vertex per edge, a triangle per tetrahedron and a border edge per open facet. Of its edges,
+/// inner ones are sides of two triangles, and border edges of one.
 fn check_link(vertex: &Vertex<Star>) -> Result<(), Violation> {
     let Star { tetrahedra, edges, open, winding } = vertex.star;
     // Twice V - E + F, with 2 E = 3 F + border.

@@ -90,7 +90,7 @@ impl ProductFlags {
     }
 }
 
-/// The flags as they could be given.
+/// The flags as a user would type them.
 impl fmt::Display for ProductFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut flags = Vec::new();
@@ -121,7 +121,7 @@ fn check_stream(path: &Path) -> Result<()> {
 /// The form of a mesh in space at a path: given by its name, or the default.
 ///
 /// # Errors
-/// Usage, if the name asks for one that does not hold such a mesh.
+/// Usage, if the name implies a format that cannot hold the mesh.
 fn form(path: &Path, is_surface: bool) -> Result<Form> {
     match Format::from_path(path) {
         None => Ok(if is_surface { Form::Ply } else { Form::Vtu }),
@@ -139,7 +139,7 @@ fn form(path: &Path, is_surface: bool) -> Result<Form> {
 }
 
 fn read_sites(path: &Path) -> Result<Vec<Point4>> {
-    // All sites count, whatever else stands in their lines.
+    // Keep sites whose value is NaN: only the coordinates of a line count.
     let selection = Selection { keep_nan: true, ..Selection::default() };
     let from = From4::File(path.to_path_buf());
     let request = Request { from, spacing: Spacing::Index, selection, temp_dir: None };

@@ -36,7 +36,8 @@ fn times(report: &Report, read: Duration, elapsed: Duration) -> Vec<Row<f64>> {
     ])
 }
 
-/// With the times and the share of cells: the columns of thesis table 3.4, and the sum in figure 3.9.
+/// With the times and the share of cells, these are the columns of thesis table 3.4 and the sum in figure
+/// 3.9.
 fn counts(report: &Report) -> [Row<u64>; 16] {
     let Report { points, merged, stats, counts, output_bytes, .. } = report;
     [

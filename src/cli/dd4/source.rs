@@ -48,7 +48,7 @@ pub struct SourceFlags {
     #[arg(long = "where", value_name = "CONDITION")]
     condition: Option<Condition>,
 
-    /// Keep points whose value is missing (NaN); no comparison with that is true
+    /// Keep points whose value is missing (NaN); no comparison with NaN is true
     #[arg(long)]
     keep_nan: bool,
 
@@ -60,12 +60,12 @@ pub struct SourceFlags {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
 
-    /// Seed of --sample and --count: the same points are chosen again with the same one
+    /// Seed of --sample and --count: the same seed chooses the same points
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
 }
 
-/// What `--spacing` can say.
+/// Values of `--spacing`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SpacingFlag {
     /// Grid indices
@@ -113,7 +113,7 @@ impl SourceFlags {
     }
 }
 
-/// The flags as they could be given, but for the file.
+/// The flags without the file, as a user would type them.
 impl fmt::Display for SourceFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut flags = Vec::new();

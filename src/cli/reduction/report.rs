@@ -3,12 +3,12 @@
 use crate::{StatsFormat, peak_memory, say};
 use spmesh_reduce::Stats;
 
-/// What `--stats` tells.
+/// The values that `--stats` prints.
 pub(crate) struct Report {
     pub(crate) stats: Stats,
     pub(crate) output_bytes: u64,
     pub(crate) seconds: f64,
-    /// What simplices are called.
+    /// The name of the simplices.
     pub(crate) simplices: &'static str,
 }
 

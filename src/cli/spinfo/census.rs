@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use spmesh_audit::{Counts, Faults};
 
-/// A line per kind of fault; those that arithmetic finds with their share, exactly and in plain floating
-/// point.
+/// A line per kind of fault. Faults that arithmetic finds are counted twice, exactly and in plain floating
+/// point, each count with its share of the tetrahedra.
 pub(super) fn text(counts: &Counts) -> String {
     let total = counts.tetrahedra;
     let mut text =
@@ -46,8 +46,8 @@ pub(super) fn text(counts: &Counts) -> String {
     text + &format!("  {:<12} {:>27}: vertices - edges + facets - tetrahedra\n", "euler", counts.euler)
 }
 
-/// One object. `share_not_delaunay` is that of the tetrahedra with a neighbour's vertex inside of their
-/// sphere or on it, `share_not_positive` that of inverted and flat ones.
+/// One object. `share_not_delaunay` is the share of tetrahedra whose sphere has a neighbour's vertex inside
+/// or on it; `share_not_positive` is the share of inverted and flat tetrahedra.
 pub(super) fn json(counts: &Counts) -> Value {
     let faults = |faults: &Faults| {
         json!({
@@ -76,7 +76,7 @@ pub(super) fn json(counts: &Counts) -> Value {
     })
 }
 
-/// 0 if there is nothing.
+/// `part` as a percentage of `whole`; 0 if `whole` is 0.
 fn percent(part: u64, whole: u64) -> f64 {
     if whole == 0 { 0.0 } else { 100.0 * part as f64 / whole as f64 }
 }

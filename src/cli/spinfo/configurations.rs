@@ -63,7 +63,7 @@ fn proved(degree: &DegreeProof) -> String {
     }
 }
 
-/// One object; `failure` is what the user is told of a violation.
+/// One object; `failure` is the error that the user gets for a violation.
 pub(super) fn json(verdict: &Verdict, failure: Option<&Error>) -> Value {
     let violation = verdict.as_ref().err().map(|violation| {
         json!({

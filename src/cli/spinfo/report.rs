@@ -23,13 +23,14 @@ pub(super) struct Summary<'a> {
     pub(super) bytes: u64,
 }
 
-/// Text of a stream without what would command a terminal or look like a line of its own.
+/// Text of a stream with its control characters replaced, so that it cannot control a terminal or fake a
+/// line.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
 }
 
 impl Summary<'_> {
-    /// Lines of a name and its value; the audit has a line per check.
+    /// Lines of a name and a value each; the audit has a line per check.
     pub(super) fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.name, self.header.kind.name());
         let mut line = |name: &str, value: String| text += &format!("  {name:<12} {value}\n");
@@ -117,7 +118,7 @@ impl Summary<'_> {
         line("bytes", self.bytes.to_string());
     }
 
-    /// Counts of what is of four dimensions.
+    /// Counts of cells or simplices of four dimensions.
     fn counts4(&self, line: &mut impl FnMut(&str, String)) {
         let four = self.inventory.four();
         if self.header.has_elevation {

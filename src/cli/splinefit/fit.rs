@@ -82,7 +82,7 @@ pub(super) struct Flags {
     #[arg(long, value_enum, value_name = "huber|tukey", hide_possible_values = true)]
     robust: Option<LossFlag>,
 
-    /// Pass through the values that triangulated points have at Greville sites, instead of least squares
+    /// Instead of least squares, interpolate: pass through the triangulated points at the Greville sites
     #[arg(long, requires = "knots")]
     interpolate: bool,
 
@@ -213,7 +213,7 @@ impl Flags {
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;
-        // The search for knots and robust weights take many passes.
+        // The search for knots and the robust weights need many passes.
         let is_search = self.knots.is_none() && self.step.is_none();
         let often = is_search || self.robust.is_some();
         let mut progress = Progress::new(common, "reading", None);
@@ -231,7 +231,7 @@ impl Flags {
     }
 }
 
-/// Writes a list, if there is to be one.
+/// Writes a list, if its output is given.
 fn list<T>(output: Option<Output>, write: impl FnOnce(&mut Output) -> Result<T>) -> Result<Option<T>> {
     let Some(mut output) = output else { return Ok(None) };
     let written = write(&mut output)?;

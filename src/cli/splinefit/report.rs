@@ -52,7 +52,7 @@ pub(super) fn notices(report: &Report, spline: &Spline, rejected: Option<u64>) -
 fn short(number: f64) -> String {
     let rounded = format!("{number:.3e}");
     match number.abs() {
-        // Without the zeros that digits after the point would end with.
+        // Without trailing zeros after the point.
         1e-4..1e6 => rounded.parse().map_or(rounded, |number: f64| number.to_string()),
         _ => rounded,
     }

@@ -25,16 +25,18 @@ pub(super) struct Outputs {
 }
 
 enum Target {
-    /// For one picture: opened before the work, because what cannot be written is better known then. It gets
-    /// its name at the end, when it is known that the stream is whole.
+    /// One picture. The output is opened before the work, so that a failure shows at once. It gets its name
+    /// at the end, when the whole stream has been read.
     One { output: Output, is_written: bool },
-    /// For several, with names of these parts before and after the number, which has so many digits at least.
+    /// Several pictures: the parts of their names before and after the number, and its least number of
+    /// digits.
     Numbered { before: String, digits: usize, after: String },
 }
 
 impl Outputs {
     /// # Errors
-    /// Usage, if names do not go together; if the output cannot be created.
+    /// Usage, if the name, the format and the number of pictures do not fit together; if the output cannot be
+    /// created.
     pub(super) fn new(
         path: &Path,
         format: Option<Format>,
@@ -83,7 +85,8 @@ impl Outputs {
         }
     }
 
-    /// Completes a single picture, when the stream has been read; what is to be said.
+    /// Completes a single picture when the stream has been read. Returns a message for the user, if there is
+    /// one.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -116,7 +119,7 @@ fn format_of(path: &Path) -> Option<Format> {
     }
 }
 
-/// A name with one number in it.
+/// Parses a name with one `%d` or `%04d` in it.
 fn pattern(path: &Path) -> Result<Target> {
     let unfit = || {
         let path = path.display();

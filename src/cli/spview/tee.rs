@@ -21,7 +21,7 @@ impl<R: Read> Tee<R> {
 }
 
 impl<R: Read> Read for Tee<R> {
-    /// Whoever reads stdout need not wait for more than what was read here.
+    /// Flushes after each read, so that the reader of stdout gets all bytes that were read here.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let len = self.input.read(buffer)?;
         self.output.write_all(&buffer[..len])?;

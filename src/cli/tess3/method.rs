@@ -83,7 +83,7 @@ enum SequenceFlag {
 
 impl MethodFlags {
     /// # Errors
-    /// Usage, if signs that are never wrong are to be checked, or if the build has no experiments.
+    /// Usage, if exact signs are to be checked, or if the build lacks experiments and a flag asks for one.
     pub(super) fn method(&self) -> Result<Method> {
         if !HAS_EXPERIMENTS && !self.is_default() {
             return Err(Error::usage(NO_EXPERIMENTS));

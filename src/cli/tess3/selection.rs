@@ -17,8 +17,8 @@ pub(super) struct SelectionFlags {
     #[arg(long, value_name = "CHAIN,...", value_delimiter = ',')]
     chain: Vec<String>,
 
-    /// Which alternate locations: of each residue the conformer that is occupied most (best), or that comes
-    /// first; all of them; or those of this name
+    /// Which alternate locations: for each residue the conformer with the highest occupancy (best) or the
+    /// first one; all; or those of this name
     #[arg(long, value_name = "best|first|all|NAME", default_value = "best", value_parser = parse_altlocs)]
     altloc: Altlocs,
 
@@ -70,7 +70,7 @@ impl SelectionFlags {
     }
 }
 
-/// The flags as they could be given.
+/// The flags as a user would type them.
 impl fmt::Display for SelectionFlags {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.model.unwrap_or_default() {

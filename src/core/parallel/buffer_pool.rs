@@ -4,8 +4,8 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 
 /// Used buffers on their way back to the threads that fill them. Clones share the buffers.
 ///
-/// Memory: at most as many buffers as the pool was made for; further ones are freed. The buffers that are
-/// left are freed with the last clone.
+/// Memory: at most as many buffers as the pool was made for; further ones are freed. Dropping the last clone
+/// frees the remaining buffers.
 #[derive(Debug)]
 pub struct BufferPool<T> {
     used: Sender<T>,

@@ -15,7 +15,7 @@ use crate::error::Result;
 /// Memory: all results.
 ///
 /// # Errors
-/// The error of the first item that has one, in the order of the items, whatever the number of threads.
+/// The error of the first item that fails, in the order of the items, whatever the number of threads.
 ///
 /// # Panics
 /// If `work` panics.
@@ -53,8 +53,8 @@ struct Shared<I> {
 }
 
 impl<I: Iterator> Shared<I> {
-    /// Takes items until none is left or one failed. All items before one that failed have been taken by
-    /// then, and are finished, so that the first error does not depend on the threads.
+    /// Takes items until none is left or one failed. Items are taken in order, so every item before a failed
+    /// one has been taken by then and is finished: the first error does not depend on the threads.
     fn run<R>(&self, work: impl Fn(I::Item) -> Result<R>) -> Vec<(usize, Result<R>)> {
         let mut done = Vec::new();
         while let Some((at, item)) = self.next() {

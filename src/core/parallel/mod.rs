@@ -6,14 +6,14 @@
 //! | results as they come, each handled by the caller | [`for_each_result`] | before it returns |
 //! | jobs given one at a time, results in their order | [`OrderedPool`] | when the pool is dropped |
 //! | one thread prepares buffers, the caller consumes them | [`read_ahead()`] | before it returns |
-//! | a source that nothing may wait for | [`produce()`] | with the source, or when the receiver is gone |
+//! | a source that may block forever | [`produce()`] | with the source, or when the receiver is gone |
 //! | anything else, within a scope | [`spawn_scoped`] | with the scope |
 //!
 //! [`BufferPool`] passes used buffers back to the threads that fill them.
 //!
 //! Rules common to all: a panic of a worker resumes on the calling thread with its payload. After an error or
 //! a panic no further item is begun; items under way are finished. No thread outlives the call or the value
-//! that started it, but for [`produce()`].
+//! that started it, except in [`produce()`].
 
 mod buffer_pool;
 mod map;

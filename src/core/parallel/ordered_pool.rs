@@ -22,13 +22,13 @@ type Outcome<R> = std::result::Result<R, Box<dyn Any + Send>>;
 /// Back-pressure: every job has a weight, such as the bytes that it takes up. The caller gives no further job
 /// while [`OrderedPool::is_full`], and takes a result instead.
 ///
-/// The drop gives up jobs that are not begun, and waits for those that are.
+/// Dropping the pool discards jobs that have not begun, and waits for the others.
 pub struct OrderedPool<J, R> {
-    /// `None` in the drop: without a sender, the threads end.
+    /// `None` during the drop: without a sender, the threads end.
     jobs: Option<Sender<Task<J, R>>>,
     /// The receiving end, to be emptied in the drop.
     queue: Receiver<Task<J, R>>,
-    /// Where the results of jobs under way come, and the weights of those jobs, in their order.
+    /// The jobs under way in their order, each with the channel of its result and its weight.
     results: VecDeque<(Receiver<Outcome<R>>, u64)>,
     weight: u64,
     weight_max: u64,
@@ -55,9 +55,9 @@ impl<J: Send + 'static, R: Send + 'static> OrderedPool<J, R> {
             let (queue, work) = (pool.queue.clone(), Arc::clone(&work));
             let run = move || {
                 for (job, result) in queue {
-                    // The caller resumes the panic, and does not see the pool again.
+                    // Unwind safety: `take` resumes the panic, and the pool is not used afterwards.
                     let outcome = catch_unwind(AssertUnwindSafe(|| work(job)));
-                    // Without a receiver, the pool is being dropped.
+                    // Sending fails only while the pool is being dropped.
                     let _ = result.send(outcome);
                 }
             };
@@ -66,7 +66,7 @@ impl<J: Send + 'static, R: Send + 'static> OrderedPool<J, R> {
         Ok(pool)
     }
 
-    /// Whether the jobs under way weigh as much as they may.
+    /// Whether the weight of the jobs under way has reached its limit.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.weight >= self.weight_max
@@ -94,7 +94,7 @@ impl<J: Send + 'static, R: Send + 'static> OrderedPool<J, R> {
 }
 
 impl<J, R> OrderedPool<J, R> {
-    /// Gives up the jobs that are not begun, and ends the threads when they have finished theirs.
+    /// Discards the jobs that have not begun, and joins the threads when they have finished theirs.
     fn close(&mut self) {
         self.jobs = None;
         while self.queue.try_recv().is_ok() {}
@@ -157,7 +157,7 @@ mod tests {
         let mut pool = OrderedPool::start("test", 2, 50, work).unwrap();
         (0..50).for_each(|job| pool.give(job, 1));
         pool.close();
-        // Each of the two threads may hold a job by now, and can end it only from here on.
+        // Each of the two threads may hold a job by now, and can finish it only from here on.
         drop(gate);
         drop(pool);
         assert!(done.load(Ordering::SeqCst) <= 2);

@@ -1,4 +1,4 @@
-//! A source on a thread of its own that nothing waits for.
+//! A source on a thread of its own, which is never joined.
 
 use std::ops::ControlFlow;
 

@@ -6,8 +6,8 @@ use super::threads::{join, spawn_scoped};
 use crate::error::Result;
 
 /// Fills buffers with `produce` on a thread called `name`, and gives them in order to `consume` on the
-/// calling thread. `buffers` of them go round. `produce` returns whether it filled the buffer; if not, that
-/// was the end.
+/// calling thread. The two threads share `buffers` buffers. `produce` returns whether it filled the buffer;
+/// `false` ends the input.
 ///
 /// After an error of `consume`, the call waits until the current `produce` has returned.
 ///
@@ -41,7 +41,7 @@ pub fn read_ahead<B: Default + Send>(
     std::thread::scope(move |scope| {
         let producer = spawn_scoped(scope, name, run)?;
         for _ in 0..buffers {
-            // Fails when the producer has ended, which the join below explains.
+            // Fails only if the producer has ended; the join below returns the reason.
             let _ = empty_in.send(B::default());
         }
         for mut buffer in full {

@@ -8,10 +8,9 @@ use crossbeam_channel::{Sender, bounded};
 use super::threads::{Stop, join, spawn_scoped};
 use crate::error::Result;
 
-/// Does `work` on all items, about in their order, and gives each result to `finish` on the calling thread,
-/// in the order in which they are ready. After a result that is a [`ControlFlow::Break`], or an error of
-/// `finish`, no further item is begun; items under way are finished and their results given to `finish` as
-/// well.
+/// Runs `work` on all items, roughly in their order, and gives each result to `finish` on the calling thread
+/// as soon as it is ready. After a result that is a [`ControlFlow::Break`], or an error of `finish`, no
+/// further item is begun; items under way are finished, and their results are given to `finish` as well.
 ///
 /// Memory: at most two results per thread that wait for `finish`.
 ///

@@ -42,7 +42,7 @@ pub(super) fn join<T>(thread: ScopedJoinHandle<'_, T>) -> T {
     thread.join().unwrap_or_else(|panic| resume_unwind(panic))
 }
 
-/// Tells threads that share items to begin no further one.
+/// A flag that tells threads to begin no further item.
 #[derive(Debug, Default)]
 pub(super) struct Stop(AtomicBool);
 

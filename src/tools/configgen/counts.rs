@@ -10,15 +10,16 @@ use spmesh_model::functions::{Function, FunctionKind};
 pub struct DegreeCounts {
     /// The degree.
     pub degree: u64,
-    /// Configurations, without infinite ones.
+    /// Finite configurations.
     pub configurations: u64,
-    /// Configurations among them whose boundary triangle has no area, because of copies of knots.
+    /// Finite configurations whose boundary triangle has no area, because of copies of knots.
     pub flat: u64,
     /// Infinite configurations: lines with as many knots to the left as the degree.
     pub infinite: u64,
     /// Interior sets.
     pub interiors: u64,
-    /// Links, of sets of one more knot, that are bounded polygons: they define B-splines of the next degree.
+    /// Links that are bounded polygons. Each belongs to a set of one more knot, and defines a B-spline of the
+    /// next degree.
     pub links: u64,
     /// Links that are null.
     pub null_links: u64,
@@ -71,7 +72,7 @@ pub struct FunctionCounts {
     pub vertices: u64,
     /// Tents of edges between a knot that is pulled apart and others.
     pub tents: u64,
-    /// Those of creases with smooth ends.
+    /// Functions of creases with smooth ends.
     pub creases: u64,
     /// Box splines.
     pub faces: u64,

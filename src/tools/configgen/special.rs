@@ -62,7 +62,7 @@ impl SpecialKind {
         }
     }
 
-    /// Special configurations of knots, with those that are added.
+    /// Special configurations of knots, with the knots that they add.
     ///
     /// # Errors
     /// As [`special::zp`], [`special::patches`] and [`special::features()`].

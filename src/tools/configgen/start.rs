@@ -17,7 +17,7 @@ pub(super) struct Setup {
     pub(super) frame: Frame,
     pub(super) origin: Origin,
     pub(super) rule: Rule,
-    /// Without times.
+    /// Has no times yet.
     pub(super) report: Report,
 }
 
@@ -170,7 +170,7 @@ struct Rules<'a> {
     frame: &'a Frame,
     /// Number of knots of the input.
     given: usize,
-    /// As [`added`] has them.
+    /// As [`added`] returns them.
     added: &'a [[u32; 2]],
 }
 

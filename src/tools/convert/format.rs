@@ -173,7 +173,7 @@ impl Format {
         self.row().name
     }
 
-    /// Whether a terminal cannot show it.
+    /// Whether the format is binary, so that a terminal cannot show it.
     #[must_use]
     pub fn is_binary(self) -> bool {
         self.row().is_binary

@@ -30,18 +30,18 @@ pub struct Options {
     pub dims: Option<u8>,
     /// Write PLY as text.
     pub ascii: bool,
-    /// The file that the input is read from, if it is one, compressed or not: points are read there, and
-    /// otherwise from a copy.
+    /// The file of the input, compressed or not, if the input is a file. Points are read from it directly;
+    /// without it, they are read from a copy.
     pub path: Option<PathBuf>,
     /// Where spools go; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
 }
 
-/// Reads `input`, whose name is `name`, and writes it to `output` as `to`. What the user should know of
-/// losses is returned as sentences; `progress` is told how many points or vertices are done.
+/// Reads `input`, whose name is `name`, and writes it to `output` as `to`. Calls `progress` with the number
+/// of points or vertices done. Returns notices for the user about what was lost. The output is complete only
+/// if the call succeeds.
 ///
-/// The output is complete only if this succeeds. Memory: bounded, but for meshes that do not say when
-/// vertices are final.
+/// Memory: bounded, except for meshes that do not state when vertices are final.
 ///
 /// # Errors
 /// Malformed, if the input is; usage, if its format is not recognized or `to` cannot hold it; I/O.

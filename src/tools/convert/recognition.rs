@@ -9,8 +9,7 @@ use spmesh_io::detect::{self, SPCONVERT, detect};
 /// The format of an input that starts with `head`.
 ///
 /// # Errors
-/// Malformed, if it is empty; usage, if it is of no known format, of one that is not read, or could be of
-/// several.
+/// Malformed, if the input is empty; usage, if its format is unknown, cannot be read, or is ambiguous.
 pub(super) fn recognize(head: &[u8], name: &Path) -> Result<Format> {
     let found = detect(head)?;
     let by_name = || Format::from_path(&without_gz(name)).filter(|format| format.is_read());

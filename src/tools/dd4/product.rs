@@ -32,7 +32,7 @@ pub enum Product {
         time: f64,
         /// The value.
         level: f64,
-        /// Any.
+        /// Any format.
         form: Form,
     },
 }

@@ -159,8 +159,8 @@ impl CellBuffers {
         Ok(())
     }
 
-    /// Writes the fullest cells to disk until at least half of the pages are free. So extents are long, and
-    /// each cell is written rarely.
+    /// Writes the fullest cells to disk until at least half of the pages are free. This makes extents long,
+    /// and writes each cell rarely.
     ///
     /// # Errors
     /// If the temporary file cannot be written.
@@ -177,8 +177,8 @@ impl CellBuffers {
         self.spill.as_mut().expect("created above").flush()
     }
 
-    /// The greatest power of two such that the cells with at least so many pages have half of all pages in
-    /// use.
+    /// The greatest power of two such that the cells with at least that many pages have at least half of all
+    /// pages in use.
     fn victim_pages_min(&self) -> u32 {
         let mut pages_of_size = [0u64; 32];
         for cell in self.cells.iter().filter(|cell| cell.pages > 0) {

@@ -14,8 +14,8 @@ pub(super) struct CellCounts {
 }
 
 impl CellCounts {
-    /// Number of points in `cell`, and whether the counts of its children are known. The counts of `cell`
-    /// itself must be known in this sense.
+    /// Number of points in `cell`, and whether the counts of its children are known. The count of `cell`
+    /// itself must be known.
     pub(super) fn count(&self, cell: CellCode) -> (u64, bool) {
         let level = self.tree.level(cell);
         let at = self.sums.partition_point(|sums| sums.level() < level);

@@ -42,7 +42,7 @@ impl CellGrid {
         index.wrapping_sub(i32::from(x < border)) as u32
     }
 
-    /// The cell that holds `point`, which must lie in the cube; any code otherwise.
+    /// The cell that holds `point`. For a point outside of the cube, any code.
     #[inline(always)]
     #[must_use]
     pub fn cell_of(&self, point: Point) -> CellCode {
@@ -56,8 +56,8 @@ impl CellGrid {
         CellCode(1 << (self.dims * self.level) | morton)
     }
 
-    /// Number of the cell that holds `point`, counted row by row: below `2^(dims * level)`, which must be
-    /// less than 2^32. `point` must lie in the cube; any number below that otherwise.
+    /// Row-major index of the cell that holds `point`, below `2^(dims * level)`, which must be less than
+    /// 2^32. For a point outside of the cube, any index below that bound.
     #[inline(always)]
     #[must_use]
     pub fn number_of(&self, point: Point) -> u32 {

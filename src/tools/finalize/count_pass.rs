@@ -103,8 +103,8 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         if count.outside > 0 || count.bounds != bounds || count.points != points {
             return Err(input_changed());
         }
-        // A border of the box may be -0 in one pass and 0 in another, read from a spool: the first one
-        // stands.
+        // A side of the box may be -0 in the first pass and 0 in a later one that reads a spool: keep the
+        // first box.
         self.finish_count(tree, Count { bounds, ..count }, options)
     }
 

@@ -27,7 +27,7 @@ pub(super) struct Counters {
     is_fixed: bool,
     pages_max: usize,
     pages: Vec<[u64; PAGE_CELLS]>,
-    /// Page of each key, a key being the location code without its last bits.
+    /// Page of each key. A key is a location code without its last [`PAGE_BITS`] bits.
     index: HashMap<u64, usize, FixedState>,
     /// Key and page of the last point: the next point is often near.
     last: Option<(u64, usize)>,

@@ -13,8 +13,8 @@ use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Header, StreamWriter, encode_points};
 
-/// Points of the input after which complete leaves are written. Batches do not matter, so that the output
-/// depends on the input alone.
+/// Complete leaves are written after every so many points of the input. Batches play no role, so that the
+/// output depends on the input alone.
 const WINDOW: u64 = 1 << 16;
 
 /// A batch of points with the leaf and the record of each.

@@ -154,7 +154,7 @@ impl SpoolPlan {
         let is_kept = match rule {
             Spooling::Always => true,
             Spooling::Never => false,
-            // A folder in memory saves nothing, unless the user asks for it.
+            // A spool in memory saves nothing: such a folder is used only if the user names it.
             Spooling::Auto => {
                 is_costly && has_space(&folder, bytes) && (is_named || !system::is_in_memory(&folder))
             }
@@ -167,7 +167,8 @@ impl SpoolPlan {
 /// wait for their cell, and for the output, which may all be on one disk.
 const FREE_FACTOR: u64 = 4;
 
-/// Whether `folder` has space for a spool of `bytes`. If the system does not tell, writing will.
+/// Whether `folder` has space for a spool of `bytes`. If the system does not tell, assume so: writing will
+/// fail if not.
 fn has_space(folder: &Path, bytes: u64) -> bool {
     system::free_bytes(folder).is_none_or(|free| bytes <= free / FREE_FACTOR)
 }

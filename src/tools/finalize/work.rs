@@ -22,7 +22,7 @@ pub(super) struct Work<'a, P: Passes + ?Sized> {
 /// Where decoded points are kept for later passes.
 enum Kept {
     Not,
-    /// The next pass, which is the first one, keeps them.
+    /// The next pass, which is the first one, will keep them.
     Next(SpoolPlan),
     In(Box<Spool>),
 }

@@ -21,8 +21,8 @@ impl<const D: usize> Border<D> {
         for simplex in patch.simplices.chunks_exact(D + 1) {
             for opposite in 0..=D {
                 let facet = std::array::from_fn(|i| patch.id(simplex[i + usize::from(i >= opposite)]));
-                // Without the last corner, the others are oriented as a wall; without the one before it, they
-                // are reversed; and so on in turn.
+                // The facet opposite to the last corner has the orientation of a wall, the facet opposite to
+                // the corner before it is reversed, and so on alternately.
                 let number = number_of::<D>(facet);
                 let is_seen_so = (D - opposite).is_multiple_of(2);
                 self.sum = self.sum.wrapping_add(if is_seen_so { number } else { number.wrapping_neg() });
@@ -96,7 +96,7 @@ mod tests {
     #[test]
     fn facets_around_tetrahedra() {
         let two = [0, 1, 2, 3, 1, 2, 3, 4];
-        // Counterclockwise as seen from their tetrahedra, in any turn.
+        // Counterclockwise as seen from their tetrahedra, starting at any corner.
         let walls = [[0, 2, 3], [3, 1, 0], [1, 2, 0], [2, 4, 3], [1, 3, 4], [4, 2, 1]];
         assert!(is_border(&two, &walls));
         assert!(!is_border(&[0, 1, 2, 3, 1, 3, 2, 4], &walls), "both are on one side of their facet");

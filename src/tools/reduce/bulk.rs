@@ -29,8 +29,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// Name of a simplex in messages.
     const SIMPLEX: &'static str;
 
-    /// Whether a node may leave most of its points when it is triangulated, so that passing them up as they
-    /// are is better.
+    /// Whether triangulating a node may leave most of its points in the residual, so that passing them up
+    /// untriangulated is better.
     const MAY_LEAVE_MOST: bool;
 
     /// Triangulates `points` canonically.

@@ -65,9 +65,9 @@ impl<const D: usize> CellBuffer<D> {
         Ok(())
     }
 
-    /// Takes the tag of `cell`. Returns its points, in the order of the stream, and whether they are all
-    /// points of the cell: not if a part of it was final before. `fresh` is an empty residual whose memory is
-    /// used again.
+    /// Takes the tag of `cell`. Returns the points of the cell, in the order of the stream, and whether they
+    /// are all of its points: they are not if a part of the cell was final before. `fresh` is an empty
+    /// residual whose memory is reused.
     ///
     /// # Errors
     /// If the cell is final already.

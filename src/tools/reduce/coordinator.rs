@@ -6,7 +6,7 @@
 //! until it is written, or until it has passed its points up. A node under way needs no further input, so it
 //! always comes to an end, and no two threads wait for each other.
 //!
-//! The threads, the reader and the buffer pools are those of [`spmesh_core::parallel`]. The coordinator is
+//! The threads, the reader and the buffer pools come from [`spmesh_core::parallel`]. The coordinator does
 //! not, because no shape there fits: results make new jobs, jobs have two priorities, and a third thread
 //! reports what is written.
 
@@ -44,7 +44,8 @@ const PIECES_AHEAD: usize = 3;
 /// Buffers of each kind that wait to be used again.
 const POOL_LEN: usize = 16;
 
-/// Capacity up to which blocks are kept, in bytes: after a few large nodes, all of them would be as large.
+/// Capacity up to which blocks are kept for reuse, in bytes: without a limit, all of them would grow to the
+/// size of the largest nodes.
 const KEPT_BLOCKS_MAX: usize = 4 << 20;
 
 /// Runs `run` with `workers` threads that triangulate. The calling thread triangulates the root when they
@@ -70,7 +71,7 @@ where
         last @ (Ok(Piece::End(_)) | Err(_)) => ControlFlow::Break(last),
         piece => ControlFlow::Continue(piece),
     };
-    // Outside of the scope: a failure must not wait for an input that stays silent.
+    // Started outside of the scope: a failure must not wait for an input that stays silent.
     let pieces = parallel::produce("reader", PIECES_AHEAD, next)?;
     std::thread::scope(move |scope| {
         let (pool, channels) = WorkerPool::start::<B, D>(scope, sequencer, run.rules, workers, &buffers)?;

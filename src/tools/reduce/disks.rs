@@ -3,14 +3,15 @@
 use spmesh_geometry::predicates::circle::CircleBounds;
 use spmesh_model::bounds::Region;
 
-/// Assumed error of doubled area and numerators, relative to their sums of magnitudes: more than a hundred
-/// million times the true bound.
+/// Assumed error of the doubled area and of the numerators, relative to the sums of the magnitudes of their
+/// terms: more than a hundred million times the true bound.
 const ERROR: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Distances to sides are shortened by this fraction of the coordinates, which covers all rounding of sides.
 const SHORTENED: f64 = 1.0 / (1u64 << 45) as f64;
 
-/// Magnitude below which underflow could matter; that of [`CircleBounds`] is far smaller.
+/// Smaller magnitudes go to the full test, because underflow could matter. The limit of [`CircleBounds`] is
+/// far smaller.
 const SMALLEST: f64 = 1e-100;
 
 /// Decides whether disks certainly lie in a region, exactly as [`CircleBounds::disk_inside`] does.
@@ -35,10 +36,10 @@ impl Disks {
     /// inside, and by such a margin that the full test agrees.
     ///
     /// The circle's centre is `m / 2 d` relative to `a`, with `d` the doubled area: the test is `|m| <
-    /// distance |d|`, squared. The terms of errors, `E` times the sums of magnitudes `n`, are 2^28 times
-    /// those of the full test or more. So `|d| > E n_d` leaves `d` a relative error below 2^-28, and `|m| + E
-    /// n` is more than what the full test adds up from `m`, its error, and the errors of the quotient; the
-    /// rest is the factor at the end.
+    /// distance |d|`, squared. The error terms, `E` times the sums of magnitudes `n`, are at least 2^28 times
+    /// the error terms of the full test. So `|d| > E n_d` leaves `d` a relative error below 2^-28, and `|m| +
+    /// E n` exceeds the sum in the full test of `m`, its error, and the errors of the quotient. The factor at
+    /// the end covers the rest.
     #[inline]
     fn is_far_inside(&self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> bool {
         let (bx, by) = (b[0] - a[0], b[1] - a[1]);

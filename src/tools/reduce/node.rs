@@ -17,7 +17,7 @@ pub(super) struct Rules {
     duplicates: Duplicates,
     /// Whether the run leaves a residual, to be merged with others.
     pub(super) is_partial: bool,
-    /// Whether nodes are triangulated that would leave most of their points.
+    /// Whether to triangulate even nodes that would leave most of their points.
     pub(super) every_node: bool,
 }
 
@@ -28,13 +28,13 @@ impl Rules {
         Rules { coordinates: header.coordinates, code, duplicates, is_partial, every_node: false }
     }
 
-    /// How coordinates are stored, and so which numbers they are.
+    /// The encoding of the coordinates.
     pub(super) fn coordinates(&self) -> &Coordinates {
         &self.coordinates
     }
 }
 
-/// In place of the index of a point in the residual: the point is not in it.
+/// Stands for the index of a point that is not in the residual.
 const NO_POINT: u32 = u32::MAX;
 
 /// State of a simplex of the node's triangulation.

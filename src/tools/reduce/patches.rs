@@ -2,8 +2,9 @@
 //! with its last.
 //!
 //! The thread that triangulates the node cuts it, before the number of preceding vertices in the stream is
-//! known. So references stand for the ids of imported vertices: the number of a vertex among those that the
-//! node writes itself, or the number of a point among those that the nodes below have left.
+//! known. So references stand for the ids of imported vertices. A reference is the number of a vertex among
+//! the vertices that the node writes itself, or the number of a point among the points that the nodes below
+//! have left.
 
 use super::residual::{Residual, UNWRITTEN};
 use spmesh_core::error::Result;
@@ -24,11 +25,10 @@ const KEY_BITS: u32 = 30;
 /// Bit of a reference to a vertex that the node writes itself.
 pub(super) const OWN: u64 = 1 << 63;
 
-/// In place of the number of a vertex among those that the node writes, and of an index in `locals`: there is
-/// none.
+/// Stands for a missing number of a vertex that the node writes, and for a missing index in `locals`.
 const NO_VERTEX: u32 = u32::MAX;
 
-/// In place of the number of the last patch of a point: it is in none, or it is not finalized here.
+/// Stand for the number of the last patch of a point: the point is in no patch, or it is not finalized here.
 const UNUSED: u32 = u32::MAX;
 const KEPT: u32 = u32::MAX - 1;
 
@@ -57,7 +57,7 @@ pub(super) struct PatchBuilder<const D: usize> {
     corners: Vec<u32>,
     /// For each of `vertices`, its local index.
     locals: Vec<u32>,
-    /// Key and index in `vertices` of the imported ones.
+    /// Key and index in `vertices` of each imported vertex.
     imported: Vec<(u64, u32)>,
     /// For each point, its number among the vertices that the node writes.
     own: Vec<u32>,
@@ -66,7 +66,7 @@ pub(super) struct PatchBuilder<const D: usize> {
     order: Vec<u32>,
 }
 
-/// Called after each patch, with the blocks that it has not taken before.
+/// Called after each patch, with the blocks that it has not taken yet.
 pub(super) type Flush<'f> = dyn FnMut(&mut PatchBlocks) -> Result<()> + 'f;
 
 impl<const D: usize> PatchBuilder<D> {

@@ -21,8 +21,8 @@ impl Plan {
         Plan { tree, waiting: BTreeMap::new(), next: 0 }
     }
 
-    /// Plans the node of `cell`, over all nodes inside that have no parent. Returns its number, which is its
-    /// place in the order in which nodes are written, and theirs, in Morton order.
+    /// Plans the node of `cell` as the parent of all nodes inside that have none. Returns the number of the
+    /// node, which is its place in the order of writing, and the numbers of its children in Morton order.
     pub(super) fn node(&mut self, cell: CellCode) -> (u64, Vec<u64>) {
         let range = self.range(cell);
         let keys: Vec<u64> = self.waiting.range(range.clone()).map(|(&key, _)| key).collect();

@@ -13,7 +13,7 @@ use spmesh_stream::{Event, StreamReader};
 /// The next piece of the stream.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
-    /// Points that were held: the number of points read so far.
+    /// Points were read and are held; the number of points read so far.
     Points(u64),
     /// A cell is final.
     Cell {

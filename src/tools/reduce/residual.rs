@@ -1,5 +1,5 @@
-//! Points that are not finalized yet, with walls around the holes: what a node triangulates, and what it
-//! passes up.
+//! Points that are not finalized yet, with walls around the holes: the input of a node, and its output for
+//! the node above.
 
 use spmesh_model::bounds::Point;
 
@@ -72,7 +72,7 @@ impl<const D: usize> Residual<D> {
     /// Adds points from the stream. All points so far must be raw.
     pub(super) fn extend_raw(&mut self, points: &[Point]) {
         debug_assert_eq!(self.raw, self.len());
-        // By an eighth, not twofold: half of the memory would lie idle in each leaf under way.
+        // Grow by an eighth: doubling would leave up to half of the memory of each leaf under way idle.
         let growth = points.len().max(self.len() / 8);
         if self.at.capacity() - self.len() < points.len() {
             self.at.reserve_exact(growth);

@@ -76,7 +76,7 @@ pub(super) struct Schedule<const D: usize> {
     boxes: Boxes<D>,
     nodes: BTreeMap<u64, Node<D>>,
     jobs: VecDeque<Job<D>>,
-    /// The node above all others that have points.
+    /// The job of the root, the highest node with points, once it can be triangulated.
     root: Option<Job<D>>,
     outputs: BTreeMap<u64, Output<D>>,
     next_output: u64,

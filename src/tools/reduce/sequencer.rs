@@ -75,7 +75,7 @@ impl<W: Write> Sequencer<W> {
         Ok(())
     }
 
-    /// Takes the ids of a residual as that of node `number`.
+    /// Takes the ids of the residual of node `number`.
     pub(super) fn leave(&mut self, number: u64, ids: Vec<u64>, active: usize) {
         self.points += ids.len();
         self.points_max = self.points_max.max(self.points);
@@ -188,8 +188,8 @@ impl<W: Write> Sequencer<W> {
     }
 }
 
-/// The id of a reference in a node whose first vertex is `first`, over nodes that have left points with these
-/// `ids`.
+/// The id that a reference of a node stands for. `first` is the id of the first vertex of the node, and `ids`
+/// are the ids of the points that the nodes below have left.
 #[inline]
 fn id_of(reference: u64, first: u64, ids: &[u64]) -> u64 {
     match reference {

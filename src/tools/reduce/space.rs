@@ -23,7 +23,8 @@ const AHEAD: usize = 12;
 pub(super) struct Space {
     kernel: Kernel,
     mesh: Tetrahedralization,
-    /// The tetrahedra in the order of their last vertex along the curve: insertion in rounds scatters them.
+    /// The tetrahedra, ordered along the curve by their last vertex: in the mesh, insertion in rounds has
+    /// scattered them.
     sequence: Vec<u32>,
     hull: Vec<Facet>,
     walls: WallIndex,

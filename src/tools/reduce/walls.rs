@@ -1,11 +1,11 @@
 //! An index of the walls of space, to find them among the facets of tetrahedra.
 
-/// Oriented triangles by their least corner, so that one access to an array mostly rules out that a facet is
-/// a wall.
+/// Oriented triangles by their least corner: for most facets, one access to an array shows that they are not
+/// walls.
 #[derive(Debug, Default)]
 pub(super) struct WallIndex {
-    /// For each point, the end of the walls whose least corner it is. They start at the end of the point
-    /// before.
+    /// For each point, the end of the range of walls whose least corner it is. The range starts where the
+    /// range of the point before ends.
     ends: Vec<u32>,
     /// The other two corners of each wall, in their order after the least one.
     others: Vec<[u32; 2]>,

@@ -1,13 +1,13 @@
 //! The alpha complex: which simplices have an empty circumscribed sphere that is small enough.
 //!
 //! A simplex of the triangulation belongs to the complex of radius R if a sphere of radius R or less passes
-//! through all its vertices and has no point inside. Let its least circumscribed sphere be the one with the
-//! centre in the flat that it spans. If no point lies inside that sphere (a Gabriel simplex), its radius
-//! decides. Otherwise the smallest empty sphere is that of a simplex with one more vertex, and the simplex
-//! belongs to the complex if one of those does. A tetrahedron has one sphere only. For a simplex of the
-//! triangulation, the adjacent vertices decide whether its least sphere is empty. Points on a sphere are not
-//! inside it, and a radius of exactly R is small enough; both are decided exactly, for R as written by the
-//! user.
+//! through all its vertices and has no point inside. Its least circumscribed sphere has its centre in the
+//! flat that the simplex spans. If no point lies inside that sphere (a Gabriel simplex), the radius of the
+//! sphere decides. Otherwise the smallest empty sphere of the simplex is also the smallest empty sphere of a
+//! coface with one more vertex, and the simplex belongs to the complex if one of these cofaces does. A
+//! tetrahedron has one sphere only. For a simplex of the triangulation, the adjacent vertices decide whether
+//! its least sphere is empty. Points on a sphere are not inside it, and a radius of exactly R is small
+//! enough; both are decided exactly, for R as written by the user.
 //!
 //! Source: Edelsbrunner and Mücke, "Three-dimensional alpha shapes", 1994.
 
@@ -52,7 +52,7 @@ impl<'m> AlphaComplex<'m> {
         self.tetrahedra[t / 64] >> (t % 64) & 1 == 1
     }
 
-    /// The bits of all tetrahedra: that of tetrahedron `t` is bit `t % 64` of word `t / 64`.
+    /// A bit for each tetrahedron: tetrahedron `t` has bit `t % 64` of word `t / 64`.
     #[must_use]
     pub fn into_bits(self) -> Vec<u64> {
         self.tetrahedra
@@ -64,7 +64,7 @@ impl<'m> AlphaComplex<'m> {
         self.tetrahedra.iter().map(|bits| u64::from(bits.count_ones())).sum()
     }
 
-    /// Whether an edge belongs to the complex, given what is around it.
+    /// Whether an edge belongs to the complex, given its surroundings.
     pub(super) fn has_edge(&self, ring: &Ring) -> bool {
         let [a, b] = ring.ends.map(|v| self.point(v));
         if !edge_fits([a, b], &self.radius) {

@@ -25,9 +25,9 @@ pub(super) struct Ring {
 
 /// Calls `visit` for each edge of the mesh.
 ///
-/// Each tetrahedron of an edge finds it; the one of lowest number reports it. The search for a lower one
-/// walks in both directions alternately, so that all searches around one edge of k tetrahedra take O(k log k)
-/// steps together, whatever the numbering.
+/// Each tetrahedron at an edge finds it; the tetrahedron with the lowest number reports it. The search for a
+/// lower number walks in both directions alternately, so that all searches around one edge of k tetrahedra
+/// take O(k log k) steps together, whatever the numbering.
 pub(super) fn for_each_edge<E>(
     mesh: &Tetrahedralization,
     mut visit: impl FnMut(&Ring) -> Result<(), E>,
@@ -101,7 +101,8 @@ impl Walker {
         Walker { tetrahedron, exit, hinge: vertices[hinge], is_done: false }
     }
 
-    /// Steps into the next tetrahedron; the vertex by which it differs, or `None` at the hull.
+    /// Steps into the next tetrahedron. Returns its vertex that the last one does not have, or `None` at the
+    /// hull.
     fn step(&mut self, tetrahedra: &[Tetrahedron]) -> Option<u32> {
         if self.is_done {
             return None;

@@ -18,8 +18,8 @@ impl Number for BigInt {}
 /// A vector in any arithmetic.
 pub(super) type Vector<T> = [T; 3];
 
-/// A polynomial in the coordinates of `N` points and a radius, of the same unit, which comes as the square of
-/// its numerator and the square of its denominator. All terms have the same degree in the unit of length.
+/// A polynomial in the coordinates of `N` points and a radius in the same unit. The radius is given as the
+/// squares of its numerator and its denominator. All terms have the same degree in the unit of length.
 pub(super) trait Polynomial<const N: usize> {
     /// Its value.
     fn value<T: Number>(points: [Vector<T>; N], radius: &[T; 2]) -> T;
@@ -51,13 +51,13 @@ impl Approximate {
         Approximate { value, error: 0.0 }
     }
 
-    /// A result rounded by half a unit in the last place, or within the least numbers, of operands whose
-    /// errors may add up to `error`.
+    /// The rounded result of an operation to whose error the operands contribute at most `error`. Rounding
+    /// itself errs by at most half a unit in the last place, or less than the least normal number.
     fn rounded(value: f64, error: f64) -> Self {
         Approximate { value, error: (error + value.abs() * f64::EPSILON + f64::MIN_POSITIVE) * OF_BOUNDS }
     }
 
-    /// Whether all but about the last five of its digits can be relied upon.
+    /// Whether all of its digits except about the last five are reliable.
     pub(super) fn is_accurate(self) -> bool {
         self.value.is_finite() && self.error <= self.value.abs() * 1e-11
     }
@@ -88,8 +88,8 @@ impl Mul for Approximate {
     }
 }
 
-/// The root of a quotient of integers that are not negative, accurate to a few units in the last place, and
-/// twice the exponent of two that it is to be multiplied with.
+/// The root of a quotient of nonnegative integers: the result (m, e) stands for m * 2^(e / 2), where e is
+/// even and m is accurate to a few units in the last place.
 pub(super) fn root_of_quotient(dividend: &BigInt, divisor: &BigInt) -> (f64, i32) {
     const DIGITS: i64 = 64;
     let surplus = dividend.bits() as i64 - divisor.bits() as i64 - DIGITS;

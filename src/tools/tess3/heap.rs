@@ -14,8 +14,8 @@ thread_local! {
 /// The system's allocator, with counts per thread. A program that reports these counts installs it as its
 /// global allocator.
 ///
-/// A sweep works on several files at a time, and the system knows the memory of the whole process only; the
-/// heap of each thread tells how much each file took.
+/// A sweep works on several files at a time. The system reports the memory of the whole process only; the
+/// heap of each thread is the memory that each file took.
 #[derive(Debug)]
 pub struct CountingHeap;
 
@@ -54,8 +54,8 @@ unsafe impl GlobalAlloc for CountingHeap {
     }
 }
 
-/// Runs `work`, and returns the peak of the bytes that this thread held above those before; `None` without
-/// [`CountingHeap`].
+/// Runs `work`. Also returns the peak of this thread's heap memory in bytes above the level before; `None`
+/// without [`CountingHeap`].
 pub fn peak_during<T>(work: impl FnOnce() -> T) -> (T, Option<u64>) {
     let (before, outer) = (LIVE.get(), PEAK.get());
     PEAK.set(before);

@@ -15,15 +15,15 @@ use spmesh_io::source::structure::{Models, Selected, Structure};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter};
 
-/// Triangulates the selected models of a structure one by one, and writes to what `open` gives: a mesh for
-/// each model, whose place in the file and number `open` is told, or one table for all of them.
+/// Triangulates the selected models of a structure one by one, and writes them to outputs that `open`
+/// creates: a mesh for each model, of which `open` gets the place in the file and the number, or one table
+/// for all models.
 ///
 /// Memory: beside the structure and the kernel, 8 bytes per point for a mesh; for a table some 200, and the
 /// names.
 ///
 /// # Errors
-/// Usage, if the structure does not have what is selected, or nothing is left of it; otherwise if writing
-/// fails, or `open` does.
+/// Usage, if the structure lacks what is selected, or the selection is empty; those of writing and of `open`.
 pub fn run(
     structure: Structure,
     options: &Options,
@@ -38,7 +38,7 @@ pub fn run(
     Ok(reports)
 }
 
-/// What a model of a file may be called by.
+/// The place and the number of a model in its file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModelName {
     /// Its place in the file, from 1.
@@ -68,12 +68,12 @@ impl Job<'_> {
         Ok(reports)
     }
 
-    /// Triangulates what is selected of the selected model.
+    /// Triangulates the selected atoms of one model.
     fn model(&mut self, structure: &mut Structure, place: usize) -> Result<Report> {
         let started = Instant::now();
         let at = selection::model_index(structure, &self.options.selection)?;
         let name = ModelName { place, number: structure.models[at].number };
-        // Points of which nothing else is known are handed over, so that the kernel needs no copy.
+        // Points without atoms move into the kernel, which then needs no copy.
         let is_plain = self.options.product == Product::Mesh && structure.models[at].atoms.is_empty();
         if is_plain {
             selection::select(structure, &self.options.selection)?;
@@ -100,7 +100,7 @@ impl Job<'_> {
         Ok(report)
     }
 
-    /// The alpha complex that is wanted, if one is.
+    /// The alpha complex of the mesh, if the options ask for it.
     fn alpha<'m>(
         &self,
         model: &Model<'_>,
@@ -179,11 +179,11 @@ impl Job<'_> {
     }
 }
 
-/// What is written beside the mesh.
+/// The data that is written beside the mesh.
 struct Model<'s> {
     name: ModelName,
     coordinates: Coordinates,
-    /// The atoms, if they are more than points.
+    /// The selected atoms; `None` for plain points.
     selected: Option<&'s Selected<'s>>,
 }
 

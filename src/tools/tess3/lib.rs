@@ -82,7 +82,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Of a model with the given number of atoms, before anything is done.
+    /// The report of a model with `atoms` atoms, before any work.
     fn new(model: i64, atoms: usize) -> Self {
         Report { model, atoms: atoms as u64, ..Report::default() }
     }
@@ -91,10 +91,10 @@ impl Report {
 /// Rounding errors in a triangulation in floating-point arithmetic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rounding {
-    /// In-sphere tests whose sign was wrong, where the exact one is not zero. This and the next two are known
-    /// only if signs are checked.
+    /// In-sphere tests with a wrong sign, except those whose exact value is zero. This count and the next two
+    /// are known only if signs are checked.
     pub wrong_signs: u64,
-    /// In-sphere tests whose exact value is zero, and the computed one is not.
+    /// In-sphere tests whose exact value is zero and whose computed value is not.
     pub wrong_zeros: u64,
     /// In-sphere tests whose value was not the exact one.
     pub rounded: u64,

@@ -16,13 +16,13 @@ const PATCH_VERTICES: usize = 32_000;
 /// Id of a vertex that is in no patch so far.
 const NONE: u32 = u32::MAX;
 
-/// Marks what stands in place of the id of a vertex while it is imported into a patch: its number there. Ids
-/// are less: they are words of eight per tetrahedron to the kernel.
+/// Flag of an entry of `ids` that holds the place of a vertex in `imported`, while the current patch imports
+/// it. Ids are less, because the kernel counts eight words per tetrahedron in 32 bits.
 const IMPORTED: u32 = 1 << 31;
 
-/// Writes tetrahedra, with their vertices and the labels of these; then the vertices that are in none. A
-/// vertex is new in its first patch, and finalized in its last. `label` maps the index of a vertex among the
-/// points of the input to its label.
+/// Writes tetrahedra with their vertices and labels, then the vertices that are in no tetrahedron. A vertex
+/// is new in its first patch, and finalized in its last. `label` maps the index of a vertex among the points
+/// of the input to its label.
 ///
 /// Memory: 8 bytes per vertex, in space that the mesh no longer needs, and one patch.
 ///
@@ -76,7 +76,7 @@ struct PatchBuilder<'m, Label> {
     /// For each of `imported`, its local index.
     locals: Vec<u32>,
     labels: Vec<u64>,
-    /// The patch as it is written; corners are local indices of new vertices or marked as `ids` are.
+    /// The patch as it is written. A corner is the local index of a new vertex, or [`IMPORTED`] with a place.
     patch: Patch,
 }
 

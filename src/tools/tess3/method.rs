@@ -17,7 +17,7 @@ use spmesh_geometry::delaunay3_float;
 use spmesh_geometry::order::{Curve, Sequence};
 use spmesh_geometry::predicates::Point3;
 
-/// What a build says that lacks the feature `experiments`.
+/// The error message of a build without the feature `experiments`.
 pub const NO_EXPERIMENTS: &str = "this build has no experiments: --arithmetic, --order, --sequence, \
     --bit-levels, --seed, \
     --check-signs and --timed need a build with `cargo build --release --features experiments`";
@@ -28,7 +28,8 @@ pub enum Arithmetic {
     /// Signs are never wrong.
     #[default]
     Exact,
-    /// That of `f64`, with errors where rounding matters. Only builds with the feature `experiments` have it.
+    /// `f64`, whose signs are wrong where rounding matters. Only builds with the feature `experiments` have
+    /// it.
     Float {
         /// Whether signs are compared with the exact ones.
         check_signs: bool,

@@ -12,8 +12,8 @@ pub(super) struct AtomNames {
 }
 
 impl AtomNames {
-    /// The names of the atoms: `chain/residue/number/atom`, the number with its insertion code, and with
-    /// `/location` behind it where an atom has alternate locations. Points without names have their numbers.
+    /// The names of the atoms: `chain/residue/number/atom`. The number includes its insertion code.
+    /// `/location` follows if an atom has alternate locations. Points without names have their numbers.
     pub(super) fn new(selected: &Selected<'_>) -> Self {
         let mut names = AtomNames::default();
         for index in 0..selected.points().len() {

@@ -5,7 +5,7 @@ use std::io::Write;
 /// Digits that are printed: more than any coordinate of a structure has.
 const DIGITS: i32 = 9;
 
-/// Writes a number that is not negative with nine significant digits, without zeros at the end.
+/// Writes a nonnegative number with nine significant digits, without trailing zeros.
 ///
 /// # Errors
 /// If writing fails.

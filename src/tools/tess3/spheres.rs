@@ -1,8 +1,8 @@
 //! Circumscribed spheres of edges, triangles and tetrahedra: their sizes, and whether they are empty.
 //!
 //! In the formulas the first point is the origin. The centre of the sphere through 0, b, c, d is n / 2 D with
-//! n = b² (c × d) + c² (d × b) + d² (b × c) and D = det(b, c, d); that of the least sphere through 0, b, c is
-//! (β b + γ c) / 2 W with β = c² (b² - bc), γ = b² (c² - bc) and W = (b × c)².
+//! n = b² (c × d) + c² (d × b) + d² (b × c) and D = det(b, c, d). The centre of the least sphere through 0,
+//! b, c is (β b + γ c) / 2 W with β = c² (b² - bc), γ = b² (c² - bc) and W = (b × c)².
 
 use num_bigint::BigInt;
 

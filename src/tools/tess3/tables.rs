@@ -1,7 +1,7 @@
 //! Tables of tetrahedra and of contacts: lines of columns separated by tabs, below a line with their names.
 //!
-//! Rows do not depend on how the triangulation was made: atoms are in the order of the input within a row,
-//! and so are the rows.
+//! Rows do not depend on how the triangulation was made: the atoms of a row, and the rows, are in the order
+//! of the input.
 
 use std::io::Write;
 
@@ -29,7 +29,7 @@ const ROWS_LEN: usize = 1 << 16;
 pub(super) struct Rows<'s> {
     /// Number that the file gives it.
     pub(super) number: i64,
-    /// Its atoms: what the mesh was made of.
+    /// The atoms that the mesh was made of.
     pub(super) selected: &'s Selected<'s>,
     pub(super) mesh: &'s Tetrahedralization,
     /// The part of the mesh to print, if not all of it.

@@ -2,8 +2,8 @@
 
 use spmesh_geometry::predicates::Point2;
 
-/// Merges successive equal points, and rotates a ring to the least of its sequences, which starts at the
-/// least point by x, then y. Returns whether more than one point is left.
+/// Merges successive equal points, and rotates a ring to its lexicographically least sequence, which starts
+/// at the least point by x, then y. Returns whether more than one point is left.
 pub(super) fn tidy(points: &mut Vec<Point2>, is_closed: bool) -> bool {
     points.dedup();
     if is_closed {
@@ -18,8 +18,9 @@ pub(super) fn tidy(points: &mut Vec<Point2>, is_closed: bool) -> bool {
 
 /// The start at which a cyclic sequence is lexicographically least.
 ///
-/// Two starts are compared point by point. If they agree in `equal` points and then one is greater, no start
-/// within those points of the greater one is the least either. So the cost is linear.
+/// Two starts are compared point by point. If they agree in `equal` points and the next point of one is
+/// greater, then neither that start nor any of the `equal` starts after it is the least. So the cost is
+/// linear.
 fn least_rotation(points: &[Point2]) -> usize {
     let count = points.len();
     let (mut a, mut b, mut equal) = (0, 1, 0);

@@ -36,10 +36,12 @@ struct Line {
 }
 
 /// All open lines.
+///
 /// Cost: amortised, constant time for each piece and logarithmic time for each point joined, because the
 /// shorter line is moved to the longer one.
+///
 /// Memory: the points of these lines, and some 50 bytes for each end. Sweeps over all ends find lines that
-/// cannot grow; one is due when twice as much is held as after the last.
+/// cannot grow; a sweep is due when twice as much is held as after the last one.
 #[derive(Debug)]
 pub(super) struct OpenLines {
     waiting: HashMap<Crossing, (usize, End)>,

@@ -8,7 +8,7 @@ use spmesh_stream::Coordinates;
 /// Digits of a place beyond those of the step of integer coordinates.
 const DIGITS: i32 = 2;
 
-/// The parts of a step that these digits distinguish.
+/// Number of parts of a step that these digits distinguish.
 const PARTS: f64 = 100.0;
 
 /// A vertex of the mesh with its rank.
@@ -56,7 +56,7 @@ impl Plane {
             q.at
         } else {
             let height = q.elevation - p.elevation;
-            // A quotient by infinity would be zero.
+            // NaN instead of a quotient by infinity, which would be zero.
             let share = if height.is_finite() { (elevation - p.elevation) / height } else { f64::NAN };
             [0, 1].map(|axis| between(p.at[axis], q.at[axis], share))
         };
@@ -98,8 +98,8 @@ impl Elevations {
         Elevations { grid }
     }
 
-    /// The world elevation of a stored one. 30 steps of 0.01 are exactly the f64 0.3, and so on the level
-    /// 0.3.
+    /// The world elevation of a stored elevation. 30 steps of 0.01 give exactly the f64 0.3, so that they lie
+    /// on the level 0.3.
     pub(super) fn to_world(&self, stored: f64) -> f64 {
         self.grid.map_or(stored, |grid| grid.at(stored as i64))
     }

@@ -13,7 +13,7 @@ const BROAD: f64 = 1.0 / (1u64 << 20) as f64;
 #[derive(Debug)]
 pub(super) struct Facet {
     corners: [Point; 3],
-    /// By stored coordinates; NaN if these overflow.
+    /// In stored coordinates; NaN if products of coordinates overflow.
     pub(super) gradient: Point2,
     is_broad: bool,
     lowest: f64,
@@ -34,7 +34,7 @@ impl Facet {
         let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
         let products = [u[0] * v[1], u[1] * v[0]];
         let determinant = Some(2.0 * area(place(a), place(b), place(c)));
-        // Where products of coordinates overflow, nothing is known.
+        // NaN if products of coordinates overflow.
         let determinant = determinant.filter(|size| size.is_finite() && *size > 0.0).unwrap_or(f64::NAN);
         let gradient = [(u[2] * v[1] - u[1] * v[2]) / determinant, (u[0] * v[2] - u[2] * v[0]) / determinant];
         // The greatest difference from the elevation of the first corner, along each axis.

@@ -168,7 +168,7 @@ mod tests {
     /// Cells of three by three tiles.
     const SIDE: usize = 3 * TILE;
 
-    /// What a cell sees, looked for step by step.
+    /// The value that fills a cell, found step by step.
     fn slow(image: &[f32], at: [usize; 2], reach: u32) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for [dx, dy] in [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]] {

@@ -73,9 +73,9 @@ impl Edges {
 impl Edge {
     /// The place where the line of the edge meets a row.
     ///
-    /// Error: let u = 2^-53. Differences of ordinates and abscissae have a relative error of u, their
-    /// quotient of 3u, its product with the slope of the axis, itself of error u, of 5u, and the distance
-    /// from the start of 7u, plus u of the sum.
+    /// Error: let u = 2^-53. The relative error is u for differences of ordinates and abscissae, 3u for their
+    /// quotient, 5u for its product with the slope of the axis, whose own error is u, and 7u for the distance
+    /// from the start. The sum adds u.
     #[inline]
     fn place(&self, y: f64) -> Place {
         let distance = (y - self.from[1]) * self.slope;

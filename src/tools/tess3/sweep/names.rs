@@ -11,9 +11,9 @@ const FORMATS: [&str; 12] =
 /// The name of the output of each input, without its extension: relative to the folder of outputs, and none
 /// of `taken`.
 ///
-/// It is the base name without the extension of a format; with the extension, if several inputs would get the
-/// same name; with as many parent folders as needed, if that is the same too. Names that differ in case only
-/// count as equal, because some file systems ignore case.
+/// The name is the base name without the extension of its format. If several inputs would get the same name,
+/// it keeps the extension; if that does not suffice, it gets as many parent folders as needed. Names that
+/// differ in case only count as equal, because some file systems ignore case.
 pub(super) fn stems(inputs: &[&Path], taken: &HashSet<PathBuf>) -> Vec<PathBuf> {
     let taken: HashSet<OsString> = taken.iter().map(|path| folded(path)).collect();
     let levels_max: Vec<usize> = inputs.iter().map(|input| parts(input).len()).collect();
