@@ -33,10 +33,10 @@ impl BorderEdge<'_> {
     }
 }
 
-/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order k
-/// + 1 is a convex polygon; edges may be in line. If facets match and the boundaries of degree k - 1 are
-/// counterclockwise too, that triangulation is planar. Copies of a knot count as the limit that [`Knots`]
-/// defines.
+/// Checks that boundaries are counterclockwise, and that the centroid triangulation of order `k + 1` has a
+/// convex polygon as its border; edges may be in line. If facets match and the boundaries of degree `k - 1`
+/// are counterclockwise too, that triangulation is planar. Copies of a knot count as the limit that
+/// [`Knots`] defines.
 ///
 /// Cost: an orientation per configuration, big integers for each infinite one.
 ///
