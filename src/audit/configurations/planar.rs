@@ -33,8 +33,8 @@ impl BorderEdge<'_> {
     }
 }
 
-/// Checks that boundaries are counterclockwise, and that the border of the centroid triangulation of order k
-/// + 1 is a convex polygon; edges may be in line. If facets match and the boundaries of degree k - 1 are
+/// Checks that boundaries are counterclockwise, and that the centroid triangulation of order k + 1 has a
+/// convex polygon as its border; edges may be in line. If facets match and the boundaries of degree k - 1 are
 /// counterclockwise too, that triangulation is planar. Copies of a knot count as the limit that [`Knots`]
 /// defines.
 ///
