@@ -25,7 +25,8 @@ impl<const D: usize> Unused<D> {
         self.corners.len() as u64
     }
 
-    /// Proves that there are none. A mesh with a `simplex` may have none.
+    /// Proves that there are none, as required of a mesh with simplices. `simplex` names these in the
+    /// message.
     pub(super) fn check_none(&self, simplex: &str) -> Result<(), Violation> {
         let Some(corner) = self.corners.first() else { return Ok(()) };
         let message = format!("no {simplex} uses vertex {}", corner.id);

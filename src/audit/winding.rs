@@ -35,7 +35,7 @@ pub(super) enum Place {
 /// opposite to each corner whether its outer side faces the direction.
 pub(super) fn corner_of<const N: usize>(is_facing: [bool; N]) -> Option<(usize, Place)> {
     let facing = is_facing.iter().rev().fold(0u32, |bits, &is_facing| bits << 1 | u32::from(is_facing));
-    // Which case it is is unpredictable, so no branch depends on it.
+    // The case is unpredictable, so no branch depends on it.
     let is_ahead = facing.is_power_of_two();
     let odd = if is_ahead { facing } else { facing ^ ((1 << N) - 1) };
     let place = if is_ahead { Place::Ahead } else { Place::Behind };

@@ -51,7 +51,7 @@ pub struct Flags {
     output: PathBuf,
 
     /// All coordinates are multiples of Q, like 0.1: compute with the integer multiples, and write these.
-    /// Otherwise coordinates are rounded to f64, so that points of a grid are not exactly cospherical
+    /// Without this, coordinates are rounded to f64, so that points of a grid are not exactly cospherical
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 

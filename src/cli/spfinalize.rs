@@ -37,12 +37,11 @@ Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budge
 /// Finalize points: tag each cell of a quadtree or octree after the last point in it
 ///
 /// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK
-/// (VTU, VTP, VTS or legacy), or numbers without a header (--raw), all of them plain or
-/// compressed (.gz), and writes a stream of points. Its tags
-/// name cells in which no later point lies. The points of a cell are held back and written together
-/// (chunked), unless --preserve is given. The input is read at least twice, and again if headers do not state
-/// its bounding box or if cells are crowded. Input that cannot be read again is spooled, as are decoded
-/// points where that is cheaper (--spool).
+/// (VTU, VTP, VTS or legacy), or numbers without a header (--raw), all of them plain or compressed (.gz), and
+/// writes a stream of points. Its tags name cells in which no later point lies. The points of a cell are held
+/// back and written together (chunked), unless --preserve is given. The input is read at least twice, and
+/// again if headers do not state its bounding box or if cells are crowded. Input that cannot be read again is
+/// spooled, as are decoded points where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {

@@ -148,11 +148,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 enum Proof {
     /// None.
     None,
-    /// That a mesh or a stream of points keeps all its promises.
+    /// A proof that a mesh or a stream of points keeps all its promises.
     Audit(Box<Audit>),
-    /// That cells or simplices of four dimensions are what they claim to be.
+    /// A proof that cells or simplices of four dimensions are what they claim to be.
     Diagram(Box<StreamAudit>),
-    /// That configurations are what they claim to be.
+    /// A proof that configurations are what they claim to be.
     Configurations(Box<config_audit::StreamAudit>),
     /// A count of the violations in a tetrahedral mesh.
     Census(Box<Census>, Standard),

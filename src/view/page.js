@@ -3,19 +3,17 @@
 
 const LEAST_ZOOM = 2 ** -2;
 const ZOOM_STEP = 2;
-// As parts of the picture's width and height: how far an arrow key moves, and how much of the map stays in
-// sight.
+// As parts of the picture's width and height: how far an arrow key moves, and how much of the map stays in sight.
 const MOVE_STEP = 1 / 8;
 const IN_SIGHT = 1 / 4;
 const WHEEL_PIXELS_TO_DOUBLE = 300;
 const PINCH_PIXELS_TO_DOUBLE = 60;
-// Some mice report wheel steps in lines or pages: pixels per unit of each mode.
+// Pixels per unit of a wheel event, by its mode: pixels, lines or pages.
 const WHEEL_PIXELS = [1, 16, 400];
 // Drawing a map with longer paths takes more than a frame. Units: characters.
 const LIGHT_PATHS = 100_000;
 const PATH_CHARACTERS = 50;
-// A heavy map is drawn again after resting this long, moving by half the picture, or zooming by a factor of
-// two.
+// A heavy map is drawn again after resting this long, moving by half the picture, or zooming by a factor of two.
 const REST_MILLISECONDS = 100;
 const STEP_MILLISECONDS = 160;
 // Browsers refuse an address that changes with every frame.
@@ -137,8 +135,7 @@ function lengthText(length) {
   return length < 1e8 ? String(Number(length.toPrecision(3))) : length.toExponential(0).replace('+', '');
 }
 
-// Returns a function that redraws the scale bar of the picture for the current zoom, at most as long as at
-// first.
+// Returns a function that redraws the scale bar for the current zoom, at most as long as it was at first.
 function scaleBar() {
   const bar = furniture.querySelector('#scale path');
   const text = furniture.querySelector('#scale text');

@@ -42,8 +42,8 @@ pub struct DegreeProof {
     pub finite: usize,
     /// Configurations of two knots and the faraway point.
     pub infinite: usize,
-    /// Whether circles were checked: only configurations that claim to be Delaunay have only their interior
-    /// sets inside.
+    /// Whether circles were checked to contain their interior sets and no other knots: only where
+    /// configurations claim to be Delaunay.
     pub has_circles: bool,
     /// Counts of facets, which match, so that the centroid triangulation is planar; `None` unless the degree
     /// is 0 or the degree below is in the stream.

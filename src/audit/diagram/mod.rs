@@ -23,12 +23,13 @@
 //! boundary, because these cover the directions from `o` once.
 //!
 //! *The star is convex.* An infinite cell has one neighbour for each ridge of its facet, and shares exactly
-//! that ridge with it: their two facets are the two at the ridge. No vertex of a neighbour lies beyond the
-//! hyperplane of the facet. If the solid were not convex, a segment between two of its inner points would
-//! leave it, also after any small change of these points, and the plane through them and `o` would avoid all
-//! edges of the boundary. The plane cuts a polygon from the solid that is a star around `o`, so simple, and
-//! whose corners are in ridges of the boundary. None of the corners is concave; but a simple polygon without
-//! a concave corner is convex. So the cells tile the convex hull of the points, all of which are vertices.
+//! that ridge with it: the facets of these two cells are the two facets of the boundary at the ridge. No
+//! vertex of a neighbour lies beyond the hyperplane of the facet. If the solid were not convex, a segment
+//! between two of its inner points would leave it, also after any small change of these points, and the plane
+//! through them and `o` would avoid all edges of the boundary. The plane cuts a polygon from the solid that
+//! is a star around `o`, so simple, and whose corners are in ridges of the boundary. None of the corners is
+//! concave; but a simple polygon without a concave corner is convex. So the cells tile the convex hull of the
+//! points, all of which are vertices.
 //!
 //! *It is the Delaunay diagram.* Lift the points to the paraboloid. The lifts of the vertices of a cell are
 //! in a hyperplane, which is the graph of a function on the cell. Cells that share a facet agree there, so
@@ -42,8 +43,8 @@
 //! Let a point be on or inside of the sphere of a cell. Its lift is on or below the hyperplane of the cell.
 //! Outside of the cell, that hyperplane is below the function, which has the height of the lift at every
 //! given point. So the point is in the cell and on the sphere, hence at a corner; and since points are
-//! distinct, it is that vertex. So spheres are empty, each cell has all points of its sphere, and
-//! there are no other cells.
+//! distinct, it is that vertex. So spheres are empty, each cell has all points of its sphere, and there are
+//! no other cells.
 //!
 //! *Infinite cells.* Each facet of the boundary has one, with its neighbours across ridges. The order of
 //! cells is canonical, so no other diagram of the points passes.

@@ -19,8 +19,8 @@
 //!
 //! Conversely all of this holds of a convex solid, for any `o` inside. The audit takes a corner of a
 //! tetrahedron, moved into the tetrahedron by infinitesimals: towards its second corner, infinitely less
-//! towards the third, and less again towards the fourth. Then `o` lies on the same side of a plane
-//! or line as the first of the four corners off it, and no coordinates are computed.
+//! towards the third, and less again towards the fourth. Then `o` lies on the same side of a plane or line as
+//! the first of the four corners off it, and no coordinates are computed.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;

@@ -72,8 +72,8 @@ fn stored(knots: &Knots, frame: &Frame, id: u32) -> Point {
     [x, y, frame.elevations.as_ref().map_or(0.0, |elevations| elevations[id as usize])]
 }
 
-/// The origin of sums of `order` knots, chosen so that they fit 32 bits: the origin of the
-/// knots, or else their least coordinates.
+/// The origin of sums of `order` knots, chosen so that they fit 32 bits: the origin of the knots, or else
+/// their least coordinates.
 fn origin(knots: &Knots, frame: &Frame, order: usize) -> Option<Point> {
     let (mut min, mut max) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
     for id in 0..knots.len() as u32 {

@@ -1,5 +1,5 @@
-//! Conversion between formats: every input becomes the events of a stream, which go to every output that
-//! can hold their kind.
+//! Conversion between formats: every input becomes the events of a stream, which go to every output that can
+//! hold their kind.
 
 mod format;
 mod recognition;

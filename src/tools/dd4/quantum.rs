@@ -36,7 +36,7 @@ impl Quantum {
         for (axis, name) in ["x", "y", "z", "t"].into_iter().enumerate() {
             let (x, Quantum(quantum)) = (point[axis], self);
             let multiple = x / quantum;
-            // Not `>` for the opposite case: NaN must fail too.
+            // A negated `<=` instead of `>`, because NaN must fail too.
             let is_below = multiple.abs() <= MULTIPLE_MAX;
             if !is_below {
                 let message = format!(

@@ -28,7 +28,8 @@ pub(super) const OWN: u64 = 1 << 63;
 /// Stands for a missing number of a vertex that the node writes, and for a missing index in `locals`.
 const NO_VERTEX: u32 = u32::MAX;
 
-/// Stand for the number of the last patch of a point: the point is in no patch, or it is not finalized here.
+/// `UNUSED` and `KEPT` stand for the number of the last patch of a point that is in no patch, or that is not
+/// finalized here.
 const UNUSED: u32 = u32::MAX;
 const KEPT: u32 = u32::MAX - 1;
 
