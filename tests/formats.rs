@@ -61,7 +61,8 @@ fn point_files() -> Vec<(&'static str, Vec<u8>)> {
     files
 }
 
-/// Runs a tool on a file, plain and compressed, by name and through a pipe. All outputs must be equal.
+/// Runs a tool on a file, plain and compressed, by name and through a pipe, and texts also after a byte order
+/// mark. All outputs must be equal.
 fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: &[u8]) {
     let folder = Folder::new();
     let compressed = gzip(content);
@@ -70,6 +71,10 @@ fn assert_reads_compressed(tool: &str, arguments: &[&str], name: &str, content: 
     assert!(!expected.is_empty(), "{tool} {name}");
     assert!(expected == output(tool, &[arguments, &[&path]].concat(), &[]), "{tool} {name}.gz");
     assert!(expected == output(tool, &[arguments, &["-"]].concat(), &compressed), "{tool} of {name}.gz");
+    if str::from_utf8(content).is_ok_and(|text| !text.contains('\0')) {
+        let marked = folder.write(name, [b"\xef\xbb\xbf", content].concat());
+        assert!(expected == output(tool, &[arguments, &[&marked]].concat(), &[]), "{tool} of marked {name}");
+    }
 }
 
 #[test]
@@ -132,12 +137,33 @@ fn damaged_gzip_data_is_named_with_its_place() {
         let cut = &whole[..whole.len() - 9];
         let mut damaged = whole.clone();
         *damaged.iter_mut().nth_back(5).expect("a checksum") ^= 1;
-        for (bytes, part) in [(cut, "ends early: it was cut off at byte "), (&damaged[..], "is damaged")] {
+        for (bytes, part) in [
+            (cut, "ends early: it was cut off, or other bytes follow it, at byte "),
+            (&damaged[..], "is damaged"),
+        ] {
             let path = folder.write("input.gz", bytes);
             assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], 3, part);
             assert_outcome(tool, &[arguments(tool), &["-"]].concat(), bytes, 3, "stdin");
         }
     }
+}
+
+#[test]
+fn lists_of_files_are_read_from_files_and_pipes() {
+    let folder = Folder::new();
+    let paths = ["a.xyz", "b.xyz"].map(|name| folder.write(name, cloud(30)));
+    let text = format!("\u{feff}{}\r\n\n{}", paths[0], paths[1]);
+    let lists = [folder.write("list", &text), folder.write("list.gz", gzip(text.as_bytes()))];
+    let finalized = |arguments: &[&str]| output("spfinalize", arguments, text.as_bytes());
+    let expected = finalized(&[&paths[0], &paths[1]]);
+    for list in [&lists[0], &lists[1], "-"] {
+        assert!(finalized(&["--lof", list]) == expected, "{list}");
+        let out = folder.path(&format!("meshes-{}", list.len()));
+        output("tess3", &["--lof", list, "--out-dir", &out], text.as_bytes());
+        assert_eq!(std::fs::read_dir(&out).expect("the sweep").count(), 3, "{list}");
+    }
+    assert_outcome("spfinalize", &["--lof", &folder.write("none", "\n\n")], &[], 2, "lists no files");
+    assert_outcome("spdelaunay2d", &[&folder.path("")], &[], 2, "is a folder, expected a file");
 }
 
 /// The first bytes of a file of each format that is detected by its content.
@@ -212,10 +238,12 @@ fn formats_that_a_tool_does_not_read_are_named_with_those_it_reads() {
             let by_name = [Format::Binary, Format::VertexLines, Format::OtherText].contains(&format);
             let (code, part) = match *tool {
                 "spconvert" if by_name => (2, "give it with --from"),
-                "spconvert" => (2, &found[..]),
                 _ => (3, &found[..]),
             };
             assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], code, part);
+            if *tool == "dd4" && [Format::Pdb, Format::Spa, Format::Off].contains(&format) {
+                assert_outcome(tool, &[&path], &[], code, "lines of x y z t");
+            }
         }
     }
 }

@@ -18,10 +18,11 @@ pub mod splinefit;
 pub mod spview;
 pub mod tess3;
 
-use std::ffi::OsString;
-use std::io::{IsTerminal, Read, Write};
+use std::ffi::{OsStr, OsString};
+use std::io::{BufRead, BufReader, IsTerminal, Read, Write};
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::os::unix::ffi::OsStrExt;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, Parser};
@@ -187,7 +188,31 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
         return Ok((plain(std::io::stdin()).map_err(reading)?, name));
     }
     let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
+    if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
+        return Err(Error::usage("is a folder, expected a file").of_input(&name));
+    }
     Ok((plain(file).map_err(reading)?, name))
+}
+
+/// The files that `--lof` lists, one per line; empty lines do not count. `-` is stdin.
+///
+/// # Errors
+/// If the list cannot be read; usage, if it lists no file.
+pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
+    let (input, name) = open_input(list)?;
+    let mut files = Vec::new();
+    for line in BufReader::new(input).split(b'\n') {
+        let line = line.map_err(|e| Error::io("reading", e).of_input(&name))?;
+        let line = if files.is_empty() { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line) } else { &line };
+        let line = line.trim_ascii();
+        if !line.is_empty() {
+            files.push(OsStr::from_bytes(line).into());
+        }
+    }
+    if files.is_empty() {
+        return Err(Error::usage("lists no files").of_input(&name));
+    }
+    Ok(files)
 }
 
 /// The bytes of `input`, decompressed if they are compressed.

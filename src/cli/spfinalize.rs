@@ -1,14 +1,12 @@
 //! `spfinalize`: flags.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Parser;
 
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory};
-use spmesh_core::error::Error;
+use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
@@ -228,19 +226,6 @@ impl Flags {
         }
         Ok(paths)
     }
-}
-
-/// The files listed in `list`, one per line; empty lines do not count.
-fn read_list(list: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let text = std::fs::read_to_string(list)
-        .map_err(|e| Error::io("reading the list of files", e).of_input(list.display().to_string()))?;
-    let paths: Vec<PathBuf> =
-        text.lines().map(str::trim).filter(|line| !line.is_empty()).map(PathBuf::from).collect();
-    if paths.is_empty() {
-        return Err(Error::usage("lists no files").of_input(list.display().to_string()))
-            .context("nothing to read");
-    }
-    Ok(paths)
 }
 
 /// Shows progress and notices on stderr.

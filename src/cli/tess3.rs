@@ -6,15 +6,12 @@ mod selection;
 
 pub use spmesh_tess3::heap::CountingHeap;
 
-use std::ffi::OsStr;
-use std::io::{BufRead, BufReader};
-use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
-use super::{Common, StatsFormat, notice, open_input, progress::Progress, refuse_terminal};
+use super::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
 use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -294,14 +291,7 @@ impl Flags {
     fn files(&self) -> Result<Vec<PathBuf>> {
         let mut files = self.inputs.clone();
         if let Some(path) = &self.lof {
-            let (list, name) = open_input(path)?;
-            for line in BufReader::new(list).split(b'\n') {
-                let line = line.map_err(|e| Error::io("reading", e).of_input(&name))?;
-                let line = line.strip_suffix(b"\r").unwrap_or(&line);
-                if !line.is_empty() {
-                    files.push(OsStr::from_bytes(line).into());
-                }
-            }
+            files.extend(read_list(path)?);
         }
         if self.lof.as_deref() == Some(Path::new("-")) && files.iter().any(|file| file == Path::new("-")) {
             return Err(Error::usage("the list of files and a file cannot both come from stdin"));

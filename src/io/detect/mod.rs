@@ -124,6 +124,7 @@ const NO_LIST: &str = "";
 const VALUES: &str = "write its values as NRRD or raw numbers first";
 const TO_POINTS: &str = "write points as lines of x y z, or use tess3";
 const TO_STREAM: &str = "convert it first with spconvert";
+const TO_PLY: &str = "convert it first with spconvert --to ply";
 
 /// All formats. The first row whose test passes is the format of an input.
 const ROWS: [Row; 34] = [
@@ -233,7 +234,7 @@ const ROWS: [Row; 34] = [
         "it may be the error page of a failed download",
     ),
     row(Format::Spb, "an SPB file", "SPB", Test::Look(binary::is_spb), TO_STREAM),
-    row(Format::Smb, "an SMB mesh", "SMB", Test::Look(binary::is_smb), TO_STREAM),
+    row(Format::Smb, "an SMB mesh", "SMB", Test::Look(binary::is_smb), TO_PLY),
     row(Format::Binary, "of no known format", NO_LIST, Test::Look(|head| head.contains(&0)), ""),
     row(Format::Xyz, "an XYZ file of chemistry", "XYZ of chemistry", Test::Lines, TO_POINTS),
     row(Format::Pdb, "a PDB file", "PDB", Test::Lines, TO_POINTS),
@@ -255,6 +256,15 @@ impl Format {
     /// All formats, in the order in which they are tried.
     pub fn all() -> impl Iterator<Item = Format> {
         ROWS.iter().map(|row| row.format)
+    }
+
+    /// Whether the format is made for points on three axes.
+    fn holds_space(self) -> bool {
+        use Format::{
+            Las, Mmcif, Obj, Off, Pdb, Ply, Sma, Smb, Spa, Spb, VertexLines, VtkLegacy, VtkXml, Xyz,
+        };
+        let three = [Las, Spa, Spb, Sma, Smb, Ply, Obj, VertexLines, Off, VtkLegacy, VtkXml, Pdb, Mmcif, Xyz];
+        three.contains(&self)
     }
 
     /// Name of the format in messages, with an article.

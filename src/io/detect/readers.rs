@@ -13,6 +13,8 @@ pub struct Reader {
     pub formats: &'static [&'static [Format]],
     /// Whether `--raw` makes it read numbers without a header.
     pub has_raw: bool,
+    /// Axes of its points.
+    pub axes: usize,
 }
 
 /// Formats of points in space. Every tool that takes points reads them.
@@ -33,16 +35,16 @@ const POINTS: &[Format] = &[
 ];
 
 /// `spfinalize`.
-pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: &[POINTS], has_raw: true };
+pub const SPFINALIZE: Reader = Reader { tool: "spfinalize", formats: &[POINTS], has_raw: true, axes: 3 };
 
 /// `configgen`.
-pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false };
+pub const CONFIGGEN: Reader = Reader { tool: "configgen", formats: &[POINTS], has_raw: false, axes: 3 };
 
 /// `splinefit`.
-pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false };
+pub const SPLINEFIT: Reader = Reader { tool: "splinefit", formats: &[POINTS], has_raw: false, axes: 3 };
 
 /// `spinfo`, for the points that an audit compares with.
-pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS], has_raw: false };
+pub const SPINFO: Reader = Reader { tool: "spinfo", formats: &[POINTS], has_raw: false, axes: 3 };
 
 /// `spconvert`.
 pub const SPCONVERT: Reader = Reader {
@@ -62,6 +64,7 @@ pub const SPCONVERT: Reader = Reader {
         Format::Text,
     ]],
     has_raw: false,
+    axes: 3,
 };
 
 /// `tess3`.
@@ -69,6 +72,7 @@ pub const TESS3: Reader = Reader {
     tool: "tess3",
     formats: &[&[Format::Pdb, Format::Mmcif, Format::Xyz, Format::Off], POINTS],
     has_raw: false,
+    axes: 3,
 };
 
 /// `dd4`.
@@ -76,13 +80,14 @@ pub const DD4: Reader = Reader {
     tool: "dd4",
     formats: &[&[Format::Text, Format::OtherText, Format::Nrrd, Format::Nifti, Format::Stream, Format::Twin]],
     has_raw: true,
+    axes: 4,
 };
 
 /// All of them.
 pub const READERS: [&Reader; 7] = [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &TESS3, &DD4];
 
 /// The reader of a caller that does not name its tool.
-static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true };
+static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true, axes: 3 };
 
 impl Default for &'static Reader {
     fn default() -> Self {
@@ -122,7 +127,10 @@ impl Reader {
             let raw = if self.has_raw { "; raw numbers need --raw" } else { "" };
             return format!("zero byte at byte {at}: not text, and of no known format; {reads}{raw}");
         }
-        let hint = format.row().hint;
+        let hint = match format.holds_space() && self.axes == 4 {
+            true => "it has no times: write points as lines of x y z t",
+            false => format.row().hint,
+        };
         let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
         format!("this is {}; {reads}{hint}", format.name())
     }

@@ -76,7 +76,7 @@ impl<R: Read> Gunzip<R> {
         }
         let byte = input.get_ref().bytes - input.buffer().len() as u64;
         let found = match error.kind() {
-            ErrorKind::UnexpectedEof => "ends early: it was cut off".to_string(),
+            ErrorKind::UnexpectedEof => "ends early: it was cut off, or other bytes follow it,".to_string(),
             _ => format!("is damaged ({error})"),
         };
         io::Error::new(ErrorKind::InvalidData, format!("the gzip data {found} at byte {byte} of the file"))

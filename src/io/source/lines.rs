@@ -51,7 +51,8 @@ impl<R: Read> Lines<R> {
         }
     }
 
-    /// The next line without its line end (LF or CR LF); `None` at the end of the input.
+    /// The next line without its line end (LF or CR LF) and without a byte order mark; `None` at the end of
+    /// the input.
     ///
     /// # Errors
     /// If reading fails, or the line is too long.
@@ -81,13 +82,16 @@ impl<R: Read> Lines<R> {
         if self.line.last() == Some(&b'\r') {
             self.line.pop();
         }
+        if self.number == 1 && self.line.starts_with(BYTE_ORDER_MARK) {
+            self.line.drain(..BYTE_ORDER_MARK.len());
+        }
         if !self.ended && !self.line.is_empty() {
             self.unended = Some(self.number);
         }
         Ok((self.ended || !self.line.is_empty()).then_some(&self.line))
     }
 
-    /// As `next_line`, for texts that people write: strips white space around the line and a byte order mark.
+    /// As `next_line`, for texts that people write: strips white space around the line.
     ///
     /// # Errors
     /// As `next_line`; if the line contains a zero byte or a carriage return.
@@ -98,11 +102,7 @@ impl<R: Read> Lines<R> {
         if memchr::memchr(0, &self.line).is_some() {
             return Err(self.locate(Error::malformed("zero byte: not a text")));
         }
-        let line = match self.number {
-            1 => self.line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&self.line),
-            _ => &self.line,
-        };
-        let line = line.trim_ascii();
+        let line = self.line.trim_ascii();
         if memchr::memchr(b'\r', line).is_some() {
             let reason = "carriage return inside of a line: lines must end with LF or CR LF";
             return Err(self.locate(Error::malformed(reason)));

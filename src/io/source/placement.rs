@@ -113,7 +113,7 @@ impl Placement {
             return Ok(());
         }
         Err(Error::malformed(format!(
-            "coordinates {stored:?} are not finite (--skip-invalid drops and counts such points)"
+            "coordinates {stored:?} are not finite (spfinalize --skip-invalid drops and counts such points)"
         )))
     }
 }

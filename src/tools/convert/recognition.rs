@@ -9,7 +9,8 @@ use spmesh_io::detect::{self, SPCONVERT, detect};
 /// The format of an input that starts with `head`.
 ///
 /// # Errors
-/// Malformed, if the input is empty; usage, if its format is unknown, cannot be read, or is ambiguous.
+/// Malformed, if the input is empty or of a format that is not read; usage, if its format is unknown or
+/// ambiguous.
 pub(super) fn recognize(head: &[u8], name: &Path) -> Result<Format> {
     let found = detect(head)?;
     let by_name = || Format::from_path(&without_gz(name)).filter(|format| format.is_read());
@@ -27,7 +28,7 @@ pub(super) fn recognize(head: &[u8], name: &Path) -> Result<Format> {
         detect::Format::VertexLines | detect::Format::OtherText => by_name().ok_or_else(unknown)?,
         other if SPCONVERT.reads(other) => Format::Points,
         detect::Format::Binary => by_name().ok_or_else(unknown)?,
-        other => return Err(Error::usage(SPCONVERT.refusal(other, head))),
+        other => return Err(Error::malformed(SPCONVERT.refusal(other, head))),
     })
 }
 
