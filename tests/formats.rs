@@ -58,6 +58,7 @@ fn point_files() -> Vec<(&'static str, Vec<u8>)> {
     }
     let mesh = output("spdelaunay2d", &[], &stream);
     files.push(("mesh.obj", converted(&mesh, "obj")));
+    files.push(("mesh.sma", converted(&mesh, "sma")));
     files
 }
 

@@ -125,12 +125,14 @@ fn smoothness_lines(smoothness: &Smoothness, layout: &Layout) -> Vec<(&'static s
         return vec![("smoothness", format!("C{order}"))];
     }
     let least = found.iter().map(|candidate| candidate.order).min().unwrap_or(*order);
-    let first = format!("C{order} but for {} segments, where {what} (at least C{least}):", found.len());
+    let smoothness = |order: i32| if order < 0 { "values jump".to_string() } else { format!("C{order}") };
+    let least = smoothness(least);
+    let first = format!("C{order} but for {} segments, where {what} (least: {least}):", found.len());
     let segment = |candidate: &Candidate| {
         let [[a, b], [c, d]] = candidate.ends.map(|end| layout.frame.to_world(end));
         ("", format!("{a} {b} to {c} {d}"))
     };
-    let mut lines = vec![("smoothness", first.replace("C-1", "jumps"))];
+    let mut lines = vec![("smoothness", first)];
     lines.extend(found.iter().take(LISTED).map(segment));
     if found.len() > LISTED {
         lines.push(("", format!("and {} more", found.len() - LISTED)));

@@ -72,7 +72,8 @@ impl<R: Read> Vertices for ObjVertices<R> {
             let mut fields = fields(line);
             match fields.next() {
                 Some(b"v") => return parse_vertex(line).map(Some),
-                None | Some(b"f") => {}
+                // `x` finalizes a vertex, in an SMA mesh.
+                None | Some(b"f" | b"x") => {}
                 Some(other) if other[0] == b'#' || PASSED_OVER.contains(&other) => {}
                 Some(other) => return Err(unexpected(other, "a statement of a polygonal OBJ")),
             }
