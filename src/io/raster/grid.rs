@@ -71,9 +71,9 @@ impl Grid {
             Cells::Step { step, anchor } => Grid::covering(window, step, anchor),
             Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
             Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
-            Cells::Default if width.max(height) == 0.0 => {
-                Err(Error::usage("the input spans no area, so the cells of a raster have no size: give --step"))
-            }
+            Cells::Default if width.max(height) == 0.0 => Err(Error::usage(
+                "the input spans no area, so the cells of a raster have no size: give --step",
+            )),
             Cells::Default => Grid::covering(window, width.max(height) / CELLS_DEFAULT, window.min),
         }
     }
