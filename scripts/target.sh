@@ -5,6 +5,9 @@ case $target in /*) ;; *) target=$PWD/$target ;; esac
 export CARGO_TARGET_DIR=$target
 programs=$target/release
 
+# Prints the comment at the head of the script and ends it, if the argument asks for help.
+show_help() { case $1 in -h | --help) sed -n '2,/^[^#]/s/^# \{0,1\}//p' "$0" && exit ;; esac; }
+
 # Builds programs and examples, given as flags of cargo such as --bins or --example NAME.
 build() { cargo build --release --locked --quiet --manifest-path "$root/Cargo.toml" "$@"; }
 

@@ -30,7 +30,8 @@ use clap::{Args, Parser};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
-use spmesh_io::source::{Plain, name_of};
+use spmesh_io::detect::BYTE_ORDER_MARK;
+use spmesh_io::source::{Plain, name_of, open_file};
 use spmesh_model::bounds::Bounds;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
@@ -187,10 +188,7 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
         refuse_terminal()?;
         return Ok((plain(std::io::stdin()).map_err(reading)?, name));
     }
-    let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
-    if file.metadata().is_ok_and(|metadata| metadata.is_dir()) {
-        return Err(Error::usage("is a folder, expected a file").of_input(&name));
-    }
+    let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
     Ok((plain(file).map_err(reading)?, name))
 }
 
@@ -203,7 +201,7 @@ pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for line in BufReader::new(input).split(b'\n') {
         let line = line.map_err(|e| Error::io("reading", e).of_input(&name))?;
-        let line = if files.is_empty() { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&line) } else { &line };
+        let line = if files.is_empty() { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&line) } else { &line };
         let line = line.trim_ascii();
         if !line.is_empty() {
             files.push(OsStr::from_bytes(line).into());

@@ -126,8 +126,8 @@ fn smoothness_lines(smoothness: &Smoothness, layout: &Layout) -> Vec<(&'static s
     }
     let least = found.iter().map(|candidate| candidate.order).min().unwrap_or(*order);
     let smoothness = |order: i32| if order < 0 { "values jump".to_string() } else { format!("C{order}") };
-    let least = smoothness(least);
-    let first = format!("C{order} but for {} segments, where {what} (least: {least}):", found.len());
+    let (order, least) = (smoothness(*order), smoothness(least));
+    let first = format!("{order} but for {} segments, where {what} (least: {least}):", found.len());
     let segment = |candidate: &Candidate| {
         let [[a, b], [c, d]] = candidate.ends.map(|end| layout.frame.to_world(end));
         ("", format!("{a} {b} to {c} {d}"))

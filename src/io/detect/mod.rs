@@ -15,6 +15,9 @@ pub(crate) use text::is_off;
 /// Bytes from the start of an input that recognition needs.
 pub const HEAD_LEN: u64 = 1 << 16;
 
+/// The byte order mark that some editors write before UTF-8 text.
+pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The format of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -258,15 +261,6 @@ impl Format {
         ROWS.iter().map(|row| row.format)
     }
 
-    /// Whether the format is made for points on three axes.
-    fn holds_space(self) -> bool {
-        use Format::{
-            Las, Mmcif, Obj, Off, Pdb, Ply, Sma, Smb, Spa, Spb, VertexLines, VtkLegacy, VtkXml, Xyz,
-        };
-        let three = [Las, Spa, Spb, Sma, Smb, Ply, Obj, VertexLines, Off, VtkLegacy, VtkXml, Pdb, Mmcif, Xyz];
-        three.contains(&self)
-    }
-
     /// Name of the format in messages, with an article.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -282,7 +276,7 @@ pub fn detect(head: &[u8]) -> Result<Format> {
     if head.is_empty() {
         return Err(Error::malformed("empty: the input has no bytes"));
     }
-    let body = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
+    let body = head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(head);
     let fits = |row: &&Row| match row.test {
         Test::Magic(starts) => starts.iter().any(|start| body.starts_with(start)),
         Test::Look(fits) => fits(body),

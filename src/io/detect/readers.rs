@@ -127,7 +127,8 @@ impl Reader {
             let raw = if self.has_raw { "; raw numbers need --raw" } else { "" };
             return format!("zero byte at byte {at}: not text, and of no known format; {reads}{raw}");
         }
-        let hint = match format.holds_space() && self.axes == 4 {
+        let holds_space = READERS.iter().any(|reader| reader.axes == 3 && reader.reads(format));
+        let hint = match self.axes == 4 && holds_space {
             true => "it has no times: write points as lines of x y z t",
             false => format.row().hint,
         };

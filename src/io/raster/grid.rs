@@ -69,11 +69,11 @@ impl Grid {
         };
         match cells {
             Cells::Step { step, anchor } => Grid::covering(window, step, anchor),
-            Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
-            Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
-            Cells::Default if width.max(height) == 0.0 => Err(Error::usage(
+            _ if width.max(height) == 0.0 => Err(Error::usage(
                 "the input spans no area, so the cells of a raster have no size: give --step",
             )),
+            Cells::Columns(count) => exactly(width / f64::from(count), [Some(count), None]),
+            Cells::Rows(count) => exactly(height / f64::from(count), [None, Some(count)]),
             Cells::Default => Grid::covering(window, width.max(height) / CELLS_DEFAULT, window.min),
         }
     }

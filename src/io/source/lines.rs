@@ -3,6 +3,7 @@
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 
 use super::origin::FileView;
+use crate::detect::BYTE_ORDER_MARK;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{TEXT_HEADER_LINE_MAX, TEXT_LINE_MAX};
 
@@ -11,9 +12,6 @@ const BUFFER_LEN: usize = 1 << 17;
 
 /// Start of lines that may be longer than others: the header of a text twin holds the CRS.
 const HEADER_START: &[u8] = b"#spmesh ";
-
-/// Byte order mark, which some editors write before UTF-8 text.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Reads an input line by line. Memory: one line and a buffer.
 pub(super) struct Lines<R> {

@@ -1,6 +1,6 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
-use std::fs::File;
+use std::fs::{File, FileType};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::fd::AsFd;
 use std::os::unix::fs::FileExt;
@@ -29,6 +29,19 @@ pub(super) enum Origin {
     Open(Arc<File>),
 }
 
+/// Opens a file for reading, and says of which type it is.
+///
+/// # Errors
+/// If the file cannot be opened; usage, if it is a folder.
+pub fn open_file(path: &Path) -> Result<(File, FileType)> {
+    let file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let kind = file.metadata().map_err(|e| Error::io("opening", e))?.file_type();
+    if kind.is_dir() {
+        return Err(Error::usage("is a folder, expected a file"));
+    }
+    Ok((file, kind))
+}
+
 impl Origin {
     /// The bytes of `path`; "-" is standard input. An input that cannot be read twice (a pipe, a terminal, a
     /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice.
@@ -38,11 +51,7 @@ impl Origin {
         }
         let name = path.display().to_string();
         let mut open = || -> Result<Origin> {
-            let file = File::open(path).map_err(|e| Error::io("opening", e))?;
-            let kind = file.metadata().map_err(|e| Error::io("opening", e))?.file_type();
-            if kind.is_dir() {
-                return Err(Error::usage("is a folder, expected a file"));
-            }
+            let (file, kind) = open_file(path)?;
             if kind.is_file() {
                 return Ok(Origin::Path(path.to_path_buf()));
             }

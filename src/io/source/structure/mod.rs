@@ -98,10 +98,7 @@ fn read(
 ) -> Result<Structure> {
     let reading = |e| Error::io("reading", e).of_input(name);
     let mut input = Plain::new(input).map_err(reading)?;
-    let mut head = read_head(&mut input).map_err(reading)?;
-    if head.starts_with(b"\xef\xbb\xbf") {
-        head.drain(..3);
-    }
+    let head = read_head(&mut input).map_err(reading)?;
     let format = format.map_or_else(|| recognized(&head), Ok).map_err(|e| e.of_input(name))?;
     let input = Cursor::new(head).chain(input);
     let mut builder = StructureBuilder::default();

@@ -7,6 +7,7 @@ use std::ops::Range;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use crate::detect::BYTE_ORDER_MARK;
 use crate::source::numbers::fill;
 use crate::source::origin::FileView;
 use spmesh_core::error::{Error, Result};
@@ -58,7 +59,7 @@ impl Elements {
     pub(super) fn new(file: &FileView) -> Result<Self> {
         let mut mark = Vec::new();
         file.range(0, 3).read_to_end(&mut mark).map_err(|e| Error::io("reading", e))?;
-        let start = if mark == b"\xef\xbb\xbf" { 3 } else { 0 };
+        let start = if mark == BYTE_ORDER_MARK { BYTE_ORDER_MARK.len() as u64 } else { 0 };
         let input = BufReader::with_capacity(BUFFER_LEN, file.range(start, file.len()));
         let mut reader = Reader::from_reader(Bounded { input, left: 0 });
         reader.config_mut().expand_empty_elements = true;
