@@ -146,6 +146,8 @@ fn damaged_gzip_data_is_named_with_its_place() {
             assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], 3, part);
             assert_outcome(tool, &[arguments(tool), &["-"]].concat(), bytes, 3, "stdin");
         }
+        let padded = folder.write("padded.gz", [&whole[..], &[0; 512]].concat());
+        output(tool, &[arguments(tool), &[&padded]].concat(), &[]);
     }
 }
 

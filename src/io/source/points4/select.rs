@@ -65,20 +65,22 @@ fn is_wanted(selection: &Selection, point: &Point4, value: Option<f64>) -> bool 
 }
 
 /// Collects points.
+#[derive(Default)]
 struct Intake {
     points: Vec<Point4>,
     values: Option<Vec<f64>>,
     sites: u64,
     wanted: u64,
     missing: u64,
+    warning: Option<String>,
 }
 
 impl Intake {
     /// Keeps those wanted points for whose index among the wanted points `keeps` returns true.
     fn of(supply: &Supply, selection: &Selection, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
         let values = supply.has_values().then(Vec::new);
-        let mut intake = Intake { points: Vec::new(), values, sites: 0, wanted: 0, missing: 0 };
-        supply.scan(&mut |point, value| {
+        let mut intake = Intake { values, ..Intake::default() };
+        let warning = supply.scan(&mut |point, value| {
             intake.sites += 1;
             intake.missing += u64::from(value.is_some_and(f64::is_nan));
             if !is_wanted(selection, &point, value) {
@@ -87,7 +89,7 @@ impl Intake {
             intake.wanted += 1;
             if keeps(intake.wanted - 1) { intake.push(point, value) } else { Ok(()) }
         })?;
-        Ok(intake)
+        Ok(Intake { warning, ..intake })
     }
 
     fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
@@ -106,8 +108,8 @@ impl Intake {
     }
 
     fn finish(self, selection: &Selection) -> Selected4 {
-        let Intake { points, values, sites, wanted, missing } = self;
-        let mut warnings = Vec::new();
+        let Intake { points, values, sites, wanted, missing, warning } = self;
+        let mut warnings = Vec::from_iter(warning);
         if missing > 0 && !selection.keep_nan {
             warnings.push(format!("{missing} of {sites} points have no value (NaN) and are left out"));
         }
