@@ -133,7 +133,8 @@ pub(super) fn decompression(outcome: std::result::Result<std::io::Result<()>, St
         Ok(Ok(())) => Ok(()),
         Ok(Err(e)) => Err(match e.kind() {
             std::io::ErrorKind::UnexpectedEof => Error::malformed("the compressed points end too early"),
-            _ => Error::io("decompressing points", e),
+            _ if e.raw_os_error().is_some() => Error::io("decompressing points", e),
+            _ => Error::malformed(format!("the compressed points are damaged ({e})")),
         }),
         Err(panic) => Err(Error::malformed(format!("the compressed points are damaged ({panic})"))),
     }
