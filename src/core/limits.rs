@@ -58,6 +58,9 @@ pub const NUMBER_LEN_MAX: usize = 128;
 /// Longest GeoJSON file, in bytes: its values take ten times as much.
 pub const GEOJSON_LEN_MAX: u64 = 1 << 25;
 
+/// Most vertices of breaklines, of which each becomes a knot.
+pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
+
 /// Most files in a list of files: their names take about 100 MB.
 pub const LIST_FILES_MAX: usize = 1 << 20;
 

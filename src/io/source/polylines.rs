@@ -5,10 +5,10 @@ use std::io::Read;
 use serde_json::Value;
 
 use super::lines::quote;
-use super::words::{finite, for_each_line};
+use super::words::{finite, for_each_line_at};
 use crate::detect::read_head;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::GEOJSON_LEN_MAX;
+use spmesh_core::limits::{BREAKLINE_VERTICES_MAX, GEOJSON_LEN_MAX};
 use spmesh_model::points::Point2;
 
 /// The role of a polyline in a spline, as in the features of configurations.
@@ -96,15 +96,20 @@ fn kind_of(name: &[u8]) -> Result<PolylineKind> {
 
 fn of_text(input: impl Read) -> Result<Vec<Polyline>> {
     let mut polylines = Vec::new();
-    for_each_line(input, |words| {
+    let mut count = 0;
+    for_each_line_at(input, |number, words| {
         let kind = kind_of(words[0])?;
         let numbers = words[1..].iter().map(|word| finite(word)).collect::<Result<Vec<f64>>>()?;
         if numbers.len() % 2 != 0 {
             let found = numbers.len();
             return Err(Error::malformed(format!("found {found} coordinates, expected pairs of x and y")));
         }
-        let vertices = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        let position = format!("polyline {}", polylines.len());
+        let vertices: Vec<Point2> = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        count += vertices.len();
+        if count > BREAKLINE_VERTICES_MAX {
+            return Err(Error::malformed(format!("more than {BREAKLINE_VERTICES_MAX} vertices")));
+        }
+        let position = format!("line {number}");
         polylines.push(Polyline { kind, vertices, position });
         Ok(())
     })?;
@@ -214,9 +219,9 @@ mod tests {
         );
         for (text, part) in [
             ("", "no polyline"),
-            ("crease 0 0\n", "polyline 0: found 1 vertices, expected 2"),
+            ("# one\ncrease 0 0\n", "line 2: found 1 vertices, expected 2"),
             ("crease 0 0 1\n", "line 1: found 3 coordinates"),
-            ("corner 0 0\ncrease 0 0 0 0\n", "polyline 1: two consecutive"),
+            ("corner 0 0\ncrease 0 0 0 0\n", "line 2: two consecutive"),
             ("ridge 0 0 1 1\n", "line 1: found \"ridge\""),
             ("crease 0 0 1 inf\n", "finite"),
         ] {
