@@ -224,6 +224,24 @@ fn each_format_is_told_from_all_others() {
 }
 
 #[test]
+fn names_of_columns_are_no_molecules() {
+    let rows = "1 2 3\n4 5 6\n7 8 1\n";
+    for names in ["data_x data_y data_z", "loop_ y z", "MODEL x y", "AUTHOR me", "ATOM x y", "HETATM y z"] {
+        assert_eq!(detect(format!("{names}\n{rows}").as_bytes()).unwrap(), Format::Text, "{names}");
+        let (names, rows) = (names.replace(' ', ","), rows.replace(' ', ","));
+        assert_eq!(detect(format!("{names}\n{rows}").as_bytes()).unwrap(), Format::Text, "{names}");
+    }
+    for text in
+        ["MODEL 1", "MODEL        1", "REMARK 350", "END\nCRYST1   59.062", "ATOM      1  N   LYS A   1"]
+    {
+        assert_eq!(detect(text.as_bytes()).unwrap(), Format::Pdb, "{text}");
+    }
+    for text in ["data_1AKI", "DATA_1AKI  # a comment", "#\nloop_\n_atom_site.id"] {
+        assert_eq!(detect(text.as_bytes()).unwrap(), Format::Mmcif, "{text}");
+    }
+}
+
+#[test]
 fn formats_that_a_tool_does_not_read_are_named_with_those_it_reads() {
     let folder = Folder::new();
     for Reader { tool, .. } in READERS.iter().filter(|reader| reader.tool != "spinfo") {
