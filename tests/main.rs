@@ -15,6 +15,7 @@ mod formats;
 mod house;
 mod links;
 mod manifest;
+mod messages;
 mod output;
 mod pipelines;
 mod points4;
