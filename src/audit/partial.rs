@@ -137,7 +137,9 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
         if self.region.contains(at) {
             return Ok(());
         }
-        let message = format!("a point lies outside of the region {:?}", self.region);
+        let Region { min, max } = self.region;
+        let message =
+            format!("a point lies outside of the region from {min:?} to {max:?} (stored coordinates)");
         Err(Violation::new(Check::Region, message).with(id, at))
     }
 

@@ -38,6 +38,11 @@ pub(super) struct CellFlags {
 }
 
 impl CellFlags {
+    /// The raster whose grid is taken.
+    pub(super) fn like(&self) -> Option<&PathBuf> {
+        self.like.as_ref()
+    }
+
     /// The grid that the flags ask for. `window` returns the extent of the data; it is called only if no flag
     /// states the extent.
     pub(super) fn grid(&self, window: impl FnOnce() -> Result<Window>) -> Result<Grid> {

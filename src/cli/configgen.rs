@@ -13,6 +13,7 @@ use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, 
 use spmesh_configgen::{read_features, read_patches};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::source::{name_of, read_values};
 
@@ -163,9 +164,12 @@ impl Flags {
     fn run(&self) -> Result<()> {
         let started = Instant::now();
         system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
-        let options = self.options()?;
+        let inputs = self.inputs();
+        let lists = [&self.values, &self.patches, &self.features].into_iter().flatten();
+        check_apart(inputs.iter().chain(lists).map(PathBuf::as_path), &[("--output", &self.output)])?;
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, true)?;
+        let options = self.options()?;
         let mut progress = Progress::new(&self.common, "reading", None);
         let sites = self.sites(|points| progress.set(points))?;
         let read_time = started.elapsed();

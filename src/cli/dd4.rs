@@ -12,6 +12,7 @@ use clap::{Parser, ValueEnum};
 use super::{Common, StatsFormat, notice, progress::Progress};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_dd4::{Options, Quantum};
 use spmesh_geometry::diagram4::Route;
@@ -119,9 +120,11 @@ impl Flags {
         if self.source.is_stdin() && self.product.reads_stdin() {
             return Err(Error::usage("points and sites cannot both come from stdin"));
         }
-        let product = self.product.product(&self.output)?;
+        let inputs = self.source.file().into_iter().chain(self.product.file());
+        check_apart(inputs, &[("--output", &self.output)])?;
         // Fail before the computation if the output cannot be created.
-        let mut output = Output::create(&self.output, product.is_binary())?;
+        let mut output = Output::create(&self.output, self.product.is_binary(&self.output)?)?;
+        let product = self.product.product(&self.output)?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();

@@ -3,6 +3,7 @@
 mod cells;
 pub mod configgen;
 pub mod dd4;
+mod messages;
 pub mod progress;
 mod reduction;
 mod rows;
@@ -19,7 +20,7 @@ pub mod spview;
 pub mod tess3;
 
 use std::ffi::{OsStr, OsString};
-use std::io::{BufRead, BufReader, IsTerminal, Read, Write};
+use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::num::NonZeroUsize;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -27,40 +28,30 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser};
 
-use spmesh_core::error::{Error, ErrorKind};
+pub use messages::notice;
+pub(crate) use messages::say;
+use spmesh_core::error::Error;
 use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
 use spmesh_io::detect::BYTE_ORDER_MARK;
-use spmesh_io::source::{Plain, name_of, open_file};
+use spmesh_io::source::{Plain, name_of, open_file, open_stdin};
 use spmesh_model::bounds::Bounds;
 
 /// Runs a tool: parses its flags, calls `run`, and turns the result into an exit code and a message.
 ///
 /// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
 pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
-    let flags = match Flags::try_parse_from(join_stats_format(std::env::args_os())) {
+    let arguments = join_stats_format(std::env::args_os());
+    let flags: Flags = match messages::parse(&arguments) {
         Ok(flags) => flags,
-        Err(message) => {
-            let code = match message.print() {
-                Ok(()) => message.exit_code() as u8,
-                Err(error) => Error::io("printing", error).exit_code(),
-            };
-            return ExitCode::from(code);
-        }
+        Err(code) => return code,
     };
     system::widen_pipe(&std::io::stdin());
     system::widen_pipe(&std::io::stdout());
-    let tool = Flags::command().get_name().to_string();
     match run(flags) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            let code = error.downcast_ref::<Error>().map_or(1, Error::exit_code);
-            if code != ErrorKind::ClosedPipe.exit_code() {
-                say(&format!("{tool}: {error:#}\n"));
-            }
-            ExitCode::from(code)
-        }
+        Err(error) => messages::fail(Flags::command().get_name(), &error),
     }
 }
 
@@ -93,18 +84,6 @@ pub struct Common {
     /// Show progress: on a terminal, never, or as JSON lines on stderr
     #[arg(long, value_enum, default_value_t = progress::When::Auto, global = true)]
     pub progress: progress::When,
-}
-
-/// Prints a message for the user on stderr, with the tool's name before it.
-pub fn notice(tool: &str, common: &Common, message: &str) {
-    if !common.quiet {
-        say(&format!("{tool}: {message}\n"));
-    }
-}
-
-/// Prints on stderr. Unlike `eprint!`, it does not panic if stderr is closed.
-pub(crate) fn say(text: &str) {
-    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 /// How `--stats` is printed.
@@ -187,7 +166,7 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
     let reading = |e| Error::io("reading", e).of_input(&name);
     if path.as_os_str() == "-" {
         refuse_terminal()?;
-        return Ok((plain(std::io::stdin()).map_err(reading)?, name));
+        return Ok((plain(open_stdin()?).map_err(reading)?, name));
     }
     let (file, _) = open_file(path).map_err(|e| e.of_input(&name))?;
     Ok((plain(file).map_err(reading)?, name))

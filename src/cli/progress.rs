@@ -83,9 +83,9 @@ impl Progress {
         }
     }
 
-    /// Prints on stderr, beside the bar.
+    /// Prints a line on stderr, beside the bar.
     pub fn say(&self, text: &str) {
-        self.bar.suspend(|| super::say(text));
+        self.bar.suspend(|| super::messages::say_line(text));
     }
 }
 

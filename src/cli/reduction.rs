@@ -13,6 +13,7 @@ use super::{Common, StatsFormat, notice, open_input, parse_size, threads};
 use report::Report;
 use spmesh_core::error::Error;
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_model::bounds::Region;
 use spmesh_reduce::{Duplicates, Options, Part, Stats};
 use spmesh_stream::StreamReader;
@@ -109,6 +110,7 @@ impl<const D: usize> Tool<D> {
     /// As its reduction and its merging, and if an input or the output cannot be opened.
     pub(super) fn run(&self, flags: &Shared<D>, duplicates: Duplicates) -> anyhow::Result<()> {
         let part = flags.part()?;
+        check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         let started = Instant::now();
         let (output, stats) =
             if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, duplicates, part)? };
@@ -132,8 +134,8 @@ impl<const D: usize> Tool<D> {
             let message = "one stream of points at a time: spfinalize joins files (or use --merge)";
             return Err(Error::usage(message).into());
         };
-        let reader = open_stream(input)?;
         let output = Output::create(&flags.output, true)?;
+        let reader = open_stream(input)?;
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
         let threads = threads(flags.threads).get();
         let options = Options { duplicates, threads, part, memory: flags.memory, ..Options::default() };
@@ -144,8 +146,8 @@ impl<const D: usize> Tool<D> {
         if flags.inputs.iter().filter(|input| input.as_os_str() == "-").count() > 1 {
             return Err(Error::usage("stdin can be given once").into());
         }
-        let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
         let output = Output::create(&flags.output, true)?;
+        let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
         let mut progress = Progress::new(&flags.common, "merging", None);
         Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
     }

@@ -10,6 +10,7 @@ use super::{Common, notice, open_input, progress::Progress};
 use spmesh_convert::{Format, Options, convert};
 use spmesh_core::error::Error;
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 
 const EXAMPLES: &str = "\
 Formats:
@@ -85,6 +86,10 @@ pub fn run(flags: Flags) -> Result<()> {
     let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;
+    check_apart([flags.input.as_path()], &[("--output", &flags.output)])?;
+    let is_binary = to.is_binary() && !(to == Format::Ply && flags.ascii);
+    // Fail before the work if the output cannot be created.
+    let mut output = Output::create(&flags.output, is_binary)?;
     let (input, name) = open_input(&flags.input)?;
     let options = Options {
         from: flags.from,
@@ -93,8 +98,6 @@ pub fn run(flags: Flags) -> Result<()> {
         path: flags.input.is_file().then(|| flags.input.clone()),
         temp_dir: flags.temp_dir,
     };
-    let is_binary = to.is_binary() && !(to == Format::Ply && options.ascii);
-    let mut output = Output::create(&flags.output, is_binary)?;
     let mut progress = Progress::new(&flags.common, "converting", None);
     let notices = convert(input, &name, to, &mut output, &options, |points| progress.set(points))?;
     drop(progress);

@@ -2,6 +2,7 @@
 
 mod contours;
 
+use std::iter;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -14,6 +15,7 @@ use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
 use contours::{ContourFlags, Job};
 use spmesh_core::error::{Error, ErrorKind};
+use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::raster::{Light, RasterFormat};
 use spmesh_terrain::contours::LineFormat;
@@ -152,6 +154,8 @@ enum FormatFlag {
 /// opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
+    let inputs = iter::once(&flags.input).chain(flags.cells.like());
+    check_apart(inputs.map(PathBuf::as_path), &[("--output", &flags.output)])?;
     if let Some(options) = flags.contours.options(flags.kill()?)? {
         system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let job = Job {
@@ -165,9 +169,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
+    let mut output = cells::create(&flags.output, options.raster.format)?;
     let mut reader = open_stream(&flags.input)?;
     let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
-    let mut output = cells::create(&flags.output, options.raster.format)?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
     let stats = dem::rasterize(&mut reader, &mut output, &grid, &options, done)?;

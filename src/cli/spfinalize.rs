@@ -9,6 +9,7 @@ use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
+use spmesh_core::places::check_apart;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{Input, RawType, SourceOptions};
@@ -150,11 +151,15 @@ enum Spool {
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let options = flags.options()?;
-    let input = Input::open(&flags.paths()?, &flags.source_options())?;
+    // Fail before the work if the output cannot be created.
+    let mut output = Output::create(&flags.output, true)?;
+    let paths = flags.paths()?;
+    let inputs = paths.iter().chain(&flags.lof).map(PathBuf::as_path);
+    check_apart(inputs, &[("--output", &flags.output)])?;
+    let input = Input::open(&paths, &flags.source_options())?;
     for message in input.notices() {
         notice(TOOL, &flags.common, message);
     }
-    let mut output = Output::create(&flags.output, true)?;
     let mut watch = Watch { common: &flags.common, progress: None };
     let stats = spmesh_finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);

@@ -6,10 +6,12 @@ mod diagram;
 mod report;
 
 use std::io::{BufReader, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum};
 
+use super::messages::escaped_json;
 use super::progress::Progress;
 use super::{Common, notice, open_input};
 use report::Summary;
@@ -18,6 +20,7 @@ use spmesh_audit::diagram::{self as diagram4, StreamAudit};
 use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPINFO;
 use spmesh_io::source::{Input, SourceOptions};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
@@ -106,6 +109,10 @@ impl From<AuditStandard> for Standard {
 /// # Errors
 /// If the stream is malformed, cannot be read, or fails the audit (then the report is printed first).
 pub fn run(flags: Flags) -> anyhow::Result<()> {
+    let inputs = iter::once(&flags.input).chain(&flags.points).map(PathBuf::as_path);
+    check_apart(inputs, &[("the report", Path::new("-"))])?;
+    // Fail before the work if stdout is closed.
+    let output = Output::create(Path::new("-"), false)?;
     let (input, name) = open_input(&flags.input)?;
     let mut reader = StreamReader::new(BufReader::with_capacity(INPUT_BUFFER_LEN, input), name)?;
     let header = reader.header().clone();
@@ -140,7 +147,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         failure: failure.as_ref(),
         bytes: reader.bytes_read(),
     };
-    print(&if flags.json { summary.json() } else { summary.text() })?;
+    let report = if flags.json { escaped_json(&summary.json()) } else { summary.text() };
+    print(&report, output)?;
     failure.map_or(Ok(()), |failure| Err(failure.into()))
 }
 
@@ -262,8 +270,7 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
     }
 }
 
-fn print(text: &str) -> Result<()> {
-    let mut output = Output::create(Path::new("-"), false)?;
+fn print(text: &str, mut output: Output) -> Result<()> {
     output.write_all(text.as_bytes()).map_err(|e| Error::io("writing the report", e))?;
     output.commit()
 }

@@ -179,7 +179,8 @@ enum WhenFlag {
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let mut options = flags.options()?;
-    let mut outputs = Outputs::new(&flags.output, flags.format, flags.snapshot.is_some(), flags.tee)?;
+    let is_numbered = flags.snapshot.is_some();
+    let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
     let (input, name) = open_input(&flags.input)?;
     let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
     let mut reader = StreamReader::new(BufReader::with_capacity(BUFFER_LEN, input), name)?;

@@ -17,6 +17,7 @@ use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
+use spmesh_core::places::check_apart;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
 use spmesh_tess3::{Options, Product, Radius, Stats};
@@ -184,13 +185,18 @@ fn run_one(flags: &Flags) -> Result<Finished> {
         refuse_terminal()?;
     }
     let options = flags.options()?;
+    let is_binary = options.product == Product::Mesh;
+    check_apart([input.as_path()], &[("--output", &flags.output)])?;
+    // Fail before the work if the output cannot be created.
+    let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();
     let structure = read_structure(input, flags.from.map(Into::into))?;
     structure.warnings.iter().for_each(|warning| flags.notice(&format!("{}: {warning}", structure.name)));
     check_models(&structure, &options, flags)?;
     let read = started.elapsed();
-    let is_binary = options.product == Product::Mesh;
-    let reports = spmesh_tess3::run(structure, &options, &mut |_| Output::create(&flags.output, is_binary))?;
+    let reports = spmesh_tess3::run(structure, &options, &mut |_| {
+        output.take().ok_or_else(|| Error::usage("several models need a folder for their meshes"))
+    })?;
     let mut stats = Stats::default();
     for report in &reports {
         report::degeneracy(report, reports.len()).into_iter().for_each(|text| flags.notice(&text));
@@ -221,6 +227,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
     let options = flags.options()?;
     let wanted = Sweep {
         files: flags.files()?,
+        list: flags.lof.clone(),
         format: flags.from.map(Into::into),
         options_text: flags.options_text(),
         options,
@@ -240,7 +247,7 @@ fn run_sweep(flags: &Flags, folder: &Path) -> Result<Finished> {
             News::Done => done += 1,
             News::Failed(error) => {
                 done += 1;
-                progress.iter().for_each(|bar| bar.say(&format!("tess3: {error}\n")));
+                progress.iter().for_each(|bar| bar.say(&format!("tess3: {error}")));
             }
         }
         progress.iter_mut().for_each(|bar| bar.set(done));

@@ -5,6 +5,7 @@ pub mod error;
 pub mod limits;
 pub mod output;
 pub mod parallel;
+pub mod places;
 pub mod prefetch;
 pub mod random;
 pub mod system;

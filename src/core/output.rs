@@ -1,23 +1,31 @@
 //! The output of a tool: stdout, or a file that appears under its name only when it is complete.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata};
 use std::io::{self, BufWriter, IsTerminal, Seek, SeekFrom, Write};
 use std::os::fd::{AsFd, AsRawFd};
-use std::os::unix::fs::PermissionsExt;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 
 use rustix::fs::{AtFlags, CWD};
 #[cfg(target_os = "linux")]
 use rustix::fs::{Mode, OFlags};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::system;
+use crate::temporary::without_path;
 
 /// Bytes of the write buffer.
 const BUFFER_LEN: usize = 1 << 18;
 
 /// Permissions of a new file, narrowed by the umask of the process.
 const FILE_MODE: u32 = 0o666;
+
+/// The permissions that a file passes on to the one that replaces it.
+const PERMISSIONS: u32 = 0o777;
+
+/// Symbolic links that are followed one after the other, as on Linux.
+const LINKS_MAX: usize = 40;
 
 /// Write-back to the disk starts after every so many bytes, so that the commit waits for few bytes only.
 const WRITE_BACK_LEN: u64 = 8 << 20;
@@ -53,13 +61,15 @@ enum Sink {
 
 impl Output {
     /// Opens stdout for `-`, otherwise a file that will get the name `path`. If `path` is a symbolic link,
-    /// its target is replaced, and the link stays.
+    /// its target is created or replaced, and the link stays. A file that is replaced passes on its
+    /// permissions, and its owner if the system allows that.
     ///
     /// # Errors
-    /// Usage, if `binary` data would go to a terminal; I/O, if the folder cannot be written to.
+    /// Usage, if `binary` data would go to a terminal; I/O, if stdout is closed or the folder cannot be
+    /// written to.
     pub fn create(path: &Path, binary: bool) -> Result<Output> {
         if path == Path::new("-") {
-            let stdout = io::stdout();
+            let stdout = open_stdout()?;
             if binary && stdout.is_terminal() {
                 return Err(Error::usage(
                     "refusing to write binary data to a terminal: redirect it, pipe it, or use --output",
@@ -81,8 +91,8 @@ impl Output {
         self.written
     }
 
-    /// Flushes, waits until the data of a file are on the disk, and gives it its final name. An existing file
-    /// of that name is replaced.
+    /// Flushes, waits until the data of a file are on the disk, gives it its final name, and waits until that is
+    /// on the disk too. An existing file of that name is replaced.
     ///
     /// # Errors
     /// If the last bytes cannot be written, or the file cannot get its name. Nothing is left behind then.
@@ -147,22 +157,68 @@ impl Seek for Output {
     }
 }
 
+/// Stdout.
+///
+/// # Errors
+/// If it was closed when the program started.
+pub fn open_stdout() -> Result<io::Stdout> {
+    let stdout = io::stdout();
+    if system::was_closed(&stdout) {
+        return Err(Error::new(ErrorKind::Io, "stdout is closed: redirect it to a file or a pipe"));
+    }
+    Ok(stdout)
+}
+
 fn create_file(path: &Path) -> io::Result<Sink> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    if fs::metadata(&target).is_ok_and(|metadata| !metadata.is_file()) {
-        let file = fs::OpenOptions::new().write(true).open(target)?;
-        return Ok(Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, file)));
+    let replaced = match fs::metadata(path) {
+        Ok(found) if !found.is_file() => {
+            let file = fs::OpenOptions::new().write(true).open(path)?;
+            return Ok(Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, file)));
+        }
+        Ok(found) => Some(found),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => None,
+        Err(e) => return Err(e),
+    };
+    let target = target_of(path);
+    if !target.file_name().is_some_and(|name| target.as_os_str().as_bytes().ends_with(name.as_bytes())) {
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "the path has no file name"));
     }
     if let Some(file) = open_unnamed(folder_of(&target)) {
+        keep_permissions(&file, replaced.as_ref());
         return Ok(Sink::Unnamed { file: BufWriter::with_capacity(BUFFER_LEN, file), target });
     }
-    let mode = fs::Permissions::from_mode(FILE_MODE);
+    let mode = replaced.as_ref().map_or(FILE_MODE, |replaced| replaced.mode() & FILE_MODE);
     let mut builder = tempfile::Builder::new();
-    let file = builder.prefix(TEMPORARY_PREFIX).permissions(mode).tempfile_in(folder_of(&target))?;
+    builder.prefix(TEMPORARY_PREFIX).permissions(fs::Permissions::from_mode(mode));
+    let file = builder.tempfile_in(folder_of(&target)).map_err(without_path)?;
+    keep_permissions(file.as_file(), replaced.as_ref());
     Ok(Sink::Named { file: BufWriter::with_capacity(BUFFER_LEN, file), target })
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// Gives a file the owner and the permissions of the file that it will replace, as far as the system allows.
+fn keep_permissions(file: &File, replaced: Option<&Metadata>) {
+    let Some(replaced) = replaced else { return };
+    if fchown(file, Some(replaced.uid()), Some(replaced.gid())).is_err() {
+        let _ = fchown(file, None, Some(replaced.gid()));
+    }
+    // After the owner, whose change may clear permissions.
+    let _ = file.set_permissions(fs::Permissions::from_mode(replaced.mode() & PERMISSIONS));
+}
+
+/// The file that `path` leads to through symbolic links, whether it exists or not.
+pub(crate) fn target_of(path: &Path) -> PathBuf {
+    if let Ok(target) = fs::canonicalize(path) {
+        return target;
+    }
+    let mut target = path.to_path_buf();
+    for _ in 0..LINKS_MAX {
+        let Ok(next) = fs::read_link(&target) else { break };
+        target = folder_of(&target).join(next);
+    }
+    target
+}
+
+pub(crate) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -195,10 +251,11 @@ fn commit_unnamed(file: BufWriter<File>, target: &Path) -> io::Result<()> {
             let mut builder = tempfile::Builder::new();
             let linked =
                 builder.prefix(TEMPORARY_PREFIX).make_in(folder_of(target), |name| link(&file, name))?;
-            linked.into_temp_path().persist(target).map_err(|e| e.error)
+            linked.into_temp_path().persist(target).map_err(|e| e.error)?;
         }
-        other => other,
+        other => other?,
     }
+    sync_folder(folder_of(target))
 }
 
 fn link(file: &File, name: &Path) -> io::Result<()> {
@@ -209,5 +266,16 @@ fn link(file: &File, name: &Path) -> io::Result<()> {
 fn commit_named(file: BufWriter<tempfile::NamedTempFile>, target: &Path) -> io::Result<()> {
     let file = file.into_inner().map_err(|e| e.into_error())?;
     file.as_file().sync_all()?;
-    file.persist(target).map(drop).map_err(|e| e.error)
+    file.persist(target).map_err(|e| e.error)?;
+    sync_folder(folder_of(target))
+}
+
+/// Waits until the names in a folder are on the disk. Folders that may not be read, and file systems without
+/// this request, are left alone.
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    let Ok(folder) = File::open(folder) else { return Ok(()) };
+    match folder.sync_all() {
+        Err(e) if matches!(e.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => Ok(()),
+        other => other,
+    }
 }

@@ -1,13 +1,54 @@
 //! Pipes, memory, free space and write-back, as far as the operating system offers them. No result depends on
 //! them: if the system refuses a request, the program goes on without it.
 //!
-//! `libc` serves only where `rustix` has no function: `mallopt`, `signal`, `_exit` and `sync_file_range`.
+//! `libc` serves only where `rustix` has no function (`mallopt`, `signal`, `_exit`, `sync_file_range`), and
+//! before `main`.
 
-use std::os::fd::AsFd;
-#[cfg(target_os = "linux")]
-use std::os::fd::AsRawFd;
+use std::os::fd::{AsFd, AsRawFd};
 use std::path::Path;
 use std::sync::OnceLock;
+#[cfg(target_os = "linux")]
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// Which of the descriptors 0, 1 and 2 were closed when the program started, one bit each.
+#[cfg(target_os = "linux")]
+static CLOSED_AT_START: AtomicU8 = AtomicU8::new(0);
+
+/// The loader calls the functions of this section before `main`. Later is too late: the start of Rust's
+/// runtime opens /dev/null in place of closed descriptors.
+// SAFETY: the section holds pointers to functions; the C library calls them with up to three arguments, which
+// a function of the C calling convention may ignore.
+#[cfg(target_os = "linux")]
+#[used]
+#[unsafe(link_section = ".init_array")]
+static AT_START: extern "C" fn() = record_closed;
+
+/// Only makes system calls: nothing of Rust's runtime is ready.
+#[cfg(target_os = "linux")]
+extern "C" fn record_closed() {
+    for descriptor in 0..3 {
+        // SAFETY: the call takes integers, and only reads flags.
+        if unsafe { libc::fcntl(descriptor, libc::F_GETFD) } < 0 {
+            CLOSED_AT_START.fetch_or(1 << descriptor, Ordering::Relaxed);
+        }
+    }
+}
+
+/// Whether stdin, stdout or stderr was closed when the program started (`>&-` in a shell). Then its data
+/// would be lost in /dev/null without an error. `false` for other descriptors.
+#[cfg(target_os = "linux")]
+#[must_use]
+pub fn was_closed(standard: &impl AsRawFd) -> bool {
+    let descriptor = standard.as_raw_fd();
+    (0..3).contains(&descriptor) && CLOSED_AT_START.load(Ordering::Relaxed) & (1 << descriptor) != 0
+}
+
+/// `false`: not determined on this system.
+#[cfg(not(target_os = "linux"))]
+#[must_use]
+pub fn was_closed(_standard: &impl AsRawFd) -> bool {
+    false
+}
 
 /// Capacity of a widened pipe, in bytes. With the default of 64 KiB, the two ends keep waiting for each
 /// other.

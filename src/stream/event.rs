@@ -143,6 +143,10 @@ impl Totals {
     /// Number of totals.
     pub(super) const FIELDS: usize = 7;
 
+    /// Names of the totals in messages, in their order in the END block.
+    pub(super) const NAMES: [&str; Self::FIELDS] =
+        ["points", "cells", "vertices", "simplices", "merged points", "residual points", "walls"];
+
     /// The totals in their order in the END block.
     pub(super) fn fields(&self) -> [u64; Self::FIELDS] {
         [

@@ -154,8 +154,10 @@ impl Tally {
                 self.labels, counted.vertices
             )));
         }
-        if *stated != counted {
-            return Err(Error::malformed(format!("END states {stated:?}, but the stream holds {counted:?}")));
+        let pairs = stated.fields().into_iter().zip(counted.fields());
+        if let Some((name, (stated, counted))) = Totals::NAMES.iter().zip(pairs).find(|(_, (a, b))| a != b) {
+            let message = format!("END states {stated} {name}, but the stream holds {counted}");
+            return Err(Error::malformed(message));
         }
         if header.points.is_some_and(|points| points != stated.points) {
             return Err(Error::malformed("END: the header states another number of points"));

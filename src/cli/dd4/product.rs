@@ -61,9 +61,23 @@ enum TriangulateFlag {
 }
 
 impl ProductFlags {
+    /// The file of sites.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.at_file.as_deref()
+    }
+
     /// Whether sites come from stdin.
     pub(super) fn reads_stdin(&self) -> bool {
-        self.at_file.as_ref().is_some_and(|path| path.as_os_str() == "-")
+        self.file().is_some_and(|path| path.as_os_str() == "-")
+    }
+
+    /// Whether the product is binary. Does not read sites.
+    ///
+    /// # Errors
+    /// Usage, if the format of the path cannot hold the product.
+    pub(super) fn is_binary(&self, output: &Path) -> Result<bool> {
+        let has_sites = self.at_file.is_some();
+        Ok(!has_sites && self.product(output)?.is_binary())
     }
 
     /// The requested product, for an output path. Reads the sites of `--at-file`, so that a mistake there is

@@ -1,7 +1,7 @@
 //! Flags for the input and the selection of points.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
@@ -83,9 +83,14 @@ impl SourceFlags {
         read_points4(&self.request()?)
     }
 
+    /// The input, if it is not a grid.
+    pub(super) fn file(&self) -> Option<&Path> {
+        self.input.as_deref()
+    }
+
     /// Whether points come from stdin.
     pub(super) fn is_stdin(&self) -> bool {
-        self.input.as_ref().is_some_and(|path| path.as_os_str() == "-")
+        self.file().is_some_and(|path| path.as_os_str() == "-")
     }
 
     fn request(&self) -> Result<Request> {

@@ -91,8 +91,8 @@ pub(super) fn run(
     started: Instant,
     notice: impl Fn(&str),
 ) -> anyhow::Result<()> {
-    let mut reader = open_stream(job.input)?;
     let mut output = Output::create(job.output, false)?;
+    let mut reader = open_stream(job.input)?;
     let mut progress = Progress::new(job.common, "contouring", reader.header().points);
     let stats = contours::contour(&mut reader, &mut output, job.format, options, |done| progress.set(done))?;
     drop(progress);

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{census, configurations, diagram};
+use crate::messages::escaped;
 use spmesh_audit::diagram::{Proof, Violation};
 use spmesh_audit::{Counts, Inventory, Report, shortest};
 use spmesh_core::error::Error;
@@ -23,21 +24,15 @@ pub(super) struct Summary<'a> {
     pub(super) bytes: u64,
 }
 
-/// Text of a stream with its control characters replaced, so that it cannot control a terminal or fake a
-/// line.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect()
-}
-
 impl Summary<'_> {
     /// Lines of a name and a value each; the audit has a line per check.
     pub(super) fn text(&self) -> String {
-        let mut text = format!("{}: {}\n", self.name, self.header.kind.name());
+        let mut text = format!("{}: {}\n", escaped(self.name), self.header.kind.name());
         let mut line = |name: &str, value: String| text += &format!("  {name:<12} {value}\n");
-        line("producer", printable(&self.header.producer));
+        line("producer", escaped(&self.header.producer));
         line("coordinates", self.coordinates_text());
         line("bounds", self.world_bounds().map_or("none".into(), |bounds| self.bounds_text(&bounds)));
-        line("CRS", printable(&crs_text(&self.header.crs)));
+        line("CRS", escaped(&crs_text(&self.header.crs)));
         if let Some(tree) = &self.header.tree {
             let shape = if tree.dims() == 2 { "quadtree" } else { "octree" };
             let origin = words(&tree.origin()[..usize::from(tree.dims())]);

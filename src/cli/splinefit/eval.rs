@@ -1,5 +1,6 @@
 //! `splinefit eval`: flags.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -9,6 +10,7 @@ use crate::cells::{self, CellFlags, RasterFlags};
 use crate::{Common, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::raster::RasterFormat;
 use spmesh_io::source::{Input, SourceOptions};
@@ -80,6 +82,8 @@ impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
         let sites = self.at.as_ref().map(|path| ("--at", path.as_path()));
         check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites))?;
+        let inputs = iter::once(&self.spline).chain(&self.at).chain(self.cells.like());
+        check_apart(inputs.map(PathBuf::as_path), &[("--output", &self.output)])?;
         match &self.at {
             Some(sites) => self.sites(common, sites),
             None => self.cells(common),

@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::io::Write;
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -11,6 +12,7 @@ use super::{Threads, check_stdin, report, say};
 use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{
     Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
@@ -139,11 +141,12 @@ impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
         let started = Instant::now();
         self.check_stdin()?;
-        let options = self.options()?;
+        self.check_apart()?;
         // Fail before the work if an output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
         let rejected = self.rejected.as_ref().map(|path| Output::create(path, false)).transpose()?;
+        let options = self.options()?;
         let points = self.points(common)?;
         points.notices().iter().for_each(|text| say(common, text));
         let knots = self.knots(common)?;
@@ -178,6 +181,14 @@ impl Flags {
         let others = [("--knots", &self.knots), ("--features", &self.features), ("--weights", &self.weights)];
         let others = others.iter().filter_map(|(flag, path)| Some((*flag, path.as_deref()?)));
         check_stdin(self.inputs.iter().map(|path| ("points", path.as_path())).chain(others))
+    }
+
+    fn check_apart(&self) -> Result<()> {
+        let others = [&self.knots, &self.features, &self.weights].into_iter().flatten();
+        let lists = [("--residuals", &self.residuals), ("--rejected", &self.rejected)];
+        let lists = lists.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)));
+        let outputs: Vec<_> = iter::once(("--output", self.output.as_path())).chain(lists).collect();
+        check_apart(self.inputs.iter().chain(others).map(PathBuf::as_path), &outputs)
     }
 
     fn options(&self) -> Result<Options> {

@@ -1,6 +1,7 @@
 //! `splinefit info`: flags and output.
 
 use std::io::Write;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -9,8 +10,10 @@ use serde_json::{Map, Value, json};
 use super::report::{outside, residual_rows};
 use super::{Threads, check_stdin, say};
 use crate::Common;
+use crate::messages::{escaped, escaped_json};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_io::raster::Window;
 use spmesh_io::source::{SourceOptions, crs_name};
 use spmesh_splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
@@ -48,16 +51,19 @@ impl Flags {
     pub(super) fn run(&self, common: &Common) -> Result<()> {
         let points = self.points.iter().map(|path| ("points", path.as_path()));
         check_stdin([("the spline", self.spline.as_path())].into_iter().chain(points))?;
+        let inputs = iter::once(&self.spline).chain(&self.points).map(PathBuf::as_path);
+        check_apart(inputs, &[("the report", Path::new("-"))])?;
+        // Fail before the work if stdout is closed.
+        let mut output = Output::create(Path::new("-"), false)?;
         let (layout, residuals) = self.compare()?;
         if let Some(residuals) = residuals.as_ref().filter(|residuals| residuals.outside > 0) {
             say(common, &outside(residuals));
         }
         let summary = Summary::of(&layout)?;
         let text = match self.json {
-            true => format!("{}\n", json(&summary, &layout, residuals.as_ref())),
+            true => escaped_json(&format!("{}\n", json(&summary, &layout, residuals.as_ref()))),
             false => text(&summary, &layout, residuals.as_ref()),
         };
-        let mut output = Output::create(Path::new("-"), false)?;
         output.write_all(text.as_bytes()).map_err(|error| Error::io("printing", error))?;
         output.commit()
     }
@@ -80,7 +86,7 @@ fn text(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> S
     line("degree", summary.degree.to_string());
     line("knots", format!("{} at {} places", summary.knots, summary.places));
     line("functions", summary.functions.to_string());
-    line("crs", crs_name(&layout.frame.crs).unwrap_or_else(|| "unknown".into()));
+    line("crs", crs_name(&layout.frame.crs).map_or("unknown".into(), |name| escaped(&name)));
     line("bounds", summary.bounds.map_or("none".into(), box_text));
     line(
         "domain",

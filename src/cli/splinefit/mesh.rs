@@ -7,6 +7,7 @@ use clap::Args;
 
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_io::source::name_of;
 use spmesh_splinefit::{ControlMesh, Spline};
 use spmesh_stream::StreamReader;
@@ -30,6 +31,7 @@ pub(super) struct Flags {
 impl Flags {
     pub(super) fn run(&self) -> Result<()> {
         let is_picture = self.svg || self.output.extension().is_some_and(|ending| ending == "svg");
+        check_apart([self.spline.as_path()], &[("--output", &self.output)])?;
         let mut output = Output::create(&self.output, !is_picture)?;
         let mesh = ControlMesh::of(&Spline::open(&self.spline)?)?;
         if is_picture {

@@ -1,12 +1,14 @@
 //! The outputs of pictures: one file, or numbered files.
 
 use std::io::Write;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::check_apart;
 use spmesh_view::Picture;
 
 /// The values of `--format`.
@@ -28,9 +30,25 @@ enum Target {
     /// One picture. The output is opened before the work, so that a failure shows at once. It gets its name
     /// at the end, when the whole stream has been read.
     One { output: Output, is_written: bool },
-    /// Several pictures: the parts of their names before and after the number, and its least number of
-    /// digits.
-    Numbered { before: String, digits: usize, after: String },
+    /// Several pictures. None may replace the input.
+    Numbered { names: Names, input: PathBuf },
+}
+
+/// Names of numbered pictures: the parts before and after the number, and its least number of digits.
+struct Names {
+    before: String,
+    digits: usize,
+    after: String,
+}
+
+impl Names {
+    /// Opens the output of a picture.
+    fn create(&self, number: u64, format: Format, input: &Path) -> Result<Output> {
+        let Names { before, digits, after } = self;
+        let path = PathBuf::from(format!("{before}{number:0digits$}{after}"));
+        check_apart([input], &[("--output", &path)])?;
+        Output::create(&path, format == Format::Png)
+    }
 }
 
 impl Outputs {
@@ -42,6 +60,7 @@ impl Outputs {
         format: Option<Format>,
         is_numbered: bool,
         is_tee: bool,
+        input: &Path,
     ) -> Result<Outputs> {
         let is_stdout = path == Path::new("-");
         if is_tee && is_stdout {
@@ -49,6 +68,9 @@ impl Outputs {
                 "--tee passes the stream on to stdout: give the picture a name with -o",
             ));
         }
+        let tee = is_tee.then_some(("--tee", Path::new("-")));
+        let outputs: Vec<_> = iter::once(("--output", path)).chain(tee).collect();
+        check_apart([input], &outputs)?;
         let format = format.or_else(|| format_of(path)).unwrap_or(Format::Svg);
         let target = if is_numbered {
             if is_stdout {
@@ -56,7 +78,10 @@ impl Outputs {
                     "--snapshot makes several pictures: give their names with -o shots/%04d.png",
                 ));
             }
-            pattern(path)?
+            let names = pattern(path)?;
+            // A failure of the first picture shows before the work, too.
+            drop(names.create(1, format, input)?);
+            Target::Numbered { names, input: input.to_path_buf() }
         } else {
             Target::One { output: Output::create(path, format == Format::Png)?, is_written: false }
         };
@@ -75,10 +100,8 @@ impl Outputs {
                 *is_written = true;
                 write(self.format, picture, output)
             }
-            Target::Numbered { before, digits, after } => {
-                let number = self.pictures;
-                let path = PathBuf::from(format!("{before}{number:0digits$}{after}"));
-                let mut output = Output::create(&path, self.format == Format::Png)?;
+            Target::Numbered { names, input } => {
+                let mut output = names.create(self.pictures, self.format, input)?;
                 write(self.format, picture, &mut output)?;
                 output.commit()
             }
@@ -120,7 +143,7 @@ fn format_of(path: &Path) -> Option<Format> {
 }
 
 /// Parses a name with one `%d` or `%04d` in it.
-fn pattern(path: &Path) -> Result<Target> {
+fn pattern(path: &Path) -> Result<Names> {
     let unfit = || {
         let path = path.display();
         Error::usage(format!(
@@ -138,5 +161,5 @@ fn pattern(path: &Path) -> Result<Target> {
     if after.contains('%') {
         return Err(unfit());
     }
-    Ok(Target::Numbered { before: before.to_string(), digits, after: after.to_string() })
+    Ok(Names { before: before.to_string(), digits, after: after.to_string() })
 }

@@ -10,6 +10,12 @@ use std::path::Path;
 use crate::error::{Error, Result};
 pub use records::Records;
 
+/// The cause of a failure of `tempfile`, which adds a made-up path to it.
+pub(crate) fn without_path(error: io::Error) -> io::Error {
+    let cause = error.get_ref().and_then(|e| e.source()).and_then(|e| e.downcast_ref::<io::Error>());
+    cause.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
+}
+
 /// A file without a name, so that nothing of it is left however the process ends.
 #[derive(Debug)]
 pub struct TemporaryFile {
@@ -26,7 +32,8 @@ impl TemporaryFile {
     pub fn create(folder: Option<&Path>) -> Result<TemporaryFile> {
         let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
         let name = format!("temporary file in {}", folder.display());
-        let file = tempfile::tempfile_in(&folder).map_err(|e| Error::io("creating it", e).of_input(&name))?;
+        let file = tempfile::tempfile_in(&folder)
+            .map_err(|e| Error::io("creating it", without_path(e)).of_input(&name))?;
         Ok(TemporaryFile { file, name })
     }
 

@@ -39,12 +39,9 @@ impl CentroidMesh {
     pub fn of(knots: &Knots, lower: Option<&Configurations>, upper: &Configurations) -> Result<CentroidMesh> {
         let expected = upper.degree().checked_sub(1);
         if lower.map(Configurations::degree) != expected {
-            let what = format!(
-                "centroids of order {} need degrees {:?} and {}",
-                upper.degree() + 1,
-                expected,
-                upper.degree()
-            );
+            let degree = upper.degree();
+            let needed = expected.map_or(String::new(), |lower| format!("{lower} and "));
+            let what = format!("centroids of order {} need degrees {needed}{degree}", degree + 1);
             return Err(Error::usage(what));
         }
         let lower_len = lower.map_or(0, Configurations::len);

@@ -67,7 +67,7 @@ pub use lines::quote;
 pub use obj::open_obj;
 pub use opened::{Opened, open_knots, open_planar};
 pub use options::SourceOptions;
-pub use origin::{name_of, open_file};
+pub use origin::{name_of, open_file, open_stdin};
 pub use ply::open_ply;
 pub use point_events::PointEvents;
 pub use polylines::{Polyline, PolylineKind, read_polylines};

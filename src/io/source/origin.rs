@@ -1,7 +1,7 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
 use std::fs::{File, FileType};
-use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Write};
+use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Stdin, Write};
 use std::os::fd::AsFd;
 use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use super::gzip::Plain;
 use crate::detect::{HEAD_LEN, Reader, read_head};
-use spmesh_core::error::{Error, Result};
+use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::system;
 use spmesh_core::temporary::TemporaryFile;
 
 /// Name of an input in messages: its path, or stdin for "-".
@@ -39,6 +40,18 @@ pub(super) enum Admitted {
     First(u64),
     /// All of it.
     Everything,
+}
+
+/// Stdin.
+///
+/// # Errors
+/// If it was closed when the program started: an empty input would hide that.
+pub fn open_stdin() -> Result<Stdin> {
+    let stdin = io::stdin();
+    if system::was_closed(&stdin) {
+        return Err(Error::new(ErrorKind::Io, "stdin is closed: give a file or pipe a stream in"));
+    }
+    Ok(stdin)
 }
 
 /// Opens a file for reading, and says of which type it is.
@@ -79,7 +92,8 @@ impl Origin {
         notices: &mut Vec<String>,
     ) -> Result<Origin> {
         if path.as_os_str() == "-" {
-            return Origin::of_stdin(admitted, temp_dir, notices).map_err(|e| e.of_input("stdin"));
+            let stdin = open_stdin()?;
+            return Origin::of_stdin(&stdin, admitted, temp_dir, notices).map_err(|e| e.of_input("stdin"));
         }
         let name = path.display().to_string();
         let mut open = || -> Result<Origin> {
@@ -92,8 +106,13 @@ impl Origin {
         open().map_err(|e| e.of_input(&name))
     }
 
-    fn of_stdin(admitted: Admitted, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
-        let descriptor = io::stdin().as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
+    fn of_stdin(
+        stdin: &Stdin,
+        admitted: Admitted,
+        temp_dir: &Path,
+        notices: &mut Vec<String>,
+    ) -> Result<Origin> {
+        let descriptor = stdin.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
         let mut file = File::from(descriptor);
         if check_type(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::Open(Arc::new(file)));

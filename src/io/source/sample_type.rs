@@ -1,5 +1,7 @@
 //! Types of numbers in binary files.
 
+use std::fmt;
+
 use super::byte_order::ByteOrder;
 use spmesh_core::error::{Error, Result};
 
@@ -16,6 +18,24 @@ pub(super) enum SampleType {
     U64,
     F32,
     F64,
+}
+
+/// The name of the type in Rust and in `--raw`.
+impl fmt::Display for SampleType {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            SampleType::I8 => "i8",
+            SampleType::U8 => "u8",
+            SampleType::I16 => "i16",
+            SampleType::U16 => "u16",
+            SampleType::I32 => "i32",
+            SampleType::U32 => "u32",
+            SampleType::I64 => "i64",
+            SampleType::U64 => "u64",
+            SampleType::F32 => "f32",
+            SampleType::F64 => "f64",
+        })
+    }
 }
 
 /// Appends the numbers in `bytes`. Each type and order gets its own loop, so that no loop branches on them
@@ -99,6 +119,6 @@ impl SampleType {
             SampleType::U64 => integer(0, u64::MAX.into()),
             SampleType::F32 | SampleType::F64 => text.parse().ok(),
         };
-        value.ok_or_else(|| Error::malformed(format!("found {text:?}, expected a value of type {self:?}")))
+        value.ok_or_else(|| Error::malformed(format!("found {text:?}, expected a value of type {self}")))
     }
 }

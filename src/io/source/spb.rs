@@ -182,8 +182,9 @@ fn parse_header(head: &[u8], order: ByteOrder) -> Result<(SpHeader, usize)> {
                 min: point(order, datatype, corners),
                 max: point(order, datatype, &corners[width..]),
             };
-            if !(0..3).all(|axis| bounds.min[axis] <= bounds.max[axis]) {
-                return Err(Error::malformed(format!("bounding box {bounds:?}")));
+            let Bounds { min, max } = bounds;
+            if !(0..3).all(|axis| min[axis] <= max[axis]) {
+                return Err(Error::malformed(format!("bounding box from {min:?} to {max:?}")));
             }
             Some(bounds)
         }

@@ -48,7 +48,9 @@ impl Raster {
             self.origin[axis] + count as f64 * self.step[axis]
         });
         if !self.origin.iter().chain(&self.step).chain(&last).all(|number| number.is_finite()) {
-            return Err(Error::malformed(format!("a number is not finite in {self:?}")));
+            let Raster { origin, step, .. } = self;
+            let what = format!("a number is not finite: the raster starts at {origin:?} with steps {step:?}");
+            return Err(Error::malformed(what));
         }
         if self.step[0] <= 0.0 || self.step[1] == 0.0 {
             let what = "steps of a raster must not be zero, and columns must go from left to right";

@@ -105,7 +105,10 @@ impl Patch {
     fn check(&self, before: u64) -> Result<u64> {
         let [[a, b], [c, d]] = self.steps;
         if !self.steps.iter().chain([&self.origin]).flatten().all(|number| number.is_finite()) {
-            return Err(Error::malformed(format!("a number is not finite in {self:?}")));
+            let Patch { origin, steps: [u, v], .. } = self;
+            let what =
+                format!("a number is not finite: the patch starts at {origin:?} with steps {u:?} and {v:?}");
+            return Err(Error::malformed(what));
         }
         if FiniteFloatPredicates::default().orient2d([0.0; 2], [a, b], [c, d]) != Sign::Positive {
             let what = "the second step is not counterclockwise of the first: exchange them";

@@ -29,7 +29,7 @@ pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 use self::builder::StructureBuilder;
 use super::gzip::Plain;
 use super::lines::Lines;
-use super::origin::open_file;
+use super::origin::{open_file, open_stdin};
 
 use super::obj::open_obj;
 use super::ply::open_ply;
@@ -70,7 +70,7 @@ pub enum Format {
 /// it is damaged, has no atom, or is of no known format.
 pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> {
     if path.as_os_str() == "-" {
-        return read_structure_from(std::io::stdin(), "stdin", format);
+        return read_structure_from(open_stdin()?, "stdin", format);
     }
     let name = path.display().to_string();
     let (file, kind) = open_file(path).map_err(|e| e.of_input(&name))?;

@@ -143,7 +143,10 @@ fn read_appended(elements: &mut Elements, tag: &Tag) -> Result<Appended> {
     let is_base64 = match tag.get("encoding") {
         Some("raw") => false,
         Some("base64") => true,
-        other => return Err(tag.error(&format!("encoding {other:?}, expected raw or base64"))),
+        other => {
+            let found = other.unwrap_or_default();
+            return Err(tag.error(&format!("encoding {found:?}, expected raw or base64")));
+        }
     };
     Ok(Appended { start: elements.behind_underscore()?, is_base64 })
 }
@@ -208,9 +211,8 @@ impl Described {
         if tag.get("NumberOfComponents") != Some("3") {
             return Err(tag.error("points need NumberOfComponents=\"3\""));
         }
-        let sample = tag.get("type").and_then(type_of);
-        let sample =
-            sample.ok_or_else(|| tag.error(&format!("type {:?} is none of numbers", tag.get("type"))))?;
+        let name = tag.get("type").unwrap_or_default();
+        let sample = type_of(name).ok_or_else(|| tag.error(&format!("type {name:?} is none of numbers")))?;
         let offset = || tag.get("offset").and_then(|offset| offset.parse().ok());
         let text = elements.only_text()?;
         let format = match tag.get("format") {

@@ -10,6 +10,7 @@ use crate::heap::peak_during;
 use crate::{ModelName, Product, Report, job};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
+use spmesh_core::places::Inputs;
 use spmesh_io::source::panic_guard::guarded;
 use spmesh_io::source::structure::{Models, Structure, read_structure};
 use spmesh_stream::ends_with_end;
@@ -54,10 +55,24 @@ impl End {
     }
 }
 
+/// Checks before the work that the output of a file replaces none of the files that are `taken`.
+///
+/// # Errors
+/// Usage, if it does.
+pub(super) fn check(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<()> {
+    check_free(&sweep.folder.join(output_name(&job.stem, sweep.options.product, None)), taken)
+}
+
+fn check_free(output: &Path, taken: &Inputs) -> Result<()> {
+    let Some(file) = taken.at(output) else { return Ok(()) };
+    let message = format!("the output would replace {file}: give another --out-dir");
+    Err(Error::usage(message).of_input(output.display().to_string()))
+}
+
 /// Triangulates a file. A panic is an error of this file.
-pub(super) fn run(job: &Job<'_>, sweep: &Sweep) -> End {
+pub(super) fn run(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> End {
     let started = Instant::now();
-    let (result, peak_memory) = peak_during(|| guarded(|| triangulate(job, sweep)));
+    let (result, peak_memory) = peak_during(|| guarded(|| triangulate(job, sweep, taken)));
     let result = result.unwrap_or_else(|panic| {
         let message = format!("internal error: {panic}; please report it with the file");
         Err(Error::new(ErrorKind::Io, message).of_input(job.file.display().to_string()))
@@ -65,7 +80,7 @@ pub(super) fn run(job: &Job<'_>, sweep: &Sweep) -> End {
     End { result, time: started.elapsed(), peak_memory }
 }
 
-fn triangulate(job: &Job<'_>, sweep: &Sweep) -> Result<Vec<Model>> {
+fn triangulate(job: &Job<'_>, sweep: &Sweep, taken: &Inputs) -> Result<Vec<Model>> {
     let started = Instant::now();
     let structure = read_structure(job.file, sweep.format)?;
     let read = started.elapsed();
@@ -77,10 +92,7 @@ fn triangulate(job: &Job<'_>, sweep: &Sweep) -> Result<Vec<Model>> {
         let output = output_name(&job.stem, sweep.options.product, model);
         let path = sweep.folder.join(&output);
         create_folder_of(&path)?;
-        if is_same_file(&path, job.file) {
-            let message = "the output would replace its input: give another --out-dir";
-            return Err(Error::usage(message));
-        }
+        check_free(&path, taken)?;
         outputs.push(output);
         Output::create(&path, true)
     };
@@ -123,10 +135,6 @@ fn create_folder_of(path: &Path) -> Result<()> {
     let Some(folder) = path.parent() else { return Ok(()) };
     fs::create_dir_all(folder)
         .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))
-}
-
-fn is_same_file(a: &Path, b: &Path) -> bool {
-    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 /// Whether the outputs that an earlier run made of a file still exist, are complete, and are not older than

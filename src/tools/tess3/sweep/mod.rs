@@ -13,7 +13,9 @@ use std::path::{Path, PathBuf};
 use super::{Options, Stats};
 use file::Job;
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::output::Output;
 use spmesh_core::parallel;
+use spmesh_core::places::{Inputs, check_apart};
 use spmesh_io::source::structure::Format;
 use summary::{Done, Summary};
 
@@ -22,6 +24,8 @@ use summary::{Done, Summary};
 pub struct Sweep {
     /// The files; duplicates are done once.
     pub files: Vec<PathBuf>,
+    /// The file that lists them, if there is one; no output may replace it.
+    pub list: Option<PathBuf>,
     /// Their format; detected from the content if `None`.
     pub format: Option<Format>,
     /// What to do with each of them.
@@ -69,10 +73,13 @@ pub enum News<'n> {
 /// Memory: one file per thread, and the names of all.
 ///
 /// # Errors
-/// If the folder or the summary cannot be written, or the summary to resume is malformed. With `strict`, the
-/// error of the first file that fails; otherwise failures are counted.
+/// Usage, before any work, if an output would replace an input; if the folder or the summary cannot be
+/// written, or the summary to resume is malformed. With `strict`, the error of the first file that fails;
+/// otherwise failures are counted.
 pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcome> {
     let folder = &sweep.folder;
+    let inputs: Vec<&Path> = sweep.files.iter().chain(&sweep.list).map(PathBuf::as_path).collect();
+    check_apart(inputs.iter().copied(), &[("--summary", &sweep.summary)])?;
     fs::create_dir_all(folder)
         .map_err(|e| Error::io("creating the folder", e).of_input(folder.display().to_string()))?;
     let mut done = if sweep.resume { Done::read(&sweep.summary)? } else { Done::default() };
@@ -86,8 +93,12 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
         listener(News::Done);
     });
     let jobs = jobs(files, &done);
+    // Not an input, but it must not be replaced either.
+    let taken = Inputs::of(inputs.into_iter().chain(file_of(&sweep.summary)));
+    jobs.iter().try_for_each(|job| file::check(job, sweep, &taken))?;
+    check_folder(folder)?;
     let mut summary = Summary::create(&sweep.summary, &done)?;
-    let work = |job: &Job<'_>| match file::run(job, sweep) {
+    let work = |job: &Job<'_>| match file::run(job, sweep, &taken) {
         end if sweep.strict && end.result.is_err() => ControlFlow::Break(end),
         end => ControlFlow::Continue(end),
     };
@@ -109,6 +120,16 @@ pub fn sweep(sweep: &Sweep, listener: &mut dyn FnMut(News<'_>)) -> Result<Outcom
         }
     })?;
     Ok(outcome)
+}
+
+/// The path, unless it is that of stdout.
+fn file_of(path: &Path) -> Option<&Path> {
+    (path != Path::new("-")).then_some(path)
+}
+
+/// Checks before the work that outputs can be created in a folder.
+fn check_folder(folder: &Path) -> Result<()> {
+    Output::create(&folder.join("output.spm"), true).map(drop)
 }
 
 /// Estimated ratio of decompression.

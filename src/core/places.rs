@@ -1,0 +1,153 @@
+//! Recognizes outputs that would replace inputs or each other, however their paths are written.
+
+use std::collections::HashMap;
+use std::fs::{self, File, Metadata};
+use std::io;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use crate::error::{Error, Result};
+use crate::output::{folder_of, target_of};
+
+/// The identity of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+enum Place {
+    /// A regular file: device and inode.
+    File(u64, u64),
+    /// A file that does not exist yet: its path, free of symbolic links.
+    New(PathBuf),
+}
+
+impl Place {
+    /// The place of `path`, or of `standard` for "-". `None` for devices and pipes, which may be given several
+    /// times, for folders, and for paths that cannot be created.
+    fn of(path: &Path, standard: BorrowedFd<'_>) -> Option<Place> {
+        let found = if is_standard(path) { metadata_of(standard) } else { fs::metadata(path) };
+        match found {
+            Ok(metadata) => metadata.is_file().then(|| Place::File(metadata.dev(), metadata.ino())),
+            Err(_) => {
+                let target = target_of(path);
+                let folder = fs::canonicalize(folder_of(&target)).ok()?;
+                Some(Place::New(folder.join(target.file_name()?)))
+            }
+        }
+    }
+}
+
+/// The files that a run reads.
+#[derive(Debug, Clone, Default)]
+pub struct Inputs {
+    names: HashMap<Place, String>,
+}
+
+impl Inputs {
+    /// The files at these paths; "-" is stdin.
+    pub fn of<'p>(paths: impl IntoIterator<Item = &'p Path>) -> Inputs {
+        let stdin = io::stdin();
+        let place = |path: &'p Path| {
+            let name = if is_standard(path) { "stdin".to_string() } else { path.display().to_string() };
+            Some((Place::of(path, stdin.as_fd())?, name))
+        };
+        Inputs { names: paths.into_iter().filter_map(place).collect() }
+    }
+
+    /// The name of the input that an output at `path` would replace, if there is one; "-" is stdout.
+    #[must_use]
+    pub fn at(&self, path: &Path) -> Option<&str> {
+        let place = Place::of(path, io::stdout().as_fd())?;
+        self.names.get(&place).map(String::as_str)
+    }
+}
+
+/// Checks that all outputs of a run are different from its inputs and from each other. An output comes with
+/// the flag that names it; "-" is stdin or stdout.
+///
+/// # Errors
+/// Usage, if two of them are one file, or two outputs are stdout.
+pub fn check_apart<'p>(inputs: impl IntoIterator<Item = &'p Path>, outputs: &[(&str, &Path)]) -> Result<()> {
+    let inputs = Inputs::of(inputs);
+    for &(flag, path) in outputs {
+        if let Some(input) = inputs.at(path) {
+            let message = format!("{flag} would replace the input {input}: give it another name");
+            return Err(Error::usage(message).of_input(name_of_output(path)));
+        }
+    }
+    for (i, &(flag, path)) in outputs.iter().enumerate() {
+        for &(other_flag, other) in &outputs[..i] {
+            if is_same(path, other) {
+                let message =
+                    format!("{other_flag} and {flag} would be mixed: give one of them another file");
+                return Err(Error::usage(message).of_input(name_of_output(path)));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether two outputs are one.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let stdout = io::stdout();
+    let place = |path| Place::of(path, stdout.as_fd());
+    is_standard(a) && is_standard(b) || place(a).is_some_and(|a| Some(a) == place(b))
+}
+
+fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+fn name_of_output(path: &Path) -> String {
+    if is_standard(path) { "stdout".to_string() } else { path.display().to_string() }
+}
+
+fn metadata_of(descriptor: BorrowedFd<'_>) -> io::Result<Metadata> {
+    File::from(descriptor.try_clone_to_owned()?).metadata()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    fn check(inputs: &[PathBuf], outputs: &[PathBuf]) -> Result<()> {
+        let outputs: Vec<_> = ["--one", "--two", "--three"].into_iter().zip(outputs).collect();
+        let outputs: Vec<_> = outputs.iter().map(|(flag, path)| (*flag, path.as_path())).collect();
+        check_apart(inputs.iter().map(PathBuf::as_path), &outputs)
+    }
+
+    #[test]
+    fn one_file_is_recognized_by_all_its_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::create_dir(path("sub")).unwrap();
+        fs::write(path("a"), "a").unwrap();
+        fs::hard_link(path("a"), path("hard")).unwrap();
+        symlink("a", path("soft")).unwrap();
+        symlink("new", path("dangling")).unwrap();
+        let old = [("a", "hard"), ("a", "soft"), ("a", "sub/../a")];
+        let new = [("new", "dangling"), ("new", "sub/../new")];
+        for (a, b) in old.into_iter().chain(new) {
+            let error = check(&[], &[path(a), path(b)]).unwrap_err();
+            let expected = format!("{}: --one and --two would be mixed", path(b).display());
+            assert!(error.to_string().starts_with(&expected), "{error}");
+        }
+        for (a, b) in old {
+            let error = check(&[path(a)], &[path("new"), path(b)]).unwrap_err();
+            let expected = format!("--two would replace the input {}", path(a).display());
+            assert!(error.to_string().contains(&expected), "{error}");
+            assert_eq!(error.exit_code(), 2);
+        }
+    }
+
+    #[test]
+    fn devices_and_different_files_are_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        fs::write(path("a"), "a").unwrap();
+        let null = PathBuf::from("/dev/null");
+        let inputs = [null.clone(), path("a"), path("missing")];
+        check(&inputs, &[null.clone(), null, path("b")]).unwrap();
+        let error = check(&[], &["-".into(), path("b"), "-".into()]).unwrap_err();
+        assert!(error.to_string().starts_with("stdout: --one and --three would be mixed"), "{error}");
+    }
+}
