@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::programs::{assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
+use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
 use crate::vectors::run_python;
 
 /// The streaming triangulators, and their flags for spfinalize.
@@ -333,4 +333,21 @@ fn generated_flight_lines_go_through() {
     assert!(points.status.success(), "{:?}", outcome(&points));
     let audit = run("spinfo", &["--audit", "--points", file, "-"], &mesh_of(&points.stdout, &[]));
     assert!(audit.status.success(), "{:?}", outcome(&audit));
+}
+
+#[test]
+fn limits_of_memory_are_refused_with_their_own_code() {
+    let folder = Folder::new();
+    let line: String = (0..60_000).map(|i| format!("{i} {} {}\n", 3 * i, 7 * i)).collect();
+    for (program, flags) in TRIANGULATORS {
+        let points = run("spfinalize", &[&["-q"], flags].concat(), line.as_bytes()).stdout;
+        let output = &folder.path("mesh.spm");
+        let (code, message) = outcome(&run(program, &["--memory", "17M", "-o", output], &points));
+        assert_eq!(code, Some(5), "{program}: {message}");
+        assert!(message.contains("--memory allows 17 MiB"), "{program}: {message}");
+        assert!(fs::metadata(output).is_err(), "nothing under the final name");
+        let (code, message) = outcome(&run(program, &["-q", "--memory", "200M", "-o", output], &points));
+        assert_eq!((code, &message[..]), (Some(0), ""), "{program}");
+        fs::remove_file(output).expect("a mesh");
+    }
 }
