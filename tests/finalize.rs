@@ -48,6 +48,23 @@ fn every_promise_holds_on_every_set_at_every_level() {
 }
 
 #[test]
+fn every_promise_holds_for_numbers_at_the_ends_of_f64() {
+    let least_negative = vec![[1e10, 1.0, 0.0], [-5e-324, 0.0, 0.0], [3.0, 4.0, 0.0]];
+    let random = (1..200).map(|seed| extremes(seed as usize % 40 + 1, seed));
+    for points in std::iter::once(least_negative).chain(random) {
+        for dims in [2, 3] {
+            let set = set("extremes", dims, Coordinates::F64, points.clone());
+            for order in [Order::Chunked, Order::Preserved] {
+                for leaves in [Leaves::Level(3), collapsed(1), collapsed(20)] {
+                    let options = options(leaves, order);
+                    check(&set, &options, &finalize(&set, &options).0);
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn every_promise_holds_with_leaves_chosen_from_the_counts() {
     for set in sets() {
         for order in [Order::Chunked, Order::Preserved] {

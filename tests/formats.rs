@@ -146,6 +146,8 @@ fn damaged_gzip_data_is_named_with_its_place() {
             assert_outcome(tool, &[arguments(tool), &[&path]].concat(), &[], 3, part);
             assert_outcome(tool, &[arguments(tool), &["-"]].concat(), bytes, 3, "stdin");
         }
+        let padded = folder.write("padded.gz", [&whole[..], &[0; 512]].concat());
+        output(tool, &[arguments(tool), &[&padded]].concat(), &[]);
     }
 }
 
@@ -219,6 +221,24 @@ fn each_format_is_told_from_all_others() {
         assert_eq!(detect(&marked).unwrap(), format);
     }
     assert!(detect(b"").unwrap_err().to_string().contains("empty"));
+}
+
+#[test]
+fn names_of_columns_are_no_molecules() {
+    let rows = "1 2 3\n4 5 6\n7 8 1\n";
+    for names in ["data_x data_y data_z", "loop_ y z", "MODEL x y", "AUTHOR me", "ATOM x y", "HETATM y z"] {
+        assert_eq!(detect(format!("{names}\n{rows}").as_bytes()).unwrap(), Format::Text, "{names}");
+        let (names, rows) = (names.replace(' ', ","), rows.replace(' ', ","));
+        assert_eq!(detect(format!("{names}\n{rows}").as_bytes()).unwrap(), Format::Text, "{names}");
+    }
+    for text in
+        ["MODEL 1", "MODEL        1", "REMARK 350", "END\nCRYST1   59.062", "ATOM      1  N   LYS A   1"]
+    {
+        assert_eq!(detect(text.as_bytes()).unwrap(), Format::Pdb, "{text}");
+    }
+    for text in ["data_1AKI", "DATA_1AKI  # a comment", "#\nloop_\n_atom_site.id"] {
+        assert_eq!(detect(text.as_bytes()).unwrap(), Format::Mmcif, "{text}");
+    }
 }
 
 #[test]

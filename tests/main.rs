@@ -9,6 +9,7 @@ mod contours;
 mod convert;
 mod dd4;
 mod dem;
+mod endless;
 mod finalize;
 mod formats;
 mod house;

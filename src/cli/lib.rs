@@ -28,6 +28,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser};
 
 use spmesh_core::error::{Error, ErrorKind};
+use spmesh_core::limits::{LIST_FILES_MAX, TEXT_LINE_MAX};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
 use spmesh_io::detect::BYTE_ORDER_MARK;
@@ -195,20 +196,36 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
 /// The files that `--lof` lists, one per line; empty lines do not count. `-` is stdin.
 ///
 /// # Errors
-/// If the list cannot be read; usage, if it lists no file.
+/// If the list cannot be read, or is no list of at most [`LIST_FILES_MAX`] files; usage, if it lists no file.
 pub fn read_list(list: &Path) -> spmesh_core::error::Result<Vec<PathBuf>> {
     let (input, name) = open_input(list)?;
-    let mut files = Vec::new();
-    for line in BufReader::new(input).split(b'\n') {
-        let line = line.map_err(|e| Error::io("reading", e).of_input(&name))?;
-        let line = if files.is_empty() { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&line) } else { &line };
-        let line = line.trim_ascii();
-        if !line.is_empty() {
-            files.push(OsStr::from_bytes(line).into());
-        }
-    }
+    let files = listed(BufReader::new(input)).map_err(|e| e.of_input(&name))?;
     if files.is_empty() {
         return Err(Error::usage("lists no files").of_input(&name));
+    }
+    Ok(files)
+}
+
+fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
+    let (mut files, mut line) = (Vec::new(), Vec::new());
+    for number in 1.. {
+        line.clear();
+        let mut rest = (&mut input).take(TEXT_LINE_MAX as u64 + 1);
+        if rest.read_until(b'\n', &mut line).map_err(|e| Error::io("reading", e))? == 0 {
+            break;
+        }
+        let at = |message: String| Error::malformed(message).at(format!("line {number}"));
+        if line.contains(&0) || line.len() > TEXT_LINE_MAX {
+            return Err(at("this is no list of files: expected the path of one in each line".to_string()));
+        }
+        let path = if number == 1 { line.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&line) } else { &line };
+        let path = path.trim_ascii();
+        if files.len() == LIST_FILES_MAX {
+            return Err(at(format!("more than {LIST_FILES_MAX} files: divide the list")));
+        }
+        if !path.is_empty() {
+            files.push(OsStr::from_bytes(path).into());
+        }
     }
     Ok(files)
 }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::Args;
 
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, open_input, threads};
+use super::{Common, StatsFormat, notice, open_input, parse_size, threads};
 use report::Report;
 use spmesh_core::error::Error;
 use spmesh_core::output::Output;
@@ -32,12 +32,16 @@ pub(super) struct Shared<const D: usize> {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 
+    /// Memory limit of the process: fail (exit 5) rather than exceed it [default: none]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
+
     /// Write the simplices that are final in --region or --cell, and the residual for --merge
     #[arg(long)]
     partial: bool,
 
     /// Finish results of --partial; with --region, into a larger partial result
-    #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads"])]
+    #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads", "memory"])]
     merge: bool,
 
     /// Half-open box in world coordinates: points on its upper sides are outside; inf is allowed
@@ -55,6 +59,9 @@ pub(super) struct Shared<const D: usize> {
     #[command(flatten)]
     common: Common,
 }
+
+/// A run that held at least this many points until the end may surprise by its memory.
+const MANY: u64 = 1_000_000;
 
 /// The value name of `--region`, in the plane and in space.
 const REGION: [&str; 2] = ["MINX,MINY,MAXX,MAXY", "MINX,MINY,MINZ,MAXX,MAXY,MAXZ"];
@@ -129,7 +136,7 @@ impl<const D: usize> Tool<D> {
         let output = Output::create(&flags.output, true)?;
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
         let threads = threads(flags.threads).get();
-        let options = Options { duplicates, threads, part, ..Options::default() };
+        let options = Options { duplicates, threads, part, memory: flags.memory, ..Options::default() };
         Ok((self.reduce)(reader, output, &options, &mut |points| progress.set(points))?)
     }
 
@@ -149,6 +156,13 @@ impl<const D: usize> Tool<D> {
         if stats.simplices == 0 && !is_partial {
             let reason = self.reasons[usize::from(stats.vertices > D as u64)];
             say(format!("no {}: {reason} ({} points)", self.simplices, stats.points));
+        }
+        if stats.root_points >= MANY && 2 * stats.root_points > stats.points {
+            let (waited, points) = (stats.root_points, stats.points);
+            let places = if D == 2 { "a line or a curve" } else { "a surface or a curve" };
+            say(format!(
+                "{waited} of {points} points waited in memory for the end, as points on {places} do"
+            ));
         }
         if stats.outside > 0 {
             let points = stats.outside + stats.points;

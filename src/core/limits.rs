@@ -36,9 +36,12 @@ pub const QUADTREE_DEPTH_MAX: u8 = 31;
 /// Deepest level of an octree; with it a location code has 3 * 20 + 1 = 61 bits.
 pub const OCTREE_DEPTH_MAX: u8 = 20;
 
-/// Most points of four dimensions in an input: 10 GB with values. Their diagram needs a hundred times as
-/// much.
-pub const POINTS4_MAX: u64 = 1 << 28;
+/// Most points of four dimensions in an input: 2.7 GB with values.
+pub const POINTS4_MAX: u64 = 1 << 26;
+
+/// Memory that a diagram in four dimensions needs at least, in bytes per distinct point. Grids take 1,100 bytes,
+/// random points more.
+pub const DIAGRAM4_POINT_BYTES: u64 = 700;
 
 /// Most sites of a grid of four dimensions from which points are selected: a pass over them takes hours.
 pub const SITES4_MAX: u64 = 1 << 40;
@@ -51,6 +54,15 @@ pub const NRRD_FILES_MAX: usize = 1 << 16;
 
 /// Longest number in the text of a volume or of coordinates without lines, in bytes.
 pub const NUMBER_LEN_MAX: usize = 128;
+
+/// Longest GeoJSON file, in bytes: its values take ten times as much.
+pub const GEOJSON_LEN_MAX: u64 = 1 << 25;
+
+/// Most vertices of breaklines, of which each becomes a knot.
+pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
+
+/// Most files in a list of files: their names take about 100 MB.
+pub const LIST_FILES_MAX: usize = 1 << 20;
 
 /// Longest tag of an XML file, in bytes.
 pub const XML_TAG_MAX: usize = 1 << 16;
@@ -66,6 +78,10 @@ pub const RASTER_TILES_MAX: u64 = 1 << 22;
 
 /// Most levels of contour lines that pass through one triangle: their open ends take about 40 MB.
 pub const CONTOURS_PER_TRIANGLE_MAX: u64 = 1 << 17;
+
+/// Most levels of contour lines that pass through a triangle on average, beyond those of one steep triangle.
+/// Without this limit, the lines of a small file could take any memory.
+pub const CONTOURS_PER_TRIANGLE_MEAN_MAX: u64 = 1 << 8;
 
 /// Longest condition on points, in bytes.
 pub const CONDITION_LEN_MAX: usize = 1 << 12;

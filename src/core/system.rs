@@ -82,6 +82,23 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(found.f_bavail.saturating_mul(found.f_frsize))
 }
 
+/// Bytes of memory that this process can have at most: those of the machine with its swap space, or the limit of
+/// the process (`ulimit -v`). `None` if the system does not tell.
+#[must_use]
+pub fn memory_limit() -> Option<u64> {
+    let number = |word: &str| word.parse::<u64>().ok();
+    let memory = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let entry = |name: &str| {
+        let line = memory.lines().find_map(|line| line.strip_prefix(name))?;
+        line.split_ascii_whitespace().next().and_then(number)
+    };
+    let machine = (entry("MemTotal:")? + entry("SwapTotal:").unwrap_or(0)).saturating_mul(1024);
+    let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
+    let process = limits.lines().find_map(|line| line.strip_prefix("Max address space"));
+    let process = process.and_then(|rest| rest.split_ascii_whitespace().next().and_then(number));
+    Some(process.map_or(machine, |process| machine.min(process)))
+}
+
 /// Whether files in `folder` take up memory instead of disk (tmpfs, ramfs); `false` if the system does not
 /// tell.
 #[cfg(target_os = "linux")]

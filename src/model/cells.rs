@@ -69,7 +69,10 @@ impl CellTree {
             let unit = side / FINEST_CELLS;
             let mut origin = [0.0; 3];
             for axis in axes.clone() {
-                origin[axis] = (bounds.min[axis] / unit).floor() * unit;
+                let steps = (bounds.min[axis] / unit).floor();
+                // The quotient of a tiny negative number may underflow to -0.
+                let is_rounded_up = steps * unit > bounds.min[axis];
+                origin[axis] = if is_rounded_up { (steps - 1.0) * unit } else { steps * unit };
             }
             let holds = axes.clone().all(|axis| bounds.max[axis] < origin[axis] + side);
             if holds { CellTree::new(dims, depth, origin, side) } else { None }
@@ -277,6 +280,19 @@ mod tests {
                         assert!(min[0] <= x && x < max[0], "{x} in [{}, {}) at {level}", min[0], max[0]);
                     }
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn a_cube_holds_the_least_and_the_greatest_number_of_its_box() {
+        let numbers = [5e-324, 3e-310, f64::MIN_POSITIVE, 1e-300, 1e-10, 0.1, 1.0, 8.0, 1e10, 1e300];
+        let signed = || numbers.iter().flat_map(|&number| [number, -number]).chain([0.0, -0.0]);
+        for (dims, low) in signed().map(|low| (2, low)).chain(signed().map(|low| (3, low))) {
+            for high in signed().filter(|&high| low <= high) {
+                let bounds = Bounds { min: [low; 3], max: [high, low, high] };
+                let tree = CellTree::covering(&bounds, dims, 20).unwrap();
+                assert!(tree.contains(bounds.min) && tree.contains(bounds.max), "{low} to {high}: {tree:?}");
             }
         }
     }

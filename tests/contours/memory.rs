@@ -1,5 +1,6 @@
 //! Memory: complete lines are written while triangles arrive, and pieces join in any order.
 
+use spmesh_core::error::ErrorKind;
 use spmesh_terrain::contours::Options;
 
 use super::{WHOLE, options, try_lines};
@@ -22,6 +23,16 @@ fn lines_that_are_over_are_not_held() {
     let (lines, stats) = try_lines(&stream, &options(1.0, 0.5)).unwrap();
     assert_eq!((lines.len(), stats.points), (2 * 59_999, 3 * 2 * 59_999));
     assert!(stats.open_points + stats.open_ends < 120_000, "{stats:?}");
+}
+
+#[test]
+fn levels_are_few_per_triangle_on_average() {
+    // Each of these triangles has 1000 levels.
+    let steep = |triangles: u32| strip(triangles, |_, y| f64::from(1000 * y)).stream(WHOLE);
+    assert!(try_lines(&steep(60), &options(1.0, 0.5)).is_ok());
+    let error = try_lines(&steep(200), &options(1.0, 0.5)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Usage);
+    assert!(error.to_string().contains("at most 256 per"), "{error}");
 }
 
 #[test]

@@ -205,3 +205,77 @@ fn one_vertex_may_complete_any_number_of_triangles() {
     let backwards: String = text.lines().rev().flat_map(|line| [line, "\n"]).collect();
     assert!(converted(backwards.as_bytes(), Format::Obj, Format::Spm).is_ok());
 }
+
+/// Asserts that the file is refused because it was cut.
+fn assert_cut(file: &[u8], format: Format) {
+    match converted(file, format, Format::Spm) {
+        Ok(_) => panic!("{format:?} of {} bytes passes for a whole file", file.len()),
+        Err(error) => {
+            assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
+            assert!(error.to_string().contains("truncated"), "{error}");
+        }
+    }
+}
+
+/// The text without its last `count` lines.
+fn without_last_lines(text: &str, count: usize) -> String {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
+    lines[..lines.len() - count].concat()
+}
+
+#[test]
+fn vertices_that_stay_open_show_that_a_mesh_was_cut() {
+    let stream = samples::mesh(samples::grids()[1]);
+    let whole = String::from_utf8(converted(&stream, Format::Spm, Format::Sma).unwrap()).unwrap();
+    let headless: String = whole.split_inclusive('\n').filter(|line| !line.starts_with('#')).collect();
+    for text in [&whole, &headless] {
+        converted(text.as_bytes(), Format::Sma, Format::Spm).unwrap();
+        let lines = text.lines().count();
+        for count in 1..lines * 3 / 4 {
+            assert_cut(without_last_lines(text, count).as_bytes(), Format::Sma);
+        }
+    }
+    // With counts that are met, open vertices are final at the end.
+    let counted = format!("# nverts 4\n# nfaces 1\n{}", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 -2 3\nv 5 5 5\n");
+    converted(counted.as_bytes(), Format::Sma, Format::Spm).unwrap();
+    assert_cut(counted.replace("# nfaces 1\n", "").as_bytes(), Format::Sma);
+    assert_cut(without_last_lines(&counted, 1).as_bytes(), Format::Sma);
+    // No mark at all tells nothing.
+    let bare = counted.replace("-2", "2").replace("# nverts 4\n# nfaces 1\n", "");
+    converted(bare.as_bytes(), Format::Sma, Format::Spm).unwrap();
+}
+
+#[test]
+fn counts_show_that_a_mesh_was_cut() {
+    let stream = samples::mesh(samples::grids()[1]);
+    let whole = converted(&stream, Format::Spm, Format::Smb).unwrap();
+    let counts = [8, 12].map(|at| i32::from_le_bytes(whole[at..at + 4].try_into().unwrap()));
+    assert_eq!(counts, [144, 2 * 11 * 11]);
+    // Elements have 12 bytes, and a block has 4 more: most of these cuts are between two elements.
+    (40..whole.len()).rev().step_by(12).chain(whole.len() - 30..whole.len()).for_each(|end| {
+        assert_cut(&whole[..end], Format::Smb);
+    });
+    let mut uncounted = whole;
+    uncounted[8..16].fill(0xff);
+    assert_cut(&uncounted, Format::Smb);
+}
+
+#[test]
+fn a_last_point_without_a_tag_shows_that_points_were_cut() {
+    let stream = samples::points(2, true, false);
+    let spa = String::from_utf8(converted(&stream, Format::Spm, Format::Spa).unwrap()).unwrap();
+    let uncounted: String = spa.split_inclusive('\n').filter(|line| !line.contains("npoints")).collect();
+    converted(uncounted.as_bytes(), Format::Spa, Format::Spm).unwrap();
+    let lines: Vec<&str> = uncounted.split_inclusive('\n').collect();
+    let mut cuts = 0;
+    for end in 2..lines.len() {
+        let is_tag = |line: &&&str| line.starts_with('x');
+        if lines[end - 1].starts_with('v') && lines[..end].iter().any(|line| is_tag(&line)) {
+            let cut = lines[..end].concat();
+            assert_cut(cut.as_bytes(), Format::Spa);
+            assert_cut(&cut.as_bytes()[..cut.len() - 1], Format::Spa);
+            cuts += 1;
+        }
+    }
+    assert!(cuts > 10, "{cuts}");
+}

@@ -62,6 +62,17 @@ pub(super) fn swaths(n: usize) -> Vec<Point> {
         .collect()
 }
 
+/// Points of numbers at the ends of f64, and of others far from these; -0.0 is one of them.
+pub(super) fn extremes(n: usize, seed: u64) -> Vec<Point> {
+    const NUMBERS: [f64; 12] =
+        [0.0, 5e-324, 1e-310, f64::MIN_POSITIVE, 1e-300, 1e-17, 0.1, 1.0, 3.0, 1e10, 1e17, 1e300];
+    let mut random = Random(seed);
+    // Few numbers in one set, so that its box often ends at a tiny one.
+    let chosen = [0; 4].map(|_: u8| NUMBERS[random.below(12) as usize]);
+    let mut number = |_: u8| chosen[random.below(4) as usize] * [1.0, -1.0][random.below(2) as usize];
+    (0..n).map(|_| [0; 3].map(&mut number)).collect()
+}
+
 pub(super) fn lattice(side: u32, step: f64) -> Vec<Point> {
     (0..side * side).map(|i| [f64::from(i % side) * step, f64::from(i / side) * step, 0.0]).collect()
 }

@@ -62,12 +62,13 @@ fn a_share_of_a_huge_grid_needs_no_more_than_itself() {
 
 #[test]
 fn absurd_sizes_are_refused_at_once() {
-    let cases: [(Request, &str); 6] = [
-        (all(From4::Grid([1 << 10; 4])), "more than 268435456"),
+    let cases: [(Request, &str); 7] = [
+        (all(From4::Grid([1 << 10; 4])), "more than 67108864"),
+        (all(From4::Grid([200, 200, 200, 33])), "more than 67108864"),
         (all(From4::Grid([1 << 11; 4])), "more than 1099511627776"),
         (all(From4::Grid([u64::MAX; 4])), "more than 1099511627776"),
         (all(From4::Grid([3, 0, 3, 3])), "no sites"),
-        (chosen([1024; 4], Share::Part(0.9), 1), "more than 268435456"),
+        (chosen([1024; 4], Share::Part(0.9), 1), "more than 67108864"),
         (chosen([2; 4], Share::Count(17), 1), "17 points are to be chosen, but there are 16"),
     ];
     for (request, part) in cases {

@@ -89,6 +89,30 @@ fn both_byte_orders_are_read_plain_and_compressed() {
 }
 
 #[test]
+fn checksums_of_compressed_volumes_are_verified_and_surplus_is_told() {
+    let file = |values: &[u8]| {
+        let large = Header::new(false).with(42, 300i16.to_le_bytes()).with(44, 300i16.to_le_bytes());
+        [&large.bytes, values].concat()
+    };
+    let values: Vec<u8> = (0..360_000u32).map(|i| (i % 9973 * 31 / 7) as u8).collect();
+    let whole = gzip(&file(&values));
+    assert!(read(&whole).unwrap().warnings.is_empty());
+    for place in whole.len() - 8..whole.len() {
+        let mut damaged = whole.clone();
+        damaged[place] ^= 1;
+        assert_fails(read(damaged), ErrorKind::Malformed, &["input: ", "gzip data is damaged"]);
+    }
+    let surplus = file(&[&values[..], &[0]].concat());
+    for content in [gzip(&surplus), surplus] {
+        let warnings = read(content).unwrap().warnings;
+        assert!(
+            warnings[0].starts_with("the bytes that follow the 180000 values are ignored"),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
 fn values_are_scaled_if_a_slope_is_stated() {
     let scaled = |slope: f32, intercept: f32| {
         Header::new(false).with(112, slope.to_le_bytes()).with(116, intercept.to_le_bytes()).file()

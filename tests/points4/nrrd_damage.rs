@@ -5,6 +5,7 @@ use spmesh_io::source::points4::{From4, read_points4};
 
 use super::{all, assert_fails, gzip, read};
 use crate::programs::Folder;
+use spmesh_reference::sets::Random;
 
 const GOOD: &str = "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 2 1 2\nencoding: raw\n\n12345678";
 
@@ -39,7 +40,7 @@ fn damaged_headers_are_refused_with_line_and_field() {
             &["field kinds", "one component"],
         ),
         ("sizes: 2 2 1 2", "sizes: 2 2 1 2\nkinds: time domain domain time", &["field kinds", "several"]),
-        ("sizes: 2 2 1 2", "sizes: 1000 1000 1000 1000", &["found 8 of 1000000000000 values"]),
+        ("sizes: 2 2 1 2", "sizes: 100 100 10 10", &["found 8 of 1000000 values"]),
         ("encoding: raw", "encoding: bzip2", &["line 5, field encoding", "unu save"]),
         ("encoding: raw", "encoding: zip", &["line 5", "raw, gzip or text"]),
         ("encoding: raw", "encoding: gzip", &["gzip data"]),
@@ -97,15 +98,72 @@ fn truncated_values_are_counted() {
 }
 
 #[test]
-fn compressed_values_are_read_no_further_than_their_size() {
+fn compressed_values_are_read_to_the_end_of_their_data() {
     let header = GOOD.split("raw\n\n").next().unwrap();
     let volume = |data: &[u8]| [header.as_bytes(), b"gzip\n\n", data].concat();
-    // 64 MB of zeros in gzip; even when cut, the data has the 8 bytes that the volume needs.
+    // 64 MB of zeros in gzip, of which the volume needs 8 bytes.
     let bomb = gzip(&vec![0; 1 << 26]);
-    assert_eq!(read(volume(&bomb[..1000])).unwrap().points.len(), 8);
+    let points = read(volume(&bomb)).unwrap();
+    assert_eq!((points.points.len(), &points.warnings[..]), (8, &[SURPLUS.to_string()][..]));
+    for cut in [1, 1000, bomb.len() - 15] {
+        assert_fails(read(volume(&bomb[..bomb.len() - cut])), ErrorKind::Malformed, &["gzip data ends"]);
+    }
     assert_fails(read(volume(&gzip(b"1234"))), ErrorKind::Malformed, &["found 4 of 8 values"]);
-    assert_fails(read(volume(&bomb[..15])), ErrorKind::Malformed, &["gzip data"]);
     assert_fails(read(volume(b"not gzip data at all")), ErrorKind::Malformed, &["gzip data"]);
+}
+
+const SURPLUS: &str =
+    "the bytes that follow the 8 values are ignored: are the stated sizes and the type right?";
+
+/// Values enough for several buffers, with the header before them.
+fn large(encoding: &str, data: &[u8]) -> Vec<u8> {
+    let header = format!("NRRD0004\ntype: uchar\ndimension: 3\nsizes: 100 100 60\nencoding: {encoding}\n\n");
+    [header.as_bytes(), data].concat()
+}
+
+#[test]
+fn checksums_and_lengths_of_compressed_volumes_are_verified() {
+    let mut random = Random::new(7);
+    let values: Vec<u8> = (0..600_000).map(|_| random.integer(0, 255) as u8).collect();
+    let text: String = values.iter().map(|value| format!("{value} ")).collect();
+    for (whole, is_file) in [
+        (gzip(&values), false),
+        (gzip(&large("raw", &values)), true),
+        (gzip(&large("text", text.as_bytes())), true),
+    ] {
+        let file = |data: &[u8]| if is_file { data.to_vec() } else { large("gzip", data) };
+        let padded = [&whole[..], &[0; 700]].concat();
+        for good in [&whole, &padded] {
+            let points = read(file(good)).unwrap();
+            assert_eq!((points.points.len(), points.warnings.len()), (600_000, 1), "{:?}", points.warnings);
+        }
+        // The trailer: the checksum in four bytes, and the length in four.
+        for place in whole.len() - 8..whole.len() {
+            let mut damaged = whole.clone();
+            damaged[place] ^= 4;
+            assert_fails(read(file(&damaged)), ErrorKind::Malformed, &["input: ", "gzip data is damaged"]);
+            assert_fails(read(file(&whole[..place])), ErrorKind::Malformed, &["input: ", "gzip data ends"]);
+        }
+        let followed = [&padded[..], b"garbage"].concat();
+        assert_fails(read(file(&followed)), ErrorKind::Malformed, &["input: ", "other bytes follow"]);
+    }
+}
+
+#[test]
+fn bytes_after_the_values_are_told() {
+    let folder = Folder::new();
+    let read_file =
+        |content: String| read_points4(&all(From4::File(folder.file("v.nhdr", content)))).unwrap();
+    let header = GOOD.strip_suffix("\n12345678").unwrap();
+    let detached = folder.file("surplus", b"123456789");
+    let named = format!("{}: {SURPLUS}", detached.display());
+    assert_eq!(read_file(format!("{header}data file: surplus\n")).warnings, [named]);
+    let halves = read_file(format!("{header}byte skip: -1\ndata file: LIST\nsurplus\nsurplus\n"));
+    assert!(halves.warnings.is_empty());
+    assert_eq!(read(format!("{GOOD}9")).unwrap().warnings, [SURPLUS]);
+    let text = |data: &str| read(format!("{}{data}", GOOD.replace("raw\n\n12345678", "text\n\n")));
+    assert_eq!(text("1 2 3 4 5 6 7 8 9").unwrap().warnings, [SURPLUS]);
+    assert!(text("1 2 3 4 5 6 7 8\n\n \n").unwrap().warnings.is_empty());
 }
 
 #[test]

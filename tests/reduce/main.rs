@@ -3,6 +3,7 @@
 mod equality;
 mod failures;
 mod policies;
+mod shapes;
 mod space;
 mod space_tile_damage;
 mod space_tiles;

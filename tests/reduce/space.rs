@@ -30,7 +30,7 @@ const TAGGINGS: [Tagging; 9] = [
 ];
 
 /// Options under which small nodes are triangulated, too.
-fn every_node(threads: usize) -> Options<3> {
+pub fn every_node(threads: usize) -> Options<3> {
     Options { threads, every_node: true, ..Options::default() }
 }
 

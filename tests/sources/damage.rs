@@ -9,7 +9,8 @@ use spmesh_io::source::Input;
 /// Largest single allocation that a damaged small file may cause: a group of chunks.
 const ALLOCATION_MAX: usize = 65 << 20;
 
-/// Reads all points of `content` and checks only the memory that this takes.
+/// Reads all points of `content`, and checks the memory that this takes and that an error is one of the
+/// content.
 fn try_read(folder: &Folder, content: &[u8]) {
     let path = folder.file("damaged", content);
     let read = || -> spmesh_core::error::Result<()> {
@@ -26,7 +27,11 @@ fn try_read(folder: &Folder, content: &[u8]) {
         }
         Ok(())
     };
-    let largest = largest_during(|| drop(read()));
+    let largest = largest_during(|| {
+        if let Err(error) = read() {
+            assert!(matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Usage), "{error}");
+        }
+    });
     assert!(largest <= ALLOCATION_MAX, "a request of {largest} bytes");
 }
 

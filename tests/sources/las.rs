@@ -223,6 +223,54 @@ fn points_that_the_header_does_not_state_are_told_of() {
     }
 }
 
+/// The sample with `change` added to the number of points that its header states.
+fn with_count(name: &str, change: i64) -> Vec<u8> {
+    let mut bytes = std::fs::read(sample(name)).unwrap();
+    let legacy = u32::from_le_bytes(bytes[107..111].try_into().unwrap());
+    if legacy > 0 {
+        bytes[107..111].copy_from_slice(&legacy.checked_add_signed(change as i32).unwrap().to_le_bytes());
+    } else {
+        let count = u64::from_le_bytes(bytes[247..255].try_into().unwrap());
+        bytes[247..255].copy_from_slice(&count.checked_add_signed(change).unwrap().to_le_bytes());
+    }
+    bytes
+}
+
+#[test]
+fn a_count_that_is_too_small_is_told_of_or_refused() {
+    let folder = Folder::new();
+    for (name, count) in [("hextest.las", 8), ("point10.las", 1065), ("1_4_w_evlr.las", 1000)] {
+        let input = Input::open(&[folder.file("a.las", with_count(name, -2))], &flat()).unwrap();
+        let told = format!("states {} points, but {count} records fit before byte", count - 2);
+        assert!(input.notices()[0].contains(&told), "{:?}", input.notices());
+        assert_eq!(pass(&input).unwrap().len(), count - 2);
+    }
+    for name in
+        ["1_4_w_evlr.laz", "autzen.laz", "autzen.copc.laz", "lareunion.laz", "point10.laz", "pointwise.laz"]
+    {
+        assert_fails(points_of(with_count(name, -1)), ErrorKind::Malformed, &["point"]);
+    }
+}
+
+#[test]
+fn points_do_not_extend_into_other_data() {
+    let other = ["record 1000 at byte 32305", "states 1001 points", "other data start at byte 32305"];
+    assert_fails(points_of(with_count("1_4_w_evlr.las", 1)), ErrorKind::Malformed, &other);
+    // Waveforms follow the first 500 points.
+    let mut waveforms = with_count("1_4_w_evlr.las", 0);
+    waveforms[227..235].copy_from_slice(&(2305 + 500 * 30u64).to_le_bytes());
+    assert_fails(
+        points_of(waveforms),
+        ErrorKind::Malformed,
+        &["record 500", "other data start at byte 17305"],
+    );
+    for name in
+        ["hextest.las", "1_4_w_evlr.laz", "autzen.laz", "autzen.copc.laz", "point10.laz", "pointwise.laz"]
+    {
+        assert_fails(points_of(with_count(name, 1)), ErrorKind::Malformed, &["point"]);
+    }
+}
+
 #[test]
 fn pipes_are_spooled_and_the_notice_says_so() {
     let folder = Folder::new();

@@ -189,3 +189,23 @@ fn damaged_text_is_an_error() {
     assert_fails(points_of(text), ErrorKind::Malformed, &["line 3", "not finite"]);
     assert_fails(points_of("# npoints 1\nv 1 2\n"), ErrorKind::Malformed, &["line 2", "\"v 1 2\"", "SPA"]);
 }
+
+#[test]
+fn points_of_a_cell_that_no_tag_finalizes_were_cut() {
+    let head = "# finalizemethod SP_QUAD_TREE\n# bb_min 0 0 0\n# bb_max 4 4 0\n";
+    let whole = format!("{head}v 1 1 0\nx cell 2\nv 3 3 0\nx cell 0\n");
+    assert_eq!(points_of(&whole).unwrap().len(), 2);
+    let cut = whole.strip_suffix("x cell 0\n").unwrap();
+    assert_fails(points_of(cut), ErrorKind::Malformed, &["truncated", "never finalized"]);
+    let unended = cut.strip_suffix(" 0\n").unwrap().to_string() + " 0";
+    assert_fails(points_of(unended), ErrorKind::Malformed, &["line 6", "the last line has no end"]);
+    // Without tags there is nothing to miss.
+    assert_eq!(points_of(cut.replace("x cell 2\n", "")).unwrap().len(), 2);
+}
+
+#[test]
+fn vertices_of_meshes_are_as_many_as_stated() {
+    let mesh = "# nverts 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_fails(points_of(mesh), ErrorKind::Malformed, &["states 4 vertices, the mesh has 3"]);
+    assert_eq!(points_of(mesh.replace('4', "3")).unwrap().len(), 3);
+}

@@ -278,7 +278,7 @@ fn what_is_not_read_is_named() {
     }
     assert_fails(read("1 2\n3 4\n"), ErrorKind::Usage, &["input: ", "no third coordinate"]);
     assert_fails(read_structure(Path::new("/none"), None), ErrorKind::Io, &["/none: ", "opening"]);
-    assert_fails(read_structure(Path::new("/"), None), ErrorKind::Io, &["/: ", "reading"]);
+    assert_fails(read_structure(Path::new("/"), None), ErrorKind::Usage, &["/: ", "is a folder"]);
 }
 
 #[test]

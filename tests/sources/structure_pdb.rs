@@ -2,8 +2,8 @@
 
 use spmesh_core::error::ErrorKind;
 
-use super::assert_fails;
 use super::structure::{atoms, read};
+use super::{assert_fails, sample};
 
 /// The line of an atom: columns 1 to 30 as given, and fixed coordinates.
 fn atom(start: &str) -> String {
@@ -173,4 +173,14 @@ fn other_records_are_passed_over() {
     let structure = read(text).unwrap();
     assert_eq!(structure.models[0].atoms.len(), 1);
     assert!(structure.warnings.is_empty());
+}
+
+#[test]
+fn a_file_that_ends_in_the_name_of_a_record_is_cut() {
+    let whole = std::fs::read(sample("1aki.pdb")).unwrap();
+    let atom = whole.windows(5).rposition(|window| window == b"\nATOM").unwrap() + 1;
+    for len in 1..4 {
+        assert_fails(read(&whole[..atom + len]), ErrorKind::Malformed, &["truncated", "inside of a record"]);
+    }
+    assert!(read([&whole[..atom], b"END"].concat()).unwrap().warnings.is_empty());
 }

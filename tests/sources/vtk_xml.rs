@@ -245,6 +245,30 @@ fn hostile_blocks_are_refused_within_bounded_memory() {
 }
 
 #[test]
+fn damaged_zlib_blocks_are_named() {
+    let folder = Folder::new();
+    let whole = VtkXml { packing: Packing::Zlib, block_len: 1 << 15, ..VtkXml::of(vec![cloud(900)]) }.bytes();
+    let is_zlib = |bytes: &[u8]| bytes[0] == 0x78 && matches!(bytes[1], 0x01 | 0x5e | 0x9c | 0xda);
+    let starts: Vec<usize> = (0..whole.len() - 1).filter(|&at| is_zlib(&whole[at..])).collect();
+    let damaged = starts.iter().filter_map(|start| {
+        let mut damaged = whole.clone();
+        // The code of a block of deflate that is reserved.
+        damaged[start + 2] = 0xff;
+        points(&[folder.file("damaged.vtu", damaged)], &flat()).err()
+    });
+    let messages: Vec<String> = damaged
+        .map(|error| {
+            assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
+            error.to_string()
+        })
+        .collect();
+    let is_named = |message: &String| {
+        message.contains("damaged.vtu") && message.contains("compressed block 1: corrupt deflate stream")
+    };
+    assert!(messages.iter().any(is_named), "{messages:?}");
+}
+
+#[test]
 fn damage_is_survived_and_no_cut_passes_for_a_whole_file() {
     let folder = Folder::new();
     for (form, packing) in [

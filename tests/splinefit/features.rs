@@ -67,7 +67,7 @@ fn features_that_cannot_be_are_refused() {
     let points = folder.write("points.txt", points(500, 3, roof));
     let cases = [
         ("crease 10 10 90 70\ncrease 10 70 90 10\n", 2, "crosses"),
-        ("crease 10 10\n", 3, "polyline 0: found 1 vertices"),
+        ("crease 10 10\n", 3, "line 1: found 1 vertices"),
         ("ridge 10 10 20 20\n", 3, "line 1: found \"ridge\""),
         ("{\"type\":\"Point\"}", 3, "feature 0"),
     ];
@@ -84,4 +84,47 @@ fn features_that_cannot_be_are_refused() {
     let (code, message) = outcome(&found);
     assert_eq!(code, Some(2), "{message}");
     assert!(message.contains("configurations have their functions already"), "{message}");
+}
+
+#[test]
+fn features_far_from_the_points_are_refused_before_they_take_memory() {
+    let folder = Folder::new();
+    let knots = folder.write("knots.txt", knots());
+    let points = folder.write("points.txt", points(500, 3, roof));
+    let ways: [&[&str]; 3] = [&["--knots", &knots], &["--step", "20"], &[]];
+    for far in ["1e300", "-1e300", "1e9", "1e6", "1000"] {
+        for way in ways {
+            for text in [
+                format!("# far\ncrease 10 10 20 {far}\n"),
+                format!("\ncorner {far} 5\n"),
+                format!("{{\"type\":\"LineString\",\"coordinates\":[[10,10],[20,{far}]]}}"),
+            ] {
+                let features = folder.write("features.txt", &text);
+                let arguments = [&["fit", "--features", &features, &points], way].concat();
+                let (code, message) = outcome(&run("splinefit", &arguments, &[]));
+                assert_eq!(code, Some(2), "{arguments:?}: {message}");
+                let place =
+                    if text.starts_with('{') { "features.txt: polyline 0" } else { "features.txt: line 2" };
+                for part in [place, "is far from the points", "ogr2ogr -clipsrc"] {
+                    assert!(message.contains(part), "{text} {way:?}: {message}");
+                }
+            }
+        }
+    }
+    // A little outside is well.
+    let features = folder.write("features.txt", "crease 43 -5 43 85\n");
+    output(&["fit", "--step", "20", "--features", &features, &points], &[]);
+}
+
+#[test]
+fn features_need_no_more_knots_than_asked_for() {
+    let folder = Folder::new();
+    let points = folder.write("points.txt", points(500, 3, roof));
+    let vertices: String = (0..=70).map(|i| format!(" {} {}", 10 + i, 20 + i % 2)).collect();
+    let features = folder.write("features.txt", format!("crease{vertices}\n"));
+    let (code, message) =
+        outcome(&run("splinefit", &["fit", "--max-knots", "40", "--features", &features, &points], &[]));
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("the features need 71 knots, at most 40"), "{message}");
+    output(&["fit", "--max-knots", "80", "--features", &features, &points], &[]);
 }

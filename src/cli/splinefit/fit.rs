@@ -66,7 +66,7 @@ pub(super) struct Flags {
     #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = parse_positive)]
     tol: Option<f64>,
 
-    /// Maximum number of distinct knots
+    /// Maximum number of distinct knots of the search; features may add as many again
     #[arg(long, value_name = "N")]
     max_knots: Option<usize>,
 
@@ -197,6 +197,7 @@ impl Flags {
                 .map(|path| read_features(path))
                 .transpose()?
                 .unwrap_or_default(),
+            polylines_name: self.features.as_deref().map(name_of).unwrap_or_default(),
             degree: self.degree,
             seed: self.seed,
             threads: self.threads.get(),

@@ -7,7 +7,8 @@ use crate::predicates::Predicates2;
 ///
 /// Domain: distinct vertices.
 ///
-/// Cost: O(n log n), plus a test for each pair of edges that overlap in x and y.
+/// Cost: O(n log n), plus a test for each pair of edges that overlap in the order of the knots. Copies of one
+/// knot are told apart by their ranks, so a chain of them costs no more than others.
 pub(super) fn crossing<P: Predicates2>(
     plane: &mut Plane<P>,
     polygon: &[u32],
@@ -18,15 +19,17 @@ pub(super) fn crossing<P: Predicates2>(
         return flat(plane, polygon, is_closed);
     }
     let edges = if is_closed { count } else { count - 1 };
-    let mut sorted: Vec<(f64, f64, usize)> = (0..edges)
+    let knots = plane.knots;
+    let mut sorted: Vec<([u32; 2], usize)> = (0..edges)
         .map(|i| {
-            let [p, q] = [polygon[i], polygon[(i + 1) % count]].map(|v| plane.knots.at(v)[0]);
-            (p.min(q), p.max(q), i)
+            let [p, q] = [polygon[i], polygon[(i + 1) % count]];
+            (if knots.order(p, q).is_lt() { [p, q] } else { [q, p] }, i)
         })
         .collect();
-    sorted.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
-    for (place, &(_, end, i)) in sorted.iter().enumerate() {
-        for &(_, _, j) in sorted[place + 1..].iter().take_while(|other| other.0 <= end) {
+    sorted.sort_unstable_by(|([a, _], i), ([b, _], j)| knots.order(*a, *b).then(i.cmp(j)));
+    for (place, &([_, end], i)) in sorted.iter().enumerate() {
+        let overlaps = |other: &&([u32; 2], usize)| knots.order(other.0[0], end).is_le();
+        for &(_, j) in sorted[place + 1..].iter().take_while(overlaps) {
             let [e, f] = [i, j].map(|at| [polygon[at], polygon[(at + 1) % count]]);
             if meet(plane, e, f) {
                 return Some([e, f]);

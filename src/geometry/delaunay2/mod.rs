@@ -10,6 +10,7 @@ mod distinct;
 mod extract;
 mod half_edge;
 mod insertion;
+mod line;
 mod locate;
 mod mesh;
 mod triangles;
@@ -21,10 +22,11 @@ pub use triangles::{Corner, Triangle, Triangles};
 pub use triangulation::Triangulation;
 
 use crate::order::{Curve, Rounds, SpatialOrder};
-use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts, lexicographic};
+use crate::predicates::{Arithmetic, Extent, Point2, PredicateCounts};
 use build::Build;
 use extract::Extraction;
 use insertion::Cavity;
+use line::OffLine;
 use mesh::INFINITE;
 use spmesh_core::error::{Error, Result};
 
@@ -80,6 +82,11 @@ impl Kernel {
                 .at(format!("point {bad}")));
         }
         triangles.clear();
+        let arithmetic = Arithmetic::of(&extent);
+        if arithmetic.run(OffLine { points }, &mut self.counts).is_none() {
+            line::extract(points, triangles);
+            return Ok(());
+        }
         self.take_sorted(points, &extent, &mut triangles.duplicates);
         self.sequence.clear();
         self.sequence.reserve_exact(self.points.len() - 1);
@@ -90,20 +97,16 @@ impl Kernel {
             sequence: &self.sequence,
             cavity: &mut self.cavity,
         };
-        match Arithmetic::of(&extent).run(build, &mut self.counts) {
-            Some(mesh) => {
-                let extraction = Extraction {
-                    mesh,
-                    indices: &self.indices,
-                    triangle_at: &mut self.sequence,
-                    hull: &mut triangles.hull,
-                    triangle_of_vertex: &mut triangles.triangle_of_vertex,
-                };
-                let count = extraction.run(points.len());
-                triangles.memory.set_count(count);
-            }
-            None => self.extract_line(points, triangles),
-        }
+        let mesh = arithmetic.run(build, &mut self.counts).expect("points off a line");
+        let extraction = Extraction {
+            mesh,
+            indices: &self.indices,
+            triangle_at: &mut self.sequence,
+            hull: &mut triangles.hull,
+            triangle_of_vertex: &mut triangles.triangle_of_vertex,
+        };
+        let count = extraction.run(points.len());
+        triangles.memory.set_count(count);
         Ok(())
     }
 
@@ -134,13 +137,6 @@ impl Kernel {
             self.indices.push(index);
             self.points.push(point);
         }
-    }
-
-    /// Writes the result for points that all lie on one line.
-    fn extract_line(&self, points: &[Point2], out: &mut Triangles) {
-        out.triangle_of_vertex.resize(points.len(), NONE);
-        out.hull.extend(&self.indices[1..]);
-        out.hull.sort_unstable_by(|&u, &v| lexicographic(points[u as usize], points[v as usize]));
     }
 }
 

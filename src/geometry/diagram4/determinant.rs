@@ -2,10 +2,40 @@
 
 use std::ops::{Add, Mul, Sub};
 
-/// Numbers of a ring: `f64`, wrapping integers, big integers.
+/// Numbers of a ring: `f64`, pairs of them, wrapping integers, big integers.
 pub(super) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 
 impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
+
+/// The sum of the magnitudes of all products of a value: subtraction adds.
+#[derive(Clone, Copy)]
+pub(super) struct Magnitude(pub(super) f64);
+
+impl Add for Magnitude {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Magnitude(self.0 + other.0)
+    }
+}
+
+impl Sub for Magnitude {
+    type Output = Self;
+
+    // Magnitudes add up, whatever the sign.
+    #[allow(clippy::suspicious_arithmetic_impl)]
+    fn sub(self, other: Self) -> Self {
+        Magnitude(self.0 + other.0)
+    }
+}
+
+impl Mul for Magnitude {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Magnitude(self.0 * other.0)
+    }
+}
 
 /// Squared length.
 #[inline(always)]

@@ -1,40 +1,9 @@
 //! The orientation of any five points.
 
-use super::determinant::{dot, normal};
+use super::determinant::{Magnitude, dot, normal};
 use super::exact::{Exactness, orientation};
 use crate::predicates::Sign;
 use spmesh_model::cells4::Point4;
-use std::ops::{Add, Mul, Sub};
-
-/// A bound on the magnitude of a value: subtraction adds.
-#[derive(Clone, Copy)]
-struct Magnitude(f64);
-
-impl Add for Magnitude {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Magnitude(self.0 + other.0)
-    }
-}
-
-impl Sub for Magnitude {
-    type Output = Self;
-
-    // Magnitudes add up, whatever the sign.
-    #[allow(clippy::suspicious_arithmetic_impl)]
-    fn sub(self, other: Self) -> Self {
-        Magnitude(self.0 + other.0)
-    }
-}
-
-impl Mul for Magnitude {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Magnitude(self.0 * other.0)
-    }
-}
 
 /// A product of four differences is rounded at most 14 times; its magnitude is part of the bound.
 const ERROR: f64 = 32.0 * f64::EPSILON;

@@ -1,21 +1,32 @@
 //! Rounds of insertion, each of which covers the whole set of points.
 
-/// The stride of the first round is `1 << FIRST`.
+/// The first round has a number of each block of `1 << FIRST`.
 const FIRST: u32 = 9;
 
-/// Each round makes a stride of the one before `1 << FACTOR` times shorter, down to 1.
+/// Each round divides the blocks of the one before into `1 << FACTOR` parts, down to single numbers.
 const FACTOR: u32 = 3;
 const _: () = assert!(FIRST.is_multiple_of(FACTOR));
 
-/// The numbers from 0 to `count - 1`, which are places along a curve: every 512th first, then every 64th,
-/// every 8th, and the rest.
+/// No block.
+const NONE: usize = usize::MAX;
+
+/// The numbers from 0 to `count - 1`, which are places along a curve: of each block of 512 one number first,
+/// then one of each block of 64, one of each block of 8, and the rest. Each round goes along the curve.
 ///
 /// Each round spreads over the whole set and makes an eighth of the next, so that a point finds small
 /// simplices around it, as in a random order; within a round the next point is near.
+///
+/// Which number of a block comes first changes along the curve. If it were always the same, points in two
+/// rows that take turns along the curve would come one row after the other, and each point of the second row
+/// would be joined to all of the first.
 #[derive(Debug, Clone)]
 pub struct Rounds {
-    next: usize,
+    /// The block of the next number, in blocks of `1 << shift`, and the number of these blocks.
+    block: usize,
+    end: usize,
     shift: u32,
+    /// Of the blocks around `block` that are one of the round before, the one that had its number.
+    had: usize,
     count: usize,
     /// How many numbers are still to come.
     left: usize,
@@ -27,7 +38,7 @@ impl Rounds {
     /// Domain: `count` at most 2^32.
     #[must_use]
     pub fn new(count: usize) -> Rounds {
-        Rounds { next: 0, shift: FIRST, count, left: count }
+        Rounds { block: 0, end: count.div_ceil(1 << FIRST), shift: FIRST, had: NONE, count, left: count }
     }
 }
 
@@ -37,17 +48,28 @@ impl Iterator for Rounds {
     #[inline]
     fn next(&mut self) -> Option<u32> {
         self.left = self.left.checked_sub(1)?;
-        while self.next >= self.count {
-            self.shift -= FACTOR;
-            self.next = 1 << self.shift;
+        loop {
+            if self.block == self.end {
+                self.shift -= FACTOR;
+                self.block = 0;
+                self.end = self.count.div_ceil(1 << self.shift);
+            }
+            let block = self.block;
+            self.block += 1;
+            if block.is_multiple_of(1 << FACTOR) && self.shift < FIRST {
+                self.had = block + first_part(block >> FACTOR);
+            }
+            if block == self.had {
+                continue;
+            }
+            if self.shift == 0 {
+                return Some(block as u32);
+            }
+            let number = first_of(block, self.shift);
+            if number < self.count {
+                return Some(number as u32);
+            }
         }
-        let number = self.next as u32;
-        self.next += 1 << self.shift;
-        let is_in = self.shift < FIRST && self.next & ((1 << (self.shift + FACTOR)) - 1) == 0;
-        if is_in {
-            self.next += 1 << self.shift;
-        }
-        Some(number)
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
@@ -57,20 +79,67 @@ impl Iterator for Rounds {
 
 impl ExactSizeIterator for Rounds {}
 
+/// The number of a block, of `1 << shift` numbers, that comes first.
+#[inline]
+fn first_of(mut block: usize, shift: u32) -> usize {
+    for _ in 0..shift / FACTOR {
+        block = block << FACTOR | first_part(block);
+    }
+    block
+}
+
+/// Which part of a block has its first number: the next one after every 8 blocks. Between these steps, the
+/// numbers of a round are evenly spaced, which makes for the fewest simplices.
+#[inline]
+fn first_part(block: usize) -> usize {
+    block >> FACTOR & ((1 << FACTOR) - 1)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn every_number_comes_once_in_the_first_round_that_has_it() {
+    fn every_number_comes_once() {
         for count in [0u32, 1, 2, 8, 9, 63, 64, 65, 511, 512, 513, 5000] {
-            let round =
-                |number: &u32| [512, 64, 8, 1].iter().position(|stride| number.is_multiple_of(*stride));
-            let mut expected: Vec<u32> = (0..count).collect();
-            expected.sort_by_key(round);
             let rounds = Rounds::new(count as usize);
             assert_eq!(rounds.len(), count as usize);
-            assert_eq!(rounds.collect::<Vec<u32>>(), expected, "{count}");
+            let mut numbers: Vec<u32> = rounds.collect();
+            numbers.sort_unstable();
+            assert!(numbers.into_iter().eq(0..count), "{count}");
+        }
+    }
+
+    #[test]
+    fn each_round_has_a_number_of_each_block_and_goes_along_the_curve() {
+        let numbers: Vec<u32> = Rounds::new(1 << 15).collect();
+        let (mut from, mut seen) = (0, 0);
+        for shift in [9, 6, 3, 0] {
+            seen = (1 << 15) >> shift;
+            assert!(numbers[from..seen].is_sorted(), "{shift}");
+            let mut blocks: Vec<u32> = numbers[..seen].iter().map(|number| number >> shift).collect();
+            blocks.sort_unstable();
+            assert!(blocks.into_iter().eq(0..seen as u32), "{shift}");
+            from = seen;
+        }
+        assert_eq!(seen, numbers.len());
+    }
+
+    /// Numbers of two rows that take turns must not come one row after the other; nor any few rows.
+    #[test]
+    fn rounds_take_turns_in_no_pattern() {
+        let count = 1 << 17;
+        for shift in [9, 6, 3] {
+            let first: Vec<u32> = Rounds::new(count).take(count >> shift).collect();
+            for rows in 2..=16 {
+                let mut sizes = vec![0usize; rows];
+                first.iter().for_each(|number| sizes[*number as usize % rows] += 1);
+                let even = first.len() / rows;
+                assert!(
+                    sizes.iter().all(|size| size.abs_diff(even) < 5 * even.isqrt()),
+                    "{shift}: {sizes:?}"
+                );
+            }
         }
     }
 }

@@ -1,11 +1,12 @@
-//! Predicates of floating-point coordinates: filter, then expansions, then arbitrary precision.
+//! Predicates of floating-point coordinates: filter, then pairs of `f64`, then expansions, then arbitrary
+//! precision.
 //!
 //! The filters are Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust geometric
 //! predicates", 1997, bounds A): with u = 2^-53 the rounded determinant differs from the exact one by at most
 //! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with
 //! every product replaced by its magnitude, provided that nothing over- or underflows.
 
-use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big};
+use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big, pairs};
 use robust::Coord;
 
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
@@ -64,15 +65,16 @@ fn coord([x, y]: Point2) -> Coord<f64> {
 
 #[cold]
 fn expansion_orient2d(a: Point2, b: Point2, c: Point2) -> Sign {
-    Sign::of(robust::orient2d(coord(a), coord(b), coord(c)))
+    pairs::orient2d(a, b, c).unwrap_or_else(|| Sign::of(robust::orient2d(coord(a), coord(b), coord(c))))
 }
 
 #[cold]
 fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d)))
+    pairs::incircle(a, b, c, d)
+        .unwrap_or_else(|| Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d))))
 }
 
-/// Filter, then expansions.
+/// Filter, then expansions, those of two terms first.
 ///
 /// Domain: every coordinate is zero or its magnitude lies in [2^-170, 2^240]. Why this suffices:
 ///

@@ -22,6 +22,7 @@ mod counts;
 pub mod exact_integers;
 mod extent;
 mod integer;
+pub(crate) mod pairs;
 mod perturbation;
 pub(crate) mod spatial;
 pub mod sphere;

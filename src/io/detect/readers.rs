@@ -2,7 +2,7 @@
 
 use spmesh_core::error::{Error, Result};
 
-use super::{Format, detect};
+use super::{Format, HEAD_LEN, detect};
 
 /// A tool that reads inputs of several formats.
 #[derive(Debug)]
@@ -102,7 +102,16 @@ impl Reader {
     /// Malformed, if the input is empty, or of a format that the tool does not read.
     pub fn detect(&self, head: &[u8]) -> Result<Format> {
         let format = detect(head)?;
-        if self.reads(format) { Ok(format) } else { Err(Error::malformed(self.refusal(format, head))) }
+        if !self.reads(format) {
+            return Err(Error::malformed(self.refusal(format, head)));
+        }
+        if format == Format::OtherText && head.len() as u64 == HEAD_LEN && !may_hold_points_later(head) {
+            return Err(Error::malformed(format!(
+                "no line of coordinates in the first {HEAD_LEN} bytes; {}",
+                self.list()
+            )));
+        }
+        Ok(format)
     }
 
     /// Whether the tool reads this format.
@@ -111,9 +120,8 @@ impl Reader {
         self.formats.iter().any(|list| list.contains(&format))
     }
 
-    /// The tool's message for a file of this format, which starts with `head`.
-    #[must_use]
-    pub fn refusal(&self, format: Format, head: &[u8]) -> String {
+    /// The formats that the tool reads, for messages.
+    fn list(&self) -> String {
         let mut listed: Vec<&str> = Vec::new();
         for format in self.formats.iter().copied().flatten() {
             let name = format.row().listed;
@@ -121,7 +129,13 @@ impl Reader {
                 listed.push(name);
             }
         }
-        let reads = format!("{} reads {}", self.tool, listed.join(", "));
+        format!("{} reads {}", self.tool, listed.join(", "))
+    }
+
+    /// The tool's message for a file of this format, which starts with `head`.
+    #[must_use]
+    pub fn refusal(&self, format: Format, head: &[u8]) -> String {
+        let reads = self.list();
         if format == Format::Binary {
             let at = head.iter().position(|&byte| byte == 0).unwrap_or_default();
             let raw = if self.has_raw { "; raw numbers need --raw" } else { "" };
@@ -135,4 +149,13 @@ impl Reader {
         let hint = if hint.is_empty() { String::new() } else { format!("; {hint}") };
         format!("this is {}; {reads}{hint}", format.name())
     }
+}
+
+/// Whether points may follow a head of text without coordinates: comments and at most one line of names come
+/// before them.
+fn may_hold_points_later(head: &[u8]) -> bool {
+    let lines = head.split(|&byte| byte == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
+    let (comments, others): (Vec<_>, Vec<_>) =
+        lines.partition(|line| line.starts_with(b"#") || line.starts_with(b"//"));
+    others.len() <= 2 && comments.len() + others.len() > 0
 }

@@ -88,16 +88,30 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
 }
 
-/// PDB or mmCIF, if the line proves one of them.
+/// Columns of a PDB line up to the last coordinate.
+const PDB_PLACE_LEN: usize = 54;
+
+/// PDB or mmCIF, if the line proves one of them. Names of columns in a text of points can be the same words.
 fn of_molecule(line: &[u8], word: &[u8]) -> Option<Format> {
     let starts_with = |start: &[u8]| word.get(..start.len()).is_some_and(|w| w.eq_ignore_ascii_case(start));
-    if starts_with(b"data_") || starts_with(b"loop_") || starts_with(b"_atom_site.") {
+    let second = words(line).nth(1).unwrap_or_default();
+    let is_alone = second.is_empty() || second.starts_with(b"#");
+    let is_list = word.iter().any(|byte| b",;".contains(byte));
+    if starts_with(b"_atom_site.") || (starts_with(b"data_") || starts_with(b"loop_")) && is_alone && !is_list
+    {
         return Some(Format::Mmcif);
     }
     // The serial number may touch the name of the record.
-    let is_atom = |name: &[u8]| starts_with(name) && word[name.len()..].iter().all(u8::is_ascii_digit);
-    let is_record = PDB_RECORDS.contains(&word) || is_atom(b"ATOM") || is_atom(b"HETATM");
-    (line[0] == word[0] && is_record).then_some(Format::Pdb)
+    let is_name = |name: &[u8]| starts_with(name) && word[name.len()..].iter().all(u8::is_ascii_digit);
+    let is_numbered = line.len() >= PDB_PLACE_LEN || second.first().is_some_and(u8::is_ascii_digit);
+    let is_atom = (is_name(b"ATOM") || is_name(b"HETATM")) && is_numbered;
+    let is_record = PDB_RECORDS.contains(&word) && fills_columns(&line[word.len()..]);
+    (line[0] == word[0] && (is_atom || is_record)).then_some(Format::Pdb)
+}
+
+/// Whether the rest of a line is what follows the name of a PDB record: blank columns or a number.
+fn fills_columns(rest: &[u8]) -> bool {
+    matches!(rest, [] | [b' '] | [b' ', b' ' | b'0'..=b'9', ..])
 }
 
 /// Whether the text starts with a count, a comment and an atom: `element x y z`.

@@ -1,6 +1,5 @@
 //! The grid of an existing GeoTIFF.
 
-use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
@@ -9,6 +8,7 @@ use tiff::tags::Tag;
 
 use super::Grid;
 use super::geotiff::{KEY_DIRECTORY, PIXEL_SCALE, TIEPOINT, is_of_points};
+use crate::source::open_file;
 use spmesh_core::error::{Error, Result};
 
 impl Grid {
@@ -22,7 +22,7 @@ impl Grid {
 }
 
 fn read(path: &Path) -> Result<Grid> {
-    let file = File::open(path).map_err(|e| Error::io("opening", e))?;
+    let (file, _) = open_file(path)?;
     let malformed =
         |error: tiff::TiffError| Error::malformed(format!("this cannot be read as TIFF: {error}"));
     let mut decoder = Decoder::new(BufReader::new(file)).map_err(malformed)?;

@@ -37,6 +37,11 @@ impl<W: Write> ElementBlocks<W> {
         self.output.flush().map_err(write_error)
     }
 
+    /// What the blocks are written to.
+    pub(super) fn output(&mut self) -> &mut W {
+        &mut self.output
+    }
+
     fn write_block(&mut self) -> Result<()> {
         self.output.write_all(&self.descriptor.to_le_bytes()).map_err(write_error)?;
         self.output.write_all(&self.elements).map_err(write_error)?;

@@ -1,8 +1,10 @@
 //! Writes SMB, Isenburg's streaming mesh in binary (`formats/historical_meshes.md`).
 
 use std::io::Write;
+use std::path::Path;
 
 use super::elements::ElementBlocks;
+use super::spool::Spool;
 use super::triangles::{Corner, final_corners};
 use super::world::{world_bounds, world_of};
 use super::{EventSink, expect_kind, lost_of_header, write_error};
@@ -10,38 +12,54 @@ use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch};
 
-/// Version, little-endian, no compression of connectivity and geometry, no comments, unknown counts.
-const START: [u8; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff];
+/// Version, little-endian, no compression of connectivity and geometry, no comments.
+const START: [u8; 8] = [0; 8];
 
 /// Writes a triangle mesh as SMB, little-endian, vertices before their triangles.
 ///
 /// SMB has 32-bit coordinates and 31-bit vertex numbers, and can finalize a vertex only at its last use;
 /// notices report what that lost.
+///
+/// The header states the counts, by which a reader notices a truncated file. So the elements wait in an unnamed
+/// temporary file until the end. Memory: buffers only. Disk: the size of the output.
 pub struct SmbSink<W> {
-    blocks: ElementBlocks<W>,
+    output: W,
+    blocks: ElementBlocks<Spool>,
     header: Header,
     vertices: u64,
+    triangles: u64,
     rounded: u64,
     open: u64,
 }
 
 impl<W: Write> SmbSink<W> {
-    /// Writes the header.
+    /// Opens the temporary file, in `temp_dir` or the system's folder for them.
     ///
     /// # Errors
-    /// Usage, if SMB does not hold the kind of stream; or if writing fails.
-    pub fn new(mut output: W, header: &Header) -> Result<Self> {
+    /// Usage, if SMB does not hold the kind of stream; I/O, if there is no room for the temporary file.
+    pub fn new(output: W, header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
         expect_kind(header, "SMB", &[Kind::TriangleMesh])?;
-        output.write_all(&START).map_err(write_error)?;
-        let mut bounds = vec![u8::from(header.bounds.is_some())];
-        if let Some(stored) = &header.bounds {
-            let world = world_bounds(header, stored);
-            bounds.extend(encode_point(world.min)?);
-            bounds.extend(encode_point(world.max)?);
+        let blocks = ElementBlocks::new(Spool::new(temp_dir)?);
+        Ok(SmbSink { output, blocks, header: header.clone(), vertices: 0, triangles: 0, rounded: 0, open: 0 })
+    }
+
+    /// Writes the header and the elements.
+    fn end(&mut self) -> Result<()> {
+        self.blocks.end()?;
+        let mut header = START.to_vec();
+        for count in [self.vertices, self.triangles] {
+            // -1 stands for an unknown count.
+            header.extend(i32::try_from(count).unwrap_or(-1).to_le_bytes());
         }
-        output.write_all(&bounds).map_err(write_error)?;
-        let blocks = ElementBlocks::new(output);
-        Ok(SmbSink { blocks, header: header.clone(), vertices: 0, rounded: 0, open: 0 })
+        header.push(u8::from(self.header.bounds.is_some()));
+        if let Some(stored) = &self.header.bounds {
+            let world = world_bounds(&self.header, stored);
+            header.extend(encode_point(world.min)?);
+            header.extend(encode_point(world.max)?);
+        }
+        self.output.write_all(&header).map_err(write_error)?;
+        self.blocks.output().copy_to(&mut self.output)?;
+        self.output.flush().map_err(write_error)
     }
 
     fn patch(&mut self, patch: &Patch) -> Result<()> {
@@ -55,6 +73,7 @@ impl<W: Write> SmbSink<W> {
             return Err(Error::usage("more than 2^31 - 1 vertices: SMB cannot number them"));
         }
         let (triangles, unused) = final_corners(patch);
+        self.triangles += triangles.len() as u64;
         for triangle in triangles {
             let mut element = [0; 12];
             for (bytes, corner) in element.chunks_exact_mut(4).zip(triangle) {
@@ -79,7 +98,7 @@ impl<W: Write> EventSink for SmbSink<W> {
     fn event(&mut self, event: &Event) -> Result<()> {
         match event {
             Event::Patch(patch) => self.patch(patch),
-            Event::End(_) => self.blocks.end(),
+            Event::End(_) => self.end(),
             _ => Ok(()),
         }
     }

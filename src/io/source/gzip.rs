@@ -1,8 +1,8 @@
 //! The one gzip layer: inputs that may be compressed with gzip, which their first bytes tell.
 
-use std::io::{self, BufReader, Chain, Cursor, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, Chain, Cursor, ErrorKind, Read};
 
-use flate2::bufread::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 
 /// First bytes of gzip data.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -56,21 +56,41 @@ impl<R: Read> Read for Plain<R> {
 }
 
 /// Decompresses gzip data of any number of members. Damaged data is an error that names the byte.
+///
+/// The checksum and the length of a member are verified when reading goes on after its last byte.
 pub(super) struct Gunzip<R> {
-    decoder: MultiGzDecoder<BufReader<Counted<R>>>,
+    /// `None` only while the next member begins.
+    member: Option<Member<R>>,
 }
+
+/// Decompresses one member.
+type Member<R> = GzDecoder<BufReader<Counted<R>>>;
 
 impl<R: Read> Gunzip<R> {
     pub(super) fn new(input: R) -> Self {
-        let input = Counted { input, bytes: 0, failed: false };
-        Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
+        let input = BufReader::with_capacity(BUFFER_LEN, Counted { input, bytes: 0, failed: false });
+        Gunzip { member: Some(GzDecoder::new(input)) }
+    }
+
+    fn member(&mut self) -> &mut Member<R> {
+        self.member.as_mut().expect("a member is there between reads")
+    }
+
+    fn read_on(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let read = self.member().read(buffer)?;
+            if read > 0 || buffer.is_empty() || skip_zeros(self.member().get_mut())? {
+                return Ok(read);
+            }
+            self.member = self.member.take().map(|ended| GzDecoder::new(ended.into_inner()));
+        }
     }
 
     /// Names the byte of the compressed data where decompression failed, and makes the error
     /// [`ErrorKind::InvalidData`]. Errors of reading stay as they are.
     #[cold]
-    fn locate(&self, error: io::Error) -> io::Error {
-        let input = self.decoder.get_ref();
+    fn locate(&mut self, error: io::Error) -> io::Error {
+        let input = self.member().get_ref();
         if input.get_ref().failed {
             return error;
         }
@@ -85,10 +105,26 @@ impl<R: Read> Gunzip<R> {
 
 impl<R: Read> Read for Gunzip<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.decoder.read(buffer).map_err(|e| match e.kind() {
+        self.read_on(buffer).map_err(|e| match e.kind() {
             ErrorKind::Interrupted => e,
             _ => self.locate(e),
         })
+    }
+}
+
+/// Skips zeros, with which tapes and block devices fill up their last block (gzip(1) ignores them too). True
+/// if the input ends after them.
+fn skip_zeros(input: &mut impl BufRead) -> io::Result<bool> {
+    loop {
+        let bytes = input.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(true);
+        }
+        let zeros = bytes.iter().take_while(|byte| **byte == 0).count();
+        if zeros == 0 {
+            return Ok(false);
+        }
+        input.consume(zeros);
     }
 }
 

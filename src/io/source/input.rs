@@ -157,7 +157,7 @@ impl Input {
 
 impl Source {
     fn open(path: &Path, options: &SourceOptions, notices: &mut Vec<String>) -> Result<Source> {
-        let origin = Origin::new(path, &options.temp_dir(), notices)?;
+        let origin = Origin::new(path, options.admitted(), &options.temp_dir(), notices)?;
         let name = name_of(path);
         Source::new(origin, name, options, notices)
     }

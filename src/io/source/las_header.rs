@@ -33,6 +33,8 @@ pub(super) struct LasHeader {
     pub(super) points: u64,
     /// Byte at which point data starts.
     pub(super) points_start: u64,
+    /// Byte at which point data ends at the latest: that of extended records, waveforms, or the file's end.
+    pub(super) points_end: u64,
     /// How the points are compressed, if they are.
     pub(super) laz: Option<Laszip>,
     /// Scale and offset.
@@ -89,61 +91,78 @@ impl LasHeader {
             record_len,
             points: count(&raw, format, notices),
             points_start: u64::from(raw.offset_to_point_data),
+            points_end: points_end(&raw, file.len()),
             laz: records.laz(is_compressed)?,
             coordinates,
             bounds: stored_bounds(&raw, &coordinates),
             crs: records.crs(raw.global_encoding & GLOBAL_ENCODING_WKT != 0, notices),
         };
-        let evlrs_start = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0).map(|e| e.start_of_first_evlr);
-        let points_end = evlrs_start.filter(|&start| start > header.points_start).unwrap_or(u64::MAX);
-        header.check_len(file, points_end.min(file.len()), notices)?;
+        header.check_len(file, notices)?;
         Ok(header)
     }
 
-    /// Rejects a file too short for its stated points, before any point is used. If the header states no
-    /// points, adds a notice when there is room for points before `points_end`.
+    /// Rejects a file too short for its stated points, before any point is used. Adds a notice if there is
+    /// room for more points than the header states.
     ///
     /// If the check passes, `points * record_len` fits u64.
-    fn check_len(&self, file: &FileView, points_end: u64, notices: &mut Vec<String>) -> Result<()> {
-        let room = file.len().saturating_sub(self.points_start);
+    fn check_len(&self, file: &FileView, notices: &mut Vec<String>) -> Result<()> {
         let record_len = self.record_len as u64;
-        let truncated = || {
-            Error::malformed(format!(
-                "truncated: the header states {} points of {record_len} bytes from byte {} on, the file ends \
-                 at \
-                 byte {}",
-                self.points,
-                self.points_start,
-                file.len()
-            ))
-        };
         if self.points.checked_mul(record_len).is_none() {
             return Err(Error::malformed(format!(
                 "the header states {} points of {record_len} bytes, more than any file can hold",
                 self.points
             )));
         }
+        let room = match self.laz {
+            Some(_) => laz_table::room(file, self.points_start, self.points_end)?,
+            None => self.points_end.saturating_sub(self.points_start),
+        };
         if self.points == 0 {
-            let unused = match self.laz {
-                Some(_) => laz_table::room(file, self.points_start, points_end)?,
-                None => points_end.saturating_sub(self.points_start),
-            };
             // Compressed points start with an uncompressed record.
-            if unused >= record_len {
-                notices.push(format!("the header states no points, although {unused} bytes follow it"));
+            if room >= record_len {
+                notices.push(format!("the header states no points, although {room} bytes follow it"));
             }
             return Ok(());
         }
         if self.laz.is_some() {
-            return if room == 0 { Err(truncated()) } else { Ok(()) };
+            // How many points there are is known when they are decompressed.
+            return if room == 0 { Err(self.truncated(file)) } else { Ok(()) };
         }
         let whole = room / record_len;
         if whole < self.points {
             let position = format!("record {whole} at byte {}", self.points_start + whole * record_len);
-            return Err(truncated().at(position));
+            return Err(self.truncated(file).at(position));
+        }
+        if whole > self.points {
+            notices.push(format!(
+                "the header states {} points, but {whole} records fit before byte {}: the last {} are not read",
+                self.points,
+                self.points_end,
+                whole - self.points
+            ));
         }
         Ok(())
     }
+
+    /// The error of a file with fewer points than stated.
+    fn truncated(&self, file: &FileView) -> Error {
+        let end = match self.points_end == file.len() {
+            true => "the file ends",
+            false => "other data start",
+        };
+        Error::malformed(format!(
+            "truncated: the header states {} points of {} bytes from byte {} on, {end} at byte {}",
+            self.points, self.record_len, self.points_start, self.points_end
+        ))
+    }
+}
+
+/// Byte at which point data ends at the latest.
+fn points_end(raw: &raw::Header, file_len: u64) -> u64 {
+    let evlrs = raw.evlr.filter(|evlr| evlr.number_of_evlrs > 0).map(|evlr| evlr.start_of_first_evlr);
+    let others = [evlrs, raw.start_of_waveform_data_packet_record];
+    let after = others.into_iter().flatten().filter(|&start| start > raw.offset_to_point_data.into());
+    after.fold(file_len, u64::min)
 }
 
 fn malformed(position: &str, error: &las::Error) -> Error {

@@ -84,8 +84,10 @@ impl LazRecords {
         let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
             Chunks::Table(chunks) => (chunks, None),
             Chunks::Unknown { start, points_per_chunk } => {
-                let chunk = Chunk { start, len: file.len() - start, points: header.points };
-                (Vec::new(), Some(Streamed::new(&file, &codec, &chunk, Some(points_per_chunk))?))
+                let len = header.points_end.saturating_sub(start);
+                let chunk = Chunk { start, len, points: header.points };
+                let per_chunk = laszip.is_chunked.then_some(points_per_chunk);
+                (Vec::new(), Some(Streamed::new(&file, &codec, &chunk, per_chunk)?))
             }
         };
         let chunks = chunks.into_iter().peekable();
@@ -176,9 +178,12 @@ struct Streamed {
     left: u64,
     left_in_chunk: u64,
     points_per_chunk: PointsPerChunk,
+    /// Byte at which the records must end; `None` without a table, as other data may follow.
+    end: Option<u64>,
 }
 
 impl Streamed {
+    /// Without `per_chunk`, the records are one chunk.
     fn new(file: &FileView, codec: &Codec, chunk: &Chunk, per_chunk: Option<PointsPerChunk>) -> Result<Self> {
         let input = BufReader::new(file.range(chunk.start, chunk.start + chunk.len));
         Ok(Streamed {
@@ -186,6 +191,7 @@ impl Streamed {
             left: chunk.points,
             left_in_chunk: 0,
             points_per_chunk: per_chunk.unwrap_or(PointsPerChunk::Fixed(chunk.points)),
+            end: per_chunk.is_none().then_some(chunk.start + chunk.len),
         })
     }
 
@@ -204,13 +210,21 @@ impl Streamed {
         decompression(guarded(|| decompressor.decompress_many(records)))?;
         self.left -= count;
         self.left_in_chunk -= count;
+        if let Some(end) = self.end.filter(|_| self.left == 0) {
+            codec.check_end(end.saturating_sub(self.position()?))?;
+        }
         Ok(count)
+    }
+
+    /// Byte of the file up to which the decompressor has read.
+    fn position(&mut self) -> Result<u64> {
+        self.decompressor.get_mut().stream_position().map_err(|e| Error::io("reading", e))
     }
 
     fn start_chunk(&mut self, file: &FileView, codec: &Codec) -> Result<()> {
         let mut points = self.left;
         if codec.layers > 0 {
-            let at = self.decompressor.get_mut().stream_position().map_err(|e| Error::io("reading", e))?;
+            let at = self.position()?;
             let mut head = vec![0; codec.head_len()];
             file.read_at(at, &mut head).map_err(|e| Error::io("reading the head of a chunk", e))?;
             let stated = codec.check_layers(&head, file.len() - at)?;

@@ -117,13 +117,29 @@ impl Codec {
                 return Err(Error::malformed(format!("chunk of {count} points, expected {expected}")));
             }
         }
-        let work =
-            || self.decompressor(Cursor::new(compressed)).map(|mut codec| codec.decompress_many(records));
-        match guarded(work) {
-            Ok(Err(refused)) => Err(refused),
-            Ok(Ok(outcome)) => decompression(Ok(outcome)),
-            Err(panic) => decompression(Err(panic)),
+        let work = || {
+            let mut codec = self.decompressor(Cursor::new(compressed))?;
+            let outcome = codec.decompress_many(records);
+            Ok((outcome, codec.get().position()))
+        };
+        let (outcome, used) = match guarded(work) {
+            Ok(work) => work?,
+            Err(panic) => return decompression(Err(panic)),
+        };
+        decompression(Ok(outcome))?;
+        self.check_end(compressed.len() as u64 - used)
+    }
+
+    /// Checks the number of bytes that are `left` of a chunk after its last point. The decoder of points in
+    /// one layer uses as many bytes as the encoder has written.
+    pub(super) fn check_end(&self, left: u64) -> Result<()> {
+        if self.layers > 0 || left == 0 {
+            return Ok(());
         }
+        Err(Error::malformed(format!(
+            "{left} bytes follow the last point that the header states: it states too few points, or the \
+             compressed points are damaged"
+        )))
     }
 }
 
@@ -133,7 +149,8 @@ pub(super) fn decompression(outcome: std::result::Result<std::io::Result<()>, St
         Ok(Ok(())) => Ok(()),
         Ok(Err(e)) => Err(match e.kind() {
             std::io::ErrorKind::UnexpectedEof => Error::malformed("the compressed points end too early"),
-            _ => Error::io("decompressing points", e),
+            _ if e.raw_os_error().is_some() => Error::io("decompressing points", e),
+            _ => Error::malformed(format!("the compressed points are damaged ({e})")),
         }),
         Err(panic) => Err(Error::malformed(format!("the compressed points are damaged ({panic})"))),
     }

@@ -24,8 +24,8 @@ pub(super) trait Elements {
     /// The next element after `vertices` vertices; `None` at the end of the input.
     fn next_element(&mut self, vertices: u64) -> Result<Option<Element>>;
 
-    /// Checks the counts that the input states against what it holds.
-    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<()>;
+    /// Checks the counts that the input states against what it holds. True if it states both.
+    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<bool>;
 
     /// Adds input and position to an error about the element that was read last.
     fn locate(&self, error: Error) -> Error;
@@ -59,7 +59,7 @@ impl<E: Elements> MeshEvents<E> {
     fn read_patch(&mut self) -> Result<Option<Event>> {
         while !self.builder.is_full() {
             let Some(element) = self.elements.next_element(self.builder.vertices())? else {
-                self.elements.check_counts(self.builder.vertices(), self.builder.triangles())?;
+                self.check_end()?;
                 self.builder.end()?;
                 self.state = State::Finalizing;
                 return Ok(None);
@@ -67,6 +67,21 @@ impl<E: Elements> MeshEvents<E> {
             self.add(element)?;
         }
         Ok(Some(Event::Patch(self.builder.take())))
+    }
+
+    /// Checks that the input is whole, as far as it tells: by its counts, or because it declares vertices
+    /// final and leaves none open that a triangle uses.
+    fn check_end(&self) -> Result<()> {
+        let is_counted = self.elements.check_counts(self.builder.vertices(), self.builder.triangles())?;
+        let open = if is_counted || self.finals == 0 { 0 } else { self.builder.open() };
+        if open > 0 {
+            let message = format!(
+                "truncated: no triangle is the last one of {open} vertices, although other vertices are final; \
+                 a whole mesh without these marks must state its counts of vertices and triangles"
+            );
+            return Err(Error::malformed(message));
+        }
+        Ok(())
     }
 
     fn add(&mut self, element: Element) -> Result<()> {

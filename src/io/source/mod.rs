@@ -41,6 +41,7 @@ mod sma;
 mod smb;
 mod smb_header;
 mod sp;
+mod sp_cells;
 mod sp_events;
 mod spa;
 mod spb;

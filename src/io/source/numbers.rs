@@ -72,19 +72,26 @@ impl<R: BufRead> NumberReader<R> {
         Ok(())
     }
 
+    /// Whether the input goes on after the numbers. White space does not count in text.
+    ///
+    /// # Errors
+    /// If reading fails.
+    pub(super) fn goes_on(&mut self) -> Result<bool> {
+        Ok(match self.writing {
+            Writing::Binary(_) => !fill(&mut self.input)?.is_empty(),
+            Writing::Text => {
+                skip_separators(&mut self.input)?;
+                !fill(&mut self.input)?.is_empty()
+            }
+        })
+    }
+
     /// Checks that the input ends after the numbers.
     ///
     /// # Errors
     /// If it goes on, or reading fails.
     pub(super) fn expect_end(&mut self) -> Result<()> {
-        let goes_on = match self.writing {
-            Writing::Binary(_) => !fill(&mut self.input)?.is_empty(),
-            Writing::Text => {
-                next_number(&mut self.input, &mut self.bytes)?;
-                !self.bytes.is_empty()
-            }
-        };
-        if goes_on {
+        if self.goes_on()? {
             let message = format!("there is more behind the {} numbers that are stated", self.total);
             return Err(Error::malformed(message));
         }
@@ -122,26 +129,39 @@ pub(super) fn fill(input: &mut impl BufRead) -> Result<&[u8]> {
 /// If reading fails, or the field is longer than any number.
 pub(super) fn next_number(input: &mut impl BufRead, number: &mut Vec<u8>) -> Result<()> {
     number.clear();
+    skip_separators(input)?;
     loop {
         let bytes = fill(input)?;
         if bytes.is_empty() {
             return Ok(());
         }
-        let is_between = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
-        let start =
-            if number.is_empty() { bytes.iter().take_while(|byte| is_between(byte)).count() } else { 0 };
-        let rest = &bytes[start..];
-        let len = rest.iter().position(is_between).unwrap_or(rest.len());
+        let len = bytes.iter().position(is_separator).unwrap_or(bytes.len());
         if number.len() + len > NUMBER_LEN_MAX {
-            let found = quote(if number.is_empty() { rest } else { number });
+            let found = quote(if number.is_empty() { bytes } else { number });
             let message = format!("found {found}, expected a number of at most {NUMBER_LEN_MAX} bytes");
             return Err(Error::malformed(message));
         }
-        number.extend_from_slice(&rest[..len]);
-        let is_whole = len < rest.len() && !number.is_empty();
-        input.consume(start + len);
+        number.extend_from_slice(&bytes[..len]);
+        let is_whole = len < bytes.len();
+        input.consume(len);
         if is_whole {
             return Ok(());
         }
+    }
+}
+
+fn is_separator(byte: &u8) -> bool {
+    byte.is_ascii_whitespace() || *byte == b','
+}
+
+/// Skips white space and commas.
+fn skip_separators(input: &mut impl BufRead) -> Result<()> {
+    loop {
+        let bytes = fill(input)?;
+        let separators = bytes.iter().take_while(|byte| is_separator(byte)).count();
+        if separators == 0 {
+            return Ok(());
+        }
+        input.consume(separators);
     }
 }

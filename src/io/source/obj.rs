@@ -8,6 +8,7 @@ use super::lines::Lines;
 use super::mesh_events::{Element, Elements, MeshEvents, resolve};
 use super::patches::Order;
 use super::polygon::fan;
+use super::sma::{check_count, parse_count};
 use super::statements::{fields, parse_decimals, parse_signed, unexpected};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
@@ -49,7 +50,7 @@ pub fn open_obj<R: Read + 'static>(input: R, name: impl Into<String>) -> Box<dyn
 /// Reads the vertices of OBJ as points with z. Messages call the input `name`.
 pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> VertexPoints<ObjVertices<R>> {
     let header = Header::new(Kind::Points, Coordinates::F64, 3, false);
-    VertexPoints::new(ObjVertices { lines: Lines::new(input, name) }, header)
+    VertexPoints::new(ObjVertices { lines: Lines::new(input, name), vertices: 0, stated: None }, header)
 }
 
 /// The position of a vertex; colours and weights after it are ignored.
@@ -61,9 +62,12 @@ fn parse_vertex(line: &[u8]) -> Result<Point> {
     parse_decimals(&mut coordinates)
 }
 
-/// The vertices of an OBJ.
+/// The vertices of an OBJ or an SMA.
 pub(super) struct ObjVertices<R> {
     lines: Lines<R>,
+    vertices: u64,
+    /// The number of vertices that the comments of an SMA state.
+    stated: Option<u64>,
 }
 
 impl<R: Read> Vertices for ObjVertices<R> {
@@ -71,13 +75,22 @@ impl<R: Read> Vertices for ObjVertices<R> {
         while let Some(line) = self.lines.next_line()? {
             let mut fields = fields(line);
             match fields.next() {
-                Some(b"v") => return parse_vertex(line).map(Some),
+                Some(b"v") => {
+                    self.vertices += 1;
+                    return parse_vertex(line).map(Some);
+                }
                 // `x` finalizes a vertex, in an SMA mesh.
                 None | Some(b"f" | b"x") => {}
+                Some(b"#") => {
+                    if let (Some(b"nverts"), Some(count)) = (fields.next(), fields.next()) {
+                        self.stated = parse_count(count)?;
+                    }
+                }
                 Some(other) if other[0] == b'#' || PASSED_OVER.contains(&other) => {}
                 Some(other) => return Err(unexpected(other, "a statement of a polygonal OBJ")),
             }
         }
+        check_count("vertices", self.stated, self.vertices)?;
         Ok(None)
     }
 
@@ -118,8 +131,8 @@ impl<R: Read> Elements for ObjElements<R> {
         }
     }
 
-    fn check_counts(&self, _: u64, _: u64) -> Result<()> {
-        Ok(())
+    fn check_counts(&self, _: u64, _: u64) -> Result<bool> {
+        Ok(false)
     }
 
     fn locate(&self, error: Error) -> Error {

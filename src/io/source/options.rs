@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use super::origin::Admitted;
 use super::raw_type::RawType;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
@@ -42,6 +43,11 @@ impl SourceOptions {
     /// The folder of spools.
     pub(super) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)
+    }
+
+    /// What may be spooled.
+    pub(super) fn admitted(&self) -> Admitted {
+        if self.raw.is_some() { Admitted::Everything } else { Admitted::Formats(self.reader) }
     }
 
     /// How many threads decompress points.

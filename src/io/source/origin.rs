@@ -1,13 +1,14 @@
 //! Holds the place of an input's bytes, so that each pass can read them from the start.
 
 use std::fs::{File, FileType};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Cursor, IsTerminal, Read, Seek, SeekFrom, Write};
 use std::os::fd::AsFd;
-use std::os::unix::fs::FileExt;
+use std::os::unix::fs::{FileExt, FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::gzip::Plain;
+use crate::detect::{HEAD_LEN, Reader, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::temporary::TemporaryFile;
 
@@ -29,25 +30,56 @@ pub(super) enum Origin {
     Open(Arc<File>),
 }
 
+/// What of an input may be copied to a temporary file. An endless input would fill the disk.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Admitted {
+    /// All of it, if it starts as a format that the reader reads.
+    Formats(&'static Reader),
+    /// This many bytes.
+    First(u64),
+    /// All of it.
+    Everything,
+}
+
 /// Opens a file for reading, and says of which type it is.
 ///
 /// # Errors
-/// If the file cannot be opened; usage, if it is a folder.
+/// If the file cannot be opened; usage, if it is a folder or a device.
 pub fn open_file(path: &Path) -> Result<(File, FileType)> {
     let file = File::open(path).map_err(|e| Error::io("opening", e))?;
-    let kind = file.metadata().map_err(|e| Error::io("opening", e))?.file_type();
+    let kind = check_type(&file)?;
+    Ok((file, kind))
+}
+
+/// The type of an open file.
+///
+/// # Errors
+/// Usage, if it is a folder, or a device that may never end, such as /dev/zero.
+fn check_type(file: &File) -> Result<FileType> {
+    let metadata = file.metadata().map_err(|e| Error::io("opening", e))?;
+    let kind = metadata.file_type();
     if kind.is_dir() {
         return Err(Error::usage("is a folder, expected a file"));
     }
-    Ok((file, kind))
+    let is_null = || std::fs::metadata("/dev/null").is_ok_and(|null| null.rdev() == metadata.rdev());
+    if kind.is_char_device() && !file.is_terminal() && !is_null() {
+        return Err(Error::usage("is a device, expected a file or a pipe"));
+    }
+    Ok(kind)
 }
 
 impl Origin {
     /// The bytes of `path`; "-" is standard input. An input that cannot be read twice (a pipe, a terminal, a
-    /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice.
-    pub(super) fn new(path: &Path, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+    /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice, as far as it is
+    /// `admitted`.
+    pub(super) fn new(
+        path: &Path,
+        admitted: Admitted,
+        temp_dir: &Path,
+        notices: &mut Vec<String>,
+    ) -> Result<Origin> {
         if path.as_os_str() == "-" {
-            return Origin::of_stdin(temp_dir, notices).map_err(|e| e.of_input("stdin"));
+            return Origin::of_stdin(admitted, temp_dir, notices).map_err(|e| e.of_input("stdin"));
         }
         let name = path.display().to_string();
         let mut open = || -> Result<Origin> {
@@ -55,19 +87,18 @@ impl Origin {
             if kind.is_file() {
                 return Ok(Origin::Path(path.to_path_buf()));
             }
-            spool_pipe(file, &name, temp_dir, notices)
+            spool_pipe(file, &name, admitted, temp_dir, notices)
         };
         open().map_err(|e| e.of_input(&name))
     }
 
-    fn of_stdin(temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+    fn of_stdin(admitted: Admitted, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
         let descriptor = io::stdin().as_fd().try_clone_to_owned().map_err(|e| Error::io("opening", e))?;
         let mut file = File::from(descriptor);
-        let is_file = file.metadata().map_err(|e| Error::io("opening", e))?.is_file();
-        if is_file && file.stream_position().is_ok_and(|position| position == 0) {
+        if check_type(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::Open(Arc::new(file)));
         }
-        spool_pipe(file, "stdin", temp_dir, notices)
+        spool_pipe(file, "stdin", admitted, temp_dir, notices)
     }
 
     /// The content from its start, decompressed if necessary.
@@ -101,12 +132,36 @@ impl Origin {
 }
 
 /// Spools a file that cannot be read twice, and adds a notice.
-fn spool_pipe(from: File, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
-    let (file, size) = spool(from, temp_dir)?;
+fn spool_pipe(
+    mut from: File,
+    name: &str,
+    admitted: Admitted,
+    temp_dir: &Path,
+    notices: &mut Vec<String>,
+) -> Result<Origin> {
+    let (file, size) = match admitted {
+        Admitted::Everything => spool(from, temp_dir)?,
+        Admitted::First(bytes) => spool(from.take(bytes), temp_dir)?,
+        Admitted::Formats(reader) => {
+            let head = read_head(&mut from).map_err(|e| Error::io("reading", e))?;
+            reader.detect(&plain_start(&head))?;
+            spool(Cursor::new(head).chain(from), temp_dir)?
+        }
+    };
     let place = temp_dir.display();
     notices
         .push(format!("{name}: spooled {size} to an unlinked temporary file in {place} for the second pass"));
     Ok(file)
+}
+
+/// What the first bytes of an input decompress to, as far as they go.
+fn plain_start(head: &[u8]) -> Vec<u8> {
+    let mut start = Vec::new();
+    if let Ok(plain) = Plain::new(head) {
+        // The head ends within compressed data: what came before the error counts.
+        let _ = plain.take(HEAD_LEN).read_to_end(&mut start);
+    }
+    start
 }
 
 /// Copies all bytes of `input` to an unlinked temporary file; also returns their amount as text.

@@ -31,6 +31,8 @@ struct Live {
     waiting: u32,
     /// The input said that it is final.
     closed: bool,
+    /// A triangle uses it.
+    used: bool,
 }
 
 /// Collects elements into patches. Memory: a patch, the live vertices (the width of the input), and the
@@ -89,7 +91,7 @@ impl PatchBuilder {
         let waiting = self.awaited.remove(&id).unwrap_or_default();
         if self.order != Order::AtEnd {
             let closed = self.order == Order::OnArrival;
-            self.live.insert(id, Live { waiting: waiting.len() as u32, closed });
+            self.live.insert(id, Live { waiting: waiting.len() as u32, closed, used: false });
         }
         for number in waiting {
             let (_, missing) = self.waiting.get_mut(&number).expect("an awaited triangle waits");
@@ -119,9 +121,15 @@ impl PatchBuilder {
             if id >= vertices && self.order == Order::Stated {
                 return Err(Error::malformed(format!("triangle uses vertex {} of {vertices}", id + 1)));
             }
-            let is_final = self.order != Order::AtEnd && id < vertices;
-            if is_final && self.live.get(&id).is_none_or(|live| live.closed) {
-                return Err(Error::malformed(format!("vertex {} referenced after finalization", id + 1)));
+            if self.order == Order::AtEnd || id >= vertices {
+                continue;
+            }
+            match self.live.get_mut(&id) {
+                Some(live) if !live.closed => live.used = true,
+                _ => {
+                    let message = format!("vertex {} referenced after finalization", id + 1);
+                    return Err(Error::malformed(message));
+                }
             }
         }
         self.triangles_read += 1;
@@ -154,6 +162,11 @@ impl PatchBuilder {
         }
         self.finalize_if_done(id);
         Ok(())
+    }
+
+    /// Number of vertices that a triangle uses and that the input has not declared final so far.
+    pub(super) fn open(&self) -> usize {
+        self.live.values().filter(|live| live.used && !live.closed).count()
     }
 
     /// Whether the patch should be taken before more is added.

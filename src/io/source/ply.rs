@@ -105,8 +105,8 @@ impl<R: Read> Elements for PlyElements<R> {
         }
     }
 
-    fn check_counts(&self, _: u64, _: u64) -> Result<()> {
-        Ok(())
+    fn check_counts(&self, _: u64, _: u64) -> Result<bool> {
+        Ok(false)
     }
 
     fn locate(&self, error: Error) -> Error {

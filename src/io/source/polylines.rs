@@ -5,8 +5,10 @@ use std::io::Read;
 use serde_json::Value;
 
 use super::lines::quote;
-use super::words::{finite, for_each_line};
+use super::words::{finite, for_each_line_at};
+use crate::detect::read_head;
 use spmesh_core::error::{Error, Result};
+use spmesh_core::limits::{BREAKLINE_VERTICES_MAX, GEOJSON_LEN_MAX};
 use spmesh_model::points::Point2;
 
 /// The role of a polyline in a spline, as in the features of configurations.
@@ -52,10 +54,19 @@ const PROPERTY: &str = "spline";
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
 pub fn read_polylines(mut input: impl Read) -> Result<Vec<Polyline>> {
-    let mut bytes = Vec::new();
-    input.read_to_end(&mut bytes).map_err(|e| Error::io("reading", e))?;
-    let is_json = bytes.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{');
-    let polylines = if is_json { of_json(&bytes)? } else { of_text(&bytes)? };
+    let reading = |e| Error::io("reading", e);
+    let mut head = read_head(&mut input).map_err(reading)?;
+    let is_json = head.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{');
+    let polylines = if is_json {
+        input.take(GEOJSON_LEN_MAX + 1 - head.len() as u64).read_to_end(&mut head).map_err(reading)?;
+        if head.len() as u64 > GEOJSON_LEN_MAX {
+            let message = format!("GeoJSON of more than {GEOJSON_LEN_MAX} bytes: write its lines as text");
+            return Err(Error::malformed(message));
+        }
+        of_json(&head)?
+    } else {
+        of_text(head.chain(input))?
+    };
     if polylines.is_empty() {
         return Err(Error::malformed("found no polyline"));
     }
@@ -83,17 +94,22 @@ fn kind_of(name: &[u8]) -> Result<PolylineKind> {
     })
 }
 
-fn of_text(bytes: &[u8]) -> Result<Vec<Polyline>> {
+fn of_text(input: impl Read) -> Result<Vec<Polyline>> {
     let mut polylines = Vec::new();
-    for_each_line(bytes, |words| {
+    let mut count = 0;
+    for_each_line_at(input, |number, words| {
         let kind = kind_of(words[0])?;
         let numbers = words[1..].iter().map(|word| finite(word)).collect::<Result<Vec<f64>>>()?;
         if numbers.len() % 2 != 0 {
             let found = numbers.len();
             return Err(Error::malformed(format!("found {found} coordinates, expected pairs of x and y")));
         }
-        let vertices = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
-        let position = format!("polyline {}", polylines.len());
+        let vertices: Vec<Point2> = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
+        count += vertices.len();
+        if count > BREAKLINE_VERTICES_MAX {
+            return Err(Error::malformed(format!("more than {BREAKLINE_VERTICES_MAX} vertices")));
+        }
+        let position = format!("line {number}");
         polylines.push(Polyline { kind, vertices, position });
         Ok(())
     })?;
@@ -203,9 +219,9 @@ mod tests {
         );
         for (text, part) in [
             ("", "no polyline"),
-            ("crease 0 0\n", "polyline 0: found 1 vertices, expected 2"),
+            ("# one\ncrease 0 0\n", "line 2: found 1 vertices, expected 2"),
             ("crease 0 0 1\n", "line 1: found 3 coordinates"),
-            ("corner 0 0\ncrease 0 0 0 0\n", "polyline 1: two consecutive"),
+            ("corner 0 0\ncrease 0 0 0 0\n", "line 2: two consecutive"),
             ("ridge 0 0 1 1\n", "line 1: found \"ridge\""),
             ("crease 0 0 1 inf\n", "finite"),
         ] {

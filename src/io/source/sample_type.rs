@@ -41,6 +41,11 @@ impl Extend<f64> for Last {
 }
 
 impl SampleType {
+    /// Whether numbers are integers, so that none is NaN.
+    pub(super) fn is_integer(self) -> bool {
+        !matches!(self, SampleType::F32 | SampleType::F64)
+    }
+
     /// Length of a number in bytes.
     pub(super) fn len(self) -> usize {
         match self {

@@ -12,8 +12,8 @@ use spmesh_core::error::{Error, Result};
 /// Opens an SMA mesh, pre-order or post-order, and reads up to its first element. Messages call the input
 /// `name`.
 ///
-/// Verifies the counts that the header states. Without them a mesh truncated after a whole line looks like a
-/// shorter mesh.
+/// Verifies the counts that the header states. Without them, a mesh that declares some vertices final is
+/// truncated if it leaves others open.
 ///
 /// # Errors
 /// If the lines before the first element are not a header of SMA. This and every later error is
@@ -75,9 +75,10 @@ impl<R: Read> Elements for SmaElements<R> {
         }
     }
 
-    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<()> {
+    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<bool> {
         check_count("vertices", self.vertices, vertices)?;
-        check_count("triangles", self.triangles, triangles)
+        check_count("triangles", self.triangles, triangles)?;
+        Ok(self.vertices.is_some() && self.triangles.is_some())
     }
 
     fn locate(&self, error: Error) -> Error {
@@ -96,7 +97,7 @@ pub(super) fn check_count(what: &str, stated: Option<u64>, found: u64) -> Result
 }
 
 /// A count of the header; -1 stands for an unknown one.
-fn parse_count(field: &[u8]) -> Result<Option<u64>> {
+pub(super) fn parse_count(field: &[u8]) -> Result<Option<u64>> {
     Ok(u64::try_from(parse_signed(field)?).ok())
 }
 

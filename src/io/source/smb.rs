@@ -15,8 +15,8 @@ use spmesh_core::limits::HEADER_BODY_MAX;
 /// plausibility of header and first block in each order, because the flag in the file is often wrong.
 /// Messages call the input `name`.
 ///
-/// Verifies the counts that the header states. Without them a mesh truncated after a whole element looks like
-/// a shorter mesh.
+/// Verifies the counts that the header states. Without them, a mesh that declares some vertices final is
+/// truncated if it leaves others open.
 ///
 /// # Errors
 /// If the header makes sense in neither byte order. This and every later error is
@@ -112,9 +112,10 @@ impl<R: Read> Elements for SmbElements<R> {
         if is_vertex { vertex(order, bytes) } else { triangle(order, bytes, vertices) }.map(Some)
     }
 
-    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<()> {
+    fn check_counts(&self, vertices: u64, triangles: u64) -> Result<bool> {
         check_count("vertices", self.header.vertices, vertices)?;
-        check_count("triangles", self.header.triangles, triangles)
+        check_count("triangles", self.header.triangles, triangles)?;
+        Ok(self.header.vertices.is_some() && self.header.triangles.is_some())
     }
 
     fn locate(&self, error: Error) -> Error {

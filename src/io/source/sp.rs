@@ -2,9 +2,10 @@
 
 use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
+use super::sp_cells::{cell_of, check_end, tree_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{Coordinates, Crs};
+use spmesh_stream::{Coordinates, Crs, FinalizedCells};
 
 /// How the file stores coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,18 +96,43 @@ impl SpHeader {
     }
 }
 
-/// One pass over the points of such a file; its tags are ignored.
-pub(super) struct SpPass<R>(pub(super) R);
+/// One pass over the points of such a file. Its tags only serve to notice that the file was cut.
+pub(super) struct SpPass<R> {
+    reader: R,
+    cells: Option<FinalizedCells>,
+    last: Option<Point>,
+}
+
+impl<R: SpReader> SpPass<R> {
+    pub(super) fn new(reader: R) -> SpPass<R> {
+        let cells = tree_of(reader.header()).map(FinalizedCells::new);
+        SpPass { reader, cells, last: None }
+    }
+
+    /// Takes note of a tag. Wrong ones are of no concern here.
+    fn finalize(&mut self, index: i32) {
+        if let Some(cells) = &mut self.cells
+            && let Ok(cell) = cell_of(index, cells.tree())
+            && !cells.is_final_cell(cell)
+        {
+            let _ = cells.finalize(cell);
+        }
+    }
+}
 
 impl<R: SpReader + Send> Pass for SpPass<R> {
     fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
         for count in 0..BATCH_POINTS {
-            match self.0.next_event()? {
+            match self.reader.next_event()? {
                 Some(SpEvent::Point(point)) => {
-                    placement.put(point, batch).map_err(|e| e.at(self.0.position()))?;
+                    self.last = Some(point);
+                    placement.put(point, batch).map_err(|e| e.at(self.reader.position()))?;
                 }
-                Some(SpEvent::FinalizedCell(_)) => {}
-                None => return Ok(count > 0),
+                Some(SpEvent::FinalizedCell(index)) => self.finalize(index),
+                None => {
+                    check_end(self.cells.as_ref(), self.last).map_err(|e| e.at(self.reader.position()))?;
+                    return Ok(count > 0);
+                }
             }
         }
         Ok(true)

@@ -1,11 +1,10 @@
 //! Converts files of the historical point formats SPA and SPB to the events of a stream.
 
 use super::events::EventSource;
-use super::sp::{SpEvent, SpFinalization, SpHeader, SpReader};
-use crate::cell_index;
+use super::sp::{SpEvent, SpFinalization, SpReader};
+use super::sp_cells::{cell_of, check_end, tree_of};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_model::cells::{CellCode, CellTree};
+use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Event, FinalizedCells, Header, Kind, check_place};
 
 /// Greatest number of points or tags of an event.
@@ -22,6 +21,8 @@ pub struct SpEvents<S> {
     header: Header,
     cells: Option<FinalizedCells>,
     held: Option<SpEvent>,
+    /// The last point.
+    last: Option<Point>,
     totals: spmesh_stream::Totals,
     dropped: u64,
     ended: bool,
@@ -45,6 +46,7 @@ impl<S: SpReader> SpEvents<S> {
             cells: header.tree.map(FinalizedCells::new),
             header,
             held: None,
+            last: None,
             totals: spmesh_stream::Totals::default(),
             dropped: 0,
             ended: false,
@@ -100,6 +102,7 @@ impl<S: SpReader> SpEvents<S> {
                 None => break,
             }
         }
+        self.last = points.last().copied().or(self.last);
         self.totals.points += points.len() as u64;
         self.totals.cells += tags.len() as u64;
         if !points.is_empty() {
@@ -108,6 +111,7 @@ impl<S: SpReader> SpEvents<S> {
         if !tags.is_empty() {
             return Ok(Event::Cells(tags));
         }
+        check_end(self.cells.as_ref(), self.last)?;
         self.ended = true;
         Ok(Event::End(self.totals))
     }
@@ -138,26 +142,4 @@ impl<S: SpReader> EventSource for SpEvents<S> {
         );
         (self.dropped > 0).then_some(notice).into_iter().collect()
     }
-}
-
-/// The tree whose cells the file's tags finalize, if it is exact.
-fn tree_of(header: &SpHeader) -> Option<CellTree> {
-    let Bounds { min, max } = header.bounds?;
-    let dims = match header.finalization {
-        SpFinalization::QuadTree => 2,
-        SpFinalization::OctTree => 3,
-        _ => return None,
-    };
-    let axes = usize::from(dims);
-    let side = max[0] - min[0];
-    let is_cube = (0..axes).all(|axis| max[axis] - min[axis] == side && min[axis] + side == max[axis]);
-    let mut origin = [0.0; 3];
-    origin[..axes].copy_from_slice(&min[..axes]);
-    if is_cube { CellTree::new(dims, cell_index::level_max(dims), origin, side) } else { None }
-}
-
-/// The cell of a tag; an error if the tree has none.
-fn cell_of(index: i32, tree: &CellTree) -> Result<CellCode> {
-    let unknown = || Error::malformed(format!("finalized cell {index}, which the tree does not have"));
-    cell_index::cell_of(tree, index).ok_or_else(unknown)
 }

@@ -55,6 +55,16 @@ impl<R: Read> SpaReader<R> {
     }
 }
 
+impl<R: Read> SpaReader<R> {
+    /// Checks that the line of an event is whole.
+    fn check_line(&self, event: Option<SpEvent>) -> Result<()> {
+        if event.is_some() && !self.lines.is_ended() {
+            return Err(Error::malformed("truncated: the last line has no end").at(self.lines.position()));
+        }
+        Ok(())
+    }
+}
+
 impl<R: Read> SpReader for SpaReader<R> {
     fn header(&self) -> &SpHeader {
         &self.header
@@ -64,7 +74,10 @@ impl<R: Read> SpReader for SpaReader<R> {
         let mut event = self.first.take();
         while event.is_none() && !self.ended {
             match self.lines.next_trimmed()? {
-                Some(line) => event = parse(line).map_err(|e| e.at(self.lines.position()))?,
+                Some(line) => {
+                    event = parse(line).map_err(|e| e.at(self.lines.position()))?;
+                    self.check_line(event)?;
+                }
                 None => self.ended = true,
             }
         }
@@ -164,5 +177,5 @@ pub(super) fn state(file: Bytes) -> Result<Stated> {
 
 /// Starts a pass over the points.
 pub(super) fn pass(file: Bytes) -> Result<SpPass<SpaReader<Bytes>>> {
-    SpaReader::new(file).map(SpPass)
+    SpaReader::new(file).map(SpPass::new)
 }

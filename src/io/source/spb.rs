@@ -228,5 +228,5 @@ pub(super) fn state(file: Bytes) -> Result<Stated> {
 
 /// Starts a pass over the points.
 pub(super) fn pass(file: Bytes) -> Result<SpPass<SpbReader<BufReader<Bytes>>>> {
-    SpbReader::new(BufReader::with_capacity(1 << 18, file)).map(SpPass)
+    SpbReader::new(BufReader::with_capacity(1 << 18, file)).map(SpPass::new)
 }

@@ -12,15 +12,24 @@ use spmesh_core::error::{Error, Result};
 /// # Errors
 /// If reading fails; or any error of `found`, with the position.
 pub fn for_each_line(input: impl Read, mut found: impl FnMut(&[&[u8]]) -> Result<()>) -> Result<u64> {
+    for_each_line_at(input, |_, words| found(words))
+}
+
+/// As [`for_each_line`], with the number of the line.
+pub(super) fn for_each_line_at(
+    input: impl Read,
+    mut found: impl FnMut(u64, &[&[u8]]) -> Result<()>,
+) -> Result<u64> {
     let mut lines = Lines::new(input, "");
     let mut count = 0;
-    while let Some(line) = lines.next_trimmed()? {
+    while lines.next_trimmed()?.is_some() {
         let separators = |byte: &u8| byte.is_ascii_whitespace() || b",;:".contains(byte);
+        let line = lines.current().trim_ascii();
         let words = without_comment(line).split(separators).filter(|word| !word.is_empty());
         let words: Vec<&[u8]> = words.collect();
         if !words.is_empty() {
             count += 1;
-            found(&words).map_err(|e| e.at(lines.position()))?;
+            found(lines.number(), &words).map_err(|e| e.at(lines.position()))?;
         }
     }
     Ok(count)

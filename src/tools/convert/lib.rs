@@ -159,7 +159,7 @@ fn open_sink<'a>(
         Format::Spa => Box::new(SpaSink::new(output, header)?),
         Format::Spb => Box::new(SpbSink::new(output, header)?),
         Format::Sma => Box::new(SmaSink::new(output, header)?),
-        Format::Smb => Box::new(SmbSink::new(output, header)?),
+        Format::Smb => Box::new(SmbSink::new(output, header, temp_dir)?),
         Format::Points => {
             return Err(Error::usage("points is a format that this program reads, but does not write"));
         }

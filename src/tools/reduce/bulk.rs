@@ -13,6 +13,15 @@ pub(super) struct Facet {
     pub(super) corner: u32,
 }
 
+/// Where a wall was found.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum WallSide {
+    /// As a facet of the simplex on its final side.
+    Final(Facet),
+    /// As a facet of the hull, of the simplex that is not final: the points on the final side are gone.
+    Open(Facet),
+}
+
 /// A bulk kernel of D dimensions with its last triangulation: simplices of D + 1 corners. A corner is the
 /// index of a point in the residual that was triangulated.
 pub(super) trait Bulk<const D: usize>: Default {
@@ -29,9 +38,17 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// Name of a simplex in messages.
     const SIMPLEX: &'static str;
 
-    /// Whether triangulating a node may leave most of its points in the residual, so that passing them up
-    /// untriangulated is better.
-    const MAY_LEAVE_MOST: bool;
+    /// Bytes of a point that waits in a residual, with its walls; and of one that is being triangulated, beyond
+    /// those.
+    const WAITING_BYTES: usize;
+    const KERNEL_BYTES: usize;
+
+    /// Nodes of fewer raw points are not sampled before they are triangulated.
+    const SAMPLED_MIN: usize;
+
+    /// Whether nodes of fewer raw points are passed up untriangulated: too many of their points are near the
+    /// sides.
+    const PASSES_FEW: bool;
 
     /// Triangulates `points` canonically.
     ///
@@ -61,11 +78,11 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// The facets of the hull, each as a facet of its one simplex.
     fn hull_facets(&self) -> impl Iterator<Item = Facet>;
 
-    /// Calls `found` with every wall, as a facet of the simplex on its final side.
+    /// Calls `found` with every wall.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`] if a wall is not a facet of this triangulation.
-    fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(Facet)) -> Result<()>;
+    fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(WallSide)) -> Result<()>;
 
     /// A facet as a wall with its simplex on the final side.
     fn wall(&self, facet: Facet) -> [u32; D];

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point, Region};
@@ -18,6 +19,7 @@ pub(super) struct CellBuffer<const D: usize> {
     /// Points outside of it are counted and dropped.
     region: Region<D>,
     current: Residual<D>,
+    merging: Merging,
     /// A box that contains `current`.
     bounds: Option<Bounds>,
     buckets: BTreeMap<u64, Vec<Point>>,
@@ -25,21 +27,24 @@ pub(super) struct CellBuffer<const D: usize> {
     held_max: usize,
     accepted: u64,
     outside: u64,
+    merged: u64,
 }
 
 impl<const D: usize> CellBuffer<D> {
-    pub(super) fn new(tree: Option<CellTree>, region: Region<D>) -> Self {
+    pub(super) fn new(tree: Option<CellTree>, region: Region<D>, merging: Merging) -> Self {
         CellBuffer {
             tree,
             finalized: tree.map(FinalizedCells::new),
             region,
             current: Residual::default(),
+            merging,
             bounds: None,
             buckets: BTreeMap::new(),
             in_buckets: 0,
             held_max: 0,
             accepted: 0,
             outside: 0,
+            merged: 0,
         }
     }
 
@@ -61,7 +66,10 @@ impl<const D: usize> CellBuffer<D> {
             self.outside += (points.len() - (self.current.len() - before)) as u64;
         }
         self.bounds = Some(self.bounds.map_or(*bounds, |all| all.union(*bounds)));
-        self.held_max = self.held_max.max(self.current.len() + self.in_buckets);
+        self.held_max = self.held_max.max(self.held());
+        let merged = self.merging.merge(&mut self.current)?;
+        self.accepted += merged;
+        self.merged += merged;
         Ok(())
     }
 
@@ -101,6 +109,16 @@ impl<const D: usize> CellBuffer<D> {
         self.outside
     }
 
+    /// Points merged with others that they coincide with.
+    pub(super) fn merged(&self) -> u64 {
+        self.merged
+    }
+
+    /// Points held now.
+    pub(super) fn held(&self) -> usize {
+        self.current.len() + self.in_buckets
+    }
+
     /// Most points held at once.
     pub(super) fn held_max(&self) -> usize {
         self.held_max
@@ -115,6 +133,7 @@ impl<const D: usize> CellBuffer<D> {
     /// The points of the buckets in `range`, in the order of the range, followed by those in no bucket.
     fn take(&mut self, range: std::ops::Range<u64>, fresh: Residual<D>) -> Residual<D> {
         self.bounds = None;
+        self.merging.restart();
         let current = std::mem::replace(&mut self.current, fresh);
         self.accepted += current.len() as u64;
         let keys: Vec<u64> = self.buckets.range(range).map(|(&key, _)| key).collect();

@@ -177,7 +177,7 @@ impl<'scope, W: Write + Send + 'scope> WorkerPool<'scope, W> {
     fn start<B: Bulk<D>, const D: usize>(
         scope: &'scope Scope<'scope, '_>,
         sequencer: Sequencer<W>,
-        rules: Rules,
+        rules: Rules<D>,
         workers: usize,
         buffers: &Buffers<D>,
     ) -> Result<(Self, Channels<D>)> {
@@ -256,7 +256,7 @@ fn dispatch<const D: usize>(
     let nothing = never();
     let (mut jobs, mut nodes, mut points, mut ended) = (0, 0, 0, None);
     loop {
-        while let Some(job) = run.schedule.next_job() {
+        while let Some(job) = run.next_job().map_err(Stop::Failed)? {
             nodes += 1;
             jobs += 1;
             points += job.len();
@@ -293,7 +293,7 @@ fn dispatch<const D: usize>(
             }
             recv(pieces) -> piece => {
                 let piece = piece.map_err(|_| Stop::ThreadGone)?.map_err(Stop::Failed)?;
-                ended = run.take(piece, &mut progress);
+                ended = run.take(piece, &mut progress).map_err(Stop::Failed)?;
             }
         }
     }

@@ -7,26 +7,30 @@
 //! * A simplex, that is a triangle or a tetrahedron, is *final at a node* if its circumscribing ball
 //!   certainly lies in the node's box ([`spmesh_geometry::predicates::circle`],
 //!   [`spmesh_geometry::predicates::sphere`]). Final simplices are written and forgotten.
-//! * The *residual* of a node consists of the vertices of all simplices that are not final, all vertices of
-//!   the hull (their infinite simplices are not final), and the *walls*, oriented facets that separate final
-//!   simplices from others.
+//! * The *residual* of a node consists of the vertices of all simplices that are not final, infinite ones
+//!   included, and the *walls*, oriented facets that separate final simplices from others.
 //! * A node whose children are done triangulates the union of their residuals, drops the simplices in the
 //!   holes behind the walls, and tests the others against its box. At the root, all are final.
 //!
 //! `docs/theory/reduction.md` proves it. Data flow one way: [`reader`] reads points and holds them in a
 //! [`cell_buffer`] until their cell is complete, [`schedule`] finds the nodes that can be triangulated,
 //! [`node`] triangulates them and cuts [`patches`], and [`sequencer`] writes them in order. [`coordinator`]
-//! does the same on several threads. [`merge`] joins the results of partial runs, each of which is a
-//! [`tile`]. All of it is for D dimensions; [`bulk`] hides the differences between [`plane`] and [`space`].
+//! does the same on several threads. A [`division`] cuts crowded cells, [`sample`] finds nodes that are not
+//! worth triangulating, and [`budget`] keeps the limit of memory. [`merge`] joins the results of partial
+//! runs, each of which is a [`tile`]. All of it is for D dimensions; [`bulk`] hides the differences between
+//! [`plane`] and [`space`].
 
 mod border;
 mod boxes;
+mod budget;
 mod bulk;
 mod cell_buffer;
 mod coordinator;
 mod disks;
+mod division;
 mod duplicates;
 mod merge;
+mod merging;
 mod node;
 mod partial;
 mod patches;
@@ -39,6 +43,7 @@ mod run_state;
 mod sample;
 mod schedule;
 mod sequencer;
+mod sides;
 mod space;
 mod stats;
 mod tile;

@@ -65,7 +65,7 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
 ) -> Result<(W, Stats)> {
     let header = merged_header::<B, R, D>(&readers, part)?;
     let region = region_of(&header);
-    let rules = Rules::new(&header, Duplicates::Error, part.is_some());
+    let rules = Rules::<D>::new(&header, Duplicates::Error, part.is_some());
     let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
     let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
     let mut residual = Residual::<D>::default();

@@ -1,9 +1,10 @@
 //! One node of the reduction: triangulate, drop what lies in holes, split final from not final.
 
-use super::bulk::{Bulk, Facet};
+use super::bulk::{Bulk, Facet, WallSide};
 use super::duplicates::Duplicates;
 use super::patches::{Flush, PatchBuilder};
 use super::residual::Residual;
+use super::sides::Sides;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::Region;
@@ -11,7 +12,7 @@ use spmesh_stream::{Coordinates, Header, PatchBlocks, PointCode};
 
 /// The rules that all nodes of a run share.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Rules {
+pub(super) struct Rules<const D: usize> {
     coordinates: Coordinates,
     code: PointCode,
     duplicates: Duplicates,
@@ -19,13 +20,16 @@ pub(super) struct Rules {
     pub(super) is_partial: bool,
     /// Whether to triangulate even nodes that would leave most of their points.
     pub(super) every_node: bool,
+    /// The box of all points: facets of the hull on one of its sides are final.
+    pub(super) sides: Sides<D>,
 }
 
-impl Rules {
+impl<const D: usize> Rules<D> {
     /// The rules for a mesh with the given header.
     pub(super) fn new(header: &Header, duplicates: Duplicates, is_partial: bool) -> Self {
         let code = PointCode::of(header);
-        Rules { coordinates: header.coordinates, code, duplicates, is_partial, every_node: false }
+        let coordinates = header.coordinates;
+        Rules { coordinates, code, duplicates, is_partial, every_node: false, sides: Sides::UNKNOWN }
     }
 
     /// The encoding of the coordinates.
@@ -36,6 +40,9 @@ impl Rules {
 
 /// Stands for the index of a point that is not in the residual.
 const NO_POINT: u32 = u32::MAX;
+
+/// The bit of `wall_facets` for a hole beyond the facet opposite to corner 0.
+const HOLE_BEYOND: u32 = 4;
 
 /// State of a simplex of the node's triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,10 +90,11 @@ impl<const D: usize> Solved<D> {
 
 /// Triangulates one node after the other, in buffers that are used again.
 pub(super) struct Solver<B, const D: usize> {
-    rules: Rules,
+    rules: Rules<D>,
     bulk: B,
     simplex_states: Vec<SimplexState>,
-    /// For each simplex the set of its facets (bit i: opposite to corner i) that are walls of its hole.
+    /// For each simplex the set of its facets (bit i: opposite to corner i) that are walls of its hole, and
+    /// four bits higher of those on the hull beyond which lies a hole. Empty if there are no walls.
     wall_facets: Vec<u8>,
     stack: Vec<u32>,
     point_states: Vec<PointState>,
@@ -94,11 +102,13 @@ pub(super) struct Solver<B, const D: usize> {
     active: Vec<u32>,
     /// Walls of the residual, as facets of simplices that are not active.
     walls: Vec<Facet>,
+    /// Walls of the residual on the hull, as facets of active simplices.
+    outer_walls: Vec<Facet>,
     builder: PatchBuilder<D>,
 }
 
 impl<B: Bulk<D>, const D: usize> Solver<B, D> {
-    pub(super) fn new(rules: Rules) -> Self {
+    pub(super) fn new(rules: Rules<D>) -> Self {
         Solver {
             rules,
             bulk: B::default(),
@@ -108,6 +118,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             point_states: Vec::new(),
             active: Vec::new(),
             walls: Vec::new(),
+            outer_walls: Vec::new(),
             builder: PatchBuilder::default(),
         }
     }
@@ -138,9 +149,9 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.find_holes(&points.walls)?;
         let everything = *region == Region::EVERYTHING && !self.rules.is_partial;
         self.split(points, region, everything);
-        self.find_point_states(points.len(), everything);
+        self.find_point_states(points, everything);
         self.write_patches(points, &mut blocks, flush)?;
-        self.find_walls(everything);
+        self.find_walls(points, everything);
         let (residual, references) = self.residual(number, points);
         let merged = self.bulk.duplicates().len() as u64;
         Ok(Solved { blocks, residual, references, merged })
@@ -161,13 +172,20 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             (&mut self.simplex_states, &mut self.wall_facets, &mut self.stack);
         simplex_states.clear();
         simplex_states.resize(self.bulk.len(), SimplexState::Open);
-        if walls.is_empty() {
+        wall_facets.clear();
+        if walls.is_empty() || simplex_states.is_empty() {
             return Ok(());
         }
-        wall_facets.clear();
         wall_facets.resize(simplex_states.len(), 0);
         stack.clear();
-        self.bulk.find(walls, |Facet { simplex, corner }| {
+        self.bulk.find(walls, |side| {
+            let Facet { simplex, corner } = match side {
+                WallSide::Final(facet) => facet,
+                WallSide::Open(Facet { simplex, corner }) => {
+                    wall_facets[simplex as usize] |= 1 << (HOLE_BEYOND + corner);
+                    return;
+                }
+            };
             wall_facets[simplex as usize] |= 1 << corner;
             if simplex_states[simplex as usize] == SimplexState::Open {
                 simplex_states[simplex as usize] = SimplexState::Hole;
@@ -180,6 +198,10 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                     continue;
                 }
                 let Some(neighbour) = self.bulk.neighbour(Facet { simplex, corner }) else {
+                    // A hole may reach the hull only where infinite simplices were final.
+                    if self.rules.sides.are_known() {
+                        continue;
+                    }
                     return Err(Error::malformed("the walls of a residual do not close a hole"));
                 };
                 let state = &mut simplex_states[neighbour.simplex as usize];
@@ -212,13 +234,39 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         }
     }
 
+    /// Whether the infinite simplex at a facet of the hull is one of all points of this node, and not final.
+    /// In a hole, the facet is one only if it is a wall.
+    fn is_open(&self, facet: Facet, points: &Residual<D>) -> bool {
+        let is_hole = self.simplex_states[facet.simplex as usize] == SimplexState::Hole;
+        if self.has_hole_beyond(facet) || (is_hole && !self.has_wall(facet, facet.corner)) {
+            return false;
+        }
+        let corners = self.bulk.wall(facet);
+        !self.rules.sides.hold(corners.iter().map(|&v| points.at[v as usize]))
+    }
+
+    /// Whether a facet of the hull is a wall with its final side outside.
+    fn has_hole_beyond(&self, facet: Facet) -> bool {
+        self.has_wall(facet, HOLE_BEYOND + facet.corner)
+    }
+
+    fn has_wall(&self, facet: Facet, bit: u32) -> bool {
+        self.wall_facets.get(facet.simplex as usize).is_some_and(|walls| walls & 1 << bit != 0)
+    }
+
     /// Finds the states of the points. If `everything` is final, so are the infinite simplices.
-    fn find_point_states(&mut self, points: usize, everything: bool) {
-        let point_states = &mut self.point_states;
+    fn find_point_states(&mut self, points: &Residual<D>, everything: bool) {
+        let mut point_states = std::mem::take(&mut self.point_states);
         point_states.clear();
-        point_states.resize(points, PointState::Interior);
-        let on_hull = if everything { PointState::Hull } else { PointState::Residual };
+        point_states.resize(points.len(), PointState::Interior);
+        let is_flat = self.bulk.len() == 0 && !self.rules.sides.coincide();
+        let on_hull = if is_flat && !everything { PointState::Residual } else { PointState::Hull };
         self.bulk.hull_vertices().for_each(|v| point_states[v as usize] = on_hull);
+        if !everything {
+            for facet in self.bulk.hull_facets().filter(|&facet| self.is_open(facet, points)) {
+                self.bulk.wall(facet).iter().for_each(|&v| point_states[v as usize] = PointState::Residual);
+            }
+        }
         for &simplex in &self.active {
             for &v in self.bulk.corners(simplex).as_ref() {
                 point_states[v as usize] = PointState::Residual;
@@ -228,6 +276,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             .duplicates()
             .iter()
             .for_each(|&[point, _]| point_states[point as usize] = PointState::Merged);
+        self.point_states = point_states;
     }
 
     /// Writes the final simplices, and the points that are finalized here without being in one: vertices of
@@ -268,18 +317,28 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     }
 
     /// Finds the walls: facets between a simplex that is not active and an active or infinite one.
-    fn find_walls(&mut self, everything: bool) {
+    fn find_walls(&mut self, points: &Residual<D>, everything: bool) {
+        let (mut walls, mut outer_walls) =
+            (std::mem::take(&mut self.walls), std::mem::take(&mut self.outer_walls));
         let is_done = |facet: &Facet| self.simplex_states[facet.simplex as usize] != SimplexState::Active;
-        self.walls.clear();
+        walls.clear();
+        outer_walls.clear();
         for &simplex in &self.active {
             let neighbours =
                 (0..=D as u32).filter_map(|corner| self.bulk.neighbour(Facet { simplex, corner }));
-            self.walls.extend(neighbours.filter(is_done));
+            walls.extend(neighbours.filter(is_done));
         }
         if !everything {
-            self.walls.extend(self.bulk.hull_facets().filter(is_done));
+            for facet in self.bulk.hull_facets() {
+                match is_done(&facet) {
+                    true if self.is_open(facet, points) => walls.push(facet),
+                    false if self.has_hole_beyond(facet) => outer_walls.push(facet),
+                    _ => {}
+                }
+            }
         }
-        self.walls.sort_unstable();
+        walls.sort_unstable();
+        (self.walls, self.outer_walls) = (walls, outer_walls);
     }
 
     /// The residual, with references for the ids of its points.
@@ -295,8 +354,17 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             references.push(reference);
         }
         let above = |v: u32| index_above[v as usize];
+        if self.bulk.len() == 0 && count > 0 {
+            residual.walls.extend(points.walls.iter().map(|wall| wall.map(above)));
+        }
         residual.walls.extend(self.walls.iter().map(|&facet| self.bulk.wall(facet).map(above)));
+        residual.walls.extend(self.outer_walls.iter().map(|&facet| {
+            let mut wall = self.bulk.wall(facet).map(above);
+            wall.swap(0, 1);
+            wall
+        }));
         residual.active = self.active.len();
+        residual.left = count;
         (residual, references)
     }
 }

@@ -28,10 +28,15 @@ impl Plan {
         let keys: Vec<u64> = self.waiting.range(range.clone()).map(|(&key, _)| key).collect();
         let children =
             keys.iter().filter_map(|key| self.waiting.remove(key)).map(|(_, number)| number).collect();
-        let number = self.next;
-        self.next += 1;
+        let number = self.number();
         self.waiting.insert(range.start, (cell, number));
         (number, children)
+    }
+
+    /// The number of a node below the next one.
+    pub(super) fn number(&mut self) -> u64 {
+        self.next += 1;
+        self.next - 1
     }
 
     /// Parent of `cell`, if all its children have nodes.

@@ -1,6 +1,6 @@
 //! Triangles: the reduction in the plane.
 
-use super::bulk::{Bulk, Facet};
+use super::bulk::{Bulk, Facet, WallSide};
 use super::disks::Disks;
 use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
@@ -24,7 +24,10 @@ impl Bulk<2> for Plane {
     const MESH: Kind = Kind::TriangleMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTriangleMesh;
     const SIMPLEX: &'static str = "triangle";
-    const MAY_LEAVE_MOST: bool = false;
+    const WAITING_BYTES: usize = 56;
+    const KERNEL_BYTES: usize = 190;
+    const SAMPLED_MIN: usize = 4_000;
+    const PASSES_FEW: bool = false;
 
     fn triangulate(&mut self, points: &Residual<2>) -> Result<()> {
         self.kernel.triangulate(&points.at, &mut self.triangulation)
@@ -71,13 +74,14 @@ impl Bulk<2> for Plane {
         })
     }
 
-    fn find(&mut self, walls: &[[u32; 2]], found: impl FnMut(Facet)) -> Result<()> {
-        let edge = |&[a, b]: &[u32; 2]| {
-            let edge = self.triangulation.left_of(a, b).map(facet);
-            edge.ok_or_else(|| Error::malformed("a wall of a residual is no edge of the triangulation"))
+    fn find(&mut self, walls: &[[u32; 2]], found: impl FnMut(WallSide)) -> Result<()> {
+        let left_of = |a, b| self.triangulation.left_of(a, b).map(facet);
+        let side = |&[a, b]: &[u32; 2]| {
+            let side = left_of(a, b).map(WallSide::Final).or_else(|| left_of(b, a).map(WallSide::Open));
+            side.ok_or_else(|| Error::malformed("a wall of a residual is no edge of the triangulation"))
         };
         let mut found = found;
-        walls.iter().try_for_each(|wall| edge(wall).map(&mut found))
+        walls.iter().try_for_each(|wall| side(wall).map(&mut found))
     }
 
     fn wall(&self, edge: Facet) -> [u32; 2] {
@@ -93,7 +97,7 @@ impl Bulk<2> for Plane {
         Disks::new(bounds, region)
     }
 
-    #[inline]
+    #[inline(always)]
     fn is_inside(&self, triangle: u32, points: &Residual<2>, disks: &Disks) -> bool {
         let [a, b, c] = self.corners(triangle).map(|v| points.at[v as usize]);
         disks.inside(a, b, c)

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::io::Read;
 
 use super::cell_buffer::CellBuffer;
+use super::merging::Merging;
 use super::residual::Residual;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Region;
@@ -13,8 +14,8 @@ use spmesh_stream::{Event, StreamReader};
 /// The next piece of the stream.
 #[derive(Debug)]
 pub(super) enum Piece<const D: usize> {
-    /// Points were read and are held; the number of points read so far.
-    Points(u64),
+    /// Points were read and are held: the numbers of points read so far, and held now.
+    Points { read: u64, held: usize },
     /// A cell is final.
     Cell {
         cell: CellCode,
@@ -35,6 +36,8 @@ pub(super) struct InputSummary<const D: usize> {
     /// Points passed on, and points that lie outside of the region.
     pub(super) accepted: u64,
     pub(super) outside: u64,
+    /// Points merged with others that they coincide with.
+    pub(super) merged: u64,
     /// Most points held at once.
     pub(super) held_max: usize,
     pub(super) cells: u64,
@@ -52,8 +55,8 @@ pub(super) struct CellReader<R: Read, const D: usize> {
 
 impl<R: Read, const D: usize> CellReader<R, D> {
     /// A reader that leaves out points outside of `region`.
-    pub(super) fn new(reader: StreamReader<R>, region: Region<D>) -> Self {
-        let buffer = CellBuffer::new(reader.header().tree, region);
+    pub(super) fn new(reader: StreamReader<R>, region: Region<D>, merging: Merging) -> Self {
+        let buffer = CellBuffer::new(reader.header().tree, region, merging);
         CellReader { reader, buffer, tags: VecDeque::new(), cells: 0 }
     }
 
@@ -77,7 +80,7 @@ impl<R: Read, const D: usize> CellReader<R, D> {
                         taken.map_err(|e| self.reader.locate(e))?;
                     }
                     self.reader.give_back(points);
-                    return Ok(Piece::Points(self.reader.totals().points));
+                    return Ok(Piece::Points { read: self.reader.totals().points, held: self.buffer.held() });
                 }
                 Some(Event::Cells(cells)) => self.tags.extend(cells),
                 Some(Event::End(_)) | None => return Ok(Piece::End(Box::new(self.ended()))),
@@ -93,6 +96,7 @@ impl<R: Read, const D: usize> CellReader<R, D> {
             rest: self.buffer.rest(),
             accepted: self.buffer.accepted(),
             outside: self.buffer.outside(),
+            merged: self.buffer.merged(),
             held_max: self.buffer.held_max(),
             cells: self.cells,
             input_bytes: self.reader.bytes_read(),

@@ -25,7 +25,12 @@ pub(super) struct Residual<const D: usize> {
     pub(super) walls: Vec<[u32; D]>,
     /// Simplices that were not final at the node that left this residual.
     pub(super) active: usize,
+    /// Number of points that the last node below left: that of the child that left the most.
+    pub(super) left: usize,
 }
+
+/// Residuals of at least this many points are only triangulated again when more points have joined them.
+const FEW: usize = 1_000;
 
 impl<const D: usize> Residual<D> {
     /// Whether points have an elevation beside their geometry.
@@ -39,7 +44,13 @@ impl<const D: usize> Residual<D> {
             keys: Vec::with_capacity(points),
             walls: Vec::with_capacity(walls),
             active: 0,
+            left: 0,
         }
+    }
+
+    /// Whether there are hardly more points than one of the nodes below has left.
+    pub(super) fn has_hardly_grown(&self) -> bool {
+        self.left >= FEW && self.len() < 2 * self.left
     }
 
     pub(super) fn len(&self) -> usize {
@@ -58,6 +69,7 @@ impl<const D: usize> Residual<D> {
         self.keys.clear();
         self.walls.clear();
         self.active = 0;
+        self.left = 0;
     }
 
     /// Adds a point that a node has left.
@@ -85,6 +97,34 @@ impl<const D: usize> Residual<D> {
             self.elevation.extend(points.iter().map(|point| point[2]));
         }
         self.raw += points.len();
+    }
+
+    /// Removes the last `count` points, all raw, and gives back their memory.
+    pub(super) fn split_off(&mut self, count: usize) -> Self {
+        let kept = self.len() - count;
+        let mut last = Residual { at: self.at.split_off(kept), raw: count, ..Residual::default() };
+        self.at.shrink_to_fit();
+        if Self::HAS_ELEVATION {
+            last.elevation = self.elevation.split_off(kept);
+            self.elevation.shrink_to_fit();
+        }
+        self.raw = kept;
+        last
+    }
+
+    /// Removes points, all raw; the others keep their order.
+    pub(super) fn remove(&mut self, points: impl Iterator<Item = u32>) {
+        let mut is_gone = vec![false; self.len()];
+        points.for_each(|point| is_gone[point as usize] = true);
+        let mut kept = is_gone.iter().map(|&gone| !gone);
+        self.at.retain(|_| kept.next().unwrap_or(true));
+        let mut kept = is_gone.iter().map(|&gone| !gone);
+        self.elevation.retain(|_| kept.next().unwrap_or(true));
+        self.raw = self.at.len();
+        if self.at.len() < self.at.capacity() / 4 {
+            self.at.shrink_to_fit();
+            self.elevation.shrink_to_fit();
+        }
     }
 
     pub(super) fn point(&self, index: usize) -> Point {
@@ -129,6 +169,7 @@ impl<const D: usize> Residual<D> {
     /// copied.
     pub(super) fn unite(&mut self, parts: Vec<Self>) {
         self.reserve(&parts);
+        self.left = parts.iter().map(|part| part.left).fold(self.left, usize::max);
         let mut left = Vec::new();
         for part in parts {
             let first_raw = self.raw;

@@ -3,9 +3,11 @@
 use std::io::{Read, Write};
 
 use super::boxes::Boxes;
+use super::budget::Budget;
 use super::bulk::Bulk;
 use super::coordinator;
 use super::duplicates::Duplicates;
+use super::merging::Merging;
 use super::node::Rules;
 use super::partial::Part;
 use super::plan::Plan;
@@ -15,6 +17,7 @@ use super::residual::Residual;
 use super::run_state::Run;
 use super::schedule::Schedule;
 use super::sequencer::Sequencer;
+use super::sides::Sides;
 use super::space::Space;
 use super::stats::Stats;
 use super::worker::Worker;
@@ -36,6 +39,8 @@ pub struct Options<const D: usize = 2> {
     /// Whether every node is triangulated, including those in space that would leave most of their points to
     /// the node above. The set of simplices does not depend on it.
     pub every_node: bool,
+    /// Limit of the process's memory, in bytes: the run fails rather than exceed it.
+    pub memory: Option<u64>,
 }
 
 /// Triangulates a stream of two-dimensional points and writes the mesh to `output`. `progress` is called with
@@ -52,8 +57,9 @@ pub struct Options<const D: usize = 2> {
 /// Memory: the residuals of nodes whose parent is not complete, and the points of cells that are not final.
 ///
 /// # Errors
-/// If the input is not a stream of two-dimensional points, is malformed or truncated, or writing fails. END
-/// is not written then.
+/// If the input is not a stream of two-dimensional points, is malformed or truncated, or writing fails;
+/// [`spmesh_core::error::ErrorKind::Memory`] if more memory is needed than `options.memory`. END is not written
+/// then.
 pub fn triangulate<R, W>(
     reader: StreamReader<R>,
     output: W,
@@ -110,14 +116,20 @@ where
     let stream = StreamWriter::new(output, mesh_header::<B, D>(header, part))?;
     let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
     rules.every_node = options.every_node;
+    // The parts of other runs may reach beyond the box of this input.
+    if let (Some(bounds), None) = (header.bounds, part) {
+        rules.sides = Sides::of(bounds);
+    }
     let (tree, bounds) = (header.tree, header.bounds);
     let run = Run {
         name: reader.name().to_string(),
         level: tree.map_or(0, |tree| u64::from(tree.depth())),
         rules,
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
+        budget: Budget::new::<B, D>(options.memory, options.threads),
     };
-    let (cells, sequencer) = (CellReader::new(reader, outer), Sequencer::new(stream));
+    let merging = Merging::new(options.duplicates, header.coordinates);
+    let (cells, sequencer) = (CellReader::new(reader, outer, merging), Sequencer::new(stream));
     if options.threads <= 1 {
         alone::<B, R, W, D>(run, cells, sequencer, progress)
     } else {
@@ -168,12 +180,12 @@ fn alone<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     let (mut fresh, mut blocks) = (Residual::default(), PatchBlocks::default());
     let ended = loop {
         let piece = cells.next(|| std::mem::take(&mut fresh))?;
-        let ended = run.take(piece, &mut progress);
+        let ended = run.take(piece, &mut progress)?;
         loop {
             while let Some(output) = run.schedule.next_output() {
                 blocks = sequencer.write(output)?;
             }
-            let Some(job) = run.schedule.next_job() else { break };
+            let Some(job) = run.next_job()? else { break };
             let (number, cell) = (job.number, job.cell);
             let solved =
                 worker.solve(job, std::mem::take(&mut blocks), |points| fresh = points, &mut |_| Ok(()));

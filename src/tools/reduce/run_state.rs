@@ -2,11 +2,12 @@
 
 use std::io::Write;
 
+use super::budget::Budget;
 use super::bulk::Bulk;
 use super::node::Rules;
 use super::reader::{InputSummary, Piece};
 use super::residual::union;
-use super::schedule::Schedule;
+use super::schedule::{Job, Schedule};
 use super::sequencer::Sequencer;
 use super::stats::Stats;
 use super::worker::Worker;
@@ -21,26 +22,52 @@ pub(super) struct Run<const D: usize> {
     pub(super) name: String,
     /// Levels of the input's tree.
     pub(super) level: u64,
-    pub(super) rules: Rules,
+    pub(super) rules: Rules<D>,
     pub(super) schedule: Schedule<D>,
+    pub(super) budget: Budget,
 }
 
 impl<const D: usize> Run<D> {
     /// Takes a piece of the input. At its end, returns the totals.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if the limit of memory is exceeded.
     pub(super) fn take(
         &mut self,
         piece: Piece<D>,
         mut progress: impl FnMut(u64),
-    ) -> Option<Box<InputSummary<D>>> {
+    ) -> Result<Option<Box<InputSummary<D>>>> {
         match piece {
-            Piece::Points(points) => progress(points),
-            Piece::Cell { cell, points, is_whole } => self.schedule.cell(cell, points, is_whole),
+            Piece::Points { read, held } => {
+                progress(read);
+                self.schedule.hold(held);
+            }
+            Piece::Cell { cell, points, is_whole } => {
+                self.schedule.hold(0);
+                self.schedule.cell(cell, points, is_whole);
+            }
             Piece::End(mut ended) => {
                 self.schedule.rest(std::mem::take(&mut ended.rest));
-                return Some(ended);
+                return Ok(Some(ended));
             }
         }
-        None
+        self.check_memory(0)?;
+        Ok(None)
+    }
+
+    /// The next node that can be triangulated, except the root.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if the limit of memory is exceeded.
+    pub(super) fn next_job(&mut self) -> Result<Option<Job<D>>> {
+        let Some(job) = self.schedule.next_job() else { return Ok(None) };
+        self.check_memory(job.len())?;
+        Ok(Some(job))
+    }
+
+    /// Checks the limit of memory before a node of `next` points is triangulated.
+    fn check_memory(&mut self, next: usize) -> Result<()> {
+        self.budget.check(self.schedule.load(), next).map_err(|e| e.of_input(&self.name))
     }
 
     /// Adds input and cell to an error about points; returns other errors unchanged.
@@ -63,6 +90,7 @@ impl<const D: usize> Run<D> {
     ) -> Result<()> {
         // The residual of a partial run passes through all nodes up to the root of the tree.
         while let Some((job, children)) = self.schedule.take_root() {
+            self.check_memory(job.len())?;
             let (number, cell) = (job.number, job.cell);
             sequencer.open(&children);
             let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
@@ -101,6 +129,7 @@ impl<const D: usize> Run<D> {
         sequencer.add_to(&mut stats);
         stats.level = self.level;
         stats.points = ended.accepted;
+        stats.merged += ended.merged;
         stats.outside = ended.outside;
         stats.held_max = ended.held_max as u64;
         stats.cells = ended.cells;

@@ -1,8 +1,8 @@
 //! Whether a node is worth triangulating, estimated from a sample of its points.
 //!
 //! In space, points on a surface have tetrahedra whose balls are as large as the object that the surface
-//! bounds (thesis 5.4). If the cell is smaller, no tetrahedron is final, and the time to triangulate it is
-//! lost.
+//! bounds (thesis 5.4), and in the plane, points on a curve have triangles whose circles are as large as the
+//! curve bends. If the cell is smaller, no simplex is final, and the time to triangulate it is lost.
 
 use super::bulk::Bulk;
 use super::node::Rules;
@@ -12,12 +12,14 @@ use spmesh_core::random::Random;
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_model::bounds::{Point, Region};
 
-/// Points of a sample.
+/// Most points of a sample.
 const SAMPLE_POINTS: usize = 2048;
 
-/// Nodes of fewer points are passed up: too many of their points are near the sides, and a sample would cost
-/// too much.
-const POINTS_MIN: usize = 50_000;
+/// Points of a first look, which shows whether a sample is needed.
+const LOOK_POINTS: usize = 256;
+
+/// A sample is at most one of so many points.
+const SAMPLED_ONE_OF: usize = 8;
 
 /// Largest fraction of the sample that a node worth triangulating may leave. A sample of random points in a
 /// cube leaves 59 %, one of points on a surface nearly all.
@@ -25,14 +27,14 @@ const SHARE_MAX: f64 = 0.85;
 
 /// Triangulates samples of the points of nodes.
 pub(super) struct Sample<B, const D: usize> {
-    rules: Rules,
+    rules: Rules<D>,
     bulk: B,
     points: Residual<D>,
     is_left: Vec<bool>,
 }
 
 impl<B: Bulk<D>, const D: usize> Sample<B, D> {
-    pub(super) fn new(rules: Rules) -> Self {
+    pub(super) fn new(rules: Rules<D>) -> Self {
         Sample { rules, bulk: B::default(), points: Residual::default(), is_left: Vec::new() }
     }
 
@@ -46,14 +48,26 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     /// # Errors
     /// As the kernel's.
     pub(super) fn leaves_most(&mut self, points: &Residual<D>, region: &Region<D>) -> Result<bool> {
-        let is_sampled = B::MAY_LEAVE_MOST && !self.rules.every_node && *region != Region::EVERYTHING;
-        if !is_sampled || 2 * points.raw < points.len() {
+        if self.rules.every_node || *region == Region::EVERYTHING {
             return Ok(false);
         }
-        if points.len() < POINTS_MIN {
+        if points.has_hardly_grown() {
             return Ok(true);
         }
-        self.draw(points);
+        if 2 * points.raw < points.len() {
+            return Ok(false);
+        }
+        if points.len() < B::SAMPLED_MIN {
+            return Ok(B::PASSES_FEW);
+        }
+        // In space, a thick surface fills its box, too.
+        if D == 2 {
+            self.draw(points, LOOK_POINTS);
+            if fills_its_box(&self.points.at) {
+                return Ok(false);
+            }
+        }
+        self.draw(points, SAMPLE_POINTS);
         self.bulk.triangulate(&self.points)?;
         let left = self.count_left(region) as f64;
         let vertices = self.points.len() - self.bulk.duplicates().len();
@@ -65,11 +79,12 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         self.bulk.counts()
     }
 
-    /// Draws points at random: every k-th point of a grid could lie in one plane.
-    fn draw(&mut self, points: &Residual<D>) {
+    /// Draws at most so many points at random: every k-th point of a grid could lie in one plane.
+    fn draw(&mut self, points: &Residual<D>, most: usize) {
         let mut random = Random::new(points.raw as u64);
         let choose = |_| points.point(random.below(points.raw as u64) as usize);
-        let sample: Vec<Point> = (0..SAMPLE_POINTS).map(choose).collect();
+        let count = most.min(points.raw / SAMPLED_ONE_OF);
+        let sample: Vec<Point> = (0..count).map(choose).collect();
         self.points.clear();
         self.points.extend_raw(&sample);
     }
@@ -80,7 +95,14 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         let balls = B::balls(self.rules.coordinates(), *region);
         is_left.clear();
         is_left.resize(self.points.len(), false);
-        bulk.hull_vertices().for_each(|v| is_left[v as usize] = true);
+        if bulk.len() == 0 && !self.rules.sides.coincide() {
+            bulk.hull_vertices().for_each(|v| is_left[v as usize] = true);
+        }
+        for corners in bulk.hull_facets().map(|facet| bulk.wall(facet)) {
+            if !self.rules.sides.hold(corners.iter().map(|&v| self.points.at[v as usize])) {
+                corners.iter().for_each(|&v| is_left[v as usize] = true);
+            }
+        }
         for simplex in 0..bulk.len() as u32 {
             if !bulk.is_inside(simplex, &self.points, &balls) {
                 bulk.corners(simplex).as_ref().iter().for_each(|&v| is_left[v as usize] = true);
@@ -90,16 +112,49 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
     }
 }
 
+/// Points of a sample per cell of the grid over its box.
+const POINTS_PER_CELL: usize = 4;
+
+/// Points that lie in more than one of so many cells are on no curve.
+const FILLED_ONE_OF: usize = 4;
+
+/// Whether a sample is spread over its box, as on an area: then it need not be triangulated.
+fn fills_its_box<const D: usize>(sample: &[[f64; D]]) -> bool {
+    let (mut min, mut max) = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+    for point in sample {
+        min = std::array::from_fn(|axis| min[axis].min(point[axis]));
+        max = std::array::from_fn(|axis| max[axis].max(point[axis]));
+    }
+    let per_axis = ((sample.len() / POINTS_PER_CELL) as f64).powf(1.0 / D as f64).floor();
+    let scale: [f64; D] = std::array::from_fn(|axis| per_axis / (max[axis] - min[axis]));
+    let mut is_filled = vec![false; (per_axis as usize).pow(D as u32)];
+    for point in sample {
+        // Casts saturate, so that a flat box, whose scale is infinite, is fine, too.
+        let cell = (0..D).fold(0, |cell, axis| {
+            let at = ((point[axis] - min[axis]) * scale[axis]).min(per_axis - 1.0);
+            cell * per_axis as usize + at as usize
+        });
+        is_filled[cell] = true;
+    }
+    let filled = is_filled.iter().filter(|&&filled| filled).count();
+    filled * FILLED_ONE_OF > is_filled.len()
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::duplicates::Duplicates;
+    use super::super::plane::Plane;
+    use super::super::sides::Sides;
     use super::super::space::Space;
     use super::*;
+    use spmesh_model::bounds::Bounds;
     use spmesh_stream::{Coordinates, Header, Kind};
+
+    const SAMPLED_MIN_OF_SPACE: usize = <Space as Bulk<3>>::SAMPLED_MIN;
 
     fn leaves_most(points: &[Point], region: Region<3>, every_node: bool) -> bool {
         let header = Header::new(Kind::TetrahedralMesh, Coordinates::F64, 3, false);
-        let mut rules = Rules::new(&header, Duplicates::First, false);
+        let mut rules = Rules::<3>::new(&header, Duplicates::First, false);
         rules.every_node = every_node;
         let mut raw = Residual::<3>::default();
         raw.extend_raw(points);
@@ -116,15 +171,39 @@ mod tests {
     #[test]
     fn samples_tell_surfaces_from_volumes() {
         let unit = Region { min: [0.0; 3], max: [1.0; 3] };
-        let volume = cube(POINTS_MIN, |point| point);
-        let grid = cube(POINTS_MIN, |point| point.map(|x| (64.0 * x).floor() / 64.0));
-        let sheet = cube(POINTS_MIN, |[x, y, z]| [x, y, 0.4 + 0.1 * (x * x + y) + 0.001 * z]);
-        let plane = cube(POINTS_MIN, |[x, y, _]| [x, y, 0.5]);
+        let volume = cube(SAMPLED_MIN_OF_SPACE, |point| point);
+        let grid = cube(SAMPLED_MIN_OF_SPACE, |point| point.map(|x| (64.0 * x).floor() / 64.0));
+        let sheet = cube(SAMPLED_MIN_OF_SPACE, |[x, y, z]| [x, y, 0.4 + 0.1 * (x * x + y) + 0.001 * z]);
+        let plane = cube(SAMPLED_MIN_OF_SPACE, |[x, y, _]| [x, y, 0.5]);
         for (points, expected) in [(&volume, false), (&grid, false), (&sheet, true), (&plane, true)] {
             assert_eq!(leaves_most(points, unit, false), expected);
             assert!(!leaves_most(points, unit, true), "every node is triangulated if that is wanted");
             assert!(!leaves_most(points, Region::EVERYTHING, false), "where all is final, nothing is left");
         }
         assert!(leaves_most(&volume[1..], unit, false), "too few points");
+    }
+
+    #[test]
+    fn samples_tell_curves_from_areas() {
+        let header = Header::new(Kind::TriangleMesh, Coordinates::F64, 2, false);
+        let cell = Region { min: [0.0; 2], max: [1.0; 2] };
+        let leaves_most = |points: &[Point], sides: Sides<2>| {
+            let mut rules = Rules::new(&header, Duplicates::First, false);
+            rules.sides = sides;
+            let mut raw = Residual::<2>::default();
+            raw.extend_raw(points);
+            Sample::<Plane, 2>::new(rules).leaves_most(&raw, &cell).unwrap()
+        };
+        let count = 4 * <Plane as Bulk<2>>::SAMPLED_MIN;
+        let area = cube(count, |point| point);
+        let curve = cube(count, |[x, _, _]| [x, 0.5 + 0.4 * x * x, 0.0]);
+        let band = cube(count, |[x, y, _]| [x, 0.5 + 0.01 * y, 0.0]);
+        let strip = cube(count, |[x, y, _]| [x, if y < 0.5 { 0.25 } else { 0.75 }, 0.0]);
+        for (points, expected) in [(&area, false), (&curve, true), (&band, false), (&strip, true)] {
+            assert_eq!(leaves_most(points, Sides::UNKNOWN), expected);
+        }
+        let bounds = Bounds { min: [0.0, 0.25, 0.0], max: [9.0, 0.75, 0.0] };
+        assert!(!leaves_most(&strip, Sides::of(bounds)), "nothing lies beyond the rows");
+        assert!(!leaves_most(&curve[..100], Sides::UNKNOWN), "too few points to look");
     }
 }

@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, VecDeque};
 
 use super::boxes::Boxes;
+use super::budget::Load;
+use super::division::{CROWDED, Division};
 use super::node::Solved;
 use super::plan::Plan;
 use super::residual::Residual;
@@ -31,6 +33,11 @@ impl<const D: usize> Job<D> {
         self.raw.len() + self.parts.iter().map(Residual::len).sum::<usize>()
     }
 
+    /// Number of points that no node has triangulated yet.
+    fn raw_len(&self) -> usize {
+        self.raw.len() + self.parts.iter().map(|part| part.raw).sum::<usize>()
+    }
+
     /// Whether all points come from the stream, without a node below.
     pub(super) fn is_leaf(&self) -> bool {
         self.parts.is_empty()
@@ -53,17 +60,38 @@ pub(super) struct Output<const D: usize> {
 /// A node whose residual no parent has taken yet.
 #[derive(Debug)]
 struct Node<const D: usize> {
+    /// Its cell, or the cell that it is a part of.
     cell: CellCode,
+    region: Region<D>,
     is_leaf: bool,
     raw: Residual<D>,
     children: Vec<u64>,
     /// How many of the children are not triangulated yet.
     missing: usize,
     parent: Option<u64>,
-    /// Number of its points, once it is released.
+    /// Number of its points, and of those that no node has triangulated, once it is released.
     points: usize,
+    raw_points: usize,
     /// Its residual, once it is triangulated.
     residual: Option<Residual<D>>,
+}
+
+impl<const D: usize> Node<D> {
+    /// A node that is not planned yet.
+    fn new(cell: CellCode, region: Region<D>, is_leaf: bool, raw: Residual<D>, children: Vec<u64>) -> Self {
+        Node {
+            cell,
+            region,
+            is_leaf,
+            raw,
+            children,
+            missing: 0,
+            parent: None,
+            points: 0,
+            raw_points: 0,
+            residual: None,
+        }
+    }
 }
 
 /// The nodes between their tag and the output.
@@ -80,6 +108,8 @@ pub(super) struct Schedule<const D: usize> {
     root: Option<Job<D>>,
     outputs: BTreeMap<u64, Output<D>>,
     next_output: u64,
+    /// Points that wait for their cell, those of nodes that wait, and those under way.
+    load: Load,
     stats: Stats,
 }
 
@@ -93,8 +123,19 @@ impl<const D: usize> Schedule<D> {
             root: None,
             outputs: BTreeMap::new(),
             next_output: 0,
+            load: Load::default(),
             stats: Stats::default(),
         }
+    }
+
+    /// Notes how many points wait for their cell.
+    pub(super) fn hold(&mut self, points: usize) {
+        self.load.held = points;
+    }
+
+    /// Points in memory.
+    pub(super) fn load(&self) -> Load {
+        self.load
     }
 
     /// Takes the points of a final cell. If parts of it were final before, its node is above the nodes of the
@@ -124,6 +165,8 @@ impl<const D: usize> Schedule<D> {
     pub(super) fn solved(&mut self, number: u64, mut solved: Solved<D>) {
         let node = self.nodes.get_mut(&number).expect("a node waits until its parent takes its residual");
         let active = solved.residual.active;
+        self.load.raw = self.load.raw + solved.residual.raw - node.raw_points;
+        self.load.left = self.load.left + solved.residual.keys.len() - (node.points - node.raw_points);
         node.residual = Some(std::mem::take(&mut solved.residual));
         let (points, parent) = (node.points, node.parent);
         let children = std::mem::take(&mut node.children);
@@ -171,17 +214,50 @@ impl<const D: usize> Schedule<D> {
     }
 
     /// Adds the node of `cell`, over those inside it, with `raw` points of its own.
-    fn add(&mut self, cell: CellCode, raw: Residual<D>, is_leaf: bool) {
-        let (number, children) = self.plan.node(cell);
-        let mut missing = 0;
-        for child in &children {
-            let node = self.nodes.get_mut(child).expect("a node waits until its parent takes its residual");
-            node.parent = Some(number);
-            missing += usize::from(node.residual.is_none());
+    fn add(&mut self, cell: CellCode, mut raw: Residual<D>, is_leaf: bool) {
+        let region = self.boxes.region(cell);
+        let mut parts = Vec::new();
+        if raw.len() > CROWDED
+            && let Division::Halves { halves, .. } = Division::of(&mut raw, region)
+        {
+            let [low, high] = *halves;
+            // From the end on, so that the memory of each piece is given back at once.
+            parts = [high, low].map(|half| self.add_piece(cell, half, &mut raw)).to_vec();
+            raw = Residual::default();
         }
-        let node = Node { cell, is_leaf, raw, children, missing, parent: None, points: 0, residual: None };
+        let (number, mut children) = self.plan.node(cell);
+        children.extend(parts);
+        let is_leaf = is_leaf && children.is_empty();
+        self.add_node(number, Node::new(cell, region, is_leaf, raw, children));
+    }
+
+    /// Adds the nodes of a piece of a crowded cell, whose points are the last of `raw`; returns the number of
+    /// the highest.
+    fn add_piece(&mut self, cell: CellCode, piece: Division<D>, raw: &mut Residual<D>) -> u64 {
+        let (region, own, children) = match piece {
+            Division::Piece { region, points } => (region, raw.split_off(points), Vec::new()),
+            Division::Halves { region, halves } => {
+                let [low, high] = *halves;
+                let children = [high, low].map(|half| self.add_piece(cell, half, raw));
+                (region, Residual::default(), children.to_vec())
+            }
+        };
+        let (number, is_leaf) = (self.plan.number(), children.is_empty());
+        self.add_node(number, Node::new(cell, region, is_leaf, own, children));
+        number
+    }
+
+    /// Adds a node, whose children have been added.
+    fn add_node(&mut self, number: u64, mut node: Node<D>) {
+        self.load.raw += node.raw.len();
+        for child in &node.children {
+            let child = self.nodes.get_mut(child).expect("a node waits until its parent takes its residual");
+            child.parent = Some(number);
+            node.missing += usize::from(child.residual.is_none());
+        }
+        let is_complete = node.missing == 0;
         self.nodes.insert(number, node);
-        if missing == 0 {
+        if is_complete {
             self.release(number);
         }
     }
@@ -189,15 +265,16 @@ impl<const D: usize> Schedule<D> {
     /// Turns a node whose children are triangulated into a job; a node without points is finished at once.
     fn release(&mut self, number: u64) {
         let node = self.nodes.get_mut(&number).expect("the node is planned");
-        let (cell, raw, children) = (node.cell, std::mem::take(&mut node.raw), node.children.clone());
+        let (cell, region) = (node.cell, node.region);
+        let (raw, children) = (std::mem::take(&mut node.raw), node.children.clone());
         let is_leaf = node.is_leaf;
         let parts = children.iter().filter_map(|child| self.nodes.remove(child)?.residual).collect();
-        let region = self.boxes.region(cell);
         let is_root = self.boxes.is_everything(&region);
         let job = Job { number, cell, region, is_root, raw, parts };
         let points = job.len();
         if let Some(node) = self.nodes.get_mut(&number) {
             node.points = points;
+            node.raw_points = job.raw_len();
         }
         if !is_leaf {
             self.stats.inner_nodes += u64::from(points > 0);
@@ -208,8 +285,12 @@ impl<const D: usize> Schedule<D> {
         } else if is_root {
             self.stats.root_points = points as u64;
             self.root = Some(job);
-        } else {
+        } else if job.is_leaf() {
             self.jobs.push_back(job);
+        } else {
+            // Nodes that are done wait in memory for those above them, which are written before the next
+            // leaf.
+            self.jobs.push_front(job);
         }
     }
 }

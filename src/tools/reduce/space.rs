@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::bulk::{Bulk, Facet};
+use super::bulk::{Bulk, Facet, WallSide};
 use super::residual::Residual;
 use super::walls::WallIndex;
 use spmesh_core::error::{Error, Result};
@@ -69,7 +69,10 @@ impl Bulk<3> for Space {
     const MESH: Kind = Kind::TetrahedralMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
     const SIMPLEX: &'static str = "tetrahedron";
-    const MAY_LEAVE_MOST: bool = true;
+    const WAITING_BYTES: usize = 130;
+    const KERNEL_BYTES: usize = 640;
+    const SAMPLED_MIN: usize = 50_000;
+    const PASSES_FEW: bool = true;
 
     fn triangulate(&mut self, points: &Residual<3>) -> Result<()> {
         self.kernel.triangulate(Cow::Borrowed(&points.at), &mut self.mesh)?;
@@ -118,7 +121,7 @@ impl Bulk<3> for Space {
         self.hull.iter().copied()
     }
 
-    fn find(&mut self, walls: &[[u32; 3]], mut found: impl FnMut(Facet)) -> Result<()> {
+    fn find(&mut self, walls: &[[u32; 3]], mut found: impl FnMut(WallSide)) -> Result<()> {
         if walls.is_empty() {
             return Ok(());
         }
@@ -128,9 +131,14 @@ impl Bulk<3> for Space {
         for simplex in 0..self.len() as u32 {
             let vertices = self.corners(simplex);
             for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
-                if index.contains(facet.map(|i| vertices[i])) {
+                let side = Facet { simplex, corner };
+                let [a, b, c] = facet.map(|i| vertices[i]);
+                if index.contains([a, b, c]) {
                     count += 1;
-                    found(Facet { simplex, corner });
+                    found(WallSide::Final(side));
+                } else if self.neighbour(side).is_none() && index.contains([b, a, c]) {
+                    count += 1;
+                    found(WallSide::Open(side));
                 }
             }
         }

@@ -18,7 +18,7 @@ pub(super) struct Worker<B, const D: usize> {
 }
 
 impl<B: Bulk<D>, const D: usize> Worker<B, D> {
-    pub(super) fn new(rules: Rules) -> Self {
+    pub(super) fn new(rules: Rules<D>) -> Self {
         Worker { solver: Solver::new(rules), sample: Sample::new(rules), union: Residual::default() }
     }
 

@@ -1,6 +1,8 @@
 //! Breaklines and corners: turns polylines in world coordinates into knots with features between them.
 
 use super::distinct_points::without_copies;
+use super::fit::KNOTS_MAX;
+use super::options::Options;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::special::{Crease, Features};
 use spmesh_geometry::delaunay2;
@@ -18,10 +20,17 @@ const NEAR: f64 = 0.35;
 /// them. Places near segments are left out, except those on the border of the convex hull.
 ///
 /// # Errors
-/// Usage, if polylines cross where they have no common vertex, touch the border in ways that
-/// [`SplineSpace::with_features`] refuses, or are too near to each other.
-pub(super) fn space(places: &[Point2], polylines: &[Polyline]) -> Result<SplineSpace> {
+/// Usage, if polylines lie far from the places, need too many knots, cross where they have no common vertex,
+/// touch the border in ways that [`SplineSpace::with_features`] refuses, or are too near to each other.
+pub(super) fn space(places: &[Point2], options: &Options) -> Result<SplineSpace> {
+    of_polylines(places, options).map_err(|error| error.of_input(&options.polylines_name))
+}
+
+fn of_polylines(places: &[Point2], options: &Options) -> Result<SplineSpace> {
+    let polylines = &options.polylines[..];
+    check_area(places, polylines)?;
     let distance = usual_distance(places)?;
+    check_count(options, distance, places.len())?;
     let divided: Vec<Vec<Point2>> = polylines.iter().map(|polyline| divide(polyline, distance)).collect();
     let far = far_places(places, &divided, NEAR * distance)?;
     let mut knots = Knots { places: without_copies(&far), ids: foldhash::HashMap::default() };
@@ -39,6 +48,59 @@ pub(super) fn space(places: &[Point2], polylines: &[Polyline]) -> Result<SplineS
         }
     }
     SplineSpace::with_features(knots.places, features)
+}
+
+/// Checks that all vertices lie in the box of the places, or outside of it by no more than its longer side:
+/// knots far from all points would only stretch the domain.
+fn check_area(places: &[Point2], polylines: &[Polyline]) -> Result<()> {
+    let range = |axis: usize| {
+        let coordinates = places.iter().map(|place| place[axis]);
+        coordinates.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)])
+    };
+    let [x, y] = [range(0), range(1)];
+    let margin = (x[1] - x[0]).max(y[1] - y[0]);
+    let is_near = |[low, high]: [f64; 2], at: f64| low - margin <= at && at <= high + margin;
+    for polyline in polylines {
+        let far = polyline.vertices.iter().find(|at| !is_near(x, at[0]) || !is_near(y, at[1]));
+        if let Some([at_x, at_y]) = far {
+            let message = format!(
+                "the vertex {at_x:?} {at_y:?} is far from the points, which lie between {:?} {:?} and {:?} {:?}: clip \
+                 features to this box, for example with ogr2ogr -clipsrc",
+                x[0], y[0], x[1], y[1]
+            );
+            return Err(Error::usage(message).at(&polyline.position));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the number of knots along polylines, which are added to `places` others.
+fn check_count(options: &Options, distance: f64, places: usize) -> Result<()> {
+    let most = options.max_knots.unwrap_or(KNOTS_MAX.max(places));
+    let parts = |polyline: &Polyline| -> f64 {
+        let edges = polyline.vertices.windows(2).map(|edge| [edge[0], edge[1]]);
+        match polyline.kind {
+            PolylineKind::Corner => polyline.vertices.len() as f64,
+            _ => 1.0 + edges.map(|edge| parts_of(edge, distance)).sum::<f64>(),
+        }
+    };
+    let knots: f64 = options.polylines.iter().map(parts).sum();
+    if knots > most as f64 {
+        let flag = match (options.step, options.max_knots) {
+            (Some(_), _) => ", or take a larger --step",
+            (None, Some(_)) => ", or raise --max-knots",
+            (None, None) => "",
+        };
+        return Err(Error::usage(format!(
+            "the features need {knots} knots, at most {most} may be: simplify or clip them{flag}"
+        )));
+    }
+    Ok(())
+}
+
+/// The number of parts of an edge, so that none is longer than the usual distance of knots.
+fn parts_of(edge: [Point2; 2], distance: f64) -> f64 {
+    (length(edge) / distance).ceil().max(1.0)
 }
 
 /// The usual distance of knots: the side of a square whose area is the mean area per place.
@@ -69,7 +131,7 @@ fn divide(polyline: &Polyline, distance: f64) -> Vec<Point2> {
     let mut divided = vec![polyline.vertices[0]];
     for edge in polyline.vertices.windows(2) {
         let [p, q] = [edge[0], edge[1]];
-        let parts = (length([p, q]) / distance).ceil().max(1.0);
+        let parts = parts_of([p, q], distance);
         let between = (1..parts as usize).map(|part| {
             let part = part as f64 / parts;
             [0, 1].map(|axis| p[axis] + part * (q[axis] - p[axis]))

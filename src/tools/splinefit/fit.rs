@@ -20,7 +20,7 @@ const TOLERANCE_PART: f64 = 0.0025;
 /// Residuals below this part of the greatest magnitude of elevations are rounding errors.
 const ROUNDING: f64 = 1e-9;
 /// The default maximum of knots is this number...
-const KNOTS_MAX: usize = 20_000;
+pub(super) const KNOTS_MAX: usize = 20_000;
 /// ...but at most one knot per this number of points: two or three functions belong to a knot.
 const POINTS_PER_KNOT: u64 = 4;
 
@@ -81,9 +81,7 @@ pub fn fit(
         return Err(Error::usage(what));
     }
     let (mut layout, found) = match knots {
-        Some((source, name)) => {
-            (given_knots::layout(source, &name, options.degree, &options.polylines)?, None)
-        }
+        Some((source, name)) => (given_knots::layout(source, &name, options)?, None),
         None if options.step.is_some() => (even(points, options, done)?, None),
         None => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
@@ -139,7 +137,7 @@ fn search(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<(Lay
     let search = Search { goal, rounds: refined.rounds, is_reached: refined.is_reached };
     let space = match options.polylines.is_empty() {
         true => refined.space,
-        false => breaklines::space(refined.space.mesh.points(), &options.polylines)?,
+        false => breaklines::space(refined.space.mesh.points(), options)?,
     };
     Ok((Layout::of_space(space, frame), search))
 }
@@ -153,7 +151,7 @@ fn even(points: &Points, options: &Options, done: &dyn Fn(u64)) -> Result<Layout
     let places = fitting::grid_knots(&all, side).map_err(|error| error.of_input(points.name()))?;
     let space = match options.polylines.is_empty() {
         true => SplineSpace::of(places)?,
-        false => breaklines::space(&places, &options.polylines)?,
+        false => breaklines::space(&places, options)?,
     };
     Ok(Layout::of_space(space, frame))
 }

@@ -4,23 +4,20 @@ use super::breaklines;
 use super::distinct_points::without_copies;
 use super::frame::Frame;
 use super::layout::Layout;
+use super::options::Options;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::source::{Input, Opened, Polyline};
+use spmesh_io::source::{Input, Opened};
 use spmesh_splines::fitting::SplineSpace;
 
 /// The layout of functions over given knots.
 ///
 /// # Errors
 /// Knots on one line; a degree that the file does not have; those of reading.
-pub(super) fn layout(
-    source: Opened,
-    name: &str,
-    degree: Option<usize>,
-    polylines: &[Polyline],
-) -> Result<Layout> {
+pub(super) fn layout(source: Opened, name: &str, options: &Options) -> Result<Layout> {
+    let degree = options.degree;
     match source {
-        Opened::Events(_) if !polylines.is_empty() => {
+        Opened::Events(_) if !options.polylines.is_empty() => {
             let what =
                 "configurations have their functions already: give knots as points, or features to configgen";
             Err(Error::usage(what).of_input(name))
@@ -34,12 +31,12 @@ pub(super) fn layout(
                 );
                 return Err(Error::usage(what).of_input(name));
             }
-            of_points(&input, polylines).map_err(|error| error.of_input(name))
+            of_points(&input, options).map_err(|error| error.of_input(name))
         }
     }
 }
 
-fn of_points(input: &Input, polylines: &[Polyline]) -> Result<Layout> {
+fn of_points(input: &Input, options: &Options) -> Result<Layout> {
     let description = input.description();
     let (frame, place) = Frame::of(description.coordinates, description.crs.clone());
     let (mut reader, mut batch, mut places) = (input.read()?, Vec::new(), Vec::new());
@@ -51,10 +48,10 @@ fn of_points(input: &Input, polylines: &[Polyline]) -> Result<Layout> {
         places.extend(batch.iter().map(|&[x, y, _]| place([x, y])));
     }
     let places = without_copies(&places);
-    if polylines.is_empty() {
+    if options.polylines.is_empty() {
         return Ok(Layout::of_space(SplineSpace::of(places)?, frame));
     }
     // Vertices of polylines are not on a grid, so coordinates of the world are used.
     let places: Vec<Point2> = places.into_iter().map(|stored| frame.to_world(stored)).collect();
-    Ok(Layout::of_space(breaklines::space(&places, polylines)?, Frame::world(frame.crs)))
+    Ok(Layout::of_space(breaklines::space(&places, options)?, Frame::world(frame.crs)))
 }

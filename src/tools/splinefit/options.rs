@@ -24,6 +24,8 @@ pub struct Options {
     pub step: Option<f64>,
     /// Polylines along which splines are not smooth; for knots without configurations.
     pub polylines: Vec<Polyline>,
+    /// The name of their file in messages.
+    pub polylines_name: String,
     /// Degree of splines, for knots with configurations of several degrees.
     pub degree: Option<usize>,
     /// Seed of random numbers: folds, and estimates of traces.
@@ -42,6 +44,7 @@ impl Default for Options {
             max_knots: None,
             step: None,
             polylines: Vec::new(),
+            polylines_name: String::new(),
             degree: None,
             seed: 1,
             threads: NonZeroUsize::MIN,

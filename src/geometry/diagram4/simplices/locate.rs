@@ -1,11 +1,12 @@
 //! The walk to a simplex in conflict with a point.
 
 use super::coefficient::Coefficient;
-use super::complex::{Complex, FACETS, INFINITE, Lifted, simplex_of, without};
+use super::complex::{Complex, FACETS, Lifted, simplex_of, without};
 use crate::diagram4::determinant::{difference, dot, normal};
+use crate::diagram4::exact::orientation;
 
-/// Steps after which the walk is assumed to cycle because of rounding.
-const STEPS_MAX: usize = 100_000;
+/// Steps after which the walk is assumed to be lost because of rounding: hundreds of times as many as usual.
+const STEPS_MAX: usize = 1_000;
 
 /// Relative difference below which two powers of a point count as equal.
 const TIE: f64 = 1e-9;
@@ -29,7 +30,7 @@ impl<C: Coefficient> Complex<'_, C> {
                 None => break,
             }
         }
-        self.search(q, p)
+        self.walk_exactly(q, at)
     }
 
     /// The next simplex of the walk; an infinite one is in conflict.
@@ -67,11 +68,25 @@ impl<C: Coefficient> Complex<'_, C> {
         (own > 0.0 && new < 0.0) || (own < 0.0 && new > 0.0)
     }
 
-    /// Searches all simplices.
+    /// Walks on to the simplex that contains vertex `q`, or to an infinite one that it can see: across any
+    /// facet that has `q` strictly beyond. In a Delaunay triangulation, such a walk never cycles
+    /// (Edelsbrunner, 1989).
     #[cold]
-    fn search(&self, q: u32, p: &Lifted) -> usize {
-        let is_wanted = |&simplex: &usize| !self.is_dead(simplex) && self.is_in_conflict(simplex, q, p);
-        debug_assert!(!self.simplices.is_empty() && q != INFINITE);
-        (0..self.simplices.len()).find(is_wanted).expect("each point is in a simplex or beyond the hull")
+    fn walk_exactly(&self, q: u32, start: usize) -> usize {
+        let mut at = start;
+        while self.neighbour_inside(at).is_none() {
+            let Some(side) = (0..FACETS).find(|&side| self.is_exactly_beyond(at, side, q)) else { break };
+            at = simplex_of(self.simplices[at].neighbours[side]);
+        }
+        at
+    }
+
+    /// Whether `q` and the opposite vertex are strictly on two sides of a facet.
+    fn is_exactly_beyond(&self, at: usize, side: usize, q: u32) -> bool {
+        let vertices = self.simplices[at].vertices;
+        let facet = without(vertices, side).map(|vertex| self.point(vertex));
+        let side_of = |vertex: u32| orientation(self.sites.exactness, facet, self.point(vertex));
+        let (own, new) = (side_of(vertices[side]), side_of(q));
+        new.is_ne() && new == own.reverse()
     }
 }

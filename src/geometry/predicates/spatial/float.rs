@@ -1,9 +1,10 @@
-//! Predicates of floating-point coordinates: filter, then expansions, then arbitrary precision.
+//! Predicates of floating-point coordinates: filter, then pairs of `f64`, then expansions, then arbitrary
+//! precision.
 
 use super::filter::{insphere_is_certain, lift, orient3d_is_certain};
 use super::{Extent, Numbers, Point3, PredicateCounts, Predicates3, Sign};
 use crate::predicates::adaptive::{Estimate, difference};
-use crate::predicates::big;
+use crate::predicates::{big, pairs};
 use robust::Coord3D;
 
 fn coord([x, y, z]: Point3) -> Coord3D<f64> {
@@ -19,16 +20,18 @@ pub(super) fn differences_from<const N: usize>(a: Point3, others: [Point3; N]) -
 /// The sign of the crate is that of det(a - d, b - d, c - d).
 #[cold]
 fn expansion_orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
-    Sign::of(-robust::orient3d(coord(a), coord(b), coord(c), coord(d)))
+    let expansion = || Sign::of(-robust::orient3d(coord(a), coord(b), coord(c), coord(d)));
+    pairs::orient3d(a, b, c, d).unwrap_or_else(expansion)
 }
 
 /// The crate's tetrahedra are oriented the other way.
 #[cold]
 fn expansion_insphere(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
-    Sign::of(-robust::insphere(coord(a), coord(b), coord(c), coord(d), coord(e)))
+    let expansion = || Sign::of(-robust::insphere(coord(a), coord(b), coord(c), coord(d), coord(e)));
+    pairs::insphere(a, b, c, d, e).unwrap_or_else(expansion)
 }
 
-/// Filter, then expansions.
+/// Filter, then expansions, those of two terms first.
 ///
 /// Domain: every coordinate is zero or its magnitude lies in [2^-132, 2^200]. Why this suffices:
 ///

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, Read};
 
 use crate::source::byte_order::ByteOrder;
 use crate::source::gzip::Gunzip;
-use crate::source::numbers::{NumberReader, Writing, fill, truncated};
+use crate::source::numbers::{NumberReader, Writing, truncated};
 use crate::source::origin::Origin;
 use crate::source::sample_type::SampleType;
 use spmesh_core::error::{Error, Result};
@@ -31,7 +31,7 @@ pub(super) struct Data {
     pub line_skip: u64,
     /// Bytes to skip after these lines, decompressed.
     pub byte_skip: Skip,
-    /// Whether bytes after the values are an error, as for files that do not state their size.
+    /// Whether bytes after the values are an error, as where no header states the sizes.
     pub is_exact: bool,
 }
 
@@ -56,23 +56,41 @@ pub(super) struct Part {
 }
 
 impl Data {
-    /// Passes all `total` values to `visit`, in batches.
+    /// Passes all `total` values to `visit`, in batches. Returns a warning if other bytes follow the values.
     ///
-    /// Memory: a batch. Reads at most `total` values and one byte, even if a compressed file would yield
-    /// more.
+    /// Memory: a batch. Compressed data are read to their end, which verifies their checksums.
     ///
     /// # Errors
-    /// If there are fewer values, or one of them cannot be parsed; or any error of `visit`.
-    pub(super) fn scan(&self, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+    /// If there are fewer values, one of them cannot be parsed, or compressed data are damaged; or any error
+    /// of `visit`.
+    pub(super) fn scan(
+        &self,
+        total: u64,
+        visit: &mut dyn FnMut(&[f64]) -> Result<()>,
+    ) -> Result<Option<String>> {
         let share = total / self.parts.len() as u64;
+        let mut warning = None;
         for part in &self.parts {
             let scanned = self.scan_part(part, share, visit);
-            scanned.map_err(|e| part.name.iter().fold(e, |e, name| e.of_input(name)))?;
+            let goes_on = scanned.map_err(|e| part.name.iter().fold(e, |e, name| e.of_input(name)))?;
+            if goes_on && warning.is_none() {
+                let name = part.name.iter().map(|name| format!("{name}: ")).collect::<String>();
+                warning = Some(format!(
+                    "{name}the bytes that follow the {share} values are ignored: are the stated sizes and \
+                     the type right?"
+                ));
+            }
         }
-        Ok(())
+        Ok(warning)
     }
 
-    fn scan_part(&self, part: &Part, total: u64, visit: &mut dyn FnMut(&[f64]) -> Result<()>) -> Result<()> {
+    /// True if other bytes follow the values.
+    fn scan_part(
+        &self,
+        part: &Part,
+        total: u64,
+        visit: &mut dyn FnMut(&[f64]) -> Result<()>,
+    ) -> Result<bool> {
         let writing = match self.encoding {
             Encoding::Raw(order) | Encoding::Gzip(order) => Writing::Binary(order),
             Encoding::Text => Writing::Text,
@@ -88,12 +106,16 @@ impl Data {
             }
             visit(&values)?;
         }
-        if self.is_exact && !fill(&mut input)?.is_empty() {
+        let goes_on = reader.goes_on()?;
+        if self.is_exact && goes_on {
             let bytes = total * self.sample.len() as u64;
             let reason = format!("has more than {bytes} bytes: the stated sizes or the type are wrong");
             return Err(Error::malformed(reason));
         }
-        Ok(())
+        if part.is_gzip || matches!(self.encoding, Encoding::Gzip(_)) {
+            io::copy(&mut input, &mut io::sink()).map_err(|e| Error::io("reading", e))?;
+        }
+        Ok(goes_on)
     }
 
     /// Adds the number of the value after `done` others to an error, where no byte offset tells the position.

@@ -26,7 +26,8 @@ pub use sample::Share;
 
 use self::lattice::Lattice;
 use self::scan::Supply;
-use super::origin::{Origin, name_of};
+use super::origin::{Admitted, Origin, name_of};
+use crate::detect::DD4;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::cells4::Point4;
 
@@ -113,7 +114,12 @@ pub fn read_points4(request: &Request) -> Result<Selected4> {
         }
         From4::File(path) | From4::Raw(path, _) => {
             let temp_dir = request.temp_dir.clone().unwrap_or_else(std::env::temp_dir);
-            let origin = Origin::new(path, &temp_dir, &mut warnings)?;
+            let admitted = match &request.from {
+                // One byte more shows that the sizes are wrong.
+                From4::Raw(_, layout) => Admitted::First(layout.bytes().saturating_add(1)),
+                _ => Admitted::Formats(&DD4),
+            };
+            let origin = Origin::new(path, admitted, &temp_dir, &mut warnings)?;
             let is_stdin = path.as_os_str() == "-";
             let name = name_of(path);
             let path = (!is_stdin).then_some(path.as_path());

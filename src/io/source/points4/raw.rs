@@ -30,6 +30,13 @@ impl FromStr for RawLayout {
     }
 }
 
+impl RawLayout {
+    /// Length of the values in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.lens.iter().fold(self.kind.sample.len() as u64, |bytes, &len| bytes.saturating_mul(len))
+    }
+}
+
 impl fmt::Display for RawLayout {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z, t] = self.lens;

@@ -17,17 +17,22 @@ pub(super) enum Supply {
 }
 
 impl Supply {
-    /// Passes every point, with its value if there are values, to `visit`.
+    /// Passes every point, with its value if there are values, to `visit`. Returns a warning if the input
+    /// holds more than the points.
     ///
     /// # Errors
     /// If the input cannot be read or is malformed; or any error of `visit`.
-    pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
+    pub(super) fn scan(
+        &self,
+        visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>,
+    ) -> Result<Option<String>> {
         match self {
-            Supply::Grid(lattice) => lattice.iter().try_for_each(|site| visit(site, None)),
-            Supply::Text(text) => text.scan(visit),
-            Supply::Stream(stream) => stream.scan(visit),
-            Supply::Volume(volume) => volume.scan(visit),
+            Supply::Grid(lattice) => lattice.iter().try_for_each(|site| visit(site, None))?,
+            Supply::Text(text) => text.scan(visit)?,
+            Supply::Stream(stream) => stream.scan(visit)?,
+            Supply::Volume(volume) => return volume.scan(visit),
         }
+        Ok(None)
     }
 
     /// Whether points have values.

@@ -4,7 +4,8 @@ use super::sample::choose;
 use super::scan::Supply;
 use super::{Selected4, Selection, Share, too_many};
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::limits::POINTS4_MAX;
+use spmesh_core::limits::{DIAGRAM4_POINT_BYTES, POINTS4_MAX};
+use spmesh_core::system::memory_limit;
 use spmesh_model::cells4::Point4;
 
 /// The selected points, in the order of the input.
@@ -13,6 +14,9 @@ use spmesh_model::cells4::Point4;
 /// As [`Supply::scan`]; usage, if the selection does not suit the input or selects too many points.
 pub(super) fn select(supply: &Supply, selection: &Selection) -> Result<Selected4> {
     check(supply, selection)?;
+    if let Some(points) = count_before(supply, selection) {
+        check_count(points)?;
+    }
     match (supply, selection.share) {
         (Supply::Grid(lattice), Some(share)) if selection.condition.is_none() => {
             let sites = lattice.sites();
@@ -32,13 +36,41 @@ fn check(supply: &Supply, selection: &Selection) -> Result<()> {
     if selection.condition.as_ref().is_some_and(|condition| condition.needs_value()) {
         return Err(Error::usage("points have no values here: --where can only compare x, y, z and t"));
     }
-    if let (Supply::Grid(lattice), None, None) = (supply, &selection.condition, selection.share)
-        && lattice.sites() > POINTS4_MAX
-    {
-        // Refused before any site is generated.
-        return Err(too_many("points", lattice.sites(), POINTS4_MAX, REMEDY));
-    }
     Ok(())
+}
+
+/// The number of points that will be selected, if it is known before any is read or generated.
+fn count_before(supply: &Supply, selection: &Selection) -> Option<u64> {
+    let sites = match supply {
+        Supply::Grid(lattice) => lattice.sites(),
+        Supply::Volume(volume) if selection.keep_nan || volume.data.sample.is_integer() => {
+            volume.lattice.sites()
+        }
+        _ => return None,
+    };
+    match (&selection.condition, selection.share) {
+        (None, None) => Some(sites),
+        _ => None,
+    }
+}
+
+/// Refuses more points than are read, and more than the memory can hold the diagram of.
+fn check_count(points: u64) -> Result<()> {
+    if points > POINTS4_MAX {
+        return Err(too_many("points", points, POINTS4_MAX, REMEDY));
+    }
+    let needed = points * DIAGRAM4_POINT_BYTES;
+    match memory_limit().filter(|&limit| needed > limit) {
+        Some(limit) => {
+            let [needed, limit] = [needed, limit].map(|bytes| bytes.div_ceil(1 << 20));
+            let message = format!(
+                "not enough memory: the diagram of {points} points takes at least {needed} MiB, there are {limit}: \
+                 {REMEDY}"
+            );
+            Err(Error::new(ErrorKind::Memory, message))
+        }
+        None => Ok(()),
+    }
 }
 
 const REMEDY: &str = "choose some of them with --where, --sample or --count";
@@ -65,20 +97,22 @@ fn is_wanted(selection: &Selection, point: &Point4, value: Option<f64>) -> bool 
 }
 
 /// Collects points.
+#[derive(Default)]
 struct Intake {
     points: Vec<Point4>,
     values: Option<Vec<f64>>,
     sites: u64,
     wanted: u64,
     missing: u64,
+    warning: Option<String>,
 }
 
 impl Intake {
     /// Keeps those wanted points for whose index among the wanted points `keeps` returns true.
     fn of(supply: &Supply, selection: &Selection, mut keeps: impl FnMut(u64) -> bool) -> Result<Intake> {
         let values = supply.has_values().then(Vec::new);
-        let mut intake = Intake { points: Vec::new(), values, sites: 0, wanted: 0, missing: 0 };
-        supply.scan(&mut |point, value| {
+        let mut intake = Intake { values, ..Intake::default() };
+        let warning = supply.scan(&mut |point, value| {
             intake.sites += 1;
             intake.missing += u64::from(value.is_some_and(f64::is_nan));
             if !is_wanted(selection, &point, value) {
@@ -87,7 +121,7 @@ impl Intake {
             intake.wanted += 1;
             if keeps(intake.wanted - 1) { intake.push(point, value) } else { Ok(()) }
         })?;
-        Ok(intake)
+        Ok(Intake { warning, ..intake })
     }
 
     fn push(&mut self, point: Point4, value: Option<f64>) -> Result<()> {
@@ -106,8 +140,8 @@ impl Intake {
     }
 
     fn finish(self, selection: &Selection) -> Selected4 {
-        let Intake { points, values, sites, wanted, missing } = self;
-        let mut warnings = Vec::new();
+        let Intake { points, values, sites, wanted, missing, warning } = self;
+        let mut warnings = Vec::from_iter(warning);
         if missing > 0 && !selection.keep_nan {
             warnings.push(format!("{missing} of {sites} points have no value (NaN) and are left out"));
         }

@@ -17,11 +17,14 @@ pub(super) struct Volume {
 }
 
 impl Volume {
-    /// Passes every site and its value to `visit`.
+    /// Passes every site and its value to `visit`. Returns a warning if the file holds other bytes too.
     ///
     /// # Errors
     /// If the values cannot be read; or any error of `visit`.
-    pub(super) fn scan(&self, visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>) -> Result<()> {
+    pub(super) fn scan(
+        &self,
+        visit: &mut dyn FnMut(Point4, Option<f64>) -> Result<()>,
+    ) -> Result<Option<String>> {
         let mut sites = self.lattice.iter();
         self.data.scan(self.lattice.sites(), &mut |values| {
             for (&stored, site) in values.iter().zip(&mut sites) {

@@ -29,10 +29,11 @@ pub use selection::{Altlocs, Atoms, Models, Selected, Selection};
 use self::builder::StructureBuilder;
 use super::gzip::Plain;
 use super::lines::Lines;
+use super::origin::open_file;
 
 use super::obj::open_obj;
 use super::ply::open_ply;
-use crate::detect::{self, TESS3, read_head};
+use crate::detect::{self, HEAD_LEN, TESS3, read_head};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::STRUCTURE_LINE_MAX;
 use spmesh_stream::Coordinates;
@@ -72,9 +73,8 @@ pub fn read_structure(path: &Path, format: Option<Format>) -> Result<Structure> 
         return read_structure_from(std::io::stdin(), "stdin", format);
     }
     let name = path.display().to_string();
-    let file = std::fs::File::open(path).map_err(|e| Error::io("opening", e).of_input(&name))?;
-    let is_file = file.metadata().is_ok_and(|metadata| metadata.is_file());
-    read(file, &name, format, is_file.then_some(path))
+    let (file, kind) = open_file(path).map_err(|e| e.of_input(&name))?;
+    read(file, &name, format, kind.is_file().then_some(path))
 }
 
 /// As [`read_structure`], from any reader. Messages call the input `name`.
@@ -99,7 +99,8 @@ fn read(
     let reading = |e| Error::io("reading", e).of_input(name);
     let mut input = Plain::new(input).map_err(reading)?;
     let head = read_head(&mut input).map_err(reading)?;
-    let format = format.map_or_else(|| recognized(&head), Ok).map_err(|e| e.of_input(name))?;
+    let format = format.map_or_else(|| recognized(&head), |format| check(format, &head));
+    let format = format.map_err(|e| e.of_input(name))?;
     let input = Cursor::new(head).chain(input);
     let mut builder = StructureBuilder::default();
     let lines = |input| Lines::with_longest(input, name, STRUCTURE_LINE_MAX);
@@ -121,6 +122,16 @@ fn read(
     }
     .map_err(|e| e.of_input(name))?;
     builder.finish(name)
+}
+
+/// The format that the caller names, unless it is PDB and an input that may be endless starts without a record
+/// of it: lines that are no records would be skipped to the end.
+fn check(format: Format, head: &[u8]) -> Result<Format> {
+    let is_seen = head.len() as u64 == HEAD_LEN;
+    if format == Format::Pdb && is_seen && !matches!(detect::detect(head), Ok(detect::Format::Pdb)) {
+        return Err(Error::malformed(format!("no record of PDB in the first {HEAD_LEN} bytes")));
+    }
+    Ok(format)
 }
 
 /// The format of an input that starts with `head`.

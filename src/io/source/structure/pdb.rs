@@ -30,10 +30,19 @@ pub(super) fn read(lines: &mut Lines<impl Read>, builder: &mut StructureBuilder)
     let mut reader = PdbReader { builder, serials: Serials::default(), is_closed: false, number: 0 };
     while let Some(line) = lines.next_line()? {
         reader.number += 1;
+        let is_part = is_part_of_name(line);
         reader.line(line).map_err(|e| lines.locate(e))?;
+        if is_part && !lines.is_ended() {
+            return Err(lines.locate(Error::malformed("truncated: the file ends inside of a record")));
+        }
     }
     builder.end(lines.unended());
     Ok(())
+}
+
+/// Whether a line is only a part of the name of an atom's record.
+fn is_part_of_name(line: &[u8]) -> bool {
+    !line.is_empty() && (b"ATOM".starts_with(line) || b"HETATM".starts_with(line))
 }
 
 struct PdbReader<'b> {

@@ -124,7 +124,11 @@ impl Read for BlockReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.read_on(buffer).map_err(|e| match e.kind() {
             io::ErrorKind::Interrupted => e,
-            kind => io::Error::new(kind, format!("compressed block {}: {e}", self.blocks.number)),
+            kind => {
+                // Decompressors call damage invalid input; only errors of the system concern reading itself.
+                let kind = if e.raw_os_error().is_some() { kind } else { io::ErrorKind::InvalidData };
+                io::Error::new(kind, format!("compressed block {}: {e}", self.blocks.number))
+            }
         })
     }
 }

@@ -25,7 +25,7 @@ use geojson::LineWriter;
 use open_lines::{Contour, OpenLines};
 use places::{Elevations, Plane, Vertex};
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::CONTOURS_PER_TRIANGLE_MAX;
+use spmesh_core::limits::{CONTOURS_PER_TRIANGLE_MAX, CONTOURS_PER_TRIANGLE_MEAN_MAX};
 use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 
@@ -144,6 +144,9 @@ struct Tracer {
     predicates: FiniteFloatPredicates,
     lines: OpenLines,
     killed: u64,
+    /// Triangles and pieces of lines so far.
+    triangles: u64,
+    pieces: u64,
     elevations: Option<[f64; 2]>,
 }
 
@@ -157,6 +160,8 @@ impl Tracer {
             predicates: FiniteFloatPredicates::default(),
             lines: OpenLines::new(options.points.map_or(usize::MAX, |points| points.max(2))),
             killed: 0,
+            triangles: 0,
+            pieces: 0,
             elevations: None,
         }
     }
@@ -187,6 +192,7 @@ impl Tracer {
     /// Adds the pieces of all lines in a triangle.
     fn trace(&mut self, corners: &[Vertex; 3]) -> Result<()> {
         let places = corners.map(|corner| corner.at);
+        self.triangles += 1;
         if self.long_edges.are_in(places) {
             self.killed += 1;
             return Ok(());
@@ -195,17 +201,29 @@ impl Tracer {
         if levels.is_empty() {
             return Ok(());
         }
-        let count = levels.end().abs_diff(*levels.start()) + 1;
-        if count > CONTOURS_PER_TRIANGLE_MAX {
-            return Err(Error::usage(format!(
-                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} may: take a \
-                 larger \
-                 distance"
-            )));
-        }
+        self.count_pieces(levels.end().abs_diff(*levels.start()).saturating_add(1))?;
         // A triangle that is degenerate in the plane still passes lines on, so only the error matters.
         is_counterclockwise(places, &mut self.predicates)?;
         levels.into_iter().try_for_each(|level| self.add(corners, level))
+    }
+
+    /// Counts the levels that pass through a triangle.
+    fn count_pieces(&mut self, count: u64) -> Result<()> {
+        if count > CONTOURS_PER_TRIANGLE_MAX {
+            return Err(Error::usage(format!(
+                "{count} levels pass through one triangle, at most {CONTOURS_PER_TRIANGLE_MAX} may: take a \
+                 larger distance"
+            )));
+        }
+        self.pieces += count;
+        if self.pieces > CONTOURS_PER_TRIANGLE_MAX + CONTOURS_PER_TRIANGLE_MEAN_MAX * self.triangles {
+            return Err(Error::usage(format!(
+                "{} pieces of lines in the first {} triangles, at most {CONTOURS_PER_TRIANGLE_MEAN_MAX} per \
+                 triangle may be there on average: take a larger distance",
+                self.pieces, self.triangles
+            )));
+        }
+        Ok(())
     }
 
     /// Adds the piece of the line of a level in a triangle.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::fields::{Fields, integer};
 use crate::source::lines::quote;
-use crate::source::origin::Origin;
+use crate::source::origin::{Admitted, Origin};
 use crate::source::points4::data::Part;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::NRRD_FILES_MAX;
@@ -40,7 +40,7 @@ fn part(folder: &Path, name: &str) -> Result<Part> {
         let message = "is not a file, expected the values of the volume";
         return Err(Error::malformed(message).of_input(path.display().to_string()));
     }
-    let origin = Origin::new(&path, &std::env::temp_dir(), &mut Vec::new())?;
+    let origin = Origin::new(&path, Admitted::Everything, &std::env::temp_dir(), &mut Vec::new())?;
     Ok(Part { origin, name: Some(path.display().to_string()), is_gzip: false, header_len: 0 })
 }
 

@@ -1,0 +1,96 @@
+//! The memory of a run, estimated from the points that it holds, and its limit.
+
+use super::bulk::Bulk;
+use spmesh_core::error::{Error, ErrorKind, Result};
+
+/// Bytes of a point from the stream: coordinates, and room to grow.
+const RAW_BYTES: usize = 28;
+
+/// Bytes of a program that holds no points, and of each thread.
+const PROGRAM_BYTES: usize = 12 << 20;
+const THREAD_BYTES: usize = 4 << 20;
+
+/// Points in memory.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Load {
+    /// Points that wait for their cell.
+    pub(super) held: usize,
+    /// Points in nodes that no node has triangulated yet.
+    pub(super) raw: usize,
+    /// Points that nodes have left.
+    pub(super) left: usize,
+}
+
+/// The limit of a run's memory.
+///
+/// The estimate counts points, so that it does not depend on what else the process did. It is an upper one:
+/// the process stays below it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Budget {
+    limit: Option<u64>,
+    threads: usize,
+    /// Bytes of a point that waits in a residual, and of one that is being triangulated.
+    bytes: [usize; 2],
+    /// Points of the largest nodes so far, as many as there are threads: their kernels keep their memory.
+    largest: usize,
+}
+
+impl Budget {
+    pub(super) fn new<B: Bulk<D>, const D: usize>(limit: Option<u64>, threads: usize) -> Self {
+        Budget { limit, threads: threads.max(1), bytes: [B::WAITING_BYTES, B::KERNEL_BYTES], largest: 0 }
+    }
+
+    /// Checks that points that wait for their cell, those in nodes, and a node of `next` points fit.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if not.
+    pub(super) fn check(&mut self, Load { held, raw, left }: Load, next: usize) -> Result<()> {
+        let Some(limit) = self.limit else { return Ok(()) };
+        self.largest = self.largest.max(next);
+        let kernels = self.bytes[1] * (self.largest + (self.threads - 1) * self.largest.min(1 << 16));
+        let fixed = PROGRAM_BYTES + self.threads * THREAD_BYTES;
+        let needed = (fixed + RAW_BYTES * (held + raw) + self.bytes[0] * left + kernels) as u64;
+        if needed <= limit {
+            return Ok(());
+        }
+        let why = if held > raw + left {
+            format!("{held} points wait for their cell to be complete: finalize them without --preserve")
+        } else if next > (raw + left) / 2 {
+            format!("{next} points must be triangulated at once, because their simplices reach far")
+        } else {
+            format!("{} points have simplices that later points may still change", raw + left)
+        };
+        Err(Error::new(
+            ErrorKind::Memory,
+            format!(
+                "{} MiB are needed and --memory allows {} MiB: {why}",
+                needed.div_ceil(1 << 20),
+                limit >> 20
+            ),
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plane::Plane;
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_named() {
+        let load = |held, raw, left| Load { held, raw, left };
+        let mut unlimited = Budget::new::<Plane, 2>(None, 2);
+        unlimited.check(load(usize::MAX / 64, 0, 0), 0).expect("no limit");
+        let mut budget = Budget::new::<Plane, 2>(Some(64 << 20), 1);
+        budget.check(load(1_000_000, 10_000, 0), 10_000).expect("enough");
+        let refused = |budget: &mut Budget, load, next| {
+            let error = budget.check(load, next).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Memory);
+            error.to_string()
+        };
+        assert!(refused(&mut budget, load(3_000_000, 0, 10_000), 0).contains("--preserve"));
+        assert!(refused(&mut budget, load(0, 0, 2_000_000), 10_000).contains("later points"));
+        assert!(refused(&mut budget, load(0, 500_000, 0), 500_000).contains("at once"));
+        assert!(refused(&mut budget, Load::default(), 0).contains("MiB"), "kernels keep their memory");
+    }
+}
