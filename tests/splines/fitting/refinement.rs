@@ -18,7 +18,7 @@ fn uniform(cells: usize) -> Vec<[f64; 2]> {
 
 #[test]
 fn ridges_take_fewer_knots_than_uniform_ones() {
-    let all = scattered(20_000, 17, ridge);
+    let all = scattered(40_000, 17, ridge);
     let goal = Goal::new(0.01, 1_000);
     let refined = refine(&all, &goal, ONE).expect("a spline");
     assert!(refined.is_reached, "{:?}", refined.rounds);
