@@ -11,11 +11,12 @@ use clap::Args;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, open_input, parse_size, threads};
 use report::Report;
-use spmesh_core::error::Error;
+use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 use spmesh_model::bounds::Region;
-use spmesh_reduce::{Duplicates, Options, Part, Stats};
+use spmesh_reduce::{Duplicates, Options, Part, Stats, missing_region};
 use spmesh_stream::StreamReader;
 
 /// The flags of both triangulators.
@@ -44,6 +45,10 @@ pub(super) struct Shared<const D: usize> {
     /// Finish results of --partial; with --region, into a larger partial result
     #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads", "memory"])]
     merge: bool,
+
+    /// With --merge: leave out boxes that no part covers, because no points lie there
+    #[arg(long, requires = "merge")]
+    incomplete: bool,
 
     /// Half-open box in world coordinates: points on its upper sides are outside; inf is allowed
     #[arg(long, value_name = names(REGION, D), allow_hyphen_values = true, value_parser = parse_region::<D>)]
@@ -93,6 +98,8 @@ type Merge<const D: usize> = fn(Vec<Reader>, Output, Option<Part<D>>, &mut Done)
 /// A program of D dimensions.
 pub(super) struct Tool<const D: usize> {
     pub(super) name: &'static str,
+    /// The message after a failed allocation.
+    pub(super) out_of_memory: &'static str,
     /// The name of the pass in the progress display.
     pub(super) verb: &'static str,
     /// The name of the simplices in messages.
@@ -109,6 +116,7 @@ impl<const D: usize> Tool<D> {
     /// # Errors
     /// As its reduction and its merging, and if an input or the output cannot be opened.
     pub(super) fn run(&self, flags: &Shared<D>, duplicates: Duplicates) -> anyhow::Result<()> {
+        system::exit_at_abort(self.out_of_memory, ErrorKind::Memory.exit_code());
         let part = flags.part()?;
         check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         let started = Instant::now();
@@ -148,8 +156,22 @@ impl<const D: usize> Tool<D> {
         }
         let output = Output::create(&flags.output, true)?;
         let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
+        self.check_cover(flags, &readers, part)?;
         let mut progress = Progress::new(&flags.common, "merging", None);
         Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
+    }
+
+    /// Refuses parts with a gap between them, or tells of it with `--incomplete`.
+    fn check_cover(&self, flags: &Shared<D>, readers: &[Reader], part: Option<Part<D>>) -> Result<(), Error> {
+        let Some(Region { min, max }) = missing_region(readers, part)? else { return Ok(()) };
+        let sides: Vec<String> = min.iter().chain(&max).map(f64::to_string).collect();
+        let message = format!("no part covers the region {}", sides.join(","));
+        if !flags.incomplete {
+            let remedy = "add its part, or give --incomplete if no points lie there";
+            return Err(Error::usage(format!("{message}: {remedy}")));
+        }
+        notice(self.name, &flags.common, &format!("{message}: left out"));
+        Ok(())
     }
 
     /// Prints notices about results that may surprise.

@@ -26,6 +26,7 @@ mod budget;
 mod bulk;
 mod cell_buffer;
 mod coordinator;
+mod cover;
 mod disks;
 mod division;
 mod duplicates;
@@ -50,6 +51,7 @@ mod tile;
 mod walls;
 mod worker;
 
+pub use cover::missing_region;
 pub use duplicates::Duplicates;
 pub use merge::{merge_tetrahedra, merge_triangles};
 pub use partial::Part;
