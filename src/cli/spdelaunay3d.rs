@@ -58,7 +58,7 @@ impl From<DuplicatesFlag> for Duplicates {
 
 const TOOL: Tool<3> = Tool {
     name: "spdelaunay3d",
-    out_of_memory: "spdelaunay3d: not enough memory: take fewer --threads, or merge partial meshes (--partial)\n",
+    out_of_memory: "spdelaunay3d: not enough memory: take fewer --threads, or merge --partial meshes; see --memory\n",
     verb: "tetrahedralizing",
     simplices: "tetrahedra",
     reasons: ["fewer than four different points", "all points in a plane"],
