@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::programs::{assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
+use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
 use crate::vectors::run_python;
 
 /// The streaming triangulators, and their flags for spfinalize.
@@ -142,6 +142,54 @@ fn tiles_of_a_real_file_merge_to_the_whole() {
     let merged = mesh_of(&[], &merge);
     assert!(triangles(&merged) == triangles(&whole));
     assert!(run("spinfo", &["--audit", "-"], &merged).status.success());
+}
+
+/// The command for one part of a plane or of space.
+fn part(name: &str, region: &str, points: &str, output: &str) {
+    let made = run(name, &["--partial", "--region", region, "-o", output, points], &[]);
+    assert!(made.status.success(), "{:?}", outcome(&made));
+}
+
+#[test]
+fn forgotten_parts_are_named() {
+    let folder = Folder::new();
+    let grid = ["--scale", "0.01,0.01,0.01", "--offset", "400000,0,0"];
+    let text = folder.write("points.txt", cloud(300));
+    let [flat, solid] = ["flat", "solid"].map(|name| folder.path(name));
+    assert!(run("spfinalize", &[&grid[..], &["-o", &flat, &text]].concat(), &[]).status.success());
+    assert!(run("spfinalize", &["--octree", "-o", &solid, &text], &[]).status.success());
+    let planar = ["-inf,-inf,40000.5,inf", "40000.5,-inf,70000.1,inf", "70000.1,-inf,inf,inf"];
+    let spatial = ["-inf,-inf,-inf,inf,inf,20", "-inf,-inf,20,inf,inf,60", "-inf,-inf,60,inf,inf,inf"];
+    for (name, points, regions) in [("spdelaunay2d", &flat, planar), ("spdelaunay3d", &solid, spatial)] {
+        let parts = [0, 1, 2].map(|i| folder.path(&format!("{name}{i}")));
+        parts.iter().zip(regions).for_each(|(output, region)| part(name, region, points, output));
+        let merge = |more: &[&str], forgotten: usize| {
+            let given = parts.iter().enumerate().filter(|(i, _)| *i != forgotten).map(|(_, part)| &part[..]);
+            let arguments: Vec<&str> =
+                ["--merge"].into_iter().chain(more.iter().copied()).chain(given).collect();
+            outcome(&run(name, &arguments, &[]))
+        };
+        assert_eq!(merge(&[], 3), (Some(0), String::new()));
+        for (forgotten, region) in regions.iter().enumerate() {
+            let (code, message) = merge(&[], forgotten);
+            assert_eq!(code, Some(2), "{message}");
+            assert!(
+                message.contains(&format!("no part covers the region {region}: add its part")),
+                "{message}"
+            );
+            let (code, message) = merge(&["--incomplete"], forgotten);
+            assert_eq!(code, Some(0), "{message}");
+            assert!(message.contains(&format!("no part covers the region {region}: left out")), "{message}");
+        }
+        let (code, message) = merge(&["--region", regions[1]], 0);
+        assert!(code == Some(2) && message.contains("is not inside of the given one"), "{message}");
+    }
+    let one = folder.path("one");
+    part("spdelaunay2d", "0,0,50000,50000", &flat, &one);
+    assert_eq!(outcome(&run("spdelaunay2d", &["--merge", &one], &[])), (Some(0), String::new()));
+    let larger = ["--merge", "--region", "0,0,60000,50000", &one];
+    let (code, message) = outcome(&run("spdelaunay2d", &larger, &[]));
+    assert!(code == Some(2) && message.contains("the region 50000,0,60000,50000: add"), "{message}");
 }
 
 /// The tetrahedra of a mesh as coordinates, sorted, from its text twin.

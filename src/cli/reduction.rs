@@ -15,7 +15,7 @@ use spmesh_core::error::Error;
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_model::bounds::Region;
-use spmesh_reduce::{Duplicates, Options, Part, Stats};
+use spmesh_reduce::{Duplicates, Options, Part, Stats, missing_region};
 use spmesh_stream::StreamReader;
 
 /// The flags of both triangulators.
@@ -40,6 +40,10 @@ pub(super) struct Shared<const D: usize> {
     /// Finish results of --partial; with --region, into a larger partial result
     #[arg(long, conflicts_with_all = ["partial", "cell", "duplicates", "threads"])]
     merge: bool,
+
+    /// With --merge: leave out boxes that no part covers, because no points lie there
+    #[arg(long, requires = "merge")]
+    incomplete: bool,
 
     /// Half-open box in world coordinates: points on its upper sides are outside; inf is allowed
     #[arg(long, value_name = names(REGION, D), allow_hyphen_values = true, value_parser = parse_region::<D>)]
@@ -141,8 +145,22 @@ impl<const D: usize> Tool<D> {
         }
         let output = Output::create(&flags.output, true)?;
         let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
+        self.check_cover(flags, &readers, part)?;
         let mut progress = Progress::new(&flags.common, "merging", None);
         Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
+    }
+
+    /// Refuses parts with a gap between them, or tells of it with `--incomplete`.
+    fn check_cover(&self, flags: &Shared<D>, readers: &[Reader], part: Option<Part<D>>) -> Result<(), Error> {
+        let Some(Region { min, max }) = missing_region(readers, part)? else { return Ok(()) };
+        let sides: Vec<String> = min.iter().chain(&max).map(f64::to_string).collect();
+        let message = format!("no part covers the region {}", sides.join(","));
+        if !flags.incomplete {
+            let remedy = "add its part, or give --incomplete if no points lie there";
+            return Err(Error::usage(format!("{message}: {remedy}")));
+        }
+        notice(self.name, &flags.common, &format!("{message}: left out"));
+        Ok(())
     }
 
     /// Prints notices about results that may surprise.

@@ -24,6 +24,7 @@ mod boxes;
 mod bulk;
 mod cell_buffer;
 mod coordinator;
+mod cover;
 mod disks;
 mod duplicates;
 mod merge;
@@ -45,6 +46,7 @@ mod tile;
 mod walls;
 mod worker;
 
+pub use cover::missing_region;
 pub use duplicates::Duplicates;
 pub use merge::{merge_tetrahedra, merge_triangles};
 pub use partial::Part;

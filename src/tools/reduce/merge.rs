@@ -24,7 +24,7 @@ const MERGED: u64 = 1;
 /// Merges the results of partial runs over regions that do not overlap. `progress` is called with the number
 /// of vertices read so far.
 ///
-/// Without `part`, the regions must cover all points, and the result is the whole mesh: the same set of
+/// Without `part`, the regions must cover all points ([`super::missing_region`] finds gaps), and the result is the whole mesh: the same set of
 /// triangles as one run over all points. With `part`, the result is partial again, for the region `part`.
 /// That region must contain the merged ones, and every point in it must lie in one of them.
 ///
@@ -103,13 +103,8 @@ fn merged_header<B: Bulk<D>, R: Read, const D: usize>(
     let Some(first) = readers.first() else {
         return Err(Error::usage("nothing to merge: give partial results"));
     };
-    for (i, reader) in readers.iter().enumerate() {
-        check_kind::<B, R, D>(reader)?;
-        check_pair(first, reader)?;
-        for other in &readers[..i] {
-            check_regions::<R, D>(other, reader)?;
-        }
-    }
+    readers.iter().try_for_each(|reader| check_kind::<B, R, D>(reader))?;
+    check_together::<R, D>(readers)?;
     let one = first.header();
     let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
     let mut header = Header::new(kind, one.coordinates, one.dims, one.has_elevation);
@@ -138,6 +133,20 @@ fn check_kind<B: Bulk<D>, R: Read, const D: usize>(reader: &StreamReader<R>) -> 
     Err(Error::usage(message).of_input(reader.name()))
 }
 
+/// Checks that parts have one grid and one reference system, and that their regions do not overlap.
+///
+/// # Errors
+/// Usage, if not.
+pub(super) fn check_together<R: Read, const D: usize>(readers: &[StreamReader<R>]) -> Result<()> {
+    for (i, reader) in readers.iter().enumerate() {
+        check_pair(&readers[0], reader)?;
+        for other in &readers[..i] {
+            check_regions::<R, D>(other, reader)?;
+        }
+    }
+    Ok(())
+}
+
 fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Result<()> {
     let (a, b) = (first.header(), reader.header());
     let differs = |what: &str, remedy: &str| {
@@ -160,7 +169,7 @@ fn check_regions<R: Read, const D: usize>(a: &StreamReader<R>, b: &StreamReader<
 }
 
 /// The region of a partial mesh; everything for a whole mesh.
-fn region_of<const D: usize>(header: &Header) -> Region<D> {
+pub(super) fn region_of<const D: usize>(header: &Header) -> Region<D> {
     header.region.map_or(Region::EVERYTHING, |region| Region::between(region.min, region.max))
 }
 
