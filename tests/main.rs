@@ -13,6 +13,7 @@ mod files;
 mod finalize;
 mod formats;
 mod house;
+mod limits;
 mod links;
 mod manifest;
 mod messages;

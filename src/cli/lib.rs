@@ -30,7 +30,7 @@ use clap::{Args, Parser};
 
 pub use messages::notice;
 pub(crate) use messages::say;
-use spmesh_core::error::Error;
+use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::parallel::available_threads;
 use spmesh_core::system;
 use spmesh_io::detect::BYTE_ORDER_MARK;
@@ -41,6 +41,8 @@ use spmesh_model::bounds::Bounds;
 ///
 /// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
 pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
+    system::save_address_space();
+    system::exit_at_abort("not enough memory\n", ErrorKind::Memory.exit_code());
     let arguments = join_stats_format(std::env::args_os());
     let flags: Flags = match messages::parse(&arguments) {
         Ok(flags) => flags,

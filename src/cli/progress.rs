@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Common;
+use spmesh_core::parallel::Ticker;
 
 /// How often a pass shows that it goes on.
 const TICK: Duration = Duration::from_millis(100);
@@ -26,6 +27,8 @@ pub struct Progress {
     json: Option<(String, Option<u64>, Instant)>,
     /// The plural of the counted items.
     unit: &'static str,
+    /// Moves the bar when nothing is counted.
+    ticker: Option<Ticker>,
 }
 
 impl Progress {
@@ -56,17 +59,19 @@ impl Progress {
         };
         bar.set_prefix(name.to_string());
         let json = (common.progress == When::Json).then(|| (name.to_string(), total, Instant::now()));
-        Progress { bar, json, unit }
+        Progress { bar, json, unit, ticker: None }
     }
 
     /// Shows that the pass `name` is running, without a count.
     #[must_use]
     pub fn waiting(common: &Common, name: &str) -> Self {
-        let progress = Self::counting("points", common, name, None);
+        let mut progress = Self::counting("points", common, name, None);
         if !progress.bar.is_hidden() {
             let style = ProgressStyle::with_template("{prefix} {spinner} {elapsed}");
             progress.bar.set_style(style.expect("the template is valid"));
-            progress.bar.enable_steady_tick(TICK);
+            let bar = progress.bar.clone();
+            // Without a thread, the display stands still.
+            progress.ticker = Ticker::start("progress", TICK, move || bar.tick()).ok();
         }
         progress
     }
@@ -91,6 +96,7 @@ impl Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
+        self.ticker = None;
         self.bar.finish_and_clear();
     }
 }

@@ -11,9 +11,10 @@ use clap::Args;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, open_input, threads};
 use report::Report;
-use spmesh_core::error::Error;
+use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 use spmesh_model::bounds::Region;
 use spmesh_reduce::{Duplicates, Options, Part, Stats, missing_region};
 use spmesh_stream::StreamReader;
@@ -90,6 +91,8 @@ type Merge<const D: usize> = fn(Vec<Reader>, Output, Option<Part<D>>, &mut Done)
 /// A program of D dimensions.
 pub(super) struct Tool<const D: usize> {
     pub(super) name: &'static str,
+    /// The message after a failed allocation.
+    pub(super) out_of_memory: &'static str,
     /// The name of the pass in the progress display.
     pub(super) verb: &'static str,
     /// The name of the simplices in messages.
@@ -106,6 +109,7 @@ impl<const D: usize> Tool<D> {
     /// # Errors
     /// As its reduction and its merging, and if an input or the output cannot be opened.
     pub(super) fn run(&self, flags: &Shared<D>, duplicates: Duplicates) -> anyhow::Result<()> {
+        system::exit_at_abort(self.out_of_memory, ErrorKind::Memory.exit_code());
         let part = flags.part()?;
         check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
         let started = Instant::now();

@@ -8,9 +8,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::{Common, notice, open_input, progress::Progress};
 use spmesh_convert::{Format, Options, convert};
-use spmesh_core::error::Error;
+use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 
 const EXAMPLES: &str = "\
 Formats:
@@ -35,7 +36,10 @@ labels of vertices as point data, Medit as references. Meshes of OBJ and PLY do 
 final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-141 output closed by its reader.";
+5 not enough memory, 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str = "spconvert: not enough memory for the vertices of the mesh\n";
 
 /// Convert streams of points and meshes to and from other formats
 #[derive(Debug, Parser)]
@@ -83,6 +87,7 @@ fn formats(names: impl Iterator<Item = &'static str>) -> impl TypedValueParser<V
 /// # Errors
 /// See [`convert`]; then no output file is made.
 pub fn run(flags: Flags) -> Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;

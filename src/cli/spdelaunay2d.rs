@@ -16,7 +16,7 @@ Examples:
     spdelaunay2d --merge tile*.spm -o whole.spm
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-141 output closed by its reader.";
+5 not enough memory, 141 output closed by its reader.";
 
 /// Triangulate a stream of points in the plane (Delaunay), in bounded memory.
 ///
@@ -61,6 +61,7 @@ impl From<DuplicatesFlag> for Duplicates {
 
 const TOOL: Tool<2> = Tool {
     name: "spdelaunay2d",
+    out_of_memory: "spdelaunay2d: not enough memory: take fewer --threads, or merge partial meshes (--partial)\n",
     verb: "triangulating",
     simplices: "triangles",
     reasons: ["fewer than three different points", "all points on a line"],

@@ -21,7 +21,7 @@ Points that fill space need little memory; of points on surfaces most wait until
 the balls around their tetrahedra reach far.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-141 output closed by its reader.";
+5 not enough memory, 141 output closed by its reader.";
 
 /// Tetrahedralize a stream of points in space (Delaunay), in bounded memory.
 ///
@@ -58,6 +58,7 @@ impl From<DuplicatesFlag> for Duplicates {
 
 const TOOL: Tool<3> = Tool {
     name: "spdelaunay3d",
+    out_of_memory: "spdelaunay3d: not enough memory: take fewer --threads, or merge partial meshes (--partial)\n",
     verb: "tetrahedralizing",
     simplices: "tetrahedra",
     reasons: ["fewer than four different points", "all points in a plane"],

@@ -7,9 +7,11 @@ use clap::Parser;
 
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
+use spmesh_core::error::ErrorKind;
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{Input, RawType, SourceOptions};
@@ -32,6 +34,9 @@ Examples:
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";
 
 /// Finalize points: tag each cell of a quadtree or octree after the last point in it
 ///
@@ -150,6 +155,7 @@ enum Spool {
 /// # Errors
 /// Everything that reading, finalizing and writing fail with.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
     // Fail before the work if the output cannot be created.
     let mut output = Output::create(&flags.output, true)?;

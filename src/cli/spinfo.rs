@@ -21,6 +21,7 @@ use spmesh_audit::{Audit, Census, Counts, Inventory, PointSet, Report, Standard}
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 use spmesh_io::detect::SPINFO;
 use spmesh_io::source::{Input, SourceOptions};
 use spmesh_stream::{Coordinates, Event, Header, Kind, StreamReader};
@@ -41,7 +42,11 @@ Examples:
   spinfo --json mesh.spm | jq .counts     for programs
 
 Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
-4 the audit found a violation, 141 output closed by its reader.";
+4 the audit found a violation, 5 not enough memory, 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str =
+    "spinfo: not enough memory: audit without --points, or audit partial meshes one by one\n";
 
 /// Report what a stream holds, and prove that it is what it claims to be
 #[derive(Debug, Parser)]
@@ -109,6 +114,7 @@ impl From<AuditStandard> for Standard {
 /// # Errors
 /// If the stream is malformed, cannot be read, or fails the audit (then the report is printed first).
 pub fn run(flags: Flags) -> anyhow::Result<()> {
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let inputs = iter::once(&flags.input).chain(&flags.points).map(PathBuf::as_path);
     check_apart(inputs, &[("the report", Path::new("-"))])?;
     // Fail before the work if stdout is closed.

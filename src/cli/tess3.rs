@@ -18,6 +18,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
+use spmesh_core::system;
 use spmesh_io::source::structure::{Format, Structure, read_structure};
 use spmesh_tess3::sweep::{News, Outcome, Sweep, sweep};
 use spmesh_tess3::{Options, Product, Radius, Stats};
@@ -42,7 +43,10 @@ records, with ligands, ions and water; and of alternate locations, for each resi
 that is occupied most.
 
 Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or \
-truncated input, 141 output closed by its reader.";
+truncated input, 5 not enough memory, 141 output closed by its reader.";
+
+/// The message after a failed allocation.
+const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or fewer --threads in a sweep\n";
 
 /// Delaunay tetrahedralization of the atoms of molecules, and of other points in space.
 ///
@@ -159,6 +163,7 @@ impl From<FormatFlag> for Format {
 /// As [`spmesh_tess3::run`] and [`sweep`]; and if files of a sweep failed.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
+    system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let stats = match &flags.out_dir {
         Some(folder) => run_sweep(&flags, folder)?,
         None => run_one(&flags)?,

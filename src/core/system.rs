@@ -1,14 +1,16 @@
 //! Pipes, memory, free space and write-back, as far as the operating system offers them. No result depends on
 //! them: if the system refuses a request, the program goes on without it.
 //!
-//! `libc` serves only where `rustix` has no function (`mallopt`, `signal`, `_exit`, `sync_file_range`), and
-//! before `main`.
+//! `libc` serves only where `rustix` has no function (`mallopt`, `getrlimit`, `signal`, `_exit`,
+//! `sync_file_range`), and before `main`.
 
+use std::hint::black_box;
 use std::os::fd::{AsFd, AsRawFd};
 use std::path::Path;
-use std::sync::OnceLock;
+use std::ptr;
 #[cfg(target_os = "linux")]
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::AtomicU8;
+use std::sync::atomic::{AtomicPtr, Ordering};
 
 /// Which of the descriptors 0, 1 and 2 were closed when the program started, one bit each.
 #[cfg(target_os = "linux")]
@@ -84,21 +86,50 @@ pub fn give_back_large_blocks() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn give_back_large_blocks() {}
 
-/// The message and the exit code of an abort.
-static AT_ABORT: OnceLock<(&str, u8)> = OnceLock::new();
-
-/// From now on, an abort prints `message` on stderr and exits with `code`. Rust aborts if it cannot allocate.
-/// Only the first call has an effect.
-pub fn exit_at_abort(message: &'static str, code: u8) {
-    let handler: extern "C" fn(libc::c_int) = exit_with_message;
-    if AT_ABORT.set((message, code)).is_ok() {
-        // SAFETY: the handler only makes async-signal-safe calls, and does not return.
-        unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
+/// If the address space of the process is limited (`ulimit -v`), makes threads share one heap. By default,
+/// glibc reserves 64 MiB of address space for the heap of each thread, used or not.
+#[cfg(all(target_os = "linux", target_env = "gnu"))]
+pub fn save_address_space() {
+    let mut limit = libc::rlimit { rlim_cur: libc::RLIM_INFINITY, rlim_max: libc::RLIM_INFINITY };
+    // SAFETY: the first call writes to the struct only, the second takes integers.
+    unsafe {
+        if libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) == 0 && limit.rlim_cur != libc::RLIM_INFINITY {
+            libc::mallopt(libc::M_ARENA_MAX, 1);
+        }
     }
 }
 
+/// Does nothing: other systems reserve no heaps.
+#[cfg(not(all(target_os = "linux", target_env = "gnu")))]
+pub fn save_address_space() {}
+
+/// Memory of a compressor or a decompressor of deflate, or more. Units: bytes.
+const DEFLATE_LEN: usize = 1 << 19;
+
+/// Fails like an allocation if there is no memory for a stream of deflate: `zlib-rs` would panic.
+pub fn expect_deflate_memory() {
+    drop(black_box(Vec::<u8>::with_capacity(DEFLATE_LEN)));
+}
+
+/// The message and the exit code of an abort.
+type Farewell = (&'static str, u8);
+
+/// Null, or a value that is never freed: the handler may read it at any time.
+static AT_ABORT: AtomicPtr<Farewell> = AtomicPtr::new(ptr::null_mut());
+
+/// From now on, an abort prints `message` on stderr and exits with `code`. Rust aborts if it cannot allocate.
+/// A program first calls this without advice, and again when it knows what to advise: each call takes some
+/// bytes for good.
+pub fn exit_at_abort(message: &'static str, code: u8) {
+    let handler: extern "C" fn(libc::c_int) = exit_with_message;
+    AT_ABORT.store(Box::leak(Box::new((message, code))), Ordering::Release);
+    // SAFETY: the handler only makes async-signal-safe calls, and does not return.
+    unsafe { libc::signal(libc::SIGABRT, handler as libc::sighandler_t) };
+}
+
 extern "C" fn exit_with_message(_signal: libc::c_int) {
-    let (message, code) = AT_ABORT.get().copied().unwrap_or(("", 1));
+    // SAFETY: the pointer is null or was leaked.
+    let (message, code) = unsafe { AT_ABORT.load(Ordering::Acquire).as_ref() }.copied().unwrap_or(("", 1));
     let _ = rustix::io::write(rustix::stdio::stderr(), message.as_bytes());
     // SAFETY: the call ends the process without running anything else in it.
     unsafe { libc::_exit(code.into()) };

@@ -7,6 +7,7 @@
 //! | jobs given one at a time, results in their order | [`OrderedPool`] | when the pool is dropped |
 //! | one thread prepares buffers, the caller consumes them | [`read_ahead()`] | before it returns |
 //! | a source that may block forever | [`produce()`] | with the source, or when the receiver is gone |
+//! | a call at intervals, such as a display | [`Ticker`] | when the ticker is dropped |
 //! | anything else, within a scope | [`spawn_scoped`] | with the scope |
 //!
 //! [`BufferPool`] passes used buffers back to the threads that fill them.
@@ -22,6 +23,7 @@ mod produce;
 mod read_ahead;
 mod results;
 mod threads;
+mod ticker;
 
 pub use buffer_pool::BufferPool;
 pub use map::map;
@@ -30,3 +32,4 @@ pub use produce::produce;
 pub use read_ahead::read_ahead;
 pub use results::for_each_result;
 pub use threads::{available_threads, spawn_scoped};
+pub use ticker::Ticker;

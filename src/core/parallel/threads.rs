@@ -72,5 +72,5 @@ impl Stop {
 }
 
 fn no_thread(cause: std::io::Error) -> Error {
-    Error::io("starting a thread", cause)
+    Error::io("starting a thread (take fewer --threads, or allow more threads or memory)", cause)
 }

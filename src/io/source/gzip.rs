@@ -4,6 +4,8 @@ use std::io::{self, BufReader, Chain, Cursor, ErrorKind, Read};
 
 use flate2::bufread::MultiGzDecoder;
 
+use spmesh_core::system::expect_deflate_memory;
+
 /// First bytes of gzip data.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
@@ -62,6 +64,7 @@ pub(super) struct Gunzip<R> {
 
 impl<R: Read> Gunzip<R> {
     pub(super) fn new(input: R) -> Self {
+        expect_deflate_memory();
         let input = Counted { input, bytes: 0, failed: false };
         Gunzip { decoder: MultiGzDecoder::new(BufReader::with_capacity(BUFFER_LEN, input)) }
     }

@@ -61,11 +61,18 @@ pub(super) struct CellBuffers {
 }
 
 impl CellBuffers {
-    /// Buffers of `cells` cells that take up to `bytes` of memory and spill to a file in `folder`.
+    /// Buffers of `cells` cells for `records` records in all, that take up to `bytes` of memory and spill to a
+    /// file in `folder`.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Memory`] if the system refuses the memory.
-    pub(super) fn new(cells: usize, record_len: usize, bytes: u64, folder: Option<PathBuf>) -> Result<Self> {
+    pub(super) fn new(
+        cells: usize,
+        record_len: usize,
+        records: u64,
+        bytes: u64,
+        folder: Option<PathBuf>,
+    ) -> Result<Self> {
         let io_len = (bytes / 16).clamp(IO_LEN_MIN, IO_LEN_MAX);
         let for_pages = bytes.saturating_sub(cells as u64 * CELL_COST + 2 * io_len);
         let record = record_len as u64;
@@ -75,7 +82,8 @@ impl CellBuffers {
         Ok(CellBuffers {
             record_len,
             cells: vec![Cell::EMPTY; cells],
-            pages: Pages::new((points * record) as usize, for_pages)?,
+            // All points at once, with a partly filled page in every cell.
+            pages: Pages::new((points * record) as usize, for_pages, records / points + cells as u64)?,
             spill: None,
             folder,
             io_len: io_len as usize,
@@ -251,7 +259,7 @@ mod tests {
     fn records_come_back_once_in_order_whatever_the_memory() {
         let cells = 50;
         for bytes in [16 << 10, 40 << 10, 4 << 20] {
-            let mut buffers = CellBuffers::new(cells, RECORD, bytes, None).expect("enough memory");
+            let mut buffers = CellBuffers::new(cells, RECORD, 20_000, bytes, None).expect("enough memory");
             let cell_of = |value: u32| (value.wrapping_mul(2_654_435_761) >> 20) as usize % cells;
             for round in 0..3 {
                 let values = round * 20_000..(round + 1) * 20_000;

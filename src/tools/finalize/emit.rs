@@ -62,7 +62,9 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         let header = writer.header().clone();
         let record_len = header.point_len();
         let bytes = options.budget.bytes() - plan.bytes();
-        let mut buffers = CellBuffers::new(plan.leaves(), record_len, bytes, options.temp_dir.clone())?;
+        let records = header.points.unwrap_or(u64::MAX);
+        let mut buffers =
+            CellBuffers::new(plan.leaves(), record_len, records, bytes, options.temp_dir.clone())?;
         let (locator, mut countdown) = plan.split();
         let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
             complete.sort_unstable();

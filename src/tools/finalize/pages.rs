@@ -5,6 +5,12 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 /// End of a chain.
 pub(super) const NO_PAGE: u32 = u32::MAX;
 
+#[cold]
+fn too_much(bytes: usize) -> Error {
+    let message = format!("the system refuses {bytes} bytes for waiting points: give less --memory");
+    Error::new(ErrorKind::Memory, message)
+}
+
 /// A fixed number of pages.
 ///
 /// Memory: address space for all pages is reserved at once; a page takes memory from its first use.
@@ -19,21 +25,22 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Pages of `page_len` bytes that take up at most `bytes`, including their links.
+    /// Pages of `page_len` bytes that take up at most `bytes`, including their links; no more than `needed`.
     ///
     /// # Panics
     /// If not even one page fits.
     ///
     /// # Errors
     /// [`ErrorKind::Memory`] if the system refuses so much address space.
-    pub(super) fn new(page_len: usize, bytes: u64) -> Result<Pages> {
-        let pages_max = (bytes / (page_len as u64 + 4)).min(u64::from(NO_PAGE)) as usize;
-        assert!(pages_max > 0, "a page fits");
+    pub(super) fn new(page_len: usize, bytes: u64, needed: u64) -> Result<Pages> {
+        let fitting = bytes / (page_len as u64 + 4);
+        assert!(fitting > 0, "a page fits");
+        let pages_max = fitting.min(needed.max(1)).min(u64::from(NO_PAGE)) as usize;
         let (mut content, mut next) = (Vec::new(), Vec::new());
         content
             .try_reserve_exact(pages_max * page_len)
             .and_then(|()| next.try_reserve_exact(pages_max))
-            .map_err(|e| Error::new(ErrorKind::Memory, format!("cannot reserve {bytes} bytes: {e}")))?;
+            .map_err(|_| too_much(pages_max * page_len))?;
         Ok(Pages { page_len, pages_max, bytes: content, next, free: NO_PAGE, in_use: 0 })
     }
 

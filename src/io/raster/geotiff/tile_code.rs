@@ -11,6 +11,7 @@ use flate2::write::ZlibEncoder;
 
 use super::TILE;
 use crate::raster::NoData;
+use spmesh_core::system::expect_deflate_memory;
 
 /// Bytes of a number.
 pub(super) const LEN: usize = size_of::<f32>();
@@ -19,6 +20,7 @@ const ROW_LEN: usize = TILE * LEN;
 
 /// Predicts each row, then deflates the result. NaN marks cells without data.
 pub(super) fn encode(values: &[f32], no_data: NoData) -> Vec<u8> {
+    expect_deflate_memory();
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
     let mut bytes = [0; ROW_LEN];
     for row in values.chunks_exact(TILE) {
@@ -33,6 +35,7 @@ pub(super) fn encode(values: &[f32], no_data: NoData) -> Vec<u8> {
 /// # Errors
 /// If `bytes` are not an encoded tile.
 pub(super) fn decode(bytes: &[u8], no_data: NoData, values: &mut [f32]) -> std::io::Result<()> {
+    expect_deflate_memory();
     let mut decoder = ZlibDecoder::new(bytes);
     let mut row_bytes = [0; ROW_LEN];
     for row in values.chunks_exact_mut(TILE) {

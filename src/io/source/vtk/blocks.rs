@@ -8,6 +8,7 @@ use super::lengths::Lengths;
 use crate::source::panic_guard::guarded;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::limits::VTK_BLOCK_MAX;
+use spmesh_core::system::expect_deflate_memory;
 
 /// Greatest ratio of LZ4 decompression: a length is coded in steps of 255.
 const LZ4_RATIO_MAX: u64 = 255;
@@ -71,7 +72,10 @@ impl BlockReader {
             return Err(invalid("reading goes on after an error"));
         };
         self.block = Some(match self.blocks.compressor {
-            Compressor::Zlib => Block::Zlib(ZlibDecoder::new(data.take(size))),
+            Compressor::Zlib => {
+                expect_deflate_memory();
+                Block::Zlib(ZlibDecoder::new(data.take(size)))
+            }
             Compressor::Lz4 => {
                 let block = read_lz4(&mut data, size, self.left)?;
                 self.data = Some(data);
