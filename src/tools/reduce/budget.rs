@@ -53,7 +53,9 @@ impl Budget {
         if needed <= limit {
             return Ok(());
         }
-        let why = if held > raw + left {
+        let why = if 4 * fixed as u64 > 3 * limit {
+            format!("--threads {} alone takes {} MiB: take fewer", self.threads, fixed >> 20)
+        } else if held > raw + left {
             format!("{held} points wait for their cell to be complete: finalize them without --preserve")
         } else if next > (raw + left) / 2 {
             format!("{next} points must be triangulated at once, because their simplices reach far")
@@ -91,6 +93,8 @@ mod tests {
         assert!(refused(&mut budget, load(3_000_000, 0, 10_000), 0).contains("--preserve"));
         assert!(refused(&mut budget, load(0, 0, 2_000_000), 10_000).contains("later points"));
         assert!(refused(&mut budget, load(0, 500_000, 0), 500_000).contains("at once"));
+        let mut tiny = Budget::new::<Plane, 2>(Some(20 << 20), 2);
+        assert!(refused(&mut tiny, load(9_000, 0, 0), 9_000).contains("take fewer"));
         assert!(refused(&mut budget, Load::default(), 0).contains("MiB"), "kernels keep their memory");
     }
 }
