@@ -103,13 +103,18 @@ pub fn save_address_space() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn save_address_space() {}
 
-/// Memory of a compressor or a decompressor of deflate, or more. Units: bytes.
+/// Memory of a compressor of deflate, and of a decompressor, or more. Units: bytes.
 const DEFLATE_LEN: usize = 1 << 19;
+const INFLATE_LEN: usize = 1 << 18;
 
-/// Fails like an allocation if there is no memory for a stream of deflate: `zlib-rs` would panic.
+/// Fails like an allocation if there is no memory to compress: `zlib-rs` would panic.
 pub fn expect_deflate_memory() {
-    // In two pieces, as a stream takes it in several.
-    drop(black_box([(); 2].map(|()| Vec::<u8>::with_capacity(DEFLATE_LEN / 2))));
+    drop(black_box(Vec::<u8>::with_capacity(DEFLATE_LEN)));
+}
+
+/// Fails like an allocation if there is no memory to decompress, likewise.
+pub fn expect_inflate_memory() {
+    drop(black_box(Vec::<u8>::with_capacity(INFLATE_LEN)));
 }
 
 /// The message and the exit code of an abort.

@@ -4,7 +4,7 @@ use std::io::{self, BufRead, BufReader, Chain, Cursor, ErrorKind, Read};
 
 use flate2::bufread::GzDecoder;
 
-use spmesh_core::system::expect_deflate_memory;
+use spmesh_core::system::expect_inflate_memory;
 
 /// First bytes of gzip data.
 const MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -70,7 +70,7 @@ type Member<R> = GzDecoder<BufReader<Counted<R>>>;
 
 impl<R: Read> Gunzip<R> {
     pub(super) fn new(input: R) -> Self {
-        expect_deflate_memory();
+        expect_inflate_memory();
         let input = BufReader::with_capacity(BUFFER_LEN, Counted { input, bytes: 0, failed: false });
         Gunzip { member: Some(GzDecoder::new(input)) }
     }

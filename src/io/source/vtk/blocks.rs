@@ -8,7 +8,7 @@ use super::lengths::Lengths;
 use crate::source::panic_guard::guarded;
 use crate::source::point_arrays::Numbers;
 use spmesh_core::limits::VTK_BLOCK_MAX;
-use spmesh_core::system::expect_deflate_memory;
+use spmesh_core::system::expect_inflate_memory;
 
 /// Greatest ratio of LZ4 decompression: a length is coded in steps of 255.
 const LZ4_RATIO_MAX: u64 = 255;
@@ -73,7 +73,7 @@ impl BlockReader {
         };
         self.block = Some(match self.blocks.compressor {
             Compressor::Zlib => {
-                expect_deflate_memory();
+                expect_inflate_memory();
                 Block::Zlib(ZlibDecoder::new(data.take(size)))
             }
             Compressor::Lz4 => {
