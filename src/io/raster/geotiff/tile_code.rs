@@ -11,7 +11,7 @@ use flate2::write::ZlibEncoder;
 
 use super::TILE;
 use crate::raster::NoData;
-use spmesh_core::system::expect_deflate_memory;
+use spmesh_core::system::{expect_deflate_memory, expect_inflate_memory};
 
 /// Bytes of a number.
 pub(super) const LEN: usize = size_of::<f32>();
@@ -35,7 +35,7 @@ pub(super) fn encode(values: &[f32], no_data: NoData) -> Vec<u8> {
 /// # Errors
 /// If `bytes` are not an encoded tile.
 pub(super) fn decode(bytes: &[u8], no_data: NoData, values: &mut [f32]) -> std::io::Result<()> {
-    expect_deflate_memory();
+    expect_inflate_memory();
     let mut decoder = ZlibDecoder::new(bytes);
     let mut row_bytes = [0; ROW_LEN];
     for row in values.chunks_exact_mut(TILE) {
