@@ -237,7 +237,7 @@ impl Flags {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 16] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 17] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
@@ -253,7 +253,8 @@ fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 16] {
         ("peak memory (bytes)", "peak_memory_bytes", peak_memory()),
         ("predicates: filter", "predicates_filter", stats.predicates.filter),
         ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: expansion", "predicates_expansion", stats.predicates.expansion),
+        ("predicates: pairs", "predicates_pairs", stats.predicates.pairs),
+        ("predicates: residues", "predicates_residues", stats.predicates.residues),
         ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
     ]
 }

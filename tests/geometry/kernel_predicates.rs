@@ -79,8 +79,8 @@ fn integers_at_the_edges_of_each_width() {
         ((1 << 32) - 1, Arithmetic::IntegerPair),
         (1 << 32, Arithmetic::IntegerPair),
         (1 << 41, Arithmetic::IntegerPair),
-        ((1 << 41) + 1, Arithmetic::Expansion),
-        ((1 << 53) - 1, Arithmetic::Expansion),
+        ((1 << 41) + 1, Arithmetic::BoundedFloat),
+        ((1 << 53) - 1, Arithmetic::BoundedFloat),
     ];
     let mut random = Random::new(1);
     for (difference, arithmetic) in edges {
@@ -137,7 +137,7 @@ fn floats_near_degeneracy_at_every_scale() {
 }
 
 #[test]
-fn floats_at_the_edge_of_the_expansions() {
+fn floats_at_the_edge_of_the_bounded_range() {
     let (least, greatest) = (2f64.powi(-170), 2f64.powi(240));
     let mut random = Random::new(4);
     for _ in 0..20 {
@@ -153,12 +153,12 @@ fn floats_at_the_edge_of_the_expansions() {
             })
             .collect();
         points.retain(|p| p.iter().all(|c| *c == 0.0 || c.abs() >= least));
-        compare(&points, Arithmetic::Expansion);
+        compare(&points, Arithmetic::BoundedFloat);
         let small: Vec<[f64; 2]> = (0..40)
             .map(|_| [0, 1].map(|_| least * (1.0 + random.integer(0, 3) as f64 * f64::EPSILON)))
             .chain([[0.0, 0.0], [least, least]])
             .collect();
-        compare(&small, Arithmetic::Expansion);
+        compare(&small, Arithmetic::BoundedFloat);
         points.push([least / 2.0, greatest]);
         compare(&points, Arithmetic::FiniteFloat);
     }

@@ -78,9 +78,9 @@ fn integers_at_the_edges_of_each_width() {
         (3_288, Arithmetic3::Integer64),
         (3_289, Arithmetic3::Integer128),
         (23_400_000, Arithmetic3::Integer128),
-        (23_400_001, Arithmetic3::Expansion),
-        ((1 << 32) - 1, Arithmetic3::Expansion),
-        ((1 << 53) - 1, Arithmetic3::Expansion),
+        (23_400_001, Arithmetic3::BoundedFloat),
+        ((1 << 32) - 1, Arithmetic3::BoundedFloat),
+        ((1 << 53) - 1, Arithmetic3::BoundedFloat),
     ];
     let mut random = Random::new(1);
     for (difference, arithmetic) in edges {
@@ -166,11 +166,11 @@ fn floats_near_degeneracy_at_every_scale() {
         Arithmetic3::of(&Extent::of(&points)).run(Compare(&points), &mut counts);
         Arithmetic3::FiniteFloat.run(Compare(&points), &mut counts);
     }
-    assert!(counts.filter > 0 && counts.expansion > 0 && counts.bigint > 0, "{counts:?}");
+    assert!(counts.filter > 0 && counts.pairs > 0 && counts.residues > 0, "{counts:?}");
 }
 
 #[test]
-fn floats_at_the_edge_of_the_expansions() {
+fn floats_at_the_edge_of_the_bounded_range() {
     let (least, greatest) = (2f64.powi(-132), 2f64.powi(200));
     let mut random = Random::new(5);
     for _ in 0..20 {
@@ -186,11 +186,11 @@ fn floats_at_the_edge_of_the_expansions() {
             })
             .collect();
         points.retain(|p| p.iter().all(|c| *c == 0.0 || c.abs() >= least));
-        compare(&points, Arithmetic3::Expansion);
+        compare(&points, Arithmetic3::BoundedFloat);
         let small: Vec<[f64; 3]> = (0..100)
             .map(|_| [0, 1, 2].map(|_| least * (1.0 + random.integer(0, 3) as f64 * f64::EPSILON)))
             .collect();
-        compare(&small, Arithmetic3::Expansion);
+        compare(&small, Arithmetic3::BoundedFloat);
         let large: Vec<[f64; 3]> = (0..100)
             .map(|_| {
                 [0, 1, 2].map(|_| {
@@ -199,7 +199,7 @@ fn floats_at_the_edge_of_the_expansions() {
                 })
             })
             .collect();
-        compare(&large, Arithmetic3::Expansion);
+        compare(&large, Arithmetic3::BoundedFloat);
         points.push([least / 2.0, greatest, 0.0]);
         compare(&points, Arithmetic3::FiniteFloat);
     }

@@ -44,7 +44,7 @@ fn statistics_have_the_columns_of_the_thesis() {
     assert!(count("in_sphere_tests") > 0);
     assert!((100..1000).contains(&(count("kernel_bytes") / 400)), "{found}");
     assert!(found["kernel_bytes_per_point"].as_f64().unwrap() > 100.0);
-    let decisions: u64 = ["filter", "integer", "expansion", "bigint"]
+    let decisions: u64 = ["filter", "integer", "pairs", "residues", "bigint"]
         .map(|stage| count(&format!("predicates_{stage}")))
         .iter()
         .sum();

@@ -24,7 +24,7 @@ impl Report {
 
 /// Rows of the report: a label for people, a key for programs, the value. With the time, the first rows are
 /// the columns of thesis tables 5.2 and 5.3.
-fn rows(report: &Report) -> [(String, &'static str, u64); 26] {
+fn rows(report: &Report) -> [(String, &'static str, u64); 27] {
     let (stats, simplices) = (&report.stats, report.simplices);
     let rows = [
         ("points", "points", stats.points),
@@ -50,7 +50,8 @@ fn rows(report: &Report) -> [(String, &'static str, u64); 26] {
         ("width (live vertices)", "width", stats.width),
         ("predicates: filter", "predicates_filter", stats.predicates.filter),
         ("predicates: integer", "predicates_integer", stats.predicates.integer),
-        ("predicates: expansion", "predicates_expansion", stats.predicates.expansion),
+        ("predicates: pairs", "predicates_pairs", stats.predicates.pairs),
+        ("predicates: residues", "predicates_residues", stats.predicates.residues),
         ("predicates: big integer", "predicates_bigint", stats.predicates.bigint),
         ("predicates: ties broken", "predicates_perturbed", stats.predicates.perturbed),
     ];

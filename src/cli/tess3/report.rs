@@ -77,7 +77,8 @@ fn counts(stats: &Stats, method: &Method) -> Vec<Row<u64>> {
         Arithmetic::Exact => rows.extend([
             ("predicates: filter", "predicates_filter", predicates.filter),
             ("predicates: integer", "predicates_integer", predicates.integer),
-            ("predicates: expansion", "predicates_expansion", predicates.expansion),
+            ("predicates: pairs", "predicates_pairs", predicates.pairs),
+            ("predicates: residues", "predicates_residues", predicates.residues),
             ("predicates: big integer", "predicates_bigint", predicates.bigint),
             ("predicates: ties broken", "predicates_perturbed", predicates.perturbed),
         ]),

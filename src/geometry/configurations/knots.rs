@@ -14,7 +14,7 @@
 //! would have to sum to zero.
 
 use crate::delaunay2::{MAX_POINTS, distinct};
-use crate::predicates::{Point2, Sign, lexicographic};
+use crate::predicates::{Point2, lexicographic};
 use spmesh_core::error::{Error, Result};
 use std::cmp::Ordering;
 
@@ -53,6 +53,12 @@ impl Knots {
             }
         }
         Ok(Knots { points, ranks })
+    }
+
+    /// Whether all knots, at least one, are at the same place.
+    #[inline]
+    pub(super) fn are_copies(&self, ids: &[u32]) -> bool {
+        self.has_copies() && ids.iter().all(|&id| self.at(id) == self.at(ids[0]))
     }
 
     /// Positions by id.
@@ -109,14 +115,5 @@ impl Knots {
     /// The error for knots that are all on one line.
     pub(super) fn collinear() -> Error {
         Error::usage("the knots lie on one line: configurations need three that do not")
-    }
-}
-
-/// The opposite sign.
-pub(super) fn opposite(sign: Sign) -> Sign {
-    match sign {
-        Sign::Negative => Sign::Positive,
-        Sign::Zero => Sign::Zero,
-        Sign::Positive => Sign::Negative,
     }
 }

@@ -1,7 +1,7 @@
 //! Exact predicates of knots by id: copies are displaced symbolically, ties are broken canonically, and the
 //! faraway point is handled.
 
-use super::knots::{Knots, opposite};
+use super::knots::Knots;
 use super::lift::Lift;
 use super::symbolic;
 use crate::predicates::{Predicates2, Sign};
@@ -28,6 +28,9 @@ impl<'a, P: Predicates2> Plane<'a, P> {
     /// Orientation of three knots of P(e); zero if they are collinear there.
     #[inline]
     pub(super) fn orient(&mut self, a: u32, b: u32, c: u32) -> Sign {
+        if self.knots.are_copies(&[a, b, c]) {
+            return symbolic::orient_copies(self.knots, [a, b, c]);
+        }
         let sign = self.predicates.orient2d(self.knots.at(a), self.knots.at(b), self.knots.at(c));
         if sign == Sign::Zero && self.is_moved(&[a, b, c]) {
             return symbolic::orient(self.knots, [a, b, c]);
@@ -72,6 +75,11 @@ impl<'a, P: Predicates2> Plane<'a, P> {
     }
 
     fn sign_of_circle(&mut self, ids: [u32; 4]) -> Sign {
+        if self.knots.has_copies()
+            && let Some(sign) = symbolic::in_circle_of_copies(self.knots, ids)
+        {
+            return sign;
+        }
         let [a, b, c, d] = ids.map(|id| self.knots.at(id));
         match self.predicates.incircle(a, b, c, d) {
             Sign::Zero if self.is_moved(&ids) => symbolic::in_circle(self.knots, ids),
@@ -120,7 +128,7 @@ impl<'a, P: Predicates2> Plane<'a, P> {
         if start != Sign::Zero && start == end {
             return false;
         }
-        if left == opposite(right) && left != Sign::Zero && start == opposite(end) && start != Sign::Zero {
+        if left == right.opposite() && left != Sign::Zero && start == end.opposite() && start != Sign::Zero {
             return true;
         }
         (left == Sign::Zero && self.is_between(a, b, c))

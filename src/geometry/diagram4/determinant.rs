@@ -1,41 +1,7 @@
 //! Spheres and hyperplanes through points, generic in the arithmetic.
 
-use std::ops::{Add, Mul, Sub};
-
-/// Numbers of a ring: `f64`, pairs of them, wrapping integers, big integers.
-pub(super) trait Number: Clone + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
-
-impl<T: Clone + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
-
-/// The sum of the magnitudes of all products of a value: subtraction adds.
-#[derive(Clone, Copy)]
-pub(super) struct Magnitude(pub(super) f64);
-
-impl Add for Magnitude {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Magnitude(self.0 + other.0)
-    }
-}
-
-impl Sub for Magnitude {
-    type Output = Self;
-
-    // Magnitudes add up, whatever the sign.
-    #[allow(clippy::suspicious_arithmetic_impl)]
-    fn sub(self, other: Self) -> Self {
-        Magnitude(self.0 + other.0)
-    }
-}
-
-impl Mul for Magnitude {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Magnitude(self.0 * other.0)
-    }
-}
+pub(super) use crate::predicates::forms::{Magnitude, Number};
+use crate::predicates::forms::{minor, times};
 
 /// Squared length.
 #[inline(always)]
@@ -55,17 +21,6 @@ pub(super) fn difference<T: Number>(p: [T; 4], o: &[T; 4]) -> [T; 4] {
     [x - o[0].clone(), y - o[1].clone(), z - o[2].clone(), t - o[3].clone()]
 }
 
-#[inline(always)]
-fn times<T: Number>(a: &T, b: &T) -> T {
-    a.clone() * b.clone()
-}
-
-/// The 2x2 determinant of columns `i` and `j` of two rows.
-#[inline(always)]
-fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
-    times(&p[i], &q[j]) - times(&p[j], &q[i])
-}
-
 /// The sphere through the origin and four vectors: (n, m) such that n . x + m |x|^2 is zero on it.
 ///
 /// m is the determinant of the vectors. If it is positive, points inside have negative values. The value of a
@@ -73,8 +28,13 @@ fn minor<T: Number>(p: &[T], q: &[T], i: usize, j: usize) -> T {
 /// 3.6.2).
 #[inline(always)]
 pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
-    let [a, b, c, d] = vectors;
-    let (a, b, c, d) = (lifted(a), lifted(b), lifted(c), lifted(d));
+    lifted_sphere(vectors.each_ref().map(|v| (v, lift(v))))
+}
+
+/// [`sphere`] through the origin and four vectors with their squared lengths.
+#[inline(always)]
+pub(super) fn lifted_sphere<T: Number>([a, b, c, d]: [(&[T; 4], T); 4]) -> ([T; 4], T) {
+    let (a, b, c, d) = (row(a), row(b), row(c), row(d));
     let (p, q) = (pairs(&a, &b), pairs(&c, &d));
     let m = expansion(&p, &q, [0, 1, 2, 4, 5, 7]);
     // The lift replaces a coordinate; moving it to the end changes the sign for y and t.
@@ -87,9 +47,8 @@ pub(super) fn sphere<T: Number>(vectors: [[T; 4]; 4]) -> ([T; 4], T) {
 }
 
 #[inline(always)]
-fn lifted<T: Number>(v: [T; 4]) -> [T; 5] {
-    let lift = lift(&v);
-    let [x, y, z, t] = v;
+fn row<T: Number>((v, lift): (&[T; 4], T)) -> [T; 5] {
+    let [x, y, z, t] = v.clone();
     [x, y, z, t, lift]
 }
 
@@ -120,10 +79,9 @@ fn expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usi
 
 /// The vector n such that n . x is the determinant of three vectors and x.
 #[inline(always)]
-pub(super) fn normal<T: Number>([a, b, c]: [[T; 4]; 3]) -> [T; 4] {
+pub(super) fn normal<T: Number>([a, b, c]: [&[T; 4]; 3]) -> [T; 4] {
     let minors = |i: usize, j: usize, k: usize| {
-        times(&a[i], &minor(&b, &c, j, k)) - times(&a[j], &minor(&b, &c, i, k))
-            + times(&a[k], &minor(&b, &c, i, j))
+        times(&a[i], &minor(b, c, j, k)) - times(&a[j], &minor(b, c, i, k)) + times(&a[k], &minor(b, c, i, j))
     };
     let (x, z) = (minors(1, 2, 3), minors(0, 1, 3));
     let zero = || x.clone() - x.clone();
@@ -133,18 +91,7 @@ pub(super) fn normal<T: Number>([a, b, c]: [[T; 4]; 3]) -> [T; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn determinant<const N: usize>(m: [[i64; N]; N]) -> i64 {
-        fn minor(rows: &[Vec<i64>]) -> i64 {
-            let Some((first, rest)) = rows.split_first() else { return 1 };
-            let without = |column: usize| {
-                rest.iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect::<Vec<_>>()
-            };
-            let sign = |column: usize| if column.is_multiple_of(2) { 1 } else { -1 };
-            (0..first.len()).map(|column| sign(column) * first[column] * minor(&without(column))).sum()
-        }
-        minor(&m.map(|row| row.to_vec()))
-    }
+    use crate::predicates::forms::tests::determinant;
 
     #[test]
     fn expansions_are_determinants() {
@@ -156,6 +103,6 @@ mod tests {
         let lifted = |v: [i64; 4]| [v[0], v[1], v[2], v[3], lift(&v)];
         let [a, b, c, d] = vectors;
         assert_eq!(dot(&n, &x) + m * lift(&x), determinant([a, b, c, d, x].map(lifted)));
-        assert_eq!(dot(&normal([a, b, c]), &x), determinant([a, b, c, x]));
+        assert_eq!(dot(&normal([&a, &b, &c]), &x), determinant([a, b, c, x]));
     }
 }

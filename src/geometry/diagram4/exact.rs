@@ -1,11 +1,8 @@
 //! Exact signs, for rounded values near zero.
 
-use super::determinant::{Magnitude, Number, difference, dot, lift, normal, sphere};
-use crate::predicates::exact_integers::integers_of;
-use crate::predicates::pairs::Pair;
-#[cfg(target_arch = "x86_64")]
-use crate::processor::Avx2Fma;
-use num_bigint::BigInt;
+use super::determinant::{Magnitude, Number, difference, dot, lift, lifted_sphere, normal};
+use crate::predicates::forms::Form;
+use crate::predicates::{PredicateCounts, Sign, exact};
 use spmesh_model::cells4::Point4;
 use std::cmp::Ordering;
 use std::num::Wrapping;
@@ -19,7 +16,7 @@ pub(super) enum Exactness {
     Double,
     /// In 128-bit integers.
     Int128,
-    /// In big integers.
+    /// In pairs of `f64`, residues, or big integers.
     Big,
 }
 
@@ -63,87 +60,99 @@ pub(super) fn orientation(exactness: Exactness, [a, b, c, d]: [Point4; 4], point
     sign::<Orientation, 4>(exactness, a, [b, c, d, point])
 }
 
-/// A value of N vectors from one point to others.
-trait Form<const N: usize> {
-    fn value<T: Number>(vectors: [[T; 4]; N]) -> T;
-}
-
 struct InSphere;
 
-impl Form<5> for InSphere {
+impl Form<5, 4> for InSphere {
     #[inline(always)]
-    fn value<T: Number>([a, b, c, d, p]: [[T; 4]; 5]) -> T {
-        let (n, m) = sphere([a, b, c, d]);
-        dot(&n, &p) + m * lift(&p)
+    fn value<T: Number>([a, b, c, d, p]: &[[T; 4]; 5], lift: impl Fn(usize) -> T) -> T {
+        let (n, m) = lifted_sphere([(a, lift(0)), (b, lift(1)), (c, lift(2)), (d, lift(3))]);
+        dot(&n, p) + m * lift(4)
     }
 }
 
 struct Orientation;
 
-impl Form<4> for Orientation {
+impl Form<4, 4> for Orientation {
     #[inline(always)]
-    fn value<T: Number>([b, c, d, p]: [[T; 4]; 4]) -> T {
-        dot(&normal([b, c, d]), &p)
+    fn value<T: Number>([b, c, d, p]: &[[T; 4]; 4], _: impl Fn(usize) -> T) -> T {
+        dot(&normal([b, c, d]), p)
     }
 }
 
-fn sign<F: Form<N>, const N: usize>(exactness: Exactness, from: Point4, to: [Point4; N]) -> Ordering {
+fn sign<F: Form<N, 4>, const N: usize>(exactness: Exactness, from: Point4, to: [Point4; N]) -> Ordering {
     if exactness == Exactness::Big {
-        return sign_of_pairs::<F, N>(from, to).unwrap_or_else(|| big_sign::<F, N>(from, to));
+        return sign_of_floats::<F, N>(from, to).cmp(&Sign::Zero);
     }
     let wrapping = |p: Point4| p.map(|x| Wrapping(x as i128));
     let from = wrapping(from);
-    F::value(to.map(|p| difference(wrapping(p), &from))).0.cmp(&0)
+    let vectors = to.map(|p| difference(wrapping(p), &from));
+    F::value(&vectors, |i| lift(&vectors[i])).0.cmp(&0)
 }
 
-fn big_sign<F: Form<N>, const N: usize>(from: Point4, to: [Point4; N]) -> Ordering {
-    let mut points = to.to_vec();
-    points.push(from);
-    let integers = integers_of(&points);
-    let vectors = std::array::from_fn(|i| difference(integers[i].clone(), &integers[N]));
-    F::value(vectors).cmp(&BigInt::ZERO)
-}
+/// A value of degree six in rounded differences is off by at most this times the sum of the magnitudes of its
+/// products. With u = 2^-53, differences are off by u, lifts by 5 u, minors with a lift by 8 u, coefficients by
+/// 16 u, and the value by 21 u; the rest is more than terms of order u^2.
+const ERROR: f64 = 12.0 * f64::EPSILON;
 
-/// The sign found in pairs of `f64`, if it is certain.
-fn sign_of_pairs<F: Form<N>, const N: usize>(from: Point4, to: [Point4; N]) -> Option<Ordering> {
-    #[cfg(target_arch = "x86_64")]
-    if Avx2Fma::detect().is_some() {
-        // SAFETY: the processor has AVX2 and FMA.
-        return unsafe { sign_of_fused_pairs::<F, N>(from, to) };
+#[inline(never)]
+fn sign_of_floats<F: Form<N, 4>, const N: usize>(mut from: Point4, mut to: [Point4; N]) -> Sign {
+    let is_bounded = is_bounded(&from) && to.iter().all(is_bounded);
+    let mut counts = PredicateCounts::default();
+    if !is_bounded {
+        return exact::sign::<F, N, 4>(from, to, false, &mut counts);
     }
-    sign_of_pairs_of::<F, N, false>(from, to)
+    if let Some(sign) = rounded::<F, N>(&from, &to) {
+        return sign;
+    }
+    let Some(nearest) = nearest_to_all(&from, &to) else {
+        return exact::sign::<F, N, 4>(from, to, true, &mut counts);
+    };
+    std::mem::swap(&mut from, &mut to[nearest]);
+    let swapped =
+        rounded::<F, N>(&from, &to).unwrap_or_else(|| exact::sign::<F, N, 4>(from, to, true, &mut counts));
+    // A determinant changes its sign when two of its points change places.
+    swapped.opposite()
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn sign_of_fused_pairs<F: Form<N>, const N: usize>(from: Point4, to: [Point4; N]) -> Option<Ordering> {
-    sign_of_pairs_of::<F, N, true>(from, to)
+/// The sign of the value in `f64`, if it is certain.
+#[inline(always)]
+fn rounded<F: Form<N, 4>, const N: usize>(from: &Point4, to: &[Point4; N]) -> Option<Sign> {
+    let mut vectors = [[0.0; 4]; N];
+    let mut magnitudes = [[Magnitude(0.0); 4]; N];
+    for i in 0..N {
+        for axis in 0..4 {
+            vectors[i][axis] = to[i][axis] - from[axis];
+            magnitudes[i][axis] = Magnitude(vectors[i][axis].abs());
+        }
+    }
+    let value = F::value(&vectors, |i| lift(&vectors[i]));
+    let error = ERROR * F::value(&magnitudes, |i| lift(&magnitudes[i])).0;
+    (value.abs() > error).then(|| Sign::of(value))
+}
+
+/// The point whose distances to the others have the least product, if it is not `from`. Seen from a point far
+/// away, all others lie in almost the same direction, and determinants of such rows cancel.
+#[cold]
+fn nearest_to_all<const N: usize>(from: &Point4, to: &[Point4; N]) -> Option<usize> {
+    let distance = |p: &Point4, q: &Point4| {
+        let greatest = (0..4).fold(0.0, |greatest: f64, axis| greatest.max((p[axis] - q[axis]).abs()));
+        i64::from((greatest.to_bits() >> 52) as u32)
+    };
+    let product = |p: &Point4| to.iter().chain([from]).map(|q| distance(p, q)).sum::<i64>();
+    let (best, nearest) = (0..N).map(|i| (product(&to[i]), i)).min()?;
+    (best < product(from)).then_some(nearest)
 }
 
 /// Coordinates that are zero or of magnitudes from 2^-100 to 2^100 are multiples of 2^-152, and the products
 /// of six of them, with their rounding errors, are multiples of 2^-912: nothing underflows, and nothing
 /// overflows.
-const IN_RANGE: std::ops::RangeInclusive<f64> =
-    f64::from_bits((1023 - 100) << 52)..=f64::from_bits((1023 + 100) << 52);
-
-/// The bound of [`Pair`] for values of degree six, in units of the sum of magnitudes. With u = 2^-53,
-/// products are off by 9 u^2 and sums by 4 u^2: 21 u^2 for a lift, 34 u^2 for a minor with it, 68 u^2 for a
-/// coefficient, 90 u^2 for the value.
-const PAIR_BOUND: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
-
 #[inline(always)]
-fn sign_of_pairs_of<F: Form<N>, const N: usize, const FUSED: bool>(
-    from: Point4,
-    to: [Point4; N],
-) -> Option<Ordering> {
-    let is_in_range = |x: &f64| *x == 0.0 || IN_RANGE.contains(&x.abs());
-    if !to.iter().chain([&from]).flatten().all(is_in_range) {
-        return None;
+fn is_bounded(point: &Point4) -> bool {
+    const RANGE: std::ops::RangeInclusive<f64> =
+        f64::from_bits((1023 - 100) << 52)..=f64::from_bits((1023 + 100) << 52);
+    let mut all = true;
+    for x in point {
+        all &= *x == 0.0 || RANGE.contains(&x.abs());
     }
-    let difference = |p: Point4| -> [Pair<FUSED>; 4] { std::array::from_fn(|i| Pair::sum(p[i], -from[i])) };
-    let magnitude =
-        |p: Point4| -> [Magnitude; 4] { std::array::from_fn(|i| Magnitude((p[i] - from[i]).abs())) };
-    let value = F::value(to.map(difference)).rounded();
-    let bound = PAIR_BOUND * F::value(to.map(magnitude)).0;
-    (value.abs() > bound).then(|| value.total_cmp(&0.0))
+    all
 }

@@ -24,8 +24,8 @@ pub fn orient4d([a, b, c, d, e]: [Point4; 5]) -> Sign {
     let from = |p: Point4| -> Point4 { std::array::from_fn(|axis| p[axis] - a[axis]) };
     let (rows, last) = ([from(b), from(c), from(d)], from(e));
     let magnitude = |row: Point4| row.map(|x| Magnitude(x.abs()));
-    let value = dot(&normal(rows), &last);
-    let Magnitude(bound) = dot(&normal(rows.map(magnitude)), &magnitude(last));
+    let value = dot(&normal(rows.each_ref()), &last);
+    let Magnitude(bound) = dot(&normal(rows.map(magnitude).each_ref()), &magnitude(last));
     let is_in_range = rows.iter().chain([&last]).flatten().all(|x| x.abs() < DIFFERENCE_MAX);
     if is_in_range && value.abs() > ERROR * bound + UNDERFLOW {
         return Sign::of(value);

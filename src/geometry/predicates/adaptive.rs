@@ -1,13 +1,13 @@
-//! Predicates of floating-point coordinates: filter, then pairs of `f64`, then expansions, then arbitrary
-//! precision.
+//! Predicates of floating-point coordinates: a filter, then [exact](super::exact) arithmetic.
 //!
 //! The filters are Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust geometric
 //! predicates", 1997, bounds A): with u = 2^-53 the rounded determinant differs from the exact one by at most
 //! (3 + 16 u) u S for `orient2d` and (10 + 96 u) u P for `incircle`, where S and P are the same sums with
 //! every product replaced by its magnitude, provided that nothing over- or underflows.
 
-use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign, big, pairs};
-use robust::Coord;
+use super::exact;
+use super::forms::{Incircle, Orient2d};
+use super::{Extent, Numbers, Point2, PredicateCounts, Predicates2, Sign};
 
 pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF;
@@ -59,22 +59,7 @@ pub(super) fn difference<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
     std::array::from_fn(|axis| p[axis] - q[axis])
 }
 
-fn coord([x, y]: Point2) -> Coord<f64> {
-    Coord { x, y }
-}
-
-#[cold]
-fn expansion_orient2d(a: Point2, b: Point2, c: Point2) -> Sign {
-    pairs::orient2d(a, b, c).unwrap_or_else(|| Sign::of(robust::orient2d(coord(a), coord(b), coord(c))))
-}
-
-#[cold]
-fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
-    pairs::incircle(a, b, c, d)
-        .unwrap_or_else(|| Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d))))
-}
-
-/// Filter, then expansions, those of two terms first.
+/// Filter, then exact arithmetic that starts with pairs of `f64`.
 ///
 /// Domain: every coordinate is zero or its magnitude lies in [2^-170, 2^240]. Why this suffices:
 ///
@@ -87,11 +72,11 @@ fn expansion_incircle(a: Point2, b: Point2, c: Point2, d: Point2) -> Sign {
 /// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
 ///   multiplies it by 2^27 + 1, and the result stays below 2^996.
 #[derive(Debug, Default)]
-pub struct ExpansionPredicates {
+pub struct BoundedFloatPredicates {
     counts: PredicateCounts,
 }
 
-impl ExpansionPredicates {
+impl BoundedFloatPredicates {
     /// Least magnitude of a coordinate other than zero: 2^-170.
     pub const LEAST_MAGNITUDE: f64 = f64::from_bits((1023 - 170) << 52);
     /// Greatest magnitude of a coordinate: 2^240.
@@ -112,7 +97,7 @@ impl ExpansionPredicates {
     }
 }
 
-impl Predicates2 for ExpansionPredicates {
+impl Predicates2 for BoundedFloatPredicates {
     const NUMBERS: Numbers = Numbers::BoundedFloats;
 
     #[inline(always)]
@@ -122,8 +107,7 @@ impl Predicates2 for ExpansionPredicates {
             self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            self.counts.expansion += 1;
-            expansion_orient2d(a, b, c)
+            exact::sign::<Orient2d, 2, 2>(c, [a, b], true, &mut self.counts)
         }
     }
 
@@ -134,8 +118,7 @@ impl Predicates2 for ExpansionPredicates {
             self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            self.counts.expansion += 1;
-            expansion_incircle(a, b, c, d)
+            exact::sign::<Incircle, 3, 2>(d, [a, b, c], true, &mut self.counts)
         }
     }
 
@@ -154,7 +137,7 @@ impl Predicates2 for ExpansionPredicates {
 /// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two
 /// is then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a
 /// lift at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
-/// [`ExpansionPredicates`], arbitrary precision for the rest.
+/// [`BoundedFloatPredicates`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
 pub struct FiniteFloatPredicates {
     counts: PredicateCounts,
@@ -180,12 +163,9 @@ impl Predicates2 for FiniteFloatPredicates {
         if differences.iter().all(Self::trusts) && estimate.is_certain() {
             self.counts.filter += 1;
             Sign::of(estimate.value)
-        } else if [a, b, c].iter().all(ExpansionPredicates::covers_point) {
-            self.counts.expansion += 1;
-            expansion_orient2d(a, b, c)
         } else {
-            self.counts.bigint += 1;
-            big::orient2d(a, b, c)
+            let is_bounded = [a, b, c].iter().all(BoundedFloatPredicates::covers_point);
+            exact::sign::<Orient2d, 2, 2>(c, [a, b], is_bounded, &mut self.counts)
         }
     }
 
@@ -195,12 +175,9 @@ impl Predicates2 for FiniteFloatPredicates {
         if differences.iter().all(Self::trusts) && estimate.is_certain() {
             self.counts.filter += 1;
             Sign::of(estimate.value)
-        } else if [a, b, c, d].iter().all(ExpansionPredicates::covers_point) {
-            self.counts.expansion += 1;
-            expansion_incircle(a, b, c, d)
         } else {
-            self.counts.bigint += 1;
-            big::incircle(a, b, c, d)
+            let is_bounded = [a, b, c, d].iter().all(BoundedFloatPredicates::covers_point);
+            exact::sign::<Incircle, 3, 2>(d, [a, b, c], is_bounded, &mut self.counts)
         }
     }
 

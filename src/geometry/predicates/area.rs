@@ -9,7 +9,7 @@ const TRUSTED: f64 = 1.0 / 16.0;
 /// Signed area of the triangle abc: positive if it is counterclockwise.
 ///
 /// Relative error below 1e-14, and zero if and only if the points are collinear, for coordinates that are
-/// zero or have magnitudes in the range of [`super::ExpansionPredicates`].
+/// zero or have magnitudes in the range of [`super::BoundedFloatPredicates`].
 #[inline]
 #[must_use]
 pub fn area(a: Point2, b: Point2, c: Point2) -> f64 {

@@ -1,15 +1,17 @@
 //! Number of decisions by each stage of the predicates.
 
 /// Decisions by stage. Every call of `orient2d`, `incircle`, `orient3d` or `insphere` is one decision in
-/// exactly one of the first four.
+/// exactly one of the first five.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PredicateCounts {
     /// Decided in `f64` because the value exceeds its error bound.
     pub filter: u64,
     /// Decided exactly in integers (of `f64`, `i64`, `i128` or a pair of these).
     pub integer: u64,
-    /// Decided by floating-point expansions.
-    pub expansion: u64,
+    /// Decided by pairs of `f64`.
+    pub pairs: u64,
+    /// Decided by residues, which tell ties.
+    pub residues: u64,
     /// Decided by arbitrary-precision integers.
     pub bigint: u64,
     /// Among the decisions above, in-circle and in-sphere tests that were zero and fell to the perturbation.
@@ -21,7 +23,8 @@ impl PredicateCounts {
     pub fn merge(&mut self, other: &PredicateCounts) {
         self.filter += other.filter;
         self.integer += other.integer;
-        self.expansion += other.expansion;
+        self.pairs += other.pairs;
+        self.residues += other.residues;
         self.bigint += other.bigint;
         self.perturbed += other.perturbed;
     }
@@ -29,6 +32,6 @@ impl PredicateCounts {
     /// Number of decisions, whatever the stage.
     #[must_use]
     pub fn total(&self) -> u64 {
-        self.filter + self.integer + self.expansion + self.bigint
+        self.filter + self.integer + self.pairs + self.residues + self.bigint
     }
 }

@@ -19,16 +19,19 @@ mod area;
 mod big;
 pub mod circle;
 mod counts;
+pub(crate) mod exact;
 pub mod exact_integers;
 mod extent;
+pub(crate) mod forms;
 mod integer;
-pub(crate) mod pairs;
+mod pairs;
 mod perturbation;
+pub(crate) mod residues;
 pub(crate) mod spatial;
 pub mod sphere;
 
 pub(crate) use adaptive::INCIRCLE_BOUND;
-pub use adaptive::{ExpansionPredicates, FiniteFloatPredicates};
+pub use adaptive::{BoundedFloatPredicates, FiniteFloatPredicates};
 pub use area::area;
 pub use area::exact_area;
 pub use counts::PredicateCounts;
@@ -37,7 +40,7 @@ pub use integer::{Int64, Int128, IntPair, IntegerPredicates, SmallIntegerPredica
 pub use perturbation::lexicographic;
 pub(crate) use spatial::filter::{INSPHERE_SQUARED_BOUND, TINY, insphere_is_certain};
 pub use spatial::{
-    Arithmetic3, ExpansionPredicates3, FiniteFloatPredicates3, IntegerPredicates3, Predicates3,
+    Arithmetic3, BoundedFloatPredicates3, FiniteFloatPredicates3, IntegerPredicates3, Predicates3,
     SmallIntegerPredicates3, Width3, WithPredicates3,
 };
 
@@ -65,6 +68,17 @@ impl Sign {
             Sign::Negative
         } else {
             Sign::Zero
+        }
+    }
+
+    /// The sign of the negative value.
+    #[inline(always)]
+    #[must_use]
+    pub fn opposite(self) -> Sign {
+        match self {
+            Sign::Negative => Sign::Positive,
+            Sign::Zero => Sign::Zero,
+            Sign::Positive => Sign::Negative,
         }
     }
 }
@@ -137,8 +151,8 @@ pub enum Arithmetic {
     Integer128,
     /// Integers of the full `i32` range and beyond; pairs of `i128` decide where the filter does not.
     IntegerPair,
-    /// Floating point in the range where expansions neither over- nor underflow.
-    Expansion,
+    /// Floating point in the range where products of coordinates neither over- nor underflow.
+    BoundedFloat,
     /// All finite floating-point numbers.
     FiniteFloat,
 }
@@ -158,8 +172,8 @@ impl Arithmetic {
             } else {
                 Arithmetic::IntegerPair
             }
-        } else if ExpansionPredicates::covers(extent) {
-            Arithmetic::Expansion
+        } else if BoundedFloatPredicates::covers(extent) {
+            Arithmetic::BoundedFloat
         } else {
             Arithmetic::FiniteFloat
         }
@@ -181,7 +195,7 @@ impl Arithmetic {
             Arithmetic::Integer64 => counted(algorithm, IntegerPredicates::<Int64>::default(), counts),
             Arithmetic::Integer128 => counted(algorithm, IntegerPredicates::<Int128>::default(), counts),
             Arithmetic::IntegerPair => counted(algorithm, IntegerPredicates::<IntPair>::default(), counts),
-            Arithmetic::Expansion => counted(algorithm, ExpansionPredicates::default(), counts),
+            Arithmetic::BoundedFloat => counted(algorithm, BoundedFloatPredicates::default(), counts),
             Arithmetic::FiniteFloat => counted(algorithm, FiniteFloatPredicates::default(), counts),
         }
     }

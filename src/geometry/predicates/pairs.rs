@@ -30,12 +30,13 @@
 //! or error of a product underflows, and nothing overflows when a factor is split.
 
 use super::Sign;
+use super::forms::{Form, Magnitude, lift};
 #[cfg(target_arch = "x86_64")]
 use crate::processor::Avx2Fma;
 use std::ops::{Add, Mul, Sub};
 
-/// The sign is certain if the value is more than this times the sum of magnitudes: 128 u^2.
-const BOUND: f64 = 32.0 * f64::EPSILON * f64::EPSILON;
+/// The sign is certain if the value is more than this times the sum of magnitudes: 256 u^2.
+const BOUND: f64 = 64.0 * f64::EPSILON * f64::EPSILON;
 
 /// Splits a number in two of half the digits (Veltkamp, Dekker 1971).
 const SPLITTER: f64 = ((1u64 << 27) + 1) as f64;
@@ -43,7 +44,7 @@ const SPLITTER: f64 = ((1u64 << 27) + 1) as f64;
 /// The exact sum of two numbers, of which the second is at most the rounding error of the first. `FUSED`: the
 /// processor multiplies and adds in one instruction, which makes products cheap. The numbers are the same.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pair<const FUSED: bool>(f64, f64);
+struct Pair<const FUSED: bool>(f64, f64);
 
 #[inline(always)]
 fn split(a: f64) -> [f64; 2] {
@@ -55,17 +56,11 @@ fn split(a: f64) -> [f64; 2] {
 impl<const FUSED: bool> Pair<FUSED> {
     /// The sum of two numbers and its rounding error (Knuth).
     #[inline(always)]
-    pub(crate) fn sum(a: f64, b: f64) -> Self {
+    fn sum(a: f64, b: f64) -> Self {
         let sum = a + b;
         let b_part = sum - a;
         let a_part = sum - b_part;
         Pair(sum, (a - a_part) + (b - b_part))
-    }
-
-    /// The sum, rounded.
-    #[inline(always)]
-    pub(crate) fn rounded(self) -> f64 {
-        self.0
     }
 
     /// The product of two numbers and its rounding error (Dekker).
@@ -110,131 +105,52 @@ impl<const FUSED: bool> Mul for Pair<FUSED> {
     }
 }
 
-/// Differences of two points, exactly.
+/// The sign of a form of the differences from one point to others, if it is certain, which a value of zero
+/// never is; otherwise a number that its magnitude does not exceed.
 #[inline(always)]
-fn difference<const D: usize, const FUSED: bool>(p: [f64; D], q: [f64; D]) -> [Pair<FUSED>; D] {
-    std::array::from_fn(|axis| Pair::sum(p[axis], -q[axis]))
-}
-
-/// A determinant, with the sum of the magnitudes of its products.
-#[derive(Debug, Clone, Copy)]
-struct Determinant<const FUSED: bool> {
-    value: Pair<FUSED>,
-    magnitude: f64,
-}
-
-impl<const FUSED: bool> Determinant<FUSED> {
-    /// Of two rows.
-    #[inline(always)]
-    fn minor(p: [Pair<FUSED>; 2], q: [Pair<FUSED>; 2]) -> Self {
-        let magnitude = (p[0].0 * q[1].0).abs() + (p[1].0 * q[0].0).abs();
-        Determinant { value: p[0] * q[1] - p[1] * q[0], magnitude }
-    }
-
-    #[inline(always)]
-    fn times(self, factor: Pair<FUSED>) -> Self {
-        Determinant { value: self.value * factor, magnitude: self.magnitude * factor.0.abs() }
-    }
-
-    /// The sign, if it is certain. A value of zero never is.
-    #[inline(always)]
-    fn sign(self) -> Option<Sign> {
-        (self.value.0.abs() > BOUND * self.magnitude).then(|| Sign::of(self.value.0))
-    }
-}
-
-impl<const FUSED: bool> Add for Determinant<FUSED> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Determinant { value: self.value + other.value, magnitude: self.magnitude + other.magnitude }
-    }
-}
-
-impl<const FUSED: bool> Sub for Determinant<FUSED> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Determinant { value: self.value - other.value, magnitude: self.magnitude + other.magnitude }
-    }
-}
-
-#[inline(always)]
-fn cross<const FUSED: bool>(p: [Pair<FUSED>; 3], q: [Pair<FUSED>; 3]) -> [Determinant<FUSED>; 3] {
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| Determinant::minor([p[i], p[j]], [q[i], q[j]]))
-}
-
-#[inline(always)]
-fn dot<const FUSED: bool>(cross: [Determinant<FUSED>; 3], r: [Pair<FUSED>; 3]) -> Determinant<FUSED> {
-    cross[0].times(r[0]) + cross[1].times(r[1]) + cross[2].times(r[2])
-}
-
-/// Sign of det(a - c, b - c), if it is certain.
-pub(super) fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Option<Sign> {
-    Determinant::<false>::minor(difference(a, c), difference(b, c)).sign()
-}
-
-/// Side of d against the circle through a, b, c, if it is certain.
-pub(super) fn incircle(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> Option<Sign> {
+pub(super) fn sign<F: Form<N, D>, const N: usize, const D: usize>(
+    from: [f64; D],
+    to: [[f64; D]; N],
+) -> Result<Sign, f64> {
     #[cfg(target_arch = "x86_64")]
     if Avx2Fma::detect().is_some() {
         // SAFETY: the processor has AVX2 and FMA.
-        return unsafe { incircle_fused([a, b, c], d) };
+        return unsafe { sign_fused::<F, N, D>(from, to) };
     }
-    incircle_of::<false>([a, b, c], d)
+    sign_of::<F, N, D, false>(from, to)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn incircle_fused(circle: [[f64; 2]; 3], d: [f64; 2]) -> Option<Sign> {
-    incircle_of::<true>(circle, d)
+fn sign_fused<F: Form<N, D>, const N: usize, const D: usize>(
+    from: [f64; D],
+    to: [[f64; D]; N],
+) -> Result<Sign, f64> {
+    sign_of::<F, N, D, true>(from, to)
 }
 
 #[inline(always)]
-fn incircle_of<const FUSED: bool>([a, b, c]: [[f64; 2]; 3], d: [f64; 2]) -> Option<Sign> {
-    let (a, b, c) = (difference::<2, FUSED>(a, d), difference(b, d), difference(c, d));
-    let lift = |p: [Pair<FUSED>; 2]| p[0] * p[0] + p[1] * p[1];
-    let term = |p, q, r| Determinant::minor(q, r).times(lift(p));
-    (term(a, b, c) + term(b, c, a) + term(c, a, b)).sign()
-}
-
-/// Sign of det(b - a, c - a, d - a), if it is certain.
-pub(super) fn orient3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Option<Sign> {
-    dot::<false>(cross(difference(b, a), difference(c, a)), difference(d, a)).sign()
-}
-
-/// Side of e against the sphere through a, b, c, d, if it is certain.
-pub(super) fn insphere(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], e: [f64; 3]) -> Option<Sign> {
-    #[cfg(target_arch = "x86_64")]
-    if Avx2Fma::detect().is_some() {
-        // SAFETY: the processor has AVX2 and FMA.
-        return unsafe { insphere_fused([a, b, c, d], e) };
+fn sign_of<F: Form<N, D>, const N: usize, const D: usize, const FUSED: bool>(
+    from: [f64; D],
+    to: [[f64; D]; N],
+) -> Result<Sign, f64> {
+    let mut exact = [[Pair::<FUSED>(0.0, 0.0); D]; N];
+    let mut rounded = [[Magnitude(0.0); D]; N];
+    for i in 0..N {
+        for axis in 0..D {
+            exact[i][axis] = Pair::sum(to[i][axis], -from[axis]);
+            rounded[i][axis] = Magnitude(exact[i][axis].0.abs());
+        }
     }
-    insphere_of::<false>([a, b, c, d], e)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-fn insphere_fused(sphere: [[f64; 3]; 4], e: [f64; 3]) -> Option<Sign> {
-    insphere_of::<true>(sphere, e)
-}
-
-#[inline(always)]
-fn insphere_of<const FUSED: bool>([a, b, c, d]: [[f64; 3]; 4], e: [f64; 3]) -> Option<Sign> {
-    let (a, b) = (difference::<3, FUSED>(a, e), difference::<3, FUSED>(b, e));
-    let (c, d) = (difference::<3, FUSED>(c, e), difference::<3, FUSED>(d, e));
-    let (ab, cd) = (cross(a, b), cross(c, d));
-    let lift = |p: [Pair<FUSED>; 3]| p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-    let (first, second) = (dot(cd, b).times(lift(a)), dot(cd, a).times(lift(b)));
-    let (third, fourth) = (dot(ab, d).times(lift(c)), dot(ab, c).times(lift(d)));
-    ((first - second) + (third - fourth)).sign()
+    let value = F::value(&exact, |i| lift(&exact[i])).0;
+    let error = BOUND * F::value(&rounded, |i| lift(&rounded[i])).0;
+    if value.abs() > error { Ok(Sign::of(value)) } else { Err(2.0 * error) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::predicates::forms::{Incircle, Insphere, Orient2d, Orient3d};
     use crate::predicates::{Point2, Point3, big};
     use spmesh_core::random::Random;
 
@@ -269,29 +185,38 @@ mod tests {
         [[x, y], [-y, x], [-x, -y], [y, -x]].map(|[x, y]| [a + x, b + y])
     }
 
+    /// Compares with big integers, and counts certain and uncertain signs.
+    fn check<F: Form<N, D>, const N: usize, const D: usize>(
+        from: [f64; D],
+        to: [[f64; D]; N],
+        counts: &mut [usize; 2],
+    ) {
+        let exact = big::sign::<F, N, D>(from, to);
+        match sign::<F, N, D>(from, to) {
+            Ok(sign) => assert_eq!(sign, exact),
+            Err(bound) => assert!(exact == Sign::Zero || bound > 0.0),
+        }
+        counts[usize::from(sign::<F, N, D>(from, to).is_err())] += 1;
+    }
+
     #[test]
     fn certain_signs_are_exact() {
         let mut random = Random::new(1);
-        let (mut certain, mut uncertain) = ([0; 4], [0; 4]);
-        let mut check = |kind: usize, sign: Option<Sign>, exact: Sign| match sign {
-            Some(sign) => {
-                certain[kind] += 1;
-                assert_eq!(sign, exact);
-            }
-            None => uncertain[kind] += 1,
-        };
+        let mut counts = [[0; 2]; 4];
         for case in 0..20_000 {
             let (aside, is_level) = (2f64.powi(case % 60 - 20), case % 4 == 0);
             let p = square(&mut random, aside, is_level);
-            check(0, incircle(p[0], p[1], p[2], p[3]), big::incircle(p[0], p[1], p[2], p[3]));
+            check::<Incircle, 3, 2>(p[3], [p[0], p[1], p[2]], &mut counts[0]);
             let middle = [0, 1].map(|axis| p[0][axis].midpoint(p[1][axis]));
-            check(1, orient2d(p[0], p[1], middle), big::orient2d(p[0], p[1], middle));
+            check::<Orient2d, 2, 2>(middle, [p[0], p[1]], &mut counts[1]);
             let p = corners(&mut random, aside, is_level);
-            check(2, orient3d(p[0], p[1], p[2], p[3]), big::orient3d(p[0], p[1], p[2], p[3]));
-            check(3, insphere(p[0], p[1], p[2], p[4], p[7]), big::insphere(p[0], p[1], p[2], p[4], p[7]));
+            check::<Orient3d, 3, 3>(p[0], [p[1], p[2], p[3]], &mut counts[2]);
+            check::<Insphere, 4, 3>(p[7], [p[0], p[1], p[2], p[4]], &mut counts[3]);
         }
-        assert!(certain.iter().all(|&count| count > 5_000), "{certain:?} {uncertain:?}");
-        assert!(uncertain.iter().all(|&count| count > 1_000), "{certain:?} {uncertain:?}");
+        assert!(
+            counts.iter().all(|&[certain, uncertain]| certain > 5_000 && uncertain > 1_000),
+            "{counts:?}"
+        );
     }
 
     #[test]
@@ -306,9 +231,9 @@ mod tests {
 
     #[test]
     fn zero_is_never_certain() {
-        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-        assert_eq!(incircle(square[0], square[1], square[2], square[3]), None);
-        assert_eq!(orient2d([0.0, 0.0], [1.0, 3.0], [2.0, 6.0]), None);
-        assert_eq!(orient3d([0.0; 3], [1.0; 3], [2.0; 3], [5.0, 7.0, 9.0]), None);
+        let [a, b, c, d] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        assert!(sign::<Incircle, 3, 2>(d, [a, b, c]).is_err_and(|bound| bound > 0.0 && bound < 1e-28));
+        assert!(sign::<Orient2d, 2, 2>([2.0, 6.0], [[0.0, 0.0], [1.0, 3.0]]).is_err());
+        assert!(sign::<Orient3d, 3, 3>([0.0; 3], [[1.0; 3], [2.0; 3], [5.0, 7.0, 9.0]]).is_err());
     }
 }

@@ -1,6 +1,7 @@
 //! The canonical perturbation, which decides ties between four cocircular or five cospherical points.
 
-use super::{Point2, Point3, Predicates2, Predicates3, Sign, big};
+use super::{Point2, Point3, Predicates2, Predicates3, Sign};
+use super::{big, forms::Orient3d};
 use std::cmp::Ordering;
 
 /// Lexicographic order of two points, x before y before z; `-0.0` equals `0.0`. Domain: no NaN.
@@ -59,15 +60,20 @@ pub(super) fn cospherical<P: Predicates3 + ?Sized>(
     [a, b, c, d]: [Point3; 4],
     e: Point3,
 ) -> Sign {
-    debug_assert_eq!(big::orient3d(a, b, c, d), Sign::Positive, "{:?}", [a, b, c, d]);
+    debug_assert_eq!(big::sign::<Orient3d, 3, 3>(a, [b, c, d]), Sign::Positive, "{:?}", [a, b, c, d]);
     debug_assert!(![a, b, c, d].contains(&e), "{e:?} is a vertex");
     predicates.counts_mut().perturbed += 1;
     let points = [a, b, c, d, e];
-    let mut ranked = [0, 1, 2, 3, 4];
-    ranked.sort_unstable_by(|&i: &usize, &j| lexicographic(points[j], points[i]));
-    let mut sign = Sign::Zero;
-    for place in ranked {
-        sign = match place {
+    let mut left = [0, 1, 2, 3, 4];
+    // The first place nearly always decides, so that sorting all of them does not pay.
+    for count in (1..=5).rev() {
+        let mut last = 0;
+        for i in 1..count {
+            if lexicographic(points[left[i]], points[left[last]]) == Ordering::Greater {
+                last = i;
+            }
+        }
+        let sign = match left[last] {
             0 => predicates.orient3d(e, b, c, d),
             1 => predicates.orient3d(a, e, c, d),
             2 => predicates.orient3d(a, b, e, d),
@@ -75,8 +81,9 @@ pub(super) fn cospherical<P: Predicates3 + ?Sized>(
             _ => Sign::Negative,
         };
         if sign != Sign::Zero {
-            break;
+            return sign;
         }
+        left[last] = left[count - 1];
     }
-    sign
+    Sign::Zero
 }

@@ -10,7 +10,7 @@ use super::simplex::MAX_DEGREE;
 use super::tree::{Hull, Tree};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, Configurations, FARAWAY, Knots};
-use spmesh_geometry::predicates::{ExpansionPredicates, Extent, Point2};
+use spmesh_geometry::predicates::{BoundedFloatPredicates, Extent, Point2};
 use spmesh_model::functions::Function;
 
 impl Basis {
@@ -162,7 +162,7 @@ impl Basis {
 
 /// Checks what all bases require of knots and configurations.
 fn check(knots: &Knots, configurations: &Configurations) -> Result<()> {
-    if !ExpansionPredicates::covers(&Extent::of(knots.points())) {
+    if !BoundedFloatPredicates::covers(&Extent::of(knots.points())) {
         let what =
             "coordinates of knots must be zero, or have magnitudes between 2^-170 and 2^240: scale them";
         return Err(Error::usage(what));

@@ -20,7 +20,7 @@ pub(super) struct Tuple<T> {
 impl<T: Integer> Tuple<T> {
     /// The sphere through five points that span space.
     pub(super) fn sphere([o, a, b, c, d]: [&[T; 4]; 5]) -> Tuple<T> {
-        let (n, m) = sphere([a, b, c, d].map(|p| difference(p.clone(), o)));
+        let (n, m) = sphere([a, b, c, d].map(|p| difference(p.clone(), o)).each_ref());
         let two = T::one() + T::one();
         let shifted = std::array::from_fn(|axis| n[axis].clone() - two.clone() * m.clone() * o[axis].clone());
         let s = m.clone() * lift(o) - dot(&n, o);
@@ -30,7 +30,7 @@ impl<T: Integer> Tuple<T> {
 
     /// The hyperplane through four points, with a fifth on the side that is not beyond.
     pub(super) fn hyperplane([o, a, b, c]: [&[T; 4]; 4], inside: &[T; 4]) -> Tuple<T> {
-        let n = normal([a, b, c].map(|p| difference(p.clone(), o)));
+        let n = normal([a, b, c].map(|p| difference(p.clone(), o)).each_ref());
         let s = T::zero() - dot(&n, o);
         let tuple = Tuple { n, m: T::zero(), s };
         let is_negative = tuple.value(inside).is_negative();

@@ -242,7 +242,7 @@ impl<'a, C: Coefficient> Complex<'a, C> {
     fn hyperplane(&self, vertices: &[u32; FACETS]) -> [f64; 6] {
         let side = vertices.iter().position(|&vertex| vertex == INFINITE).unwrap_or_default();
         let [o, a, b, c] = without(*vertices, side).map(|vertex| self.near[vertex as usize]);
-        let n = normal([a, b, c].map(|p| difference(p, &o)));
+        let n = normal([a, b, c].map(|p| difference(p, &o)).each_ref());
         // Moving the faraway point to the end passes 4 - side others; values beyond the hull are negative.
         let n = if side % 2 == 0 { n.map(|x| -x) } else { n };
         [n[0], n[1], n[2], n[3], 0.0, -dot(&n, &o)]

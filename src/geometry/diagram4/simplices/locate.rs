@@ -62,7 +62,7 @@ impl<C: Coefficient> Complex<'_, C> {
         let vertices = self.simplices[at].vertices;
         let near = |vertex: u32| self.near[vertex as usize];
         let [o, a, b, c] = without(vertices, side).map(near);
-        let n = normal([a, b, c].map(|corner| difference(corner, &o)));
+        let n = normal([a, b, c].map(|corner| difference(corner, &o)).each_ref());
         let [own, new] =
             [near(vertices[side]), [p[0], p[1], p[2], p[3]]].map(|x| dot(&n, &difference(x, &o)));
         (own > 0.0 && new < 0.0) || (own < 0.0 && new > 0.0)

@@ -47,7 +47,7 @@
 //! * Underflow, `orient3d`. With k = l = m any finite coordinates are fine, as before: below m = 2^-334 the
 //!   comparison is false, above it errors of 2^-1071 max(1, sqrt(m)) do not matter, and the cube of m does
 //!   not underflow. With different squares, coordinates have to be in the domain of
-//!   [`super::ExpansionPredicates3`] or integers: all are multiples of 2^-184, squares are zero or at least
+//!   [`super::BoundedFloatPredicates3`] or integers: all are multiples of 2^-184, squares are zero or at least
 //!   2^-368, so that k l does not underflow, and whether its product with m does is nothing compared to
 //!   `TINY`.
 
@@ -152,6 +152,7 @@ impl Estimate {
 mod tests {
     use super::*;
     use crate::predicates::adaptive::difference;
+    use crate::predicates::forms::{Insphere, Orient3d};
     use crate::predicates::{Sign, big};
 
     /// Pseudo-random numbers.
@@ -259,9 +260,14 @@ mod tests {
                 assert!(!is_certain || Sign::of(value) == exact, "{:?}", [a, b, c, d, e]);
             };
             let value = Estimate::insphere([p, q, r, s]).value;
-            check(0, insphere_is_certain(value, greatest), value, big::insphere(a, b, c, d, e));
+            check(
+                0,
+                insphere_is_certain(value, greatest),
+                value,
+                big::sign::<Insphere, 4, 3>(e, [a, b, c, d]),
+            );
             let value = Estimate::orient3d([p, q, r]).value;
-            let exact = big::orient3d(e, a, b, c);
+            let exact = big::sign::<Orient3d, 3, 3>(e, [a, b, c]);
             check(1, orient3d_is_certain(value, greatest * greatest * greatest), value, exact);
             // The domain of different squares.
             if scale > 1e-30 && scale < 1e30 {

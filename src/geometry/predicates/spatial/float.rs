@@ -1,15 +1,10 @@
-//! Predicates of floating-point coordinates: filter, then pairs of `f64`, then expansions, then arbitrary
-//! precision.
+//! Predicates of floating-point coordinates: a filter, then [exact](crate::predicates::exact) arithmetic.
 
 use super::filter::{insphere_is_certain, lift, orient3d_is_certain};
 use super::{Extent, Numbers, Point3, PredicateCounts, Predicates3, Sign};
 use crate::predicates::adaptive::{Estimate, difference};
-use crate::predicates::{big, pairs};
-use robust::Coord3D;
-
-fn coord([x, y, z]: Point3) -> Coord3D<f64> {
-    Coord3D { x, y, z }
-}
+use crate::predicates::exact;
+use crate::predicates::forms::{Insphere, Orient3d};
 
 /// Differences of b, c, d to a.
 #[inline(always)]
@@ -17,21 +12,7 @@ pub(super) fn differences_from<const N: usize>(a: Point3, others: [Point3; N]) -
     others.map(|point| difference(point, a))
 }
 
-/// The sign of the crate is that of det(a - d, b - d, c - d).
-#[cold]
-fn expansion_orient3d(a: Point3, b: Point3, c: Point3, d: Point3) -> Sign {
-    let expansion = || Sign::of(-robust::orient3d(coord(a), coord(b), coord(c), coord(d)));
-    pairs::orient3d(a, b, c, d).unwrap_or_else(expansion)
-}
-
-/// The crate's tetrahedra are oriented the other way.
-#[cold]
-fn expansion_insphere(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> Sign {
-    let expansion = || Sign::of(-robust::insphere(coord(a), coord(b), coord(c), coord(d), coord(e)));
-    pairs::insphere(a, b, c, d, e).unwrap_or_else(expansion)
-}
-
-/// Filter, then expansions, those of two terms first.
+/// Filter, then exact arithmetic that starts with pairs of `f64`.
 ///
 /// Domain: every coordinate is zero or its magnitude lies in [2^-132, 2^200]. Why this suffices:
 ///
@@ -47,11 +28,11 @@ fn expansion_insphere(a: Point3, b: Point3, c: Point3, d: Point3, e: Point3) -> 
 ///   most four factors are split, which multiplies them by 2^27 + 1: at most 24 * 2^804 for the latter, so
 ///   that the result stays below 2^840.
 #[derive(Debug, Default)]
-pub struct ExpansionPredicates3 {
+pub struct BoundedFloatPredicates3 {
     counts: PredicateCounts,
 }
 
-impl ExpansionPredicates3 {
+impl BoundedFloatPredicates3 {
     /// Least magnitude of a coordinate other than zero: 2^-132.
     pub const LEAST_MAGNITUDE: f64 = f64::from_bits((1023 - 132) << 52);
     /// Greatest magnitude of a coordinate: 2^200.
@@ -72,7 +53,7 @@ impl ExpansionPredicates3 {
     }
 }
 
-impl Predicates3 for ExpansionPredicates3 {
+impl Predicates3 for BoundedFloatPredicates3 {
     const NUMBERS: Numbers = Numbers::BoundedFloats;
 
     #[inline(always)]
@@ -82,8 +63,7 @@ impl Predicates3 for ExpansionPredicates3 {
             self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            self.counts.expansion += 1;
-            expansion_orient3d(a, b, c, d)
+            exact::sign::<Orient3d, 3, 3>(a, [b, c, d], true, &mut self.counts)
         }
     }
 
@@ -94,8 +74,7 @@ impl Predicates3 for ExpansionPredicates3 {
             self.counts.filter += 1;
             Sign::of(estimate.value)
         } else {
-            self.counts.expansion += 1;
-            expansion_insphere(a, b, c, d, e)
+            exact::sign::<Insphere, 4, 3>(e, [a, b, c, d], true, &mut self.counts)
         }
     }
 
@@ -112,7 +91,7 @@ impl Predicates3 for ExpansionPredicates3 {
 /// first.
 ///
 /// The filters are those in terms of lengths, which hold for all of them. Expansions are used in the domain
-/// of [`ExpansionPredicates3`], arbitrary precision for the rest.
+/// of [`BoundedFloatPredicates3`], arbitrary precision for the rest.
 #[derive(Debug, Default)]
 pub struct FiniteFloatPredicates3 {
     counts: PredicateCounts,
@@ -132,12 +111,9 @@ impl Predicates3 for FiniteFloatPredicates3 {
         if orient3d_is_certain(value, lift * lift * lift) {
             self.counts.filter += 1;
             Sign::of(value)
-        } else if [a, b, c, d].iter().all(ExpansionPredicates3::covers_point) {
-            self.counts.expansion += 1;
-            expansion_orient3d(a, b, c, d)
         } else {
-            self.counts.bigint += 1;
-            big::orient3d(a, b, c, d)
+            let is_bounded = [a, b, c, d].iter().all(BoundedFloatPredicates3::covers_point);
+            exact::sign::<Orient3d, 3, 3>(a, [b, c, d], is_bounded, &mut self.counts)
         }
     }
 
@@ -147,12 +123,9 @@ impl Predicates3 for FiniteFloatPredicates3 {
         if insphere_is_certain(value, greatest_lift(&differences)) {
             self.counts.filter += 1;
             Sign::of(value)
-        } else if [a, b, c, d, e].iter().all(ExpansionPredicates3::covers_point) {
-            self.counts.expansion += 1;
-            expansion_insphere(a, b, c, d, e)
         } else {
-            self.counts.bigint += 1;
-            big::insphere(a, b, c, d, e)
+            let is_bounded = [a, b, c, d, e].iter().all(BoundedFloatPredicates3::covers_point);
+            exact::sign::<Insphere, 4, 3>(e, [a, b, c, d], is_bounded, &mut self.counts)
         }
     }
 

@@ -7,7 +7,7 @@ pub(crate) mod filter;
 mod float;
 mod integer;
 
-pub use float::{ExpansionPredicates3, FiniteFloatPredicates3};
+pub use float::{BoundedFloatPredicates3, FiniteFloatPredicates3};
 pub use integer::{IntegerPredicates3, SmallIntegerPredicates3, Width3};
 
 use super::{Extent, Int64, Int128, Numbers, Point3, PredicateCounts, Sign, perturbation};
@@ -67,8 +67,8 @@ pub enum Arithmetic3 {
     Integer64,
     /// Integers; `i128` decides where the filter does not.
     Integer128,
-    /// Wider integers, and floating point in the range where expansions neither over- nor underflow.
-    Expansion,
+    /// Wider integers, and floating point in the range where products of coordinates neither over- nor underflow.
+    BoundedFloat,
     /// All finite floating-point numbers.
     FiniteFloat,
 }
@@ -86,8 +86,8 @@ impl Arithmetic3 {
             } else {
                 Arithmetic3::Integer128
             }
-        } else if ExpansionPredicates3::covers(extent) {
-            Arithmetic3::Expansion
+        } else if BoundedFloatPredicates3::covers(extent) {
+            Arithmetic3::BoundedFloat
         } else {
             Arithmetic3::FiniteFloat
         }
@@ -108,7 +108,7 @@ impl Arithmetic3 {
             Arithmetic3::SmallInteger => counted(algorithm, SmallIntegerPredicates3::default(), counts),
             Arithmetic3::Integer64 => counted(algorithm, IntegerPredicates3::<Int64>::default(), counts),
             Arithmetic3::Integer128 => counted(algorithm, IntegerPredicates3::<Int128>::default(), counts),
-            Arithmetic3::Expansion => counted(algorithm, ExpansionPredicates3::default(), counts),
+            Arithmetic3::BoundedFloat => counted(algorithm, BoundedFloatPredicates3::default(), counts),
             Arithmetic3::FiniteFloat => counted(algorithm, FiniteFloatPredicates3::default(), counts),
         }
     }
