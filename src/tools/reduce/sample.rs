@@ -3,6 +3,9 @@
 //! In space, points on a surface have tetrahedra whose balls are as large as the object that the surface
 //! bounds (thesis 5.4), and in the plane, points on a curve have triangles whose circles are as large as the
 //! curve bends. If the cell is smaller, no simplex is final, and the time to triangulate it is lost.
+//!
+//! Random points show the shape of the whole node, neighbours that of its simplices. A node is passed up only if
+//! both samples would leave most of their points.
 
 use super::bulk::Bulk;
 use super::node::Rules;
@@ -24,6 +27,10 @@ const SAMPLED_ONE_OF: usize = 8;
 /// Largest fraction of the sample that a node worth triangulating may leave. A sample of random points in a
 /// cube leaves 59 %, one of points on a surface nearly all.
 const SHARE_MAX: f64 = 0.85;
+
+/// The same for neighbours. Their sample misses the points around it, which make simplices active, so that it
+/// must be clear that nearly all are final, but at its border.
+const NEAR_SHARE_MAX: f64 = 0.02;
 
 /// Triangulates samples of the points of nodes.
 pub(super) struct Sample<B, const D: usize> {
@@ -68,10 +75,24 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
             }
         }
         self.draw(points, SAMPLE_POINTS);
+        if self.share_left(region, self.points.len())? <= SHARE_MAX {
+            return Ok(false);
+        }
+        // Points drawn from two close rows have simplices far larger than those of neighbours in the rows.
+        self.draw_near(points, SAMPLE_POINTS);
+        Ok(self.share_left(region, self.points.len() / 2)? > NEAR_SHARE_MAX)
+    }
+
+    /// The fraction of the first points of the sample that the node would leave.
+    fn share_left(&mut self, region: &Region<D>, count: usize) -> Result<f64> {
         self.bulk.triangulate(&self.points)?;
-        let left = self.count_left(region) as f64;
-        let vertices = self.points.len() - self.bulk.duplicates().len();
-        Ok(left > SHARE_MAX * vertices as f64)
+        self.find_left(region);
+        for &[point, _] in self.bulk.duplicates().iter() {
+            self.is_left[point as usize] = false;
+        }
+        let merged = self.bulk.duplicates().iter().filter(|pair| (pair[0] as usize) < count).count();
+        let left = self.is_left[..count].iter().filter(|&&left| left).count();
+        Ok(left as f64 / (count - merged) as f64)
     }
 
     /// Decisions of the predicates so far.
@@ -89,8 +110,25 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         self.points.extend_raw(&sample);
     }
 
-    /// Number of vertices that are on the hull or in simplices that are not final.
-    fn count_left(&mut self, region: &Region<D>) -> usize {
+    /// Draws one point at random, and the points nearest to it, in the order of their distances.
+    fn draw_near(&mut self, points: &Residual<D>, most: usize) {
+        let centre = points.at[Random::new(points.raw as u64).below(points.raw as u64) as usize];
+        let square = |i: u32| -> f64 {
+            let at = points.at[i as usize];
+            (0..D).map(|axis| (at[axis] - centre[axis]) * (at[axis] - centre[axis])).sum()
+        };
+        let mut near: Vec<(f64, u32)> = (0..points.raw as u32).map(|i| (square(i), i)).collect();
+        let count = most.min(points.raw / SAMPLED_ONE_OF);
+        near.select_nth_unstable_by(count, |p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+        near.truncate(count);
+        near.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
+        let sample: Vec<Point> = near.iter().map(|&(_, i)| points.point(i as usize)).collect();
+        self.points.clear();
+        self.points.extend_raw(&sample);
+    }
+
+    /// Finds the vertices that are on the hull or in simplices that are not final.
+    fn find_left(&mut self, region: &Region<D>) {
         let (bulk, is_left) = (&self.bulk, &mut self.is_left);
         let balls = B::balls(self.rules.coordinates(), *region);
         is_left.clear();
@@ -108,7 +146,6 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
                 bulk.corners(simplex).as_ref().iter().for_each(|&v| is_left[v as usize] = true);
             }
         }
-        is_left.iter().filter(|&&left| left).count()
     }
 }
 
