@@ -73,8 +73,8 @@ fn sign<F: Form<N, 2>, const N: usize, const C: usize>(knots: &Knots, from: u32,
     let integers = Integers::of(displaced.from, displaced.to);
     match displaced.bits(integers.bits_of_lengths(), F::DEGREE) {
         ..128 => displaced.sign_in::<F, C, 2>(&integers),
-        ..256 => displaced.sign_in::<F, C, 4>(&integers),
-        ..384 => displaced.sign_in::<F, C, 6>(&integers),
+        128..256 => displaced.sign_in::<F, C, 4>(&integers),
+        256..384 => displaced.sign_in::<F, C, 6>(&integers),
         _ => displaced.big_sign::<F, C>(),
     }
 }

@@ -65,10 +65,10 @@ pub(super) fn difference<const D: usize>(p: [f64; D], q: [f64; D]) -> [f64; D] {
 ///
 /// * Underflow. All coordinates are multiples of g = 2^-222, the unit in the last place of 2^-170; so are
 ///   their differences and the rounding errors of these. Every product that is formed has at most four such
-///   factors, so every term of an expansion is a multiple of g^4 = 2^-888 and, being above the least
-///   subnormal 2^-1074, exactly representable. The sum of magnitudes is zero (and with it the exact
-///   determinant, as a difference rounds to zero only if it is zero) or at least 2^-888, so that the smallest
-///   error bound formed from it, with a factor near 2^-101, is a normal number.
+///   factors, so it and its rounding error are multiples of g^4 = 2^-888, which is above the least subnormal
+///   2^-1074. The sum of magnitudes is zero (and with it the exact determinant, as a difference rounds to zero
+///   only if it is zero) or at least 2^-888, so that the smallest error bound formed from it, with a factor of
+///   2^-98, is a normal number.
 /// * Overflow. Differences are below 2^241, sums of magnitudes below 12 * 2^964 < 2^968; splitting a factor
 ///   multiplies it by 2^27 + 1, and the result stays below 2^996.
 #[derive(Debug, Default)]
@@ -136,8 +136,8 @@ impl Predicates2 for BoundedFloatPredicates {
 ///
 /// The filter is trusted if each difference is zero or has a magnitude in [2^-200, 2^240]: a product of two
 /// is then at least 2^-400, a difference of two such products zero or at least 2^-504, and its product with a
-/// lift at least 2^-904; the largest sum is below 2^968. Expansions are used in the domain of
-/// [`BoundedFloatPredicates`], arbitrary precision for the rest.
+/// lift at least 2^-904; the largest sum is below 2^968. Pairs of `f64` are used in the domain of
+/// [`BoundedFloatPredicates`].
 #[derive(Debug, Default)]
 pub struct FiniteFloatPredicates {
     counts: PredicateCounts,

@@ -121,25 +121,22 @@ impl<const N: usize, const D: usize> Integers<N, D> {
     /// Domain: finite coordinates.
     #[inline(always)]
     pub(crate) fn of(from: [f64; D], to: [[f64; D]; N]) -> Self {
-        let zero = Odd::ZERO;
-        let mut integers = Integers {
-            from: [zero; D],
-            to: [[zero; D]; N],
-            units: [zero.exponent; D],
-            tops: [i32::MIN / 8; D],
-        };
-        for axis in 0..D {
-            let mut add = |value: f64| {
-                let number = Odd::of(value);
-                integers.units[axis] = integers.units[axis].min(number.exponent);
-                integers.tops[axis] = integers.tops[axis].max(exponent_above(value.abs()));
-                number
-            };
-            integers.from[axis] = add(from[axis]);
-            for i in 0..N {
-                integers.to[i][axis] = add(to[i][axis]);
+        let (mut units, mut tops) = ([Odd::ZERO.exponent; D], [i32::MIN / 8; D]);
+        let mut numbers = |point: [f64; D]| {
+            let mut numbers = [Odd::ZERO; D];
+            for axis in 0..D {
+                numbers[axis] = Odd::of(point[axis]);
+                units[axis] = units[axis].min(numbers[axis].exponent);
+                tops[axis] = tops[axis].max(exponent_above(point[axis].abs()));
             }
+            numbers
+        };
+        let mut integers =
+            Integers { from: numbers(from), to: [[Odd::ZERO; D]; N], units: [0; D], tops: [0; D] };
+        for (place, point) in integers.to.iter_mut().zip(to) {
+            *place = numbers(point);
         }
+        (integers.units, integers.tops) = (units, tops);
         integers
     }
 
@@ -184,9 +181,9 @@ impl<const N: usize, const D: usize> Integers<N, D> {
         };
         match bits {
             ..128 => Some(self.sign::<F, 2>()),
-            ..256 => Some(self.sign::<F, 4>()),
-            ..384 => Some(self.sign::<F, 6>()),
-            ..768 => Some(self.sign::<F, MOST>()),
+            128..256 => Some(self.sign::<F, 4>()),
+            256..384 => Some(self.sign::<F, 6>()),
+            384..768 => Some(self.sign::<F, MOST>()),
             _ => None,
         }
     }
@@ -216,10 +213,13 @@ impl<const N: usize, const D: usize> Integers<N, D> {
     #[inline(always)]
     fn differences<const L: usize>(&self, units: [i32; D]) -> [[Residue<L>; D]; N] {
         let mut differences = [[Residue([0; L]); D]; N];
+        let mut from = differences[0];
         for axis in 0..D {
-            let from = self.from[axis].residue(units[axis]);
-            for i in 0..N {
-                differences[i][axis] = self.to[i][axis].residue(units[axis]) - from;
+            from[axis] = self.from[axis].residue(units[axis]);
+        }
+        for (difference, point) in differences.iter_mut().zip(&self.to) {
+            for axis in 0..D {
+                difference[axis] = point[axis].residue(units[axis]) - from[axis];
             }
         }
         differences

@@ -20,7 +20,7 @@ pub(super) struct Tuple<T> {
 impl<T: Integer> Tuple<T> {
     /// The sphere through five points that span space.
     pub(super) fn sphere([o, a, b, c, d]: [&[T; 4]; 5]) -> Tuple<T> {
-        let (n, m) = sphere([a, b, c, d].map(|p| difference(p.clone(), o)).each_ref());
+        let (n, m) = sphere([a, b, c, d].map(|p| difference(p.clone(), o)));
         let two = T::one() + T::one();
         let shifted = std::array::from_fn(|axis| n[axis].clone() - two.clone() * m.clone() * o[axis].clone());
         let s = m.clone() * lift(o) - dot(&n, o);

@@ -18,15 +18,13 @@ pub(super) fn differences_from<const N: usize>(a: Point3, others: [Point3; N]) -
 ///
 /// * Underflow. All coordinates are multiples of g = 2^-184, the unit in the last place of 2^-132; so are
 ///   their differences and the rounding errors of these. Every product that is formed has at most five such
-///   factors, so every term of an expansion is a multiple of g^5 = 2^-920 and, being above the least
-///   subnormal 2^-1074, exactly representable. The sum of magnitudes is zero (and with it the exact
-///   determinant, as a difference rounds to zero only if it is zero) or at least 2^-920, so that the smallest
-///   error bound formed from it, with a factor of 71 * 2^-106 > 2^-100, is a normal number.
+///   factors, so it and its rounding error are multiples of g^5 = 2^-920, which is above the least subnormal
+///   2^-1074. The sum of magnitudes is zero (and with it the exact determinant, as a difference rounds to zero
+///   only if it is zero) or at least 2^-920, so that the smallest error bound formed from it, with a factor of
+///   2^-98, is a normal number.
 /// * Overflow. Differences are below 2^201. The sum of magnitudes of `insphere` is at most 4 * 3 * 6 = 72
-///   products of five of them, below 2^1012; last of all, the determinant of undiffered coordinates has at
-///   most 5 * 3 * 24 = 360 products of five coordinates, below 2^1009. Only coordinates and products of at
-///   most four factors are split, which multiplies them by 2^27 + 1: at most 24 * 2^804 for the latter, so
-///   that the result stays below 2^840.
+///   products of five of them, below 2^1012. Only differences and sums of products of at most three are split,
+///   which multiplies them by 2^27 + 1: the results stay below 2^640.
 #[derive(Debug, Default)]
 pub struct BoundedFloatPredicates3 {
     counts: PredicateCounts,
@@ -90,8 +88,8 @@ impl Predicates3 for BoundedFloatPredicates3 {
 /// Predicates that are right for all finite coordinates, from 5e-324 to 1.7e308, with no look at a chunk
 /// first.
 ///
-/// The filters are those in terms of lengths, which hold for all of them. Expansions are used in the domain
-/// of [`BoundedFloatPredicates3`], arbitrary precision for the rest.
+/// The filters are those in terms of lengths, which hold for all of them. Pairs of `f64` are used in the
+/// domain of [`BoundedFloatPredicates3`].
 #[derive(Debug, Default)]
 pub struct FiniteFloatPredicates3 {
     counts: PredicateCounts,
