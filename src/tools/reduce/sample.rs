@@ -241,6 +241,11 @@ mod tests {
         }
         let bounds = Bounds { min: [0.0, 0.25, 0.0], max: [9.0, 0.75, 0.0] };
         assert!(!leaves_most(&strip, Sides::of(bounds)), "nothing lies beyond the rows");
+        // Random points of rows this close have circles far larger than the cell, neighbours small ones.
+        let place = |i: usize| [(i / 2) as f64 / count as f64, 0.25 + 1e-6 * (i % 2) as f64, 0.0];
+        let rows: Vec<Point> = (0..count).map(place).collect();
+        let bounds = Bounds { min: [0.0, 0.25, 0.0], max: [9.0, 0.25 + 1e-6, 0.0] };
+        assert!(!leaves_most(&rows, Sides::of(bounds)), "neighbours are in small circles");
         assert!(!leaves_most(&curve[..100], Sides::UNKNOWN), "too few points to look");
     }
 }
