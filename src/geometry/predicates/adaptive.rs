@@ -1,4 +1,4 @@
-//! Predicates of floating-point coordinates: a filter, then [exact](super::exact) arithmetic.
+//! Predicates of floating-point coordinates: a filter, then [exact] arithmetic.
 //!
 //! The filters are Shewchuk's ("Adaptive precision floating-point arithmetic and fast robust geometric
 //! predicates", 1997, bounds A): with u = 2^-53 the rounded determinant differs from the exact one by at most

@@ -1,4 +1,4 @@
-//! Predicates of floating-point coordinates: a filter, then [exact](crate::predicates::exact) arithmetic.
+//! Predicates of floating-point coordinates: a filter, then [exact] arithmetic.
 
 use super::filter::{insphere_is_certain, lift, orient3d_is_certain};
 use super::{Extent, Numbers, Point3, PredicateCounts, Predicates3, Sign};
