@@ -285,11 +285,14 @@ class Vector:
 
 CM = (("0.01", "0.01", "0.5"), ("1000", "-2000", "0"))
 HALF = (("0.5", "0.5", "0.25"), ("0", "0", "0"))
+EVEN = (("0.5", "0.5", "0.5"), ("0", "0", "0"))
+UNEVEN = (("0.5", "0.25", "0.5"), ("0", "0", "0"))
 QUADTREE = (2, 0, 0, 0, 4)
+OCTREE = (2, 0, 0, 0, 4)
 SQUARE = [(0, 0, 0), (2, 0, 1), (0, 2, 1), (2, 2, 4)]
 # A corner of a cube, its three neighbours, and the opposite corner: two tetrahedra that share a facet.
 CORNERS = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (4, 4, 4)]
-TETRAHEDRAL = dict(kind="tetrahedral mesh", dims=3, grid=HALF)
+TETRAHEDRAL = dict(kind="tetrahedral mesh", dims=3, grid=EVEN)
 # A simplex in four dimensions with its points sorted, and the five infinite cells around it.
 CORNERS4 = [("0",) * 4, ("0", "0", "0", "1"), ("0", "0", "1", "0"), ("0", "1", "0", "0"), ("1", "0", "0", "0")]
 CELLS4 = [(0, (0, 1, 2, 3, 4), (1, 2, 3, 4, 5))] + [
@@ -306,7 +309,7 @@ DEGREE1 = [((0,), [(1, 3), (3, 2)]), ((1,), [(2, 3), (3, 0)]), ((2,), [(0, 3), (
 SPLINES = dict(kind="splines", grid=HALF)
 PAIRS = [("edge", pair, [pair + ("1",)]) for pair in ((0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3))]
 PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 0, 8, 8))
-PARTIAL_SPACE = dict(kind="partial tetrahedral mesh", dims=3, grid=HALF, region=(0, 0, 0, 8, 8, 8))
+PARTIAL_SPACE = dict(kind="partial tetrahedral mesh", dims=3, grid=EVEN, region=(0, 0, 0, 8, 8, 8))
 
 
 def passing():
@@ -327,8 +330,12 @@ def passing():
         dims=3, chunked=True, tree=(1, -4, -4, -4, 8), bounds=(-4, -4, -1, 3, 1, "3.75")).cells(9, 10, 12, 13, 14).points(
         ("-4", "-4", "-1"), ("-1", "-0.5", "-1")).cells(8).points(("3", "1", "3.75"), ("0", "1", "-1")).cells(
         1).end(4, 7)
-    yield "points-i32-3d", "Three dimensions in integers, no tree", Vector(grid=HALF, dims=3).points(
-        (1, 2, 3), (-1, -2, -3)).end(2)
+    yield "points-i32-3d", "Three dimensions in integers, no tree: each axis may have its own scale", Vector(
+        grid=(("0.5", "0.25", "2"), ("0", "0", "0")), dims=3).points((1, 2, 3), (-1, -2, -3)).end(2)
+    yield "points-uneven", "Two dimensions in integers, no tree: x and y may have their own scales", Vector(
+        grid=UNEVEN).points((1, 2), (-1, -2)).end(2)
+    yield "points-i32-octree", "An octree of integers: x, y and z have one scale", Vector(
+        grid=EVEN, dims=3, tree=OCTREE).points((1, 2, 3)).cells(1).end(1, 1)
     yield "points-chunked", "Chunked by a quadtree; a run of tags in two blocks", Vector(
         grid=HALF, elevation=1, chunked=True, tree=QUADTREE, bounds=(0, 0, 0, 3, 3, 9), points=6).cells(
         24, 25).points((1, 0, 9), (1, 0, 8)).cells(16).cells(17).points((2, 1, 0)).points((3, 0, 0)).cells(
@@ -468,6 +475,14 @@ def failing_headers():
         ("scale-nan", "scale is not positive", dict(grid=HALF, scale=f64(0.5, NAN, 1))),
         ("scale-infinite", "too far apart", dict(grid=HALF, scale=f64(1, 1, INF))),
         ("offset-too-far", "too far apart", dict(grid=HALF, offset=f64(0, 0.5 * 2.0**51 + 1, 0))),
+        ("scales-quadtree", "expected one scale", dict(grid=UNEVEN, elevation=1, tree=QUADTREE)),
+        ("scales-octree", "expected one scale", dict(grid=HALF, dims=3, tree=OCTREE)),
+        ("scales-mesh", "expected one scale", dict(kind="triangle mesh", grid=UNEVEN)),
+        ("scales-partial", "expected one scale", dict(**{**PARTIAL, "grid": UNEVEN})),
+        ("scales-tetrahedra", "expected one scale", dict(**{**TETRAHEDRAL, "grid": HALF})),
+        ("scales-partial-tetrahedra", "expected one scale", dict(**{**PARTIAL_SPACE, "grid": UNEVEN})),
+        ("scales-configurations", "expected one scale", dict(**{**CONFIGURATIONS, "grid": UNEVEN})),
+        ("scales-splines", "expected one scale", dict(**{**SPLINES, "grid": UNEVEN})),
         ("box-not-ordered", "box is not ordered", dict(bounds=(0, 1, 0, 1, 0, 0))),
         ("box-nan", "box is not ordered", dict(bounds=(0, 0, 0, 1, 1, 0), box=f64(0, NAN, 0, 1, 1, 0))),
         ("box-infinite", "not storable", dict(bounds=(0, 0, 0, INF, 1, 0))),

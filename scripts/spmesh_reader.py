@@ -118,6 +118,7 @@ class Header:
         )
         self.tree = Tree(self.dims, data) if flags & 2 else None
         self.bounds = struct.unpack_from("<6d", data, 80) if flags & 1 else None
+        self.check_scales()
         self.check_bounds()
         self.region = None
         if flags & 4:
@@ -136,6 +137,13 @@ class Header:
                 scale > 0 and abs(offset) <= scale * 2.0**51 and scale * 2.0**51 < math.inf,
                 "scale is not positive, or scale and offset are too far apart",
             )
+
+    def check_scales(self):
+        is_free = self.kind == "points" and not self.tree
+        require(
+            not self.is_integer or is_free or len(set(self.scale[: self.dims])) == 1,
+            "the axes of the geometry have the scales %s, expected one scale" % decimals(self.scale[: self.dims]),
+        )
 
     def check_bounds(self):
         if self.bounds is None:

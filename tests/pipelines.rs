@@ -4,7 +4,10 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
+use crate::programs::{
+    Folder, assert_outcome, assert_silent_without_reader, cloud, outcome, run, sample, start, tool,
+};
+use crate::sources::las_file::LasFile;
 use crate::vectors::run_python;
 
 /// The streaming triangulators, and their flags for spfinalize.
@@ -60,6 +63,59 @@ fn points_of_space_become_an_audited_mesh() {
     let flat = run("spfinalize", &["--octree", "-"], b"0 0 1\n5 0 1\n0 5 1\n9 9 1\n");
     let (code, message) = outcome(&run("spdelaunay3d", &[], &flat.stdout));
     assert_eq!((code, message.contains("all points in a plane")), (Some(0), true), "{message}");
+}
+
+/// Stored heights count for less than stored x and y here, so they must not be triangulated as they are.
+#[test]
+fn axes_of_different_scales_are_triangulated_in_shape() {
+    let positions: Vec<[i32; 3]> =
+        (0..300).map(|i| [i * 7919 % 1009, i * 3571 % 997, i * 131 % 97]).collect();
+    let lines = |scale: [f64; 3]| -> String {
+        let line = |at: &[i32; 3]| -> String {
+            let world: Vec<String> = (0..3).map(|i| (f64::from(at[i]) * scale[i]).to_string()).collect();
+            world.join(" ") + "\n"
+        };
+        positions.iter().map(line).collect()
+    };
+    // A common grid; a common measure that is too fine a fraction, so that points become f64.
+    for scale in [[0.25, 0.25, 2.0], [0.25, 0.5, 0.75], [0.25, 0.25, 0.25 * 1.000_030_517_578_125]] {
+        let las = LasFile { scale, ..LasFile::of(&positions) }.bytes();
+        let points = run("spfinalize", &["--octree", "--cell-points", "50", "-"], &las);
+        let streamed = run("spdelaunay3d", &[], &points.stdout);
+        let whole = run("tess3", &["-"], lines(scale).as_bytes());
+        assert!(streamed.status.success() && whole.status.success(), "{:?}", outcome(&points));
+        let (streamed, whole) = (tetrahedra(&streamed.stdout), tetrahedra(&whole.stdout));
+        assert!(streamed.len() > 1000 && streamed == whole, "{scale:?}: {} {}", streamed.len(), whole.len());
+        let convert = ["--from", "points", "--dims", "3", "--to", "spm"];
+        let points = run("spconvert", &convert, &las);
+        let points = run("spfinalize", &["--octree", "-"], &points.stdout);
+        let again = run("spdelaunay3d", &[], &points.stdout);
+        assert!(tetrahedra(&again.stdout) == whole, "{scale:?} through spconvert");
+    }
+}
+
+/// Points without a tree may have any scales; spfinalize puts them on one grid.
+#[test]
+fn scales_of_a_stream_meet_on_one_grid_before_its_points_are_triangulated() {
+    let header = |tree: &str| {
+        format!(
+            "#spmesh version 1\n#spmesh kind points\n#spmesh coordinates i32\n#spmesh scale 0.25 0.25 2\n\
+             #spmesh offset 0 0 0\n#spmesh dims 3\n#spmesh elevation no\n{tree}#spmesh chunked no\n"
+        )
+    };
+    let points: String =
+        (0..200).map(|i| format!("v {} {} {}\n", i * 37 % 101, i * 53 % 97, i % 9 * 2)).collect();
+    let end = "# end points 200 cells 0 vertices 0 simplices 0 merged 0 residual 0 walls 0\n";
+    let twin = |tree: &str| [&header(tree), &points, end].concat();
+    let stream = run("spconvert", &["--to", "spm"], twin("").as_bytes());
+    assert!(stream.status.success(), "{:?}", outcome(&stream));
+    let finalized = run("spfinalize", &["--octree", "-"], &stream.stdout);
+    let streamed = run("spdelaunay3d", &[], &finalized.stdout);
+    let lines = points.replace("v ", "");
+    let whole = run("tess3", &["-"], lines.as_bytes());
+    assert!(tetrahedra(&streamed.stdout) == tetrahedra(&whole.stdout) && whole.status.success());
+    let uneven = twin("#spmesh tree 0 0 0 0 1024\n");
+    assert_outcome("spconvert", &["--to", "spm"], uneven.as_bytes(), 3, "expected one scale");
 }
 
 #[test]

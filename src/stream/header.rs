@@ -294,6 +294,7 @@ impl Header {
         {
             return Err("scale is not positive, or scale and offset are too far apart".into());
         }
+        self.check_scales()?;
         if let Some(Bounds { min, max }) = &self.bounds {
             let ordered = (0..3).all(|axis| min[axis] <= max[axis]);
             let storable = min.iter().chain(max).all(|&value| self.coordinates.can_store(value));
@@ -317,6 +318,23 @@ impl Header {
             return Err("only points with a finalization tree can be chunked".into());
         }
         self.check_region()
+    }
+
+    /// Checks that the axes of the geometry have one scale. Streams that nothing triangulates as they are
+    /// stored, which are points without a finalization tree, may have several.
+    fn check_scales(&self) -> std::result::Result<(), String> {
+        let Coordinates::I32 { scale, .. } = &self.coordinates else { return Ok(()) };
+        let is_free = self.kind == Kind::Points && self.tree.is_none();
+        let geometry = &scale[..usize::from(self.dims).min(3)];
+        if is_free || geometry.iter().all(|&scale| scale == geometry[0]) {
+            return Ok(());
+        }
+        let scales: Vec<String> = geometry.iter().map(f64::to_string).collect();
+        Err(format!(
+            "the axes of the geometry have the scales {}, expected one scale: stored coordinates would be \
+             triangulated out of shape (spfinalize puts points without a finalization tree on one grid)",
+            scales.join(", ")
+        ))
     }
 
     fn check_region(&self) -> std::result::Result<(), String> {

@@ -109,7 +109,7 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
         ("label 17\n", "", "4 labels of 5 vertices"),
         ("# patch", "label 17\n# patch", "1 labels after 0 vertices"),
         ("x 4\n", "", "4 of 5 vertices were finalized"),
-        ("v 2 2 1", "v 2 2 9", "outside of the header's bounding box"),
+        ("v 2 2 2", "v 2 2 9", "outside of the header's bounding box"),
         ("label 17", "w 1 2 3", "expected v, c, x, label or a comment"),
         ("label 17", "r 1 0 0 0", "cannot have this line here"),
         ("dims 3", "dims 2", "a tetrahedral mesh in 2 dimensions"),
