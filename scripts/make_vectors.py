@@ -340,6 +340,13 @@ def passing():
         grid=HALF, elevation=1, chunked=True, tree=QUADTREE, bounds=(0, 0, 0, 3, 3, 9), points=6).cells(
         24, 25).points((1, 0, 9), (1, 0, 8)).cells(16).cells(17).points((2, 1, 0)).points((3, 0, 0)).cells(
         5).points((2, 2, 1), (3, 3, 1)).cells(7).end(6, 6)
+    yield "points-chunked-empty-blocks", "Chunked: blocks without records neither start nor end a run of tags", Vector(
+        grid=HALF, chunked=True, tree=QUADTREE).cells().points((0, 0)).cells().points((0, 0)).points().cells(17).points(
+        ).cells(16).points((3, 3)).cells(31).cells().points().cells(1).points().end(3, 4)
+    yield "points-chunked-larger-cell", "Chunked: the cell that holds the points is tagged after others of its run", Vector(
+        grid=HALF, chunked=True, tree=QUADTREE).points((0, 0), (1, 1), (3, 3)).cells(16, 5, 1).end(3, 3)
+    yield "points-box-without-points", "A box without points says nothing", Vector(
+        grid=HALF, bounds=(0, 0, 0, 3, 3, 0), points=0).points().end()
     yield "points-tagged", "Tags between points in input order: siblings one by one, then what is left of their parent", Vector(
         tree=QUADTREE).points(("0", "0"), ("3.5", "3.5"), ("1", "0")).cells(16, 17).points(("1", "1")).cells(
         19, 18).points(("3", "3")).cells(31).points(("2", "2")).cells(1).end(6, 6)
@@ -359,6 +366,8 @@ def passing():
         "triangle mesh", grid=HALF, elevation=1).patch(0, SQUARE).patch(4, (), (0, 1, 2), [(0, 1, 2)]).patch(
         4, (), (1, 2, 3), [(2, 1, 0)], (0,)).patch(4).patch(4, (), (0, 2, 3), (), (0, 1, 2)).end(
         4, vertices=4, simplices=2)
+    yield "mesh-most-points", "As many points as END may state", Vector("triangle mesh", points=2**64 - 2).patch(
+        0, [("0", "0")], (), (), (0,)).end(2**64 - 2, vertices=1, merged=2**64 - 3)
     yield "mesh-no-triangles", "Collinear points: vertices without triangles", Vector(
         "triangle mesh", grid=HALF).patch(0, [(0, 0), (1, 1), (2, 2)], (), (), (0, 1, 2)).end(7, vertices=3, merged=4)
     yield "partial-empty", "A partial mesh of the whole plane, without points", Vector(
@@ -442,6 +451,9 @@ def passing():
     yield "splines", "A spline of six functions of its own", Vector(**SPLINES).points(*KNOTS).configurations(
         1, *DEGREE1, standing=1).functions(*PAIRS).coefficients("1", "-2.5", "0", "1e300").coefficients(
         "0.1", "-5e-324").end(4, vertices=6, simplices=7, residual=6)
+    yield "splines-no-functions", "A block FUNC without records is as good as none, whatever the degree", Vector(
+        **SPLINES).points(*KNOTS).configurations(2, ((1, 2), [(0, 3)])).functions().coefficients("3").end(
+        4, simplices=1, residual=1)
     yield "splines-cubic", "A spline of the B-splines of links, with heights of knots", Vector(
         "splines", elevation=1).points(("0", "0", "1"), ("8", "0", "2"), ("0", "8", "3"), ("2", "2", "4")).configurations(
         2, ((1, 2), [(0, 3)])).coefficients("3", "4").end(4, simplices=1, residual=2)
@@ -598,6 +610,12 @@ def failing_streams():
         (0, 0, 0)).cells(17).points((0, 0, 1)).cells(16).end(2, 2)
     yield "chunk-without-tag", "do not lie in one cell", points(tree=QUADTREE, chunked=True).cells(17).points(
         (0, 0, 0)).end(1, 1)
+    yield "chunk-of-siblings", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
+        (0, 0, 0), (1, 0, 0)).cells(16, 17, 18, 19).end(2, 4)
+    yield "chunk-over-empty-tags", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
+        (0, 0, 0)).cells().points((1, 0, 0)).cells(17, 16).end(2, 2)
+    yield "chunk-after-last-tag", "do not lie in one cell", points(tree=QUADTREE, chunked=True).points(
+        (0, 0, 0)).cells(16).points((3, 3, 0)).end(2, 1)
     yield "end-points", "END states", points().points((1, 1, 1)).end(2)
     yield "end-cells", "END states", points(tree=QUADTREE).cells(4).end()
     yield "end-merged-points", "END states", points().points((1, 1, 1)).end(1, merged=1)
@@ -632,6 +650,10 @@ def failing_streams():
         mesh().patch(0, SQUARE[:3], (), [(0, 1, 2)], (0, 1, 2)).end(3, vertices=3, simplices=2))
     yield "end-mesh-points", "END states", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(3, vertices=1, merged=1)
     yield "end-beyond-counting", "END", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(0, vertices=1, merged=2**64 - 1)
+
+    yield "end-mesh-beyond-counting", "beyond counting", mesh().patch(0, SQUARE[:1], (), (), (0,)).end(
+        2**64 - 1, vertices=1, merged=2**64 - 2)
+    yield "end-points-beyond-counting", "beyond counting", points().end(2**64 - 1)
 
     yield "residual-length", "whole number of records", partial().block(b"RPNT", raw(bytes(19))).end(1, residual=1)
     yield "residual-unknown-id", "the id 3 of no vertex", partial().patch(0, SQUARE[:3], (), (), (0, 1, 2)).residual(
@@ -864,7 +886,7 @@ def failing_configurations(raw):
 
     functions = lambda *all: knots().configurations(1, *DEGREE1).functions(*all).end(4, vertices=len(all), simplices=7)
     one = lambda *terms: functions(("edge", (0, 1), list(terms)))
-    cut = lambda data: knots().block(b"FUNC", raw(data)).end(4, vertices=1)
+    cut = lambda data: knots().configurations(1, *DEGREE1).block(b"FUNC", raw(data)).end(4, vertices=1, simplices=7)
     yield "functions-short", "cut off at the end", cut(bytes(7))
     yield "functions-cut", "cut off at the end", cut(struct.pack("<5I", 0, 1, 0, 1, 0))
     yield "functions-terms-huge", "cut off at the end", cut(struct.pack("<4I", 0, 2**32 - 1, 0, 1))
@@ -883,10 +905,19 @@ def failing_configurations(raw):
     yield "terms-twice", "do not follow each other", one((0, 2, "1"), (0, 2, "1"))
     yield "factor-zero", "has the factor", one((0, 2, "0"))
     yield "factor-nan", "has the factor", one((0, 2, "nan"))
-    yield "functions-before-configurations", "may stand here", knots().functions(("edge", (0, 1), [(0, 1, "1")])).configurations(
-        1, *DEGREE1).end(4, vertices=1, simplices=7)
+    yield "functions-before-configurations", "may stand here", knots().configurations(1, *DEGREE1[:1]).functions(
+        PAIRS[0]).configurations(1, *DEGREE1[1:], goes_on=True).end(4, vertices=1, simplices=7)
+    yield "functions-without-configurations", "without configurations of degree 1", knots().functions(PAIRS[0]).end(
+        4, vertices=1)
+    yield "functions-of-another-degree", "without configurations of degree 1", knots().configurations(
+        2, ((1, 2), [(0, 3)])).functions(PAIRS[0]).end(4, vertices=1, simplices=1)
+    yield "splines-functions-of-another-degree", "without configurations of degree 1", Vector(**SPLINES).points(
+        *KNOTS).configurations(2, ((1, 2), [(0, 3)])).functions(PAIRS[0]).coefficients("1").end(
+        4, vertices=1, simplices=1, residual=1)
+    yield "splines-without-configurations", "without configurations", Vector(**SPLINES).points(*KNOTS).coefficients(
+        "1").end(4, residual=1)
     yield "coefficients-in-configurations", "may stand here", knots().coefficients("1").end(4, residual=1)
-    yield "end-functions", "END states", knots().functions(("edge", (0, 1), [(0, 1, "1")])).end(4)
+    yield "end-functions", "END states", knots().configurations(1, *DEGREE1).functions(PAIRS[0]).end(4, simplices=7)
     spline = lambda *numbers: Vector(**SPLINES).points(*KNOTS).configurations(1, *DEGREE1).functions(
         *PAIRS).coefficients(*numbers).end(4, vertices=6, simplices=7, residual=len(numbers))
     yield "coefficients-few", "5 coefficients of 6 functions", spline(*["1"] * 5)
@@ -895,7 +926,8 @@ def failing_configurations(raw):
     yield "coefficients-infinite", "is not finite", spline(*["1"] * 5 + ["inf"])
     yield "coefficients-bytes", "no multiple of 8", Vector(**SPLINES).points(*KNOTS).block(
         b"COEF", raw(bytes(12))).end(4, residual=1)
-    yield "coefficients-end", "END states", Vector(**SPLINES).points(*KNOTS).coefficients("1").end(4, residual=2)
+    yield "coefficients-end", "END states", Vector(**SPLINES).points(*KNOTS).configurations(
+        1, *DEGREE1).coefficients("1").end(4, simplices=7, residual=2)
     yield "splines-two-degrees", "splines have one degree", Vector(**SPLINES).points(*KNOTS).configurations(
         0, DEGREE0).configurations(1, *DEGREE1).coefficients("1").end(4, simplices=13, residual=1)
     yield "splines-tree", "no finalization tree", Vector(**SPLINES, tree=QUADTREE).end()

@@ -379,6 +379,7 @@ class Stream:
         self.live = {}
         self.last, self.words, self.neighbour = None, [], -1
         self.degree = self.group = self.boundary = self.function = None
+        self.has_pairs = False
         self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
@@ -633,6 +634,7 @@ class Stream:
                 degree > last or standing == known,
                 "the configurations of degree %d change their standing" % degree,
             )
+        self.has_pairs = self.has_pairs or degree == 1
         if self.degree != (degree, standing):
             self.degree, self.group = (degree, standing), None
             self.text.line("degree %d %s" % (degree, ("any", "delaunay", "lifted")[standing]))
@@ -678,6 +680,7 @@ class Stream:
         self.text.line(("line" if infinite else "on") + "".join([" %d" % (knot + 1) for knot in ends]))
 
     def functions(self, payload):
+        require(self.has_pairs or not payload, "functions in a stream without configurations of degree 1")
         at = 0
         while at < len(payload):
             at = self.one_function(payload, at)
@@ -720,6 +723,8 @@ class Stream:
         require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))
         stated = dict(zip(self.total, struct.unpack("<7Q", payload)))
         counted = dict(self.total)
+        for name, total in stated.items():
+            require(total < UNKNOWN, "END: %d %s are beyond counting" % (total, name))
         if self.header.is_mesh:
             counted["merged"] = stated["merged"]
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
@@ -736,6 +741,10 @@ class Stream:
         require(
             self.header.kind != "splines" or coefficients > 0 and functions in (0, coefficients),
             "END: %d coefficients of %d functions: one each is needed" % (coefficients, functions),
+        )
+        require(
+            self.header.kind != "splines" or self.degree is not None,
+            "END: a spline without configurations, expected a block CONF with its degree",
         )
         require(not self.words, "END: the last cell is cut off after %d words" % len(self.words))
         require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))

@@ -84,6 +84,7 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
             (_, Event::Points(points)) if points.is_empty() => {}
             (_, Event::Cells(cells)) if cells.is_empty() => {}
             (_, Event::Labels(labels)) if labels.is_empty() => {}
+            (_, Event::Functions(functions)) if functions.is_empty() => {}
             (_, Event::ResidualPoints(points)) if points.is_empty() => {}
             (_, Event::Walls(walls)) if walls.is_empty() => {}
             (_, event) => result.push(event),

@@ -38,7 +38,7 @@ pub enum Check {
     Region,
     /// No point follows the tag of its cell, and no tag repeats another.
     Cells,
-    /// The points between tags lie in one of the cells that are tagged next.
+    /// The points between two runs of tags lie in one cell, which the second run tags.
     Chunks,
     /// Residual points are the vertices that are not final, and points not written before, each once.
     Residual,
@@ -102,7 +102,9 @@ impl Check {
             Check::Labels => ("labels", "all vertices have a label or none has, and it follows its vertex"),
             Check::Region => ("region", "every point lies in the region of the stream"),
             Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
-            Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),
+            Check::Chunks => {
+                ("chunks", "the points between two runs of tags lie in one cell, which the second run tags")
+            }
             Check::Residual => ("residual", "the residual is what is not final, each point once"),
             Check::Walls => ("walls", "the walls are the open edges or facets of the final simplices"),
         }

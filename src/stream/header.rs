@@ -283,12 +283,16 @@ impl Header {
 
     /// Checks the rules between fields; writer and reader share them.
     ///
+    /// # Errors
     /// A text about the rule that is broken.
     pub fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
         }
         self.check_kind()?;
+        if self.points == Some(COUNT_UNKNOWN) {
+            return Err(format!("{COUNT_UNKNOWN} points are beyond counting, at most 2^64 - 2"));
+        }
         if let Coordinates::I32 { scale, offset } = &self.coordinates
             && !scale.iter().zip(offset).all(|(&scale, &offset)| is_grid(scale, offset))
         {
