@@ -9,7 +9,8 @@
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
 //!   the stream.
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
-//!   patches may still use, and cells that no later point lies in.
+//!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
+//!   reader alone cannot check.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
 //!
@@ -61,6 +62,7 @@ mod functions;
 mod header;
 mod kind;
 mod live;
+mod memory_rules;
 mod patch_blocks;
 mod payload;
 mod points4;
@@ -82,6 +84,7 @@ pub use functions::{function_kind, function_kind_of_name, function_kind_parts};
 pub use header::{Coordinates, Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;
+pub use memory_rules::MemoryRules;
 pub use patch_blocks::{PatchBlocks, PointCode};
 pub use payload::{check_place, decode_points};
 pub use points4::Points4;
