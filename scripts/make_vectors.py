@@ -431,6 +431,9 @@ def passing():
         **DIAGRAM4).points4(("0", "0", "0", "-1"), ("-0.0", "0", "0", "0")).end(2, vertices=2)
     yield "cells4-no-neighbours", "A cell of six vertices that names no neighbour", Vector(**DIAGRAM4).points4(
         *CORNERS4, ("1", "1", "1", "1")).cells4((0, range(6), ())).end(6, vertices=6, simplices=1)
+    yield "cells4-most-neighbours", "A cell of six vertices with as many neighbours as it can have", Vector(
+        **DIAGRAM4).points4(*CORNERS4, ("1", "1", "1", "1")).cells4(
+        (0, range(6), range(1, 10)), *[(1, (0, 1, 2, 3), ()) for _ in range(9)]).end(6, vertices=6, simplices=10)
     yield "simplices4", "Two simplices on a common facet, points in any order", Vector(
         **SIMPLICES4, points=7).points4(*CORNERS4[::-1]).points4(("1", "1", "1", "1")).simplices4(
         (4, 0, 1, 2, 3)).simplices4().simplices4((5, 0, 2, 1, 3)).end(7, vertices=6, simplices=2, merged=1)
@@ -799,23 +802,30 @@ def failing_streams4(raw):
     yield "cell4-of-none", "a finite cell of 0 vertices", corners().block(b"CEL4", words(0, 0)).end(
         5, vertices=5, simplices=1)
     yield "cell4-vertex", "not increasing numbers of 5 points", cell((0, 1, 2, 3, 5))
-    yield "cell4-vertex-without-points", "not increasing numbers of 0 points", Vector(**DIAGRAM4).cells4(
+    yield "cell4-vertex-without-points", "a finite cell of 5 vertices, but 0 points", Vector(**DIAGRAM4).cells4(
         CELLS4[0]).end(simplices=1)
     yield "cell4-vertices-not-sorted", "not increasing numbers", cell((0, 1, 3, 2, 4))
-    yield "cell4-repeats-vertex", "not increasing numbers", cell((0, 1, 2, 2, 3, 4))
+    yield "cell4-repeats-vertex", "not increasing numbers", cell((0, 1, 2, 2, 3))
     yield "cell4-neighbours-not-sorted", "neighbours of a cell are not increasing", cells(
         (0, range(5), (2, 1)), *CELLS4[1:])
     yield "cell4-neighbour-twice", "neighbours of a cell are not increasing", cells(
         (0, range(5), (1, 1)), *CELLS4[1:])
     yield "cell4-neighbour", "neighbour 6 of 6 cells", cells((0, range(5), (1, 6)), *CELLS4[1:])
-    yield "cell4-huge", "the maximum is", corners().block(b"CEL4", words(2**31 - 1, 2)).end(5, vertices=5)
-    yield "cell4-neighbours-huge", "the maximum is", corners().block(b"CEL4", words(5, 2**32 - 1)).end(5, vertices=5)
+    yield "cell4-huge", "vertices, but 5 points", corners().block(b"CEL4", words(2**31 - 1, 2)).end(5, vertices=5)
+    yield "cell4-neighbours-huge", "5 facets at most", corners().block(b"CEL4", words(5, 2**32 - 1)).end(5, vertices=5)
+    yield "cell4-announces-vertices", "a finite cell of 6 vertices, but 5 points", corners().block(
+        b"CEL4", words(6)).end(5, vertices=5)
+    yield "cell4-announces-infinite", "an infinite cell of 1073741824 vertices, but 5 points", corners().block(
+        b"CEL4", words(2**31 + 2**30)).end(5, vertices=5)
+    yield "cell4-announces-neighbours", "5 facets at most", corners().block(b"CEL4", words(5, 6)).end(5, vertices=5)
+    yield "cell4-announces-infinite-neighbours", "5 facets at most", corners().block(
+        b"CEL4", words(2**31 + 4, 6)).end(5, vertices=5)
     yield "cell4-cut", "the last cell is cut off after 6 words", corners().block(
         b"CEL4", words(5, 0, 0, 1, 2, 3)).end(5, vertices=5)
     yield "cell4-cut-in-counts", "the last cell is cut off after 1 words", corners().cells4(*CELLS4).block(
         b"CEL4", words(5)).end(5, vertices=5, simplices=6)
     yield "cell4-cut-promises", "the last cell is cut off after 2 words", corners().block(
-        b"CEL4", words(2**31 - 3, 1)).end(5, vertices=5)
+        b"CEL4", words(5, 5)).end(5, vertices=5)
     yield "end-cells4", "END states", corners().cells4(*CELLS4).end(5, vertices=5, simplices=5)
     yield "end-cells4-tags", "END states", corners().cells4(*CELLS4).end(5, cells=6, vertices=5, simplices=6)
     yield "end-cells4-points", "END states", corners().cells4(*CELLS4).end(6, vertices=5, simplices=6)

@@ -565,9 +565,17 @@ class Stream:
         require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
         self.words += struct.unpack("<%dI" % (len(payload) // 4), payload)
         at = 0
-        while len(self.words) - at >= 2:
-            marked, neighbours = self.words[at : at + 2]
-            infinite, vertices = marked >> 31, marked & 0x7FFFFFFF
+        while len(self.words) > at:
+            infinite, vertices = self.words[at] >> 31, self.words[at] & 0x7FFFFFFF
+            self.check_vertex_count(infinite, vertices)
+            if len(self.words) == at + 1:
+                break
+            neighbours, corners = self.words[at + 1], vertices + infinite
+            require(
+                neighbours <= corners * (corners - 3) // 2,
+                "cell of %d vertices and %d neighbours, which can have %d facets at most"
+                % (vertices, neighbours, corners * (corners - 3) // 2),
+            )
             require(
                 2 + vertices + neighbours <= 2**31,
                 "cell of %d vertices and %d neighbours, the maximum is 2^31 words" % (vertices, neighbours),
@@ -579,10 +587,14 @@ class Stream:
             at = end
         del self.words[:at]
 
-    def cell4(self, infinite, vertices, neighbours):
+    def check_vertex_count(self, infinite, vertices):
         least, points = (4 if infinite else 5), self.total["vertices"]
         sort = "an infinite" if infinite else "a finite"
-        require(len(vertices) >= least, "%s cell of %d vertices, expected at least %d" % (sort, len(vertices), least))
+        require(vertices >= least, "%s cell of %d vertices, expected at least %d" % (sort, vertices, least))
+        require(vertices <= points, "%s cell of %d vertices, but %d points" % (sort, vertices, points))
+
+    def cell4(self, infinite, vertices, neighbours):
+        points = self.total["vertices"]
         require(
             is_increasing(vertices) and vertices[-1] < points,
             "the vertices of a cell are not increasing numbers of %d points" % points,

@@ -90,6 +90,7 @@ pub use payload::{check_place, decode_points};
 pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
+pub use rules4::{check_neighbour_count, check_vertex_count};
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;

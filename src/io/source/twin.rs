@@ -155,7 +155,7 @@ impl<R: Read> TwinSource<R> {
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
         let is_partial = self.header.kind.is_partial();
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
-        let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
+        let Totals { residual_points, walls, simplices, vertices, .. } = *self.tally.totals();
         let kind = self.header.kind.name();
         let misplaced = || Error::malformed(format!("a {kind} cannot have this line here"));
         match (&mut self.group, statement) {
@@ -194,7 +194,7 @@ impl<R: Read> TwinSource<R> {
                             .ok_or_else(|| Error::malformed("a degree starts with a line \"degree\""))?,
                     ),
                     Statement::Four(ref first) if Group4::can_start(&self.header, first, simplices > 0) => {
-                        Group::Four(Group4::start(&self.header, first))
+                        Group::Four(Group4::start(&self.header, first, vertices))
                     }
                     _ => return Err(misplaced()),
                 };
