@@ -11,17 +11,18 @@ use super::streams::{GRID, Tagging, stream_of, threads, triangulate};
 use spmesh_reference::clouds::{Family, of};
 use spmesh_reference::sets::Random;
 
-/// The part of a cloud of integers at x < 0.
-fn part_of(dims: u8, seed: u64) -> Vec<u8> {
+/// The part of a cloud of integers at x < 0, or at x >= 0.
+fn half_of(dims: u8, seed: u64, is_west: bool) -> Vec<u8> {
     let points = of(&mut Random::new(seed), Family::Integers, 300);
     let input = stream_of(dims, &points, GRID, Tagging::Chunked(1), &mut Random::new(2));
     let infinite = f64::INFINITY;
+    let [low, high] = if is_west { [-infinite, 0.0] } else { [0.0, infinite] };
     if dims == 2 {
-        let region = Region { min: [-infinite; 2], max: [0.0, infinite] };
+        let region = Region { min: [low, -infinite], max: [high, infinite] };
         let options = Options { part: Some(Part::Region(region)), every_node: true, ..threads(1) };
         triangulate(&input, &options).unwrap().0
     } else {
-        let region = Region { min: [-infinite; 3], max: [0.0, infinite, infinite] };
+        let region = Region { min: [low, -infinite, -infinite], max: [high, infinite, infinite] };
         let part = Some(Part::Region(region));
         tetrahedralize(&input, &Options { part, threads: 1, every_node: true, ..Options::default() })
             .unwrap()
@@ -73,6 +74,24 @@ fn is_proven(bytes: &[u8]) -> bool {
     true
 }
 
+/// The block and the input are those of the fault, whatever comes before.
+#[test]
+fn what_does_not_fit_is_named_by_input_and_block() {
+    let (mut header, mut events) = events_of(&half_of(2, 1, true));
+    header.bounds = None;
+    let number = events.iter().position(|event| matches!(event, Event::ResidualPoints(_))).unwrap();
+    let Event::Patch(patch) = &events[0] else { panic!("no patch") };
+    let inner = patch.new[patch.simplices[0] as usize];
+    events.insert(number + 1, Event::ResidualPoints(vec![(None, inner)]));
+    let damaged = stream(&header, &events, 1).unwrap();
+    let east = half_of(2, 1, false);
+    let readers = [(&east, "east.spm"), (&damaged, "west.spm")]
+        .map(|(part, name)| StreamReader::new(&part[..], name).unwrap());
+    let message =
+        merge_triangles(readers.into(), Vec::new(), None, |_| ()).map(drop).unwrap_err().to_string();
+    assert!(message.starts_with(&format!("west.spm: block {} at byte ", number + 1)), "{message}");
+}
+
 /// Adds residual points in and around what is final: some lie in final simplices, some in balls, some nowhere.
 #[test]
 fn what_the_audit_proves_can_be_merged() {
@@ -80,7 +99,7 @@ fn what_the_audit_proves_can_be_merged() {
         let mut random = Random::new(7);
         let (mut proven, mut refused) = (0, 0);
         for seed in 0..6 {
-            let (mut header, events) = events_of(&part_of(dims, seed));
+            let (mut header, events) = events_of(&half_of(dims, seed, true));
             header.bounds = None;
             let places: Vec<Point> = events.iter().filter_map(places).flatten().collect();
             for _ in 0..60 {
@@ -111,6 +130,8 @@ fn what_the_audit_proves_can_be_merged() {
                     (true, Err(error)) => panic!("{at:?} of set {seed} in {dims} dimensions: {error}"),
                     (false, Err(error)) => {
                         assert_eq!(error.kind(), ErrorKind::Malformed, "{error}");
+                        let message = error.to_string();
+                        assert!(message.starts_with("part: block "), "{message}");
                         refused += 1;
                     }
                     // Merging does not look into the balls of final simplices.
