@@ -136,7 +136,8 @@ class Vector:
         data = b"".join(piece for piece, _ in payload)
         sequence, length = damage.get("sequence", self.sequence), damage.get("length", len(data))
         head = tag + struct.pack("<II", sequence, length)
-        self.put(head[:4], "block " + tag.decode("latin1")).put(head[4:8], "sequence").put(head[8:], "length")
+        name = "".join(chr(byte) if 32 <= byte < 127 else "?" for byte in tag)
+        self.put(head[:4], "block " + name).put(head[4:8], "sequence").put(head[8:], "length")
         self.put(struct.pack("<I", damage.get("checksum", crc32c(head + data))), "CRC32C of the block")
         for piece, comment in payload:
             self.put(piece, comment)
@@ -581,7 +582,8 @@ def failing_streams():
         points().points((1, 1, 1)).points((1, 1, 1), sequence=2).end(2))
     yield ("sequence-repeated", "sequence number 0, expected 1",
         points().points((1, 1, 1)).points((1, 1, 1), sequence=0).end(2))
-    yield "tag-unknown", "unknown block tag", points().block(b"PNTX", []).end()
+    yield "tag-unknown", 'unknown block tag "PNTX"', points().block(b"PNTX", []).end()
+    yield "tag-unprintable", 'unknown block tag "\\x00\\x1b[\\xff"', points().block(b"\0\x1b[\xff", []).end()
     yield "patch-in-points", "may stand here", points().patch().end()
     yield "cells-in-mesh", "may stand here", mesh(tree=QUADTREE).cells(1).end(cells=1)
     yield "residual-in-mesh", "may stand here", mesh().residual((None, 0, 0, 0)).end(1, residual=1)

@@ -434,7 +434,8 @@ class Stream:
             b"COEF": self.coefficients,
             b"END ": self.end,
         }
-        require(tag in readers, "unknown block tag")
+        escaped = "".join(chr(b) if 32 <= b < 127 else "\\x%02x" % b for b in tag)
+        require(tag in readers, 'unknown block tag "%s"' % escaped)
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -759,7 +760,8 @@ class Stream:
             "END: a spline without configurations, expected a block CONF with its degree",
         )
         require(not self.words, "END: the last cell is cut off after %d words" % len(self.words))
-        require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
+        for name, total in stated.items():
+            require(total == counted[name], "END states %d %s, but the stream holds %d" % (total, name, counted[name]))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
         cells = counted["simplices"]
         require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))

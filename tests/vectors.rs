@@ -95,6 +95,7 @@ fn vectors_that_must_fail_do_with_their_words_and_a_position() {
         let message = error.to_string();
         assert_eq!(error.kind(), ErrorKind::Malformed, "{}: {message}", vector.name);
         assert!(message.contains(vector.expected.trim_end()), "{}: {message}", vector.name);
+        assert!(!message.contains('{'), "{}: a structure in {message}", vector.name);
         assert!(message.contains(" byte ") || message.contains(": byte "), "{}: {message}", vector.name);
     }
 }

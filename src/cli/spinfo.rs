@@ -127,6 +127,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
+        // The rules of the stream come first: what breaks them is malformed, for an audit as for any reader.
+        inventory.event(&event).map_err(|error| reader.locate(error))?;
         if let Err(error) = proof.event(&event, &header) {
             if error.kind() != ErrorKind::Audit {
                 return Err(error.of_input(reader.name()).into());
@@ -134,7 +136,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             failure = Some(reader.locate(error));
             break;
         }
-        inventory.event(&event).map_err(|error| reader.locate(error))?;
         progress.set(inventory.totals().points.max(inventory.totals().vertices));
     }
     drop(progress);

@@ -166,11 +166,14 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        let tag = frame.tag.ok_or_else(|| Error::malformed("unknown block tag"))?;
+        let tag = frame.tag.ok_or_else(|| {
+            let found = bytes[..4].escape_ascii();
+            Error::malformed(format!("unknown block tag \"{found}\": the stream is newer, or damaged"))
+        })?;
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
-                "no block {:?} may stand here in a stream of kind {}",
-                String::from_utf8_lossy(&tag.bytes()),
+                "no block \"{}\" may stand here in a stream of kind {}",
+                tag.bytes().escape_ascii(),
                 self.header.kind.name()
             )));
         }

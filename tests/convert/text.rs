@@ -126,6 +126,27 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
     assert!(error.to_string().contains("a triangle mesh cannot have this line here"), "{error}");
 }
 
+/// A header line in the wrong place would otherwise be taken for a comment.
+#[test]
+fn header_lines_are_known_and_come_first() {
+    let text = text_of(&samples::mesh(samples::grids()[0]));
+    let cases = [
+        (
+            "#spmesh dims",
+            "#spmesh colour red\n#spmesh dims",
+            "found \"colour\", expected a statement of the header",
+        ),
+        ("# patch", "# patch\n#spmesh points 7", "a line of the header (#spmesh) after"),
+        ("# patch", "# patch\n #spmesh", "a line of the header (#spmesh) after"),
+        ("#spmesh dims", " \t#spmesh\tpoints 7 \n#spmesh dims", "another number of points"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&text, found, replaced, expected);
+    }
+    let commented = text.replacen("# patch", "# a comment\n#spmeshes\n# patch", 1);
+    assert_eq!(text_of(&converted(commented.as_bytes(), Format::Text, Format::Spm).unwrap()), text);
+}
+
 #[test]
 fn lines_and_patches_have_a_maximum() {
     let line = [b"#spmesh version 1\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();

@@ -93,7 +93,7 @@ impl<R: Read> TwinSource<R> {
         let mut header = TwinHeader::default();
         let mut is_first_content = false;
         while let Some(line) = lines.next_line()? {
-            let parsed = match line.strip_prefix(b"#spmesh ") {
+            let parsed = match header_statement(line) {
                 Some(rest) => header.line(rest),
                 None => {
                     is_first_content = is_content(line);
@@ -309,6 +309,12 @@ impl Group {
     }
 }
 
+/// The part of a header line after `#spmesh`; `None` for other lines.
+fn header_statement(line: &[u8]) -> Option<&[u8]> {
+    let rest = line.trim_ascii_start().strip_prefix(b"#spmesh")?;
+    (rest.is_empty() || matches!(rest[0], b' ' | b'\t')).then_some(rest)
+}
+
 /// Whether a line is a statement of content or the end.
 fn is_content(line: &[u8]) -> bool {
     let mut fields = fields(line);
@@ -322,7 +328,12 @@ fn is_content(line: &[u8]) -> bool {
 /// The statement of a line; `None` for empty lines and comments.
 fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     if !is_content(line) {
-        return Ok(None);
+        return match header_statement(line) {
+            None => Ok(None),
+            Some(_) => {
+                Err(Error::malformed("a line of the header (#spmesh) after the first line of content"))
+            }
+        };
     }
     let mut fields = fields(line);
     let fields = &mut fields;
