@@ -333,6 +333,12 @@ def passing():
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
+    yield "points-millimetres", "Integers whose product with the scale is no short decimal in binary64", Vector(
+        grid=(("0.001", "0.001", "0.0001"), ("0", "-4321987.65", "300000")), elevation=1).points(
+        (28016, 1, 3), (-28016, 2147483647, -1), (2147483647, -2147483648, 2147483647), (-1, 0, -2147483648)).end(4)
+    yield "points-feet", "A scale of many digits, and zero from a product and an offset", Vector(
+        grid=(("0.3048006096012192", "0.3048006096012192", "0.01"), ("0", "0", "-500000")), elevation=1).points(
+        (1, -1, 50000000), (0, 1000, 49999999)).end(2)
     yield "points-3d-octree", "Three dimensions, chunked by an octree that starts below zero", Vector(
         dims=3, chunked=True, tree=(1, -4, -4, -4, 8), bounds=(-4, -4, -1, 3, 1, "3.75")).cells(9, 10, 12, 13, 14).points(
         ("-4", "-4", "-1"), ("-1", "-0.5", "-1")).cells(8).points(("3", "1", "3.75"), ("0", "1", "-1")).cells(

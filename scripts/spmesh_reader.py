@@ -785,6 +785,17 @@ def decimal(value):
     return digits[:-2] if digits.endswith(".0") else digits
 
 
+def grid_decimal(stored, scale, offset):
+    """The shortest decimal that stands for a stored coordinate on the grid."""
+    world = stored * scale + offset
+    tolerance = (abs(stored * scale) + abs(offset)) * 2.0**-51
+    for digits in range(1, 18):
+        number = float("%.*e" % (digits - 1, world))
+        if abs(number - world) <= tolerance and abs((number - offset) / scale - stored) < 0.5:
+            break
+    return decimal(number + 0.0)
+
+
 def decimals(values):
     return " ".join(map(decimal, values))
 
@@ -821,12 +832,11 @@ class Text:
             self.line("#spmesh " + line)
 
     def grid(self, header):
-        (sx, sy, sz), (ox, oy, oz) = header.scale, header.offset
-        has_z = header.axes == 3
+        axes = list(zip(header.scale, header.offset))[: header.axes]
+        rest = ["0"] * (3 - header.axes)
 
         def world(point):
-            x, y, z = point
-            return "%s %s %s" % (decimal(x * sx + ox), decimal(y * sy + oy), decimal(z * sz + oz) if has_z else "0")
+            return " ".join([grid_decimal(c, *axis) for c, axis in zip(point, axes)] + rest)
 
         return world
 

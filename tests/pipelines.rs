@@ -94,6 +94,73 @@ fn axes_of_different_scales_are_triangulated_in_shape() {
     }
 }
 
+/// The words of all lines that start with a word, without it.
+fn words<'t>(text: &'t str, start: &str) -> Vec<Vec<&'t str>> {
+    let lines = text.lines().filter_map(|line| line.strip_prefix(start));
+    lines.map(|line| line.split_whitespace().collect()).collect()
+}
+
+/// Tables are joined by coordinates, so every program must print the same ones.
+#[test]
+fn coordinates_are_printed_as_they_were_given() {
+    let positions: Vec<[i32; 3]> =
+        (0..400).map(|i| [i * 7919 % 100_003 - 28_016, i * 104_729 % 99_991, i * 31 % 9973]).collect();
+    let las =
+        LasFile { scale: [0.001; 3], offset: [0.0, -4_321_987.65, 0.0], ..LasFile::of(&positions) }.bytes();
+    let decimal = |thousandths: i64| {
+        let sign = if thousandths < 0 { "-" } else { "" };
+        let digits = format!("{sign}{}.{:03}", thousandths.abs() / 1000, thousandths.abs() % 1000);
+        digits.trim_end_matches('0').trim_end_matches('.').to_string()
+    };
+    let given = |at: &[i32; 3]| {
+        [i64::from(at[0]), i64::from(at[1]) - 4_321_987_650, i64::from(at[2])].map(decimal).to_vec()
+    };
+    let mut expected: Vec<Vec<String>> = positions.iter().map(given).collect();
+    assert!(positions.iter().any(|at| (f64::from(at[0]) * 0.001).to_string().len() > 12));
+    expected.sort_unstable();
+    let folder = Folder::new();
+    let path = folder.write("a.las", &las);
+    let points = run("spfinalize", &[&path], &[]).stdout;
+    let mesh = mesh_of(&points, &[]);
+    let text_of = |arguments: &[&str], input: &[u8]| {
+        let output = run("spconvert", arguments, input);
+        assert!(output.status.success(), "{arguments:?}: {:?}", outcome(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let assert_given = |mut found: Vec<Vec<&str>>, what: &str| {
+        found.sort_unstable();
+        assert!(found == expected, "{what}: {:?} and {:?}", found.first(), expected.first());
+    };
+    for (input, to) in [(&points, "text"), (&points, "spa"), (&mesh, "text"), (&mesh, "obj"), (&mesh, "sma")]
+    {
+        let text = text_of(&["--to", to, "-"], input);
+        assert_given(words(&text, "v "), to);
+    }
+    let ply = text_of(&["--to", "ply", "--ascii", "-"], &mesh);
+    let vertices = ply.split_once("end_header\n").unwrap().1.lines().take(expected.len());
+    assert_given(vertices.map(|line| line.split(' ').collect()).collect(), "ply");
+
+    let info = run("spinfo", &["--json", "-"], &mesh);
+    let info: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    let bound = |side: &str, axis: usize| info["bounds"][side][axis].to_string();
+    let least: Vec<i32> = (0..3).map(|axis| positions.iter().map(|at| at[axis]).min().unwrap()).collect();
+    let least = given(&[least[0], least[1], least[2]]);
+    assert_eq!([bound("min", 0), bound("min", 1)], least[..2]);
+
+    let spline = run("splinefit", &["fit", "--tol", "1000", &path], &[]);
+    assert!(spline.status.success(), "{:?}", outcome(&spline));
+    let spline = folder.write("a.spline.spm", &spline.stdout);
+    let table = run("splinefit", &["eval", &spline, "--at", &path], &[]);
+    assert!(table.status.success(), "{:?}", outcome(&table));
+    let table = String::from_utf8(table.stdout).unwrap();
+    let places: Vec<Vec<&str>> = words(&table, "").into_iter().map(|row| row[..2].to_vec()).collect();
+    let rows: Vec<Vec<String>> = positions.iter().map(|at| given(at)[..2].to_vec()).collect();
+    assert!(
+        places.len() >= rows.len()
+            && rows.iter().zip(&places[places.len() - rows.len()..]).all(|(a, b)| a == b)
+    );
+}
+
 /// Points without a tree may have any scales; spfinalize puts them on one grid.
 #[test]
 fn scales_of_a_stream_meet_on_one_grid_before_its_points_are_triangulated() {

@@ -193,19 +193,12 @@ impl Violation {
     pub fn to_error(&self, header: &Header) -> Error {
         let mut message = format!("{} check failed: {}", self.check.name(), self.message);
         for (i, &(id, stored)) in self.vertices.iter().enumerate() {
-            let world = header.coordinates.to_world(stored);
-            let world: Vec<String> = world[..usize::from(header.dims)].iter().map(|&x| shortest(x)).collect();
+            let world = header.coordinates.to_decimal(stored);
+            let world: Vec<String> = world[..usize::from(header.dims)].iter().map(f64::to_string).collect();
             let name = id.map_or("point".to_string(), |id| id.to_string());
             let separator = if i == 0 { ":" } else { "," };
             message += &format!("{separator} {name} at ({})", world.join(", "));
         }
         Error::new(ErrorKind::Audit, message)
     }
-}
-
-/// A world coordinate without the noise that scale and offset leave in its last digits.
-pub fn shortest(world: f64) -> String {
-    let rounded = (world * 1e6).round() / 1e6;
-    let is_noise = (rounded - world).abs() <= 2.0 * f64::EPSILON * world.abs();
-    if is_noise { rounded } else { world }.to_string()
 }

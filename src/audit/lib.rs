@@ -61,7 +61,6 @@ mod unused;
 mod vertices;
 mod winding;
 
-pub use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use inventory::{CellPoints, Inventory, PatchSize};
 pub use inventory_configurations::{ConfigurationInventory, DegreeInventory};

@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
-use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
 
 /// First bytes of every stream. The first byte is not ASCII, and the line ends reveal damage by text-mode
@@ -27,62 +28,6 @@ const FLAG_BOUNDS: u8 = 1;
 const FLAG_TREE: u8 = 2;
 const FLAG_REGION: u8 = 4;
 const FLAG_CHUNKED: u8 = 8;
-
-/// How stored coordinates are encoded, and how they map to the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Coordinates {
-    /// World coordinates themselves.
-    F64,
-    /// Integers of 32 bits: world = stored * scale + offset, per axis.
-    I32 {
-        /// Step per axis in world units, positive.
-        scale: [f64; 3],
-        /// World coordinate of stored 0 per axis.
-        offset: [f64; 3],
-    },
-}
-
-impl Coordinates {
-    /// World coordinates of a stored point.
-    #[must_use]
-    pub fn to_world(&self, stored: Point) -> Point {
-        match self {
-            Coordinates::F64 => stored,
-            Coordinates::I32 { scale, offset } => {
-                std::array::from_fn(|axis| stored[axis] * scale[axis] + offset[axis])
-            }
-        }
-    }
-
-    /// Stored coordinates of the grid point nearest to a world point. They may be out of the range of i32.
-    #[must_use]
-    pub fn to_stored(&self, world: Point) -> Point {
-        match self {
-            Coordinates::F64 => world,
-            Coordinates::I32 { scale, offset } => {
-                std::array::from_fn(|axis| ((world[axis] - offset[axis]) / scale[axis]).round())
-            }
-        }
-    }
-
-    /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
-    #[must_use]
-    pub fn can_store(&self, value: f64) -> bool {
-        match self {
-            Coordinates::F64 => value.is_finite(),
-            Coordinates::I32 { .. } => f64::from(value as i32) == value,
-        }
-    }
-
-    /// Bytes of one stored coordinate.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        match self {
-            Coordinates::F64 => 8,
-            Coordinates::I32 { .. } => 4,
-        }
-    }
-}
 
 /// Coordinate reference system, carried verbatim.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -389,16 +334,6 @@ fn check_tree(kind: Kind, has_tree: bool) -> std::result::Result<(), String> {
         return Err(format!("a stream of kind {} has no finalization tree", kind.name()));
     }
     Ok(())
-}
-
-/// Whether every i32 has its own world coordinate, from which `to_stored` recovers it.
-///
-/// Proof, with errors in steps of `scale`: rounding the sum costs at most 2^-53 (2^51 + 2^31 + 1), about a
-/// quarter. Rounding product, difference and quotient costs 2^-21 together. The total is below one half, so
-/// rounding to the nearest integer removes it.
-fn is_grid(scale: f64, offset: f64) -> bool {
-    let steps_max = 2f64.powi(51);
-    scale > 0.0 && offset.abs() <= scale * steps_max && (scale * steps_max).is_finite()
 }
 
 fn encode_crs(crs: &Crs) -> (u16, Vec<u8>) {

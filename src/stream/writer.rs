@@ -8,9 +8,10 @@ use std::io::Write;
 
 use super::block::{Frame, Tag};
 use super::configuration_rules::ConfigurationRules;
+use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::functions::{FunctionRules, check_end};
-use super::header::{Coordinates, Header};
+use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;

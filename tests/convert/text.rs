@@ -126,6 +126,34 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
     assert!(error.to_string().contains("a triangle mesh cannot have this line here"), "{error}");
 }
 
+#[test]
+fn numbers_off_the_grid_are_refused_at_their_line() {
+    let twin =
+        |name: &str| load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().expected;
+    let millimetres = twin("points-millimetres");
+    let cases = [
+        (
+            "v 28.016 ",
+            "v 28.0164 ",
+            "coordinate 28.0164 is not on the grid of the header, next to it is 28.016",
+        ),
+        ("v 28.016 ", "v 28.01600001 ", "next to it is 28.016"),
+        (" 300000.0003", " 300000.00035", "is not on the grid"),
+        ("v 28.016 ", "v 2147483.648 ", "does not fit the header's encoding"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&millimetres, found, replaced, expected);
+    }
+    assert_refused(&twin("points-uneven"), "v 0.5 0.5 0", "v 0.5 0.5 7", "z is 7, but the points");
+    assert_refused(&twin("points-f64-2d"), "v 1.5 -0.1 0", "v 1.5 -0.1 0.5", "z is 0.5, but the points");
+    // Other decimals of the same grid points: with the noise of f64, with zeros, with an exponent.
+    for other in ["28.016000000000002", "28.01600", "2.8016e1"] {
+        let stream = |text: &str| converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let changed = millimetres.replacen("v 28.016 ", &format!("v {other} "), 1);
+        assert!(stream(&changed) == stream(&millimetres), "{other}");
+    }
+}
+
 /// A header line in the wrong place would otherwise be taken for a comment.
 #[test]
 fn header_lines_are_known_and_come_first() {

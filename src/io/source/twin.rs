@@ -399,15 +399,28 @@ fn statements_of(kind: Kind) -> &'static str {
 /// Converts world coordinates to a stored point and checks it against the header.
 fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Point> {
     let world = parse_decimals::<3>(fields)?;
-    let mut stored = header.coordinates.to_stored(world);
-    stored[header.coordinates_per_point()..].fill(0.0);
+    let (coordinates, axes) = (&header.coordinates, header.coordinates_per_point());
+    let mut stored = coordinates.to_stored(world);
+    stored[axes..].fill(0.0);
+    if let Some(z) = world[axes..].iter().find(|&&z| z != 0.0) {
+        return Err(Error::malformed(format!(
+            "z is {z}, but the points of this stream have none: expected 0"
+        )));
+    }
     if let Coordinates::I32 { .. } = header.coordinates {
         // Adding 0.0 turns a -0.0 from rounding into the integer 0.
         stored = stored.map(|value| value + 0.0);
     }
-    for (value, world) in stored.iter().zip(world) {
-        if !header.coordinates.can_store(*value) {
+    for axis in 0..axes {
+        let (value, world) = (stored[axis], world[axis]);
+        if !coordinates.can_store(value) {
             return Err(Error::malformed(format!("coordinate {world} does not fit the header's encoding")));
+        }
+        if !coordinates.is_decimal_of(axis, world, value) {
+            let nearest = coordinates.to_decimal(stored)[axis];
+            let message =
+                format!("coordinate {world} is not on the grid of the header, next to it is {nearest}");
+            return Err(Error::malformed(message));
         }
     }
     check_place(header, stored)?;
