@@ -160,7 +160,7 @@ mod tests {
     fn other_numbers_do_not_stand_for_a_stored_coordinate() {
         let axis = Axis { scale: 0.001, offset: 300_000.0 };
         for (number, stored) in
-            [(300_000.0005, 0.0), (300_000.0005, 1.0), (300_000.001, 0.0), (300_000.001_1, 1.0)]
+            [(300_000.000_5, 0.0), (300_000.000_5, 1.0), (300_000.001, 0.0), (300_000.001_1, 1.0)]
         {
             assert!(!axis.is_decimal_of(number, stored), "{number}");
         }
