@@ -57,12 +57,20 @@ impl Axis {
         self.stands_for(number, stored, self.world(stored), self.tolerance(stored))
     }
 
-    /// As [`Axis::decimal`], digit by digit.
-    #[cold]
+    /// As [`Axis::decimal`], by bisection of the number of digits: more of them are closer.
     fn search(self, stored: f64, world: f64, tolerance: f64) -> f64 {
         let rounded = |digits: usize| format!("{world:.*e}", digits - 1).parse().unwrap_or(world);
-        let is_short = |number: &f64| self.stands_for(*number, stored, world, tolerance);
-        (1..=DIGITS_MAX).map(rounded).find(is_short).unwrap_or(world) + 0.0
+        let is_short = |digits: usize| self.stands_for(rounded(digits), stored, world, tolerance);
+        let (mut few, mut enough) = (0, DIGITS_MAX);
+        while few + 1 < enough {
+            let digits = usize::midpoint(few, enough);
+            *if is_short(digits) { &mut enough } else { &mut few } = digits;
+        }
+        // Numbers next to the tolerance may be rounded across it.
+        while let Some(digits) = (1..enough).rev().take(2).find(|&digits| is_short(digits)) {
+            enough = digits;
+        }
+        rounded(enough) + 0.0
     }
 
     #[inline]
@@ -117,7 +125,7 @@ mod tests {
         }
     }
 
-    /// The same by definition, without the search by powers.
+    /// The same by definition, digit by digit.
     #[test]
     fn no_number_with_fewer_digits_stands_for_it() {
         for scale in SCALES {
@@ -125,8 +133,12 @@ mod tests {
                 let axis = Axis { scale, offset };
                 for stored in integers().step_by(7) {
                     let number = axis.decimal(stored);
-                    let searched = axis.search(stored, axis.world(stored), axis.tolerance(stored));
-                    assert_eq!(number.to_bits(), searched.to_bits(), "{scale} {offset} {stored}");
+                    let world = axis.world(stored);
+                    let rounded = |digits: usize| format!("{world:.*e}", digits - 1).parse::<f64>().unwrap();
+                    let mut all = (1..=DIGITS_MAX).map(rounded);
+                    let least = all.find(|&number| axis.is_decimal_of(number, stored)).unwrap();
+                    assert_eq!(number, least, "{scale} {offset} {stored}");
+                    assert!(number != 0.0 || number.is_sign_positive(), "{scale} {offset} {stored}");
                 }
             }
         }
