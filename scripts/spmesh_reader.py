@@ -118,6 +118,7 @@ class Header:
         )
         self.tree = Tree(self.dims, data) if flags & 2 else None
         self.bounds = struct.unpack_from("<6d", data, 80) if flags & 1 else None
+        self.check_scales()
         self.check_bounds()
         self.region = None
         if flags & 4:
@@ -136,6 +137,13 @@ class Header:
                 scale > 0 and abs(offset) <= scale * 2.0**51 and scale * 2.0**51 < math.inf,
                 "scale is not positive, or scale and offset are too far apart",
             )
+
+    def check_scales(self):
+        is_free = self.kind == "points" and not self.tree
+        require(
+            not self.is_integer or is_free or len(set(self.scale[: self.dims])) == 1,
+            "the axes of the geometry have the scales %s, expected one scale" % decimals(self.scale[: self.dims]),
+        )
 
     def check_bounds(self):
         if self.bounds is None:
@@ -371,6 +379,7 @@ class Stream:
         self.live = {}
         self.last, self.words, self.neighbour = None, [], -1
         self.degree = self.group = self.boundary = self.function = None
+        self.has_pairs = False
         self.finalized = self.named = self.labels = self.phase = 0
 
     def take(self, length):
@@ -425,7 +434,8 @@ class Stream:
             b"COEF": self.coefficients,
             b"END ": self.end,
         }
-        require(tag in readers, "unknown block tag")
+        escaped = "".join(chr(b) if 32 <= b < 127 else "\\x%02x" % b for b in tag)
+        require(tag in readers, 'unknown block tag "%s"' % escaped)
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -556,9 +566,17 @@ class Stream:
         require(len(payload) % 4 == 0, "%d bytes are not a whole number of records of 4" % len(payload))
         self.words += struct.unpack("<%dI" % (len(payload) // 4), payload)
         at = 0
-        while len(self.words) - at >= 2:
-            marked, neighbours = self.words[at : at + 2]
-            infinite, vertices = marked >> 31, marked & 0x7FFFFFFF
+        while len(self.words) > at:
+            infinite, vertices = self.words[at] >> 31, self.words[at] & 0x7FFFFFFF
+            self.check_vertex_count(infinite, vertices)
+            if len(self.words) == at + 1:
+                break
+            neighbours, corners = self.words[at + 1], vertices + infinite
+            require(
+                neighbours <= corners * (corners - 3) // 2,
+                "cell of %d vertices and %d neighbours, which can have %d facets at most"
+                % (vertices, neighbours, corners * (corners - 3) // 2),
+            )
             require(
                 2 + vertices + neighbours <= 2**31,
                 "cell of %d vertices and %d neighbours, the maximum is 2^31 words" % (vertices, neighbours),
@@ -570,10 +588,14 @@ class Stream:
             at = end
         del self.words[:at]
 
-    def cell4(self, infinite, vertices, neighbours):
+    def check_vertex_count(self, infinite, vertices):
         least, points = (4 if infinite else 5), self.total["vertices"]
         sort = "an infinite" if infinite else "a finite"
-        require(len(vertices) >= least, "%s cell of %d vertices, expected at least %d" % (sort, len(vertices), least))
+        require(vertices >= least, "%s cell of %d vertices, expected at least %d" % (sort, vertices, least))
+        require(vertices <= points, "%s cell of %d vertices, but %d points" % (sort, vertices, points))
+
+    def cell4(self, infinite, vertices, neighbours):
+        points = self.total["vertices"]
         require(
             is_increasing(vertices) and vertices[-1] < points,
             "the vertices of a cell are not increasing numbers of %d points" % points,
@@ -625,6 +647,7 @@ class Stream:
                 degree > last or standing == known,
                 "the configurations of degree %d change their standing" % degree,
             )
+        self.has_pairs = self.has_pairs or degree == 1
         if self.degree != (degree, standing):
             self.degree, self.group = (degree, standing), None
             self.text.line("degree %d %s" % (degree, ("any", "delaunay", "lifted")[standing]))
@@ -670,6 +693,7 @@ class Stream:
         self.text.line(("line" if infinite else "on") + "".join([" %d" % (knot + 1) for knot in ends]))
 
     def functions(self, payload):
+        require(self.has_pairs or not payload, "functions in a stream without configurations of degree 1")
         at = 0
         while at < len(payload):
             at = self.one_function(payload, at)
@@ -712,6 +736,8 @@ class Stream:
         require(len(payload) == 56, "END of %d bytes, expected 56" % len(payload))
         stated = dict(zip(self.total, struct.unpack("<7Q", payload)))
         counted = dict(self.total)
+        for name, total in stated.items():
+            require(total < UNKNOWN, "END: %d %s are beyond counting" % (total, name))
         if self.header.is_mesh:
             counted["merged"] = stated["merged"]
             counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self.named
@@ -729,8 +755,13 @@ class Stream:
             self.header.kind != "splines" or coefficients > 0 and functions in (0, coefficients),
             "END: %d coefficients of %d functions: one each is needed" % (coefficients, functions),
         )
+        require(
+            self.header.kind != "splines" or self.degree is not None,
+            "END: a spline without configurations, expected a block CONF with its degree",
+        )
         require(not self.words, "END: the last cell is cut off after %d words" % len(self.words))
-        require(stated == counted, "END states %r, but the stream holds %r" % (stated, counted))
+        for name, total in stated.items():
+            require(total == counted[name], "END states %d %s, but the stream holds %d" % (total, name, counted[name]))
         require(self.header.points in (UNKNOWN, stated["points"]), "END: the header states another number of points")
         cells = counted["simplices"]
         require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))
@@ -752,6 +783,17 @@ def decimal(value):
     if "e" in digits:
         return format(Decimal(digits), "f")
     return digits[:-2] if digits.endswith(".0") else digits
+
+
+def grid_decimal(stored, scale, offset):
+    """The shortest decimal that stands for a stored coordinate on the grid."""
+    world = stored * scale + offset
+    tolerance = (abs(stored * scale) + abs(offset)) * 2.0**-51
+    for digits in range(1, 18):
+        number = float("%.*e" % (digits - 1, world))
+        if abs(number - world) <= tolerance and abs((number - offset) / scale - stored) < 0.5:
+            break
+    return decimal(number + 0.0)
 
 
 def decimals(values):
@@ -790,12 +832,11 @@ class Text:
             self.line("#spmesh " + line)
 
     def grid(self, header):
-        (sx, sy, sz), (ox, oy, oz) = header.scale, header.offset
-        has_z = header.axes == 3
+        axes = list(zip(header.scale, header.offset))[: header.axes]
+        rest = ["0"] * (3 - header.axes)
 
         def world(point):
-            x, y, z = point
-            return "%s %s %s" % (decimal(x * sx + ox), decimal(y * sy + oy), decimal(z * sz + oz) if has_z else "0")
+            return " ".join([grid_decimal(c, *axis) for c, axis in zip(point, axes)] + rest)
 
         return world
 

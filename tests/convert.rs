@@ -15,6 +15,7 @@ use std::io::Cursor;
 use spmesh_convert::{Format, Options, convert};
 use spmesh_core::error::{ErrorKind, Result};
 
+use crate::programs::assert_outcome;
 use crate::vectors::load;
 
 /// `input` converted from one format to another.
@@ -42,6 +43,57 @@ pub fn assert_refused(text: &str, found: &str, replaced: &str, expected: &str) {
     assert_eq!(error.kind(), ErrorKind::Malformed, "{replaced}: {error}");
     let message = error.to_string();
     assert!(message.contains(expected) && message.starts_with("test: line "), "{replaced}: {message}");
+}
+
+/// A fault that no reader of the output could see must not get an END.
+#[test]
+fn no_malformed_vector_goes_on_to_an_output() {
+    for vector in load("fail", "err") {
+        for to in [Format::Spm, Format::Text, Format::Obj, Format::Ply, Format::Spa, Format::Smb, Format::Vtu]
+        {
+            let error = converted(&vector.bytes, Format::Spm, to).expect_err(&vector.name);
+            // Some formats refuse the kind of stream by its header.
+            let is_refused = error.kind() == ErrorKind::Malformed || error.kind() == ErrorKind::Usage;
+            let has_words = error.to_string().contains(vector.expected.trim_end());
+            assert!(
+                is_refused && (has_words || error.kind() == ErrorKind::Usage),
+                "{}: {error}",
+                vector.name
+            );
+        }
+    }
+}
+
+/// The twins break the same rules, and cell tags that lie are refused in points, too.
+#[test]
+fn rules_that_need_memory_hold_in_twins_and_in_points() {
+    let twin =
+        |name: &str| load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().expected;
+    assert_refused(&twin("points-tagged"), "x cell 16\n", "x cell 19\n", "in a cell that is final");
+    assert_refused(&twin("points-tagged"), "x cell 31\n", "x cell 16\n", "final already");
+    assert_refused(
+        &twin("mesh-two-patches"),
+        "x 1\n# patch",
+        "x 2\n# patch",
+        "referenced after finalization",
+    );
+    assert_refused(
+        &twin("partial-residual"),
+        "r 1 0 0 0",
+        "r 1 1 0 0",
+        "other coordinates than its vertex 0",
+    );
+    for vector in load("fail", "err").into_iter().filter(|vector| vector.name.starts_with("point-in-final-"))
+    {
+        for (tool, arguments) in [
+            ("spfinalize", &[][..]),
+            ("tess3", &[]),
+            ("configgen", &["--degree", "1"]),
+            ("spdelaunay2d", &[]),
+        ] {
+            assert_outcome(tool, &[arguments, &["-"]].concat(), &vector.bytes, 3, vector.expected.trim_end());
+        }
+    }
 }
 
 /// Asserts that a text twin is refused when cut anywhere but before its last line feed.

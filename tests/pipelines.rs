@@ -4,7 +4,10 @@ use std::fs;
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::programs::{Folder, assert_silent_without_reader, cloud, outcome, run, sample, start, tool};
+use crate::programs::{
+    Folder, assert_outcome, assert_silent_without_reader, cloud, outcome, run, sample, start, tool,
+};
+use crate::sources::las_file::LasFile;
 use crate::vectors::run_python;
 
 /// The streaming triangulators, and their flags for spfinalize.
@@ -60,6 +63,126 @@ fn points_of_space_become_an_audited_mesh() {
     let flat = run("spfinalize", &["--octree", "-"], b"0 0 1\n5 0 1\n0 5 1\n9 9 1\n");
     let (code, message) = outcome(&run("spdelaunay3d", &[], &flat.stdout));
     assert_eq!((code, message.contains("all points in a plane")), (Some(0), true), "{message}");
+}
+
+/// Stored heights count for less than stored x and y here, so they must not be triangulated as they are.
+#[test]
+fn axes_of_different_scales_are_triangulated_in_shape() {
+    let positions: Vec<[i32; 3]> =
+        (0..300).map(|i| [i * 7919 % 1009, i * 3571 % 997, i * 131 % 97]).collect();
+    let lines = |scale: [f64; 3]| -> String {
+        let line = |at: &[i32; 3]| -> String {
+            let world: Vec<String> = (0..3).map(|i| (f64::from(at[i]) * scale[i]).to_string()).collect();
+            world.join(" ") + "\n"
+        };
+        positions.iter().map(line).collect()
+    };
+    // A common grid; a common measure that is too fine a fraction, so that points become f64.
+    for scale in [[0.25, 0.25, 2.0], [0.25, 0.5, 0.75], [0.25, 0.25, 0.25 * 1.000_030_517_578_125]] {
+        let las = LasFile { scale, ..LasFile::of(&positions) }.bytes();
+        let points = run("spfinalize", &["--octree", "--cell-points", "50", "-"], &las);
+        let streamed = run("spdelaunay3d", &[], &points.stdout);
+        let whole = run("tess3", &["-"], lines(scale).as_bytes());
+        assert!(streamed.status.success() && whole.status.success(), "{:?}", outcome(&points));
+        let (streamed, whole) = (tetrahedra(&streamed.stdout), tetrahedra(&whole.stdout));
+        assert!(streamed.len() > 1000 && streamed == whole, "{scale:?}: {} {}", streamed.len(), whole.len());
+        let convert = ["--from", "points", "--dims", "3", "--to", "spm"];
+        let points = run("spconvert", &convert, &las);
+        let points = run("spfinalize", &["--octree", "-"], &points.stdout);
+        let again = run("spdelaunay3d", &[], &points.stdout);
+        assert!(tetrahedra(&again.stdout) == whole, "{scale:?} through spconvert");
+    }
+}
+
+/// The words of all lines that start with a word, without it.
+fn words<'t>(text: &'t str, start: &str) -> Vec<Vec<&'t str>> {
+    let lines = text.lines().filter_map(|line| line.strip_prefix(start));
+    lines.map(|line| line.split_whitespace().collect()).collect()
+}
+
+/// Tables are joined by coordinates, so every program must print the same ones.
+#[test]
+fn coordinates_are_printed_as_they_were_given() {
+    let positions: Vec<[i32; 3]> =
+        (0..400).map(|i| [i * 7919 % 100_003 - 28_016, i * 104_729 % 99_991, i * 31 % 9973]).collect();
+    let las =
+        LasFile { scale: [0.001; 3], offset: [0.0, -4_321_987.65, 0.0], ..LasFile::of(&positions) }.bytes();
+    let decimal = |thousandths: i64| {
+        let sign = if thousandths < 0 { "-" } else { "" };
+        let digits = format!("{sign}{}.{:03}", thousandths.abs() / 1000, thousandths.abs() % 1000);
+        digits.trim_end_matches('0').trim_end_matches('.').to_string()
+    };
+    let given = |at: &[i32; 3]| {
+        [i64::from(at[0]), i64::from(at[1]) - 4_321_987_650, i64::from(at[2])].map(decimal).to_vec()
+    };
+    let mut expected: Vec<Vec<String>> = positions.iter().map(given).collect();
+    assert!(positions.iter().any(|at| (f64::from(at[0]) * 0.001).to_string().len() > 12));
+    expected.sort_unstable();
+    let folder = Folder::new();
+    let path = folder.write("a.las", &las);
+    let points = run("spfinalize", &[&path], &[]).stdout;
+    let mesh = mesh_of(&points, &[]);
+    let text_of = |arguments: &[&str], input: &[u8]| {
+        let output = run("spconvert", arguments, input);
+        assert!(output.status.success(), "{arguments:?}: {:?}", outcome(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let assert_given = |mut found: Vec<Vec<&str>>, what: &str| {
+        found.sort_unstable();
+        assert!(found == expected, "{what}: {:?} and {:?}", found.first(), expected.first());
+    };
+    for (input, to) in [(&points, "text"), (&points, "spa"), (&mesh, "text"), (&mesh, "obj"), (&mesh, "sma")]
+    {
+        let text = text_of(&["--to", to, "-"], input);
+        assert_given(words(&text, "v "), to);
+    }
+    let ply = text_of(&["--to", "ply", "--ascii", "-"], &mesh);
+    let vertices = ply.split_once("end_header\n").unwrap().1.lines().take(expected.len());
+    assert_given(vertices.map(|line| line.split(' ').collect()).collect(), "ply");
+
+    let info = run("spinfo", &["--json", "-"], &mesh);
+    let info: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    let bound = |side: &str, axis: usize| info["bounds"][side][axis].to_string();
+    let least: Vec<i32> = (0..3).map(|axis| positions.iter().map(|at| at[axis]).min().unwrap()).collect();
+    let least = given(&[least[0], least[1], least[2]]);
+    assert_eq!([bound("min", 0), bound("min", 1)], least[..2]);
+
+    let spline = run("splinefit", &["fit", "--tol", "1000", &path], &[]);
+    assert!(spline.status.success(), "{:?}", outcome(&spline));
+    let spline = folder.write("a.spline.spm", &spline.stdout);
+    let table = run("splinefit", &["eval", &spline, "--at", &path], &[]);
+    assert!(table.status.success(), "{:?}", outcome(&table));
+    let table = String::from_utf8(table.stdout).unwrap();
+    let places: Vec<Vec<&str>> = words(&table, "").into_iter().map(|row| row[..2].to_vec()).collect();
+    let rows: Vec<Vec<String>> = positions.iter().map(|at| given(at)[..2].to_vec()).collect();
+    assert!(
+        places.len() >= rows.len()
+            && rows.iter().zip(&places[places.len() - rows.len()..]).all(|(a, b)| a == b)
+    );
+}
+
+/// Points without a tree may have any scales; spfinalize puts them on one grid.
+#[test]
+fn scales_of_a_stream_meet_on_one_grid_before_its_points_are_triangulated() {
+    let header = |tree: &str| {
+        format!(
+            "#spmesh version 1\n#spmesh kind points\n#spmesh coordinates i32\n#spmesh scale 0.25 0.25 2\n\
+             #spmesh offset 0 0 0\n#spmesh dims 3\n#spmesh elevation no\n{tree}#spmesh chunked no\n"
+        )
+    };
+    let points: String =
+        (0..200).map(|i| format!("v {} {} {}\n", i * 37 % 101, i * 53 % 97, i % 9 * 2)).collect();
+    let end = "# end points 200 cells 0 vertices 0 simplices 0 merged 0 residual 0 walls 0\n";
+    let twin = |tree: &str| [&header(tree), &points, end].concat();
+    let stream = run("spconvert", &["--to", "spm"], twin("").as_bytes());
+    assert!(stream.status.success(), "{:?}", outcome(&stream));
+    let finalized = run("spfinalize", &["--octree", "-"], &stream.stdout);
+    let streamed = run("spdelaunay3d", &[], &finalized.stdout);
+    let lines = points.replace("v ", "");
+    let whole = run("tess3", &["-"], lines.as_bytes());
+    assert!(tetrahedra(&streamed.stdout) == tetrahedra(&whole.stdout) && whole.status.success());
+    let uneven = twin("#spmesh tree 0 0 0 0 1024\n");
+    assert_outcome("spconvert", &["--to", "spm"], uneven.as_bytes(), 3, "expected one scale");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod damage;
 mod grids;
 mod las;
-mod las_file;
+pub mod las_file;
 mod raw;
 mod sp;
 mod structure;

@@ -84,6 +84,7 @@ fn joined(events: Vec<Event>) -> Vec<Event> {
             (_, Event::Points(points)) if points.is_empty() => {}
             (_, Event::Cells(cells)) if cells.is_empty() => {}
             (_, Event::Labels(labels)) if labels.is_empty() => {}
+            (_, Event::Functions(functions)) if functions.is_empty() => {}
             (_, Event::ResidualPoints(points)) if points.is_empty() => {}
             (_, Event::Walls(walls)) if walls.is_empty() => {}
             (_, event) => result.push(event),
@@ -302,7 +303,8 @@ fn random_header(random: &mut Random, kind: Kind) -> (Header, CellTree) {
     let coordinates = if random.coin() {
         Coordinates::F64
     } else {
-        Coordinates::I32 { scale: [0.01, 0.5, 1e-3], offset: [5e5, -4e6, random.below(100) as f64] }
+        let height = if dims == 3 { 0.01 } else { 1e-3 };
+        Coordinates::I32 { scale: [0.01, 0.01, height], offset: [5e5, -4e6, random.below(100) as f64] }
     };
     let mut header = Header::new(kind, coordinates, dims, dims == 2 && random.coin());
     let tree = CellTree::new(dims, 4, [-32.0, 0.0, if dims == 3 { -8.0 } else { 0.0 }], 64.0).unwrap();

@@ -38,7 +38,7 @@ pub enum Check {
     Region,
     /// No point follows the tag of its cell, and no tag repeats another.
     Cells,
-    /// The points between tags lie in one of the cells that are tagged next.
+    /// The points between two runs of tags lie in one cell, which the second run tags.
     Chunks,
     /// Residual points are the vertices that are not final, and points not written before, each once.
     Residual,
@@ -102,7 +102,9 @@ impl Check {
             Check::Labels => ("labels", "all vertices have a label or none has, and it follows its vertex"),
             Check::Region => ("region", "every point lies in the region of the stream"),
             Check::Cells => ("cells", "no point follows the tag of its cell, every tag is news"),
-            Check::Chunks => ("chunks", "points between tags lie in one cell that is tagged next"),
+            Check::Chunks => {
+                ("chunks", "the points between two runs of tags lie in one cell, which the second run tags")
+            }
             Check::Residual => ("residual", "the residual is what is not final, each point once"),
             Check::Walls => ("walls", "the walls are the open edges or facets of the final simplices"),
         }
@@ -191,19 +193,12 @@ impl Violation {
     pub fn to_error(&self, header: &Header) -> Error {
         let mut message = format!("{} check failed: {}", self.check.name(), self.message);
         for (i, &(id, stored)) in self.vertices.iter().enumerate() {
-            let world = header.coordinates.to_world(stored);
-            let world: Vec<String> = world[..usize::from(header.dims)].iter().map(|&x| shortest(x)).collect();
+            let world = header.coordinates.to_decimal(stored);
+            let world: Vec<String> = world[..usize::from(header.dims)].iter().map(f64::to_string).collect();
             let name = id.map_or("point".to_string(), |id| id.to_string());
             let separator = if i == 0 { ":" } else { "," };
             message += &format!("{separator} {name} at ({})", world.join(", "));
         }
         Error::new(ErrorKind::Audit, message)
     }
-}
-
-/// A world coordinate without the noise that scale and offset leave in its last digits.
-pub fn shortest(world: f64) -> String {
-    let rounded = (world * 1e6).round() / 1e6;
-    let is_noise = (rounded - world).abs() <= 2.0 * f64::EPSILON * world.abs();
-    if is_noise { rounded } else { world }.to_string()
 }

@@ -53,15 +53,12 @@ impl<const N: usize, T: Copy> OpenFacets<N, T> {
         }
     }
 
-    /// Removes a facet; returns whether it was open.
-    pub(super) fn close(&mut self, facet: [u64; N]) -> bool {
+    /// Removes a facet; returns the data of its simplex if it was open.
+    pub(super) fn close(&mut self, facet: [u64; N]) -> Option<T> {
         let (sorted, is_increasing) = increasing(facet);
         match self.open.entry(sorted) {
-            Entry::Occupied(side) if side.get().is_increasing == is_increasing => {
-                side.remove();
-                true
-            }
-            _ => false,
+            Entry::Occupied(side) if side.get().is_increasing == is_increasing => Some(side.remove().simplex),
+            _ => None,
         }
     }
 
@@ -128,10 +125,10 @@ mod tests {
             assert_eq!(edges.meet([a, b], 'p'), Meeting::Open);
             assert_eq!(edges.meet([a, b], 'q'), Meeting::Twice('p'));
             assert_eq!(edges.iter().collect::<Vec<_>>(), [([a, b], 'p')]);
-            assert!(!edges.close([b, a]));
+            assert_eq!(edges.close([b, a]), None);
             assert_eq!(edges.meet([b, a], 'q'), Meeting::Twin('p'));
             assert_eq!(edges.meet([b, a], 'q'), Meeting::Open);
-            assert!(edges.close([b, a]));
+            assert_eq!(edges.close([b, a]), Some('q'));
             assert_eq!(edges.len(), 0);
         }
     }

@@ -4,17 +4,16 @@ use super::inventory_configurations::ConfigurationInventory;
 use super::inventory4::Inventory4;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{Event, FinalizedCells, Header, LiveVertices, Patch, Totals};
+use spmesh_stream::{Event, Header, MemoryRules, Patch, Totals};
 
-/// Counts of a stream, gathered event by event. It also verifies a rule that the reader of the container does
-/// not check, because that takes memory: nothing comes again after its finalization.
-#[derive(Debug, Default)]
+/// Counts of a stream, gathered event by event. It also verifies the rules that the reader of the container
+/// does not check, because that takes memory.
+#[derive(Debug)]
 pub struct Inventory {
-    live: LiveVertices<()>,
+    rules: MemoryRules,
     vertices_per_simplex: usize,
     vertices_per_wall: usize,
     labels: u64,
-    finalized: Option<FinalizedCells>,
     found: Option<Bounds>,
     totals: Totals,
     patches: u64,
@@ -54,40 +53,40 @@ impl Inventory {
     #[must_use]
     pub fn new(header: &Header) -> Self {
         Inventory {
+            rules: MemoryRules::new(header),
             vertices_per_simplex: header.kind.vertices_per_simplex(),
             vertices_per_wall: header.kind.vertices_per_wall(),
-            finalized: header.tree.map(FinalizedCells::new),
-            ..Inventory::default()
+            labels: 0,
+            found: None,
+            totals: Totals::default(),
+            patches: 0,
+            largest_patch: PatchSize::default(),
+            cells: CellPoints::default(),
+            run: 0,
+            four: Inventory4::default(),
+            configurations: ConfigurationInventory::default(),
         }
     }
 
     /// Adds the next event.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if a point follows the tag of its cell, a tag repeats an
-    /// earlier one, or a vertex is used after its finalization.
+    /// [`spmesh_core::error::ErrorKind::Malformed`] as [`MemoryRules::check`].
     pub fn event(&mut self, event: &Event) -> Result<()> {
+        self.rules.check(event)?;
         match event {
             Event::Points(points) => {
-                if let Some(finalized) = &mut self.finalized {
-                    finalized.check_points(points)?;
-                }
                 self.extend(points.iter().copied());
                 self.totals.points += points.len() as u64;
                 self.run += points.len() as u64;
             }
             Event::Cells(cells) => {
-                if let Some(finalized) = &mut self.finalized {
-                    cells.iter().try_for_each(|&cell| finalized.finalize(cell))?;
-                }
                 self.totals.cells += cells.len() as u64;
                 self.end_run();
             }
-            Event::Patch(patch) => return self.patch(patch),
+            Event::Patch(patch) => self.patch(patch),
             Event::Labels(labels) => self.labels += labels.len() as u64,
             Event::ResidualPoints(points) => {
-                let mut ids = points.iter().filter_map(|&(id, _)| id);
-                ids.try_for_each(|id| self.live.retire(id))?;
                 self.extend(points.iter().map(|&(_, point)| point));
                 self.totals.residual_points += points.len() as u64;
             }
@@ -128,7 +127,7 @@ impl Inventory {
     /// Most vertices that were live at once: the width of the stream.
     #[must_use]
     pub fn width(&self) -> usize {
-        self.live.live_max()
+        self.rules.live_max()
     }
 
     /// Number of vertices that have a label.
@@ -155,7 +154,7 @@ impl Inventory {
         self.cells
     }
 
-    fn patch(&mut self, patch: &Patch) -> Result<()> {
+    fn patch(&mut self, patch: &Patch) {
         self.extend(patch.new.iter().copied());
         let size = PatchSize {
             simplices: (patch.simplices.len() / self.vertices_per_simplex) as u64,
@@ -166,7 +165,6 @@ impl Inventory {
         self.totals.simplices += size.simplices;
         self.patches += 1;
         self.largest_patch = self.largest_patch.max(size);
-        self.live.enter(patch, |_, _| ()).map(|_| ())
     }
 
     fn extend(&mut self, points: impl Iterator<Item = Point>) {

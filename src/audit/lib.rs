@@ -51,7 +51,9 @@ mod mesh;
 mod partial;
 mod partial_triangles;
 mod point_set;
+mod point_tree;
 mod points;
+mod residual_fit;
 mod tetrahedra;
 mod totals;
 mod triangles;
@@ -59,7 +61,6 @@ mod unused;
 mod vertices;
 mod winding;
 
-pub use check::shortest;
 pub use check::{Check, CheckLine, Violation};
 pub use inventory::{CellPoints, Inventory, PatchSize};
 pub use inventory_configurations::{ConfigurationInventory, DegreeInventory};

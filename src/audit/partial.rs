@@ -1,8 +1,8 @@
 //! Audit of the final simplices of a region and its residual.
 //!
 //! It proves what another program needs to complete the mesh: the final simplices are correct, exactly the
-//! walls and the residual are open, and the region loses no point and has none outside it. The audit of the
-//! merged mesh proves that the rest fits.
+//! walls and the residual are open, the residual fits the final simplices ([`super::residual_fit`]), and the
+//! region loses no point and has none outside it. The audit of the merged mesh proves that parts fit together.
 
 use std::cmp::Ordering;
 use std::collections::HashSet;
@@ -12,6 +12,7 @@ use foldhash::fast::RandomState;
 use super::check::{Check, Ledger, Violation};
 use super::corner::Corner;
 use super::facets::OpenFacets;
+use super::residual_fit::{self, Wall, WallGeometry};
 use super::triangles::Standard;
 use super::vertices::Vertices;
 use spmesh_model::bounds::{Point, Region};
@@ -19,7 +20,7 @@ use spmesh_stream::{Event, Header, Patch, Totals};
 
 /// What can be proved of final simplices one by one, with the vertices that are live and the facets that are
 /// open.
-pub(super) trait FinalSimplices<const D: usize> {
+pub(super) trait FinalSimplices<const D: usize>: WallGeometry<D> {
     /// Names of simplices and their facets in messages.
     const NAMES: [&'static str; 2];
 
@@ -41,6 +42,9 @@ pub(super) trait FinalSimplices<const D: usize> {
 
     fn facets_mut(&mut self) -> &mut OpenFacets<D, Corner<D>>;
 
+    /// How many of its simplices a vertex has in the direction of [`super::winding`].
+    fn ahead(star: &Self::Star) -> u16;
+
     /// Converts the corners of a facet between the order of a wall and the order of its simplex.
     fn turned(facet: [u64; D]) -> [u64; D];
 }
@@ -48,6 +52,7 @@ pub(super) trait FinalSimplices<const D: usize> {
 /// State of the audit of a partial mesh. Memory: the width of the stream and the residual.
 pub(super) struct PartialAudit<S, const D: usize> {
     region: Region<3>,
+    standard: Standard,
     simplices: S,
     residual: Vec<(Option<u64>, Point)>,
     /// The corners of all walls, D each.
@@ -71,6 +76,7 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
     pub(super) fn new(header: &Header, standard: Standard) -> Self {
         PartialAudit {
             region: header.region.unwrap_or(Region::EVERYTHING),
+            standard,
             simplices: S::new(standard),
             residual: Vec::new(),
             walls: Vec::new(),
@@ -113,7 +119,10 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
     fn end(&mut self, totals: &Totals, ledger: &mut Ledger) -> Result<(), Violation> {
         self.check_written(ledger)?;
         self.check_distinct(ledger)?;
-        self.check_walls(ledger)?;
+        let walls = self.check_walls(ledger)?;
+        let vertices = self.simplices.vertices();
+        let ahead = |id: u64| vertices.live(id).map_or(0, |vertex| S::ahead(&vertex.star));
+        residual_fit::check::<S, D>(&self.residual, &walls, self.standard, ahead, ledger)?;
         let unwritten = self.residual.iter().filter(|(id, _)| id.is_none()).count() as u64;
         ledger.add(Check::Counts, 1);
         let vertices = self.simplices.vertices().seen();
@@ -190,25 +199,33 @@ impl<S: FinalSimplices<D>, const D: usize> PartialAudit<S, D> {
     }
 
     /// Checks that every wall is an open facet and every open facet has a wall, with the final simplex on the
-    /// same side of both.
-    fn check_walls(&mut self, ledger: &mut Ledger) -> Result<(), Violation> {
+    /// same side of both. Returns the walls with their simplices.
+    fn check_walls(&mut self, ledger: &mut Ledger) -> Result<Vec<Wall<D>>, Violation> {
         let [simplex, facet] = S::NAMES;
-        for wall in self.walls.chunks_exact(D) {
+        let mut walls = Vec::with_capacity(self.walls.len() / D);
+        for wall in self.walls.as_chunks().0 {
             ledger.add(Check::Walls, 1);
             let corners: Vec<_> = wall.iter().map(|&corner| self.residual[corner as usize]).collect();
             let ids: Option<Vec<u64>> = corners.iter().map(|&(id, _)| id).collect();
             let facet_of = |ids: Vec<u64>| ids.try_into().ok().map(S::turned);
-            if !ids.and_then(facet_of).is_some_and(|facet| self.simplices.facets_mut().close(facet)) {
+            let Some(apex) =
+                ids.and_then(facet_of).and_then(|facet| self.simplices.facets_mut().close(facet))
+            else {
                 let message = format!(
                     "the wall from residual point {} is no open {facet} of a final {simplex} on its side",
                     named(wall)
                 );
                 let violation = Violation::new(Check::Walls, message);
                 return Err(corners.iter().fold(violation, |violation, &(id, at)| violation.with(id, at)));
-            }
+            };
+            let corner = |number: u32| {
+                let (id, at) = self.residual[number as usize];
+                Corner { id: id.unwrap_or_default(), at: std::array::from_fn(|axis| at[axis]) }
+            };
+            walls.push(Wall { numbers: *wall, corners: wall.map(corner), apex });
         }
         match self.simplices.facets().first().map(S::turned) {
-            None => Ok(()),
+            None => Ok(walls),
             Some(ids) => {
                 let message = format!("the open {facet} {} has no wall", named(&ids));
                 let live = ids.iter().filter_map(|&id| self.simplices.vertices().live(id));

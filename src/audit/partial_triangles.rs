@@ -1,8 +1,13 @@
 //! The final triangles of a region.
 
+use std::cmp::Ordering;
+
 use super::check::{Check, Ledger, Violation};
+use super::exact::Decided;
+use super::exact::plane::{Xy, enclosing_circle, in_circle, in_raised_circle, lexicographic, orientation};
 use super::facets::OpenFacets;
 use super::partial::FinalSimplices;
+use super::residual_fit::WallGeometry;
 use super::triangles::{Corner, Fans, Standard, Triangles};
 use super::vertices::{Vertex, Vertices};
 use spmesh_stream::Patch;
@@ -32,9 +37,42 @@ impl FinalSimplices<2> for Triangles {
         &mut self.edges
     }
 
+    fn ahead(star: &Fans) -> u16 {
+        star.winding.ahead()
+    }
+
     /// A wall has its triangle on the left, as an open edge has.
     fn turned(edge: [u64; 2]) -> [u64; 2] {
         edge
+    }
+}
+
+/// The ray goes down, infinitesimally to the right.
+impl WallGeometry<2> for Triangles {
+    const BALL: &'static str = "circle";
+
+    fn in_ball([a, b]: [Xy; 2], apex: Xy, at: Xy) -> Decided {
+        in_circle(a, b, apex, at)
+    }
+
+    fn in_raised_ball([a, b]: [Xy; 2], apex: Xy, at: Xy) -> Ordering {
+        in_raised_circle(a, b, apex, at)
+    }
+
+    fn enclosing_ball([a, b]: [Xy; 2], apex: Xy) -> Option<(Xy, f64)> {
+        enclosing_circle(a, b, apex)
+    }
+
+    fn crossing([a, b]: [Xy; 2], at: Xy) -> i64 {
+        match (lexicographic(a, at), lexicographic(b, at)) {
+            (Ordering::Less, Ordering::Greater) => i64::from(orientation(a, b, at).sign == Ordering::Greater),
+            (Ordering::Greater, Ordering::Less) => -i64::from(orientation(a, b, at).sign == Ordering::Less),
+            _ => 0,
+        }
+    }
+
+    fn shadow([a, b]: [Xy; 2]) -> [Xy; 2] {
+        [[a[0].min(b[0]), a[1].min(b[1])], [a[0].max(b[0]), f64::INFINITY]]
     }
 }
 

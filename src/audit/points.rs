@@ -102,7 +102,8 @@ impl PointsAudit {
         if self.waiting.take().is_none() || !self.chunked {
             return Ok(());
         }
-        let message = "the points before the last tags do not all lie in one of the tagged cells";
+        let message =
+            "the points before the last tags do not lie in one cell, the same for all, that is tagged";
         Err(Violation::new(Check::Chunks, message))
     }
 

@@ -49,6 +49,11 @@ impl Winding {
         self.behind = self.behind.saturating_add(u16::from(!is_ahead));
     }
 
+    /// How many simplices are ahead.
+    pub(super) fn ahead(self) -> u16 {
+        self.ahead
+    }
+
     /// Proves that a vertex whose facets all met their twins is gone around once.
     pub(super) fn check_once<S>(self, vertex: &Vertex<S>) -> Result<(), Violation> {
         if self == (Winding { ahead: 1, behind: 1 }) {

@@ -32,7 +32,8 @@ Examples:
 The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
 output by its name. Only spm and text hold a CRS and integer coordinates; the others get world coordinates, \
 SMB rounded to 32 bits. A notice says what is lost. Of tetrahedra, OBJ and PLY get the hull; VTU has the \
-labels of vertices as point data, Medit as references. Meshes of OBJ and PLY do not say when vertices are \
+labels of vertices as point data, Medit as references. Coordinates on a grid become the shortest decimals that \
+stand for them: 28016 steps of 0.001 are 28.016. A text twin with a number off its grid is refused. Meshes of OBJ and PLY do not say when vertices are \
 final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,

@@ -60,11 +60,11 @@ pub struct Flags {
     #[arg(long)]
     json: bool,
 
-    /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation. Triangle and
-    /// tetrahedral meshes are proved as they pass, holding only the live vertices and the boundary of the
-    /// mesh so far. Cells and simplices of four dimensions and configurations are held whole. In four
-    /// dimensions both standards are the same: a Delaunay diagram has no ties to resolve, and its simplices
-    /// may resolve ties in any way
+    /// Prove the claims of the stream with exact arithmetic; exit 4 at the first violation, 3 if the stream
+    /// is malformed. Triangle and tetrahedral meshes are proved as they pass, holding only the live vertices
+    /// and the boundary of the mesh so far. Cells and simplices of four dimensions and configurations are
+    /// held whole. In four dimensions both standards are the same: a Delaunay diagram has no ties to resolve,
+    /// and its simplices may resolve ties in any way
     #[arg(
         long,
         value_enum,
@@ -127,6 +127,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let mut progress = Progress::new(&flags.common, "reading", header.points);
     let mut failure = None;
     while let Some(event) = reader.next_event()? {
+        // The rules of the stream come first: what breaks them is malformed, for an audit as for any reader.
+        inventory.event(&event).map_err(|error| reader.locate(error))?;
         if let Err(error) = proof.event(&event, &header) {
             if error.kind() != ErrorKind::Audit {
                 return Err(error.of_input(reader.name()).into());
@@ -134,7 +136,6 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
             failure = Some(reader.locate(error));
             break;
         }
-        inventory.event(&event).map_err(|error| reader.locate(error))?;
         progress.set(inventory.totals().points.max(inventory.totals().vertices));
     }
     drop(progress);

@@ -93,6 +93,13 @@ impl Error {
         self
     }
 
+    /// Adds a note in parentheses to the message, such as a remedy.
+    #[must_use]
+    pub fn noting(mut self, note: &str) -> Self {
+        self.message += &format!(" ({note})");
+        self
+    }
+
     /// Kind of the failure.
     #[must_use]
     pub fn kind(&self) -> ErrorKind {

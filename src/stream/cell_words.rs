@@ -4,7 +4,7 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::whole_records;
-use super::rules4::check_cell;
+use super::rules4::{check_cell, check_neighbour_count, check_vertex_count};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CELL_WORDS_MAX;
 use spmesh_model::cells4::{Cell4, Cells4};
@@ -12,8 +12,8 @@ use spmesh_model::cells4::{Cell4, Cells4};
 /// Marks a cell as infinite, in the word that counts its vertices.
 pub(super) const INFINITE: u32 = 1 << 31;
 
-/// The words of the incomplete cell. Memory: the words that have arrived; counts in the input allocate
-/// nothing.
+/// The words of the incomplete cell. Memory: the words that have arrived. The counts allocate nothing, and are
+/// checked when they arrive.
 #[derive(Debug, Default)]
 pub(super) struct CellWords {
     open: Vec<u32>,
@@ -24,7 +24,7 @@ impl CellWords {
     pub(super) fn take(&mut self, points: u64, payload: &[u8]) -> Result<Cells4> {
         self.open.extend(whole_records(payload, 4)?.map(LE::read_u32));
         let (mut cells, mut rest) = (Cells4::default(), &self.open[..]);
-        while let Some((cell, after)) = split_cell(rest)? {
+        while let Some((cell, after)) = split_cell(rest, points)? {
             check_cell(cell, points)?;
             cells.push(cell);
             rest = after;
@@ -43,14 +43,18 @@ impl CellWords {
 }
 
 /// The first cell of `words` and the words after it; `None` if it is incomplete.
-fn split_cell(words: &[u32]) -> Result<Option<(Cell4<'_>, &[u32])>> {
-    let [marked, neighbours, rest @ ..] = words else { return Ok(None) };
-    let (vertices, neighbours) = (u64::from(marked & !INFINITE), u64::from(*neighbours));
+fn split_cell(words: &[u32], points: u64) -> Result<Option<(Cell4<'_>, &[u32])>> {
+    let Some((marked, rest)) = words.split_first() else { return Ok(None) };
+    let (is_infinite, vertices) = (marked & INFINITE != 0, u64::from(marked & !INFINITE));
+    check_vertex_count(is_infinite, vertices, points)?;
+    let Some((&neighbours, rest)) = rest.split_first() else { return Ok(None) };
+    let neighbours = u64::from(neighbours);
+    check_neighbour_count(is_infinite, vertices, neighbours)?;
     check_words(vertices, neighbours)?;
     let len = (vertices + neighbours) as usize;
     let Some((lists, after)) = rest.split_at_checked(len) else { return Ok(None) };
     let (vertices, neighbours) = lists.split_at(vertices as usize);
-    Ok(Some((Cell4 { is_infinite: marked & INFINITE != 0, vertices, neighbours }, after)))
+    Ok(Some((Cell4 { is_infinite, vertices, neighbours }, after)))
 }
 
 /// Checks that a cell has at most `CELL_WORDS_MAX` words, which bounds the memory of a reader.

@@ -1,4 +1,5 @@
-//! The promise of a chunked points stream: the points between two tags lie in one cell of the next tag.
+//! The promise of a chunked points stream: one tag of the run after some points has a cell that holds all of
+//! them. Blocks without records neither start nor end a run.
 
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Bounds;

@@ -11,6 +11,8 @@ use spmesh_model::configurations::{Claim, FARAWAY};
 #[derive(Debug, Default)]
 pub(super) struct ConfigurationRules {
     degree: Option<(u32, Claim)>,
+    /// Whether there is a degree 1, whose links name the B-splines of functions.
+    has_pairs: bool,
     /// Whether the stream may hold one degree only.
     is_alone: bool,
     /// The last group of the degree.
@@ -64,7 +66,26 @@ impl ConfigurationRules {
             _ => self.group = None,
         }
         self.degree = Some((degree, claim));
+        self.has_pairs |= degree == 1;
         Ok(())
+    }
+
+    /// Checks that functions may follow: they are sums of B-splines of links of pairs of knots.
+    pub(super) fn check_functions(&self) -> Result<()> {
+        if self.has_pairs {
+            return Ok(());
+        }
+        Err(Error::malformed(
+            "functions in a stream without configurations of degree 1, whose links their terms name",
+        ))
+    }
+
+    /// Checks that a spline has a degree.
+    pub(super) fn check_end(&self) -> Result<()> {
+        if !self.is_alone || self.degree.is_some() {
+            return Ok(());
+        }
+        Err(Error::malformed("END: a spline without configurations, expected a block CONF with its degree"))
     }
 
     /// Checks the next group of the degree. The first group of a block may continue the last group.

@@ -160,6 +160,16 @@ impl Totals {
         ]
     }
 
+    /// Checks that no total is 2^64 - 1, which stands for an unknown number elsewhere.
+    pub(super) fn check_range(&self) -> Result<()> {
+        match Self::NAMES.iter().zip(self.fields()).find(|(_, total)| *total == u64::MAX) {
+            None => Ok(()),
+            Some((name, total)) => {
+                Err(Error::malformed(format!("END: {total} {name} are beyond counting, at most 2^64 - 2")))
+            }
+        }
+    }
+
     /// Totals from their order in the END block.
     pub(super) fn from_fields(fields: [u64; 7]) -> Self {
         let [points, cells, vertices, simplices, merged, residual_points, walls] = fields;

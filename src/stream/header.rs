@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
-use spmesh_model::bounds::{Bounds, Point, Region};
+use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
 
 /// First bytes of every stream. The first byte is not ASCII, and the line ends reveal damage by text-mode
@@ -27,62 +28,6 @@ const FLAG_BOUNDS: u8 = 1;
 const FLAG_TREE: u8 = 2;
 const FLAG_REGION: u8 = 4;
 const FLAG_CHUNKED: u8 = 8;
-
-/// How stored coordinates are encoded, and how they map to the world.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Coordinates {
-    /// World coordinates themselves.
-    F64,
-    /// Integers of 32 bits: world = stored * scale + offset, per axis.
-    I32 {
-        /// Step per axis in world units, positive.
-        scale: [f64; 3],
-        /// World coordinate of stored 0 per axis.
-        offset: [f64; 3],
-    },
-}
-
-impl Coordinates {
-    /// World coordinates of a stored point.
-    #[must_use]
-    pub fn to_world(&self, stored: Point) -> Point {
-        match self {
-            Coordinates::F64 => stored,
-            Coordinates::I32 { scale, offset } => {
-                std::array::from_fn(|axis| stored[axis] * scale[axis] + offset[axis])
-            }
-        }
-    }
-
-    /// Stored coordinates of the grid point nearest to a world point. They may be out of the range of i32.
-    #[must_use]
-    pub fn to_stored(&self, world: Point) -> Point {
-        match self {
-            Coordinates::F64 => world,
-            Coordinates::I32 { scale, offset } => {
-                std::array::from_fn(|axis| ((world[axis] - offset[axis]) / scale[axis]).round())
-            }
-        }
-    }
-
-    /// Whether a stored value fits the encoding: a finite f64, or an integer that fits in i32.
-    #[must_use]
-    pub fn can_store(&self, value: f64) -> bool {
-        match self {
-            Coordinates::F64 => value.is_finite(),
-            Coordinates::I32 { .. } => f64::from(value as i32) == value,
-        }
-    }
-
-    /// Bytes of one stored coordinate.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        match self {
-            Coordinates::F64 => 8,
-            Coordinates::I32 { .. } => 4,
-        }
-    }
-}
 
 /// Coordinate reference system, carried verbatim.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -283,17 +228,22 @@ impl Header {
 
     /// Checks the rules between fields; writer and reader share them.
     ///
+    /// # Errors
     /// A text about the rule that is broken.
     pub fn check(&self) -> std::result::Result<(), String> {
         if !matches!((self.dims, self.has_elevation), (2 | 4, _) | (3, false)) {
             return Err(format!("{} dimensions with elevation {}", self.dims, self.has_elevation));
         }
         self.check_kind()?;
+        if self.points == Some(COUNT_UNKNOWN) {
+            return Err(format!("{COUNT_UNKNOWN} points are beyond counting, at most 2^64 - 2"));
+        }
         if let Coordinates::I32 { scale, offset } = &self.coordinates
             && !scale.iter().zip(offset).all(|(&scale, &offset)| is_grid(scale, offset))
         {
             return Err("scale is not positive, or scale and offset are too far apart".into());
         }
+        self.check_scales()?;
         if let Some(Bounds { min, max }) = &self.bounds {
             let ordered = (0..3).all(|axis| min[axis] <= max[axis]);
             let storable = min.iter().chain(max).all(|&value| self.coordinates.can_store(value));
@@ -317,6 +267,23 @@ impl Header {
             return Err("only points with a finalization tree can be chunked".into());
         }
         self.check_region()
+    }
+
+    /// Checks that the axes of the geometry have one scale. Streams that nothing triangulates as they are
+    /// stored, which are points without a finalization tree, may have several.
+    fn check_scales(&self) -> std::result::Result<(), String> {
+        let Coordinates::I32 { scale, .. } = &self.coordinates else { return Ok(()) };
+        let is_free = self.kind == Kind::Points && self.tree.is_none();
+        let geometry = &scale[..usize::from(self.dims).min(3)];
+        if is_free || geometry.iter().all(|&scale| scale == geometry[0]) {
+            return Ok(());
+        }
+        let scales: Vec<String> = geometry.iter().map(f64::to_string).collect();
+        Err(format!(
+            "the axes of the geometry have the scales {}, expected one scale: stored coordinates would be \
+             triangulated out of shape (spfinalize puts points without a finalization tree on one grid)",
+            scales.join(", ")
+        ))
     }
 
     fn check_region(&self) -> std::result::Result<(), String> {
@@ -367,16 +334,6 @@ fn check_tree(kind: Kind, has_tree: bool) -> std::result::Result<(), String> {
         return Err(format!("a stream of kind {} has no finalization tree", kind.name()));
     }
     Ok(())
-}
-
-/// Whether every i32 has its own world coordinate, from which `to_stored` recovers it.
-///
-/// Proof, with errors in steps of `scale`: rounding the sum costs at most 2^-53 (2^51 + 2^31 + 1), about a
-/// quarter. Rounding product, difference and quotient costs 2^-21 together. The total is below one half, so
-/// rounding to the nearest integer removes it.
-fn is_grid(scale: f64, offset: f64) -> bool {
-    let steps_max = 2f64.powi(51);
-    scale > 0.0 && offset.abs() <= scale * steps_max && (scale * steps_max).is_finite()
 }
 
 fn encode_crs(crs: &Crs) -> (u16, Vec<u8>) {

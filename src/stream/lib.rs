@@ -9,7 +9,8 @@
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
 //!   the stream.
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
-//!   patches may still use, and cells that no later point lies in.
+//!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
+//!   reader alone cannot check.
 //! - [`ConfigurationSet`] and [`read_diagram4`] hold whole streams in memory, for consumers that need all at
 //!   once.
 //!
@@ -54,6 +55,8 @@ mod chunks;
 mod configuration_rules;
 mod configuration_set;
 mod configurations;
+mod coordinates;
+mod decimals;
 mod diagram4;
 mod event;
 mod finalized;
@@ -61,6 +64,7 @@ mod functions;
 mod header;
 mod kind;
 mod live;
+mod memory_rules;
 mod patch_blocks;
 mod payload;
 mod points4;
@@ -75,18 +79,21 @@ mod writer;
 pub use configuration_set::{Collector, ConfigurationSet};
 pub use configurations::ConfigurationBlock;
 pub use configurations::{check_degree, claim_from_name, claim_name};
+pub use coordinates::Coordinates;
 pub use diagram4::{Diagram4Collector, read_diagram4};
 pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use functions::{function_kind, function_kind_of_name, function_kind_parts};
-pub use header::{Coordinates, Crs, Header};
+pub use header::{Crs, Header};
 pub use kind::Kind;
 pub use live::LiveVertices;
+pub use memory_rules::MemoryRules;
 pub use patch_blocks::{PatchBlocks, PointCode};
 pub use payload::{check_place, decode_points};
 pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
+pub use rules4::{check_neighbour_count, check_vertex_count};
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;

@@ -3,7 +3,8 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
-use super::header::{Coordinates, Header};
+use super::coordinates::Coordinates;
+use super::header::Header;
 use super::payload::PATCH_FIXED_LEN;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;

@@ -3,8 +3,9 @@
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::whole_records;
+use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
-use super::header::{Coordinates, Header};
+use super::header::Header;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;

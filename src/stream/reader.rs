@@ -99,14 +99,19 @@ impl<R: Read> StreamReader<R> {
         self.spare = points;
     }
 
+    /// Where the last block that was read is: its number and its first byte.
+    #[must_use]
+    pub fn place(&self) -> String {
+        format!("block {} at byte {}", self.block.saturating_sub(1), self.block_start)
+    }
+
     /// Adds input and position to an error about the last block that was read. Errors about anything else,
     /// like a full disk on the output side, stay as they are.
     pub fn locate(&self, error: Error) -> Error {
         if !matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Audit) {
             return error;
         }
-        let block = self.block.saturating_sub(1);
-        error.at(format!("block {block} at byte {}", self.block_start)).of_input(&self.name)
+        error.at(self.place()).of_input(&self.name)
     }
 
     /// The next block; `None` after END. END is returned only if the input ends there.
@@ -161,11 +166,14 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        let tag = frame.tag.ok_or_else(|| Error::malformed("unknown block tag"))?;
+        let tag = frame.tag.ok_or_else(|| {
+            let found = bytes[..4].escape_ascii();
+            Error::malformed(format!("unknown block tag \"{found}\": the stream is newer, or damaged"))
+        })?;
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
-                "no block {:?} may stand here in a stream of kind {}",
-                String::from_utf8_lossy(&tag.bytes()),
+                "no block \"{}\" may stand here in a stream of kind {}",
+                tag.bytes().escape_ascii(),
                 self.header.kind.name()
             )));
         }

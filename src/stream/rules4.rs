@@ -88,16 +88,44 @@ impl Rules4 {
     }
 }
 
+/// Checks the number of vertices of a cell; `points` points came before.
+///
+/// # Errors
+/// Malformed, if they are too few for a cell, or more than the points.
+pub fn check_vertex_count(is_infinite: bool, vertices: u64, points: u64) -> Result<()> {
+    let (sort, vertices_min) = if is_infinite { ("an infinite", 4) } else { ("a finite", 5) };
+    if vertices < vertices_min {
+        return Err(Error::malformed(format!(
+            "{sort} cell of {vertices} vertices, expected at least {vertices_min}"
+        )));
+    }
+    if vertices > points {
+        return Err(Error::malformed(format!("{sort} cell of {vertices} vertices, but {points} points")));
+    }
+    Ok(())
+}
+
+/// Checks the number of neighbours of a cell: the cell has no more facets, by the upper bound theorem for
+/// polytopes of four dimensions. The faraway point counts as a vertex.
+///
+/// # Errors
+/// Malformed, if there are more neighbours than facets.
+pub fn check_neighbour_count(is_infinite: bool, vertices: u64, neighbours: u64) -> Result<()> {
+    let corners = vertices + u64::from(is_infinite);
+    let facets_max = corners.saturating_mul(corners.saturating_sub(3)) / 2;
+    if neighbours <= facets_max {
+        return Ok(());
+    }
+    Err(Error::malformed(format!(
+        "cell of {vertices} vertices and {neighbours} neighbours, which can have {facets_max} facets at most"
+    )))
+}
+
 /// Checks one cell; `points` points came before.
 pub(super) fn check_cell(cell: Cell4, points: u64) -> Result<()> {
     let Cell4 { is_infinite, vertices, neighbours } = cell;
-    let (sort, vertices_min) = if is_infinite { ("an infinite", 4) } else { ("a finite", 5) };
-    if vertices.len() < vertices_min {
-        return Err(Error::malformed(format!(
-            "{sort} cell of {} vertices, expected at least {vertices_min}",
-            vertices.len()
-        )));
-    }
+    check_vertex_count(is_infinite, vertices.len() as u64, points)?;
+    check_neighbour_count(is_infinite, vertices.len() as u64, neighbours.len() as u64)?;
     if !is_increasing(vertices) || vertices.last().is_some_and(|&vertex| u64::from(vertex) >= points) {
         return Err(Error::malformed(format!(
             "the vertices of a cell are not increasing numbers of {points} points"

@@ -91,6 +91,9 @@ impl Tally {
                 self.totals.simplices += block.boundaries.len() as u64;
             }
             Event::Functions(functions) => {
+                if !functions.is_empty() {
+                    self.configuration_rules.check_functions()?;
+                }
                 let knots = self.totals.points;
                 functions.iter().try_for_each(|function| self.function_rules.function(function, knots))?;
                 self.totals.vertices += functions.len() as u64;
@@ -134,6 +137,7 @@ impl Tally {
     /// Malformed, if they differ, if a vertex is neither final nor in the residual, or if only some vertices
     /// have labels.
     pub fn check_end(&self, header: &Header, stated: &Totals) -> Result<()> {
+        stated.check_range()?;
         let mut counted = self.totals;
         if self.has_vertices {
             counted.merged = stated.merged;
@@ -165,6 +169,7 @@ impl Tally {
         if header.kind == Kind::Splines {
             functions::check_end(&counted)?;
         }
+        self.configuration_rules.check_end()?;
         self.rules4.check_end(&counted)?;
         self.chunks.as_ref().map_or(Ok(()), ChunkCheck::end)
     }

@@ -8,9 +8,10 @@ use std::io::Write;
 
 use super::block::{Frame, Tag};
 use super::configuration_rules::ConfigurationRules;
+use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
 use super::functions::{FunctionRules, check_end};
-use super::header::{Coordinates, Header};
+use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
@@ -259,7 +260,8 @@ impl<W: Write> StreamWriter<W> {
     /// points and ignores both.
     ///
     /// # Errors
-    /// If a 4D cell names a neighbour that does not exist, or writing or flushing fails.
+    /// Malformed, if a 4D cell names a neighbour that does not exist, a spline lacks coefficients or
+    /// configurations, or a total is beyond counting; I/O, if writing or flushing fails.
     pub fn end(mut self, input_points: u64, merged: u64) -> Result<W> {
         assert!(self.labels == 0 || self.labels == self.totals.vertices, "all vertices have labels, or none");
         self.flush_points()?;
@@ -268,11 +270,13 @@ impl<W: Write> StreamWriter<W> {
         if self.header.kind == Kind::Splines {
             check_end(&self.totals)?;
         }
+        self.configuration_rules.check_end()?;
         if self.header.kind.has_vertices() {
             self.totals.points = input_points;
             self.totals.merged = merged;
         }
         let totals = self.totals;
+        totals.check_range()?;
         self.payload.clear();
         for total in totals.fields() {
             self.payload.extend_from_slice(&total.to_le_bytes());

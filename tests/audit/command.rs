@@ -7,6 +7,7 @@ use spmesh_stream::{Crs, Header, Kind, StreamWriter};
 
 use super::solid::{self, Solid, cubic};
 use super::{Mesh, grid, point};
+use crate::vectors::load;
 
 fn spinfo(arguments: &[&str], input: &[u8]) -> Output {
     crate::programs::run("spinfo", arguments, input)
@@ -107,6 +108,27 @@ fn violation_exits_with_4_and_says_where() {
     assert_eq!(audit["violation"]["vertices"][1]["id"], 2);
     assert_eq!(spinfo(&["--audit=delaunay"], &stream).status.code(), Some(0));
     assert_eq!(spinfo(&[], &stream).status.code(), Some(0));
+}
+
+/// What breaks a rule of the stream is malformed, whoever finds it.
+#[test]
+fn rules_of_the_stream_exit_with_3_and_not_with_4() {
+    for vector in load("fail", "err") {
+        let output = spinfo(&["--audit"], &vector.bytes);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        // An earlier block may break a claim. Some kinds have no audit, or none of their first block.
+        let is_earlier = message.contains(" check failed: ") && !message.contains(vector.expected.trim_end());
+        let expected = if is_earlier { Some(4) } else { Some(3) };
+        let is_unproved =
+            output.status.code() == Some(2) && message.contains("claims nothing that takes a proof");
+        assert!(is_unproved || output.status.code() == expected, "{}: {message}", vector.name);
+        let found_late = ["finalized", "referenced after", "final already", "that is final"];
+        assert!(
+            !is_earlier || !found_late.iter().any(|what| vector.expected.contains(what)),
+            "{}",
+            vector.name
+        );
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use spmesh_stream::write_configurations;
 
 use super::held;
 use crate::programs::{outcome, run};
-use crate::vectors::load;
+use crate::vectors::{Vector, load};
 use spmesh_reference::sets::Random;
 
 /// Knots on a small grid, so that some are collinear, some cocircular and some coincide.
@@ -26,7 +26,7 @@ fn generated(knots: &Knots, rule: &Rule, flips: usize, degree: usize) -> Vec<Con
 
 fn verdict(knots: &Knots, degrees: &[Configurations]) -> Result<Proof, Violation> {
     let degrees = degrees.iter().map(held::configurations).collect();
-    check(&ConfigurationSet { knots: held::knots(knots), degrees })
+    check(&ConfigurationSet { knots: held::knots(knots), degrees, ..ConfigurationSet::default() })
 }
 
 fn stream(knots: &Knots, degrees: &[Configurations]) -> Vec<u8> {
@@ -225,6 +225,27 @@ fn spinfo_fails_with_the_degree_and_the_place() {
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((&object["audit"]["ok"], &object["audit"]["violation"]["degree"]), (&json!(false), &json!(1)));
     assert!(run("spinfo", &["-"], &bytes).status.success(), "nothing was to be proved");
+}
+
+#[test]
+fn functions_must_name_pairs_with_links() {
+    let is_meant = |vector: &Vector| vector.name == "configurations-functions";
+    let twin = load("pass", "txt").into_iter().find(is_meant).unwrap().expected;
+    let audit = |twin: &str| {
+        let stream = run("spconvert", &["--to", "spm"], twin.as_bytes());
+        assert!(stream.status.success(), "{:?}", outcome(&stream));
+        run("spinfo", &["--audit", "-"], &stream.stdout)
+    };
+    let proven = audit(&twin);
+    assert!(proven.status.success(), "{:?}", outcome(&proven));
+    let report = String::from_utf8(proven.stdout).unwrap();
+    assert!(report.contains("functions    6, whose pairs have links"), "{report}");
+    // A fifth knot is in no configuration.
+    let knot = twin.replacen("degree 1", "v 100 100 0\ndegree 1", 1).replacen("points 4", "points 5", 1);
+    assert!(audit(&knot).status.success());
+    let (code, message) = outcome(&audit(&knot.replacen("term 1 2 1", "term 1 5 1", 1)));
+    assert_eq!(code, Some(4), "{message}");
+    assert!(message.contains("functions check failed: function 0 has a term of the pair 0, 4"), "{message}");
 }
 
 #[test]

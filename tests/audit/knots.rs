@@ -34,7 +34,11 @@ fn verdict(points: &[[f64; 2]], degrees: &[Boundaries], claim: Claim) -> Result<
         held
     };
     let degrees = degrees.iter().enumerate().map(hold).collect();
-    check(&ConfigurationSet { knots: Knots::new(points.to_vec()).unwrap(), degrees })
+    check(&ConfigurationSet {
+        knots: Knots::new(points.to_vec()).unwrap(),
+        degrees,
+        ..ConfigurationSet::default()
+    })
 }
 
 /// Knots on a grid of 4 by 4 places, several of them at one place. Zeros have either sign.

@@ -145,6 +145,8 @@ in_plane_and_space!(residual_points_stay_where_they_are, check_places);
 in_plane_and_space!(points_lie_in_the_region, check_region);
 in_plane_and_space!(no_point_is_lost, check_counts);
 in_plane_and_space!(final_simplices_are_positive, check_orientation);
+in_plane_and_space!(residual_points_lie_in_no_final_simplex, check_cover);
+in_plane_and_space!(residual_points_lie_in_no_ball_of_a_wall, check_balls);
 
 fn check_correct<const D: usize>(partial: Partial<D>) {
     assert!(!partial.patch.finalized.is_empty() && partial.walls.len() > 8);
@@ -223,6 +225,42 @@ fn check_region<const D: usize>(mut partial: Partial<D>) {
 fn check_counts<const D: usize>(mut partial: Partial<D>) {
     partial.residual.pop();
     assert_violates(partial.audit(), Check::Counts, &[]);
+}
+
+impl<const D: usize> Partial<D> {
+    /// Adds a residual point that no vertex has been made of.
+    fn with(mut self, at: Point) -> Self {
+        self.residual.push((None, at));
+        self.input_points += 1;
+        self
+    }
+}
+
+/// The points are near the centre of what is final, far from the balls of simplices at walls.
+fn check_cover<const D: usize>(partial: Partial<D>) {
+    let near = |middle: f64| {
+        let at = std::array::from_fn(|axis| if axis < D { middle + 0.01 * axis as f64 } else { 0.0 });
+        partial.clone().with(at).audit()
+    };
+    let middle = if D == 2 { 2.47 } else { 0.97 };
+    assert!(
+        matches!(near(middle), Err(Verdict::Violation(v)) if [Check::Residual, Check::Delaunay].contains(&v.check))
+    );
+}
+
+/// Beyond each wall there is a point that no final simplex covers, but one has in its ball.
+fn check_balls<const D: usize>(mut partial: Partial<D>) {
+    partial.region = Region::EVERYTHING;
+    for wall in &partial.walls {
+        let corners = wall.map(|corner| partial.residual[corner as usize].1);
+        let middle: Point =
+            std::array::from_fn(|axis| corners.iter().map(|at| at[axis]).sum::<f64>() / D as f64);
+        let centre = if D == 2 { [2.5, 2.5, 0.0] } else { [1.0; 3] };
+        let beyond = std::array::from_fn(|axis| middle[axis] + (middle[axis] - centre[axis]) * 1e-3);
+        let found = partial.clone().with(beyond).audit();
+        let Err(Verdict::Violation(violation)) = found else { panic!("{beyond:?} passes") };
+        assert_eq!(violation.check, Check::Delaunay, "{beyond:?}: {}", violation.message);
+    }
 }
 
 fn check_orientation<const D: usize>(mut partial: Partial<D>) {

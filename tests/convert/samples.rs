@@ -72,7 +72,10 @@ pub fn mesh(coordinates: Coordinates) -> Vec<u8> {
 pub fn points(dims: u8, has_elevation: bool, is_i32: bool) -> Vec<u8> {
     let coordinates = match is_i32 {
         false => Coordinates::F64,
-        true => Coordinates::I32 { scale: [0.01, 0.01, 0.001], offset: [300_000.0, 5_000_000.25, 10.0] },
+        true => {
+            let height = if dims == 3 { 0.01 } else { 0.001 };
+            Coordinates::I32 { scale: [0.01, 0.01, height], offset: [300_000.0, 5_000_000.25, 10.0] }
+        }
     };
     let axes = usize::from(dims);
     let mut origin = [0.0; 3];

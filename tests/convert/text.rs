@@ -109,7 +109,7 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
         ("label 17\n", "", "4 labels of 5 vertices"),
         ("# patch", "label 17\n# patch", "1 labels after 0 vertices"),
         ("x 4\n", "", "4 of 5 vertices were finalized"),
-        ("v 2 2 1", "v 2 2 9", "outside of the header's bounding box"),
+        ("v 2 2 2", "v 2 2 9", "outside of the header's bounding box"),
         ("label 17", "w 1 2 3", "expected v, c, x, label or a comment"),
         ("label 17", "r 1 0 0 0", "cannot have this line here"),
         ("dims 3", "dims 2", "a tetrahedral mesh in 2 dimensions"),
@@ -124,6 +124,55 @@ fn errors_in_tetrahedra_and_labels_name_the_line() {
     let triangles = text_of(&samples::mesh(samples::grids()[0])).replacen("# patch", "label 1\n# patch", 1);
     let error = converted(triangles.as_bytes(), Format::Text, Format::Spm).unwrap_err();
     assert!(error.to_string().contains("a triangle mesh cannot have this line here"), "{error}");
+}
+
+#[test]
+fn numbers_off_the_grid_are_refused_at_their_line() {
+    let twin =
+        |name: &str| load("pass", "txt").into_iter().find(|vector| vector.name == name).unwrap().expected;
+    let millimetres = twin("points-millimetres");
+    let cases = [
+        (
+            "v 28.016 ",
+            "v 28.0164 ",
+            "coordinate 28.0164 is not on the grid of the header, next to it is 28.016",
+        ),
+        ("v 28.016 ", "v 28.01600001 ", "next to it is 28.016"),
+        (" 300000.0003", " 300000.00035", "is not on the grid"),
+        ("v 28.016 ", "v 2147483.648 ", "does not fit the header's encoding"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&millimetres, found, replaced, expected);
+    }
+    assert_refused(&twin("points-uneven"), "v 0.5 0.5 0", "v 0.5 0.5 7", "z is 7, but the points");
+    assert_refused(&twin("points-f64-2d"), "v 1.5 -0.1 0", "v 1.5 -0.1 0.5", "z is 0.5, but the points");
+    // Other decimals of the same grid points: with the noise of f64, with zeros, with an exponent.
+    for other in ["28.016000000000002", "28.01600", "2.8016e1"] {
+        let stream = |text: &str| converted(text.as_bytes(), Format::Text, Format::Spm).unwrap();
+        let changed = millimetres.replacen("v 28.016 ", &format!("v {other} "), 1);
+        assert!(stream(&changed) == stream(&millimetres), "{other}");
+    }
+}
+
+/// A header line in the wrong place would otherwise be taken for a comment.
+#[test]
+fn header_lines_are_known_and_come_first() {
+    let text = text_of(&samples::mesh(samples::grids()[0]));
+    let cases = [
+        (
+            "#spmesh dims",
+            "#spmesh colour red\n#spmesh dims",
+            "found \"colour\", expected a statement of the header",
+        ),
+        ("# patch", "# patch\n#spmesh points 7", "a line of the header (#spmesh) after"),
+        ("# patch", "# patch\n #spmesh", "a line of the header (#spmesh) after"),
+        ("#spmesh dims", " \t#spmesh\tpoints 7 \n#spmesh dims", "another number of points"),
+    ];
+    for (found, replaced, expected) in cases {
+        assert_refused(&text, found, replaced, expected);
+    }
+    let commented = text.replacen("# patch", "# a comment\n#spmeshes\n# patch", 1);
+    assert_eq!(text_of(&converted(commented.as_bytes(), Format::Text, Format::Spm).unwrap()), text);
 }
 
 #[test]

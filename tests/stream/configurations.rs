@@ -222,7 +222,9 @@ fn many_functions_come_in_many_blocks() {
     let function = |pair: &[u32; 2]| Function { kind: FunctionKind::Edge(*pair), terms: vec![(*pair, 1.0)] };
     let functions: Vec<Function> = pairs.iter().map(function).collect();
     let mut bytes = Vec::new();
-    let content = Content { functions: &functions, ..Content::of(knots.points(), &[]) };
+    let start = Start::delaunay(&knots).unwrap();
+    let degrees = configurations::generate(&knots, start.configurations(), &Rule::Delaunay, 1).unwrap();
+    let content = Content { functions: &functions, ..Content::of(knots.points(), &degrees[1..]) };
     write_content(configurations_header(knots.points(), Coordinates::F64, Crs::Unknown), content, &mut bytes)
         .unwrap();
     assert_eq!(read(&bytes).functions, functions);

@@ -58,7 +58,9 @@ fn random_cells(random: &mut Random, points: usize) -> Cells4 {
         if vertices.len() < 5 {
             vertices = (0..if is_infinite { 4 } else { 5 }).collect();
         }
-        let neighbours = some(random, count, 4);
+        let corners = vertices.len() + usize::from(is_infinite);
+        let mut neighbours = some(random, count, 4);
+        neighbours.truncate(corners * (corners - 3) / 2);
         cells.push(Cell4 { is_infinite, vertices: &vertices, neighbours: &neighbours });
     }
     cells
@@ -174,6 +176,24 @@ fn a_whole_diagram_is_read_from_cells_and_from_points() {
     assert!(diagram.values.unwrap()[4].is_nan());
 }
 
+/// A list that is broken over lines is refused when it gets too long, not when its cell ends.
+#[test]
+fn endless_lists_in_twins_are_refused_at_their_line() {
+    let header = "#spmesh version 1\n#spmesh kind cells in 4 dimensions\n#spmesh coordinates f64\n\
+                  #spmesh dims 4\n#spmesh elevation no\n#spmesh chunked no\n";
+    let points: String = (0..6).map(|i| format!("v4 {i} 0 0 0\n")).collect();
+    let start = [header, &points].concat();
+    let cases = [
+        ("c4 1 2 3 4 5\n+4 6\n+4 7\n", "line 15: a finite cell of 7 vertices, but 6 points"),
+        ("c4 1 2 3 4 5\nn4 1 2 3 4 5\n+4 6\n", "line 15: cell of 5 vertices and 6 neighbours"),
+        ("i4 1 2 3 4\nn4 1 2 3\n+4 4 5\n+4 6\n", "line 16: cell of 4 vertices and 6 neighbours"),
+    ];
+    for (lines, expected) in cases {
+        let error = converted([&start, lines].concat().as_bytes(), Format::Text, Format::Spm).unwrap_err();
+        assert!(error.to_string().contains(expected), "{error}");
+    }
+}
+
 /// The message with which a fresh writer refuses what `write` does.
 fn refusal(
     kind: Kind,
@@ -197,7 +217,7 @@ fn the_writer_refuses_what_no_reader_accepts() {
         (refusal(Kind::Cells4, false, |w| w.points4(&[points[1], points[0]], None)), "does not follow"),
         (
             refusal(Kind::Cells4, false, |w| w.cell4(cell(&[0, 1, 2, 3], &[]))),
-            "increasing numbers of 0 points",
+            "an infinite cell of 4 vertices, but 0 points",
         ),
         (refusal(Kind::Cells4, false, |w| w.cell4(cell(&[0, 1, 2], &[]))), "an infinite cell of 3"),
         (

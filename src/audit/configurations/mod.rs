@@ -2,7 +2,7 @@
 //! configurations is used.
 //!
 //! [`check_facets`] is proposition 6.2.1 and lemma 7.4.1 of the thesis, word for word. Splines need exactly
-//! that, whatever the rule of the configurations. [`check_circles`] is the definition of Delaunay
+//! that, whatever the rule of the configurations. [`check_functions`] proves that functions name links. [`check_circles`] is the definition of Delaunay
 //! configurations. [`check_centroids`] proves that centroid triangulations are planar. [`StreamAudit`] checks
 //! all of them for a stream.
 
@@ -10,6 +10,7 @@ mod arrays;
 mod circles;
 mod disk;
 mod facets;
+mod functions;
 mod knots;
 mod planar;
 mod set;
@@ -19,6 +20,7 @@ mod tree;
 pub use arrays::Configurations;
 pub use circles::check_circles;
 pub use facets::{FacetCounts, check_facets, check_start};
+pub use functions::check_functions;
 pub use knots::Knots;
 pub use planar::check_centroids;
 pub use set::ConfigurationSet;

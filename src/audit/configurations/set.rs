@@ -3,6 +3,7 @@
 use super::{Configurations, Knots};
 use crate::exact::plane::Xy;
 use spmesh_core::error::Result;
+use spmesh_model::functions::Function;
 use spmesh_stream::Event;
 
 /// Knots and their configurations, to be proved by [`super::check`].
@@ -12,13 +13,16 @@ pub struct ConfigurationSet {
     pub knots: Knots,
     /// Configurations, by increasing degree.
     pub degrees: Vec<Configurations>,
+    /// Functions of quadratic splines.
+    pub functions: Vec<Function>,
 }
 
-/// Gathers knots and configurations from events; other content is ignored.
+/// Gathers knots, configurations and functions from events; other content is ignored.
 #[derive(Debug, Default)]
 pub(super) struct Collector {
     points: Vec<Xy>,
     degrees: Vec<Configurations>,
+    functions: Vec<Function>,
 }
 
 impl Collector {
@@ -40,6 +44,7 @@ impl Collector {
                         .try_for_each(|(interior, boundaries)| last.extend(interior, boundaries))?;
                 }
             }
+            Event::Functions(functions) => self.functions.extend_from_slice(functions),
             _ => {}
         }
         Ok(())
@@ -50,6 +55,7 @@ impl Collector {
     /// # Errors
     /// As [`Knots::new`].
     pub(super) fn finish(self) -> Result<ConfigurationSet> {
-        Ok(ConfigurationSet { knots: Knots::new(self.points)?, degrees: self.degrees })
+        let Collector { points, degrees, functions } = self;
+        Ok(ConfigurationSet { knots: Knots::new(points)?, degrees, functions })
     }
 }

@@ -2,7 +2,7 @@
 
 use super::set::Collector;
 use super::{Claim, ConfigurationSet, Configurations, FacetCounts, Knots};
-use super::{check_centroids, check_circles, check_facets, check_start};
+use super::{check_centroids, check_circles, check_facets, check_functions, check_start};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_stream::Event;
 
@@ -31,6 +31,8 @@ pub struct Proof {
     pub multiplicity_max: usize,
     /// By degree.
     pub degrees: Vec<DegreeProof>,
+    /// Functions whose terms have links.
+    pub functions: usize,
 }
 
 /// What was proved of a degree.
@@ -55,7 +57,7 @@ pub struct DegreeProof {
 /// The first violation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
-    /// Name of the claim that does not hold: `circles`, `facets`, `centroids` or `counts`.
+    /// Name of the claim that does not hold: `circles`, `facets`, `centroids`, `counts` or `functions`.
     pub claim: &'static str,
     /// The degree.
     pub degree: usize,
@@ -105,6 +107,7 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
         places: ranks().filter(|&rank| rank == 0).count(),
         multiplicity_max: ranks().max().map_or(0, |rank| rank as usize + 1),
         degrees: Vec::new(),
+        functions: set.functions.len(),
     };
     // Infinite configurations of this degree and those below, as long as none is missing.
     let mut lines = Some(0);
@@ -132,6 +135,12 @@ pub fn check(set: &ConfigurationSet) -> std::result::Result<Proof, Violation> {
         proof.degrees.push(DegreeProof { degree, finite, infinite, has_circles, facets, is_counted });
         lower = Some(upper);
     }
+    let pairs = set.degrees.iter().find(|configurations| configurations.degree() == 1);
+    check_functions(pairs, &set.functions).map_err(|error| Violation {
+        claim: "functions",
+        degree: 1,
+        message: error.to_string(),
+    })?;
     Ok(proof)
 }
 

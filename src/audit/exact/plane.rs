@@ -41,6 +41,32 @@ pub(crate) fn in_raised_circle(a: Xy, b: Xy, c: Xy, d: Xy) -> Ordering {
         .unwrap_or(Ordering::Equal)
 }
 
+/// Centre and radius of a circle that contains the circle of a triangle; `None` if rounding hides it.
+///
+/// Relative to `c`, the centre is (|a|² b_y - |b|² a_y, |b|² a_x - |a|² b_x) / (2 det(a, b)). Numerators and
+/// determinant are sums of products of at most three factors, with relative errors below 16 `ROUNDING` of the
+/// products of norms; `slack` counts 64 of them, relative to the determinant.
+pub(crate) fn enclosing_circle(a: Xy, b: Xy, c: Xy) -> Option<(Xy, f64)> {
+    let [a, b] = [a, b].map(|p| [p[0] - c[0], p[1] - c[1]]);
+    let squares = [a, b].map(|[x, y]| x * x + y * y);
+    let norms = [a, b].map(|[x, y]: Xy| x.abs() + y.abs());
+    if !squares.iter().all(|square| (power_of_two(-200)..power_of_two(200)).contains(square)) {
+        return None;
+    }
+    let determinant = a[0] * b[1] - a[1] * b[0];
+    let slack = 64.0 * ROUNDING * norms[0] * norms[1] / determinant.abs();
+    let offset = [
+        (squares[0] * b[1] - squares[1] * a[1]) / (2.0 * determinant),
+        (squares[1] * a[0] - squares[0] * b[0]) / (2.0 * determinant),
+    ];
+    let length = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+    // Each square is at most the square of its norm.
+    let error = slack * (norms[0] + norms[1] + 2.0 * length);
+    let radius = (length + 2.0 * error) * (1.0 + 1e-9);
+    let rounding = c.iter().map(|x| x.abs()).fold(radius, f64::max) * 4.0 * ROUNDING;
+    (slack < 1e-3 && radius.is_finite()).then_some(([c[0] + offset[0], c[1] + offset[1]], radius + rounding))
+}
+
 /// Order by x, then by y.
 pub(crate) fn lexicographic(p: Xy, q: Xy) -> Ordering {
     p.partial_cmp(&q).expect("coordinates are finite")

@@ -51,7 +51,41 @@ pub(crate) fn are_collinear(a: Xyz, b: Xyz, c: Xyz) -> bool {
 /// Whether the side from which the triangle `a`, `b`, `c` is counterclockwise faces the direction (1, e, e²)
 /// for any infinitesimal e: whether the first nonzero component of its normal is positive.
 pub(crate) fn faces_ahead(a: Xyz, b: Xyz, c: Xyz) -> bool {
-    normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal) == Some(Ordering::Greater)
+    facing(a, b, c) == Ordering::Greater
+}
+
+/// The sign of [`faces_ahead`]: `Less` for the opposite direction, `Equal` if the points lie on a line.
+pub(crate) fn facing(a: Xyz, b: Xyz, c: Xyz) -> Ordering {
+    normal_signs(a, b, c).find(|&sign| sign != Ordering::Equal).unwrap_or(Ordering::Equal)
+}
+
+/// Centre and radius of a sphere that contains the sphere of a tetrahedron; `None` if rounding hides it.
+///
+/// Relative to `d`, the centre is (|a|² b x c + |b|² c x a + |c|² a x b) / (2 det(a, b, c)). Numerator and
+/// determinant are sums of products of at most five factors, with relative errors below 16 `ROUNDING` of the
+/// products of norms; `slack` counts 64 of them, relative to the determinant.
+pub(crate) fn enclosing_sphere(a: Xyz, b: Xyz, c: Xyz, d: Xyz) -> Option<(Xyz, f64)> {
+    let vectors = [a, b, c].map(|p| [p[0] - d[0], p[1] - d[1], p[2] - d[2]]);
+    let squares = vectors.map(|[x, y, z]| x * x + y * y + z * z);
+    let norms = vectors.map(|[x, y, z]: Xyz| x.abs() + y.abs() + z.abs());
+    if !squares.iter().all(|square| (power_of_two(-200)..power_of_two(200)).contains(square)) {
+        return None;
+    }
+    let cross =
+        |p: Xyz, q: Xyz| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+    let [a, b, c] = vectors;
+    let normals = [cross(b, c), cross(c, a), cross(a, b)];
+    let determinant = a[0] * normals[0][0] + a[1] * normals[0][1] + a[2] * normals[0][2];
+    let slack = 64.0 * ROUNDING * norms[0] * norms[1] * norms[2] / determinant.abs();
+    let sum = |axis: usize| (0..3).map(|i| squares[i] * normals[i][axis]).sum::<f64>();
+    let offset = [0, 1, 2].map(|axis| sum(axis) / (2.0 * determinant));
+    let length = (offset[0] * offset[0] + offset[1] * offset[1] + offset[2] * offset[2]).sqrt();
+    // Each square is at most the square of its norm.
+    let error = slack * (norms[0] + norms[1] + norms[2] + 2.0 * length);
+    let radius = (length + 2.0 * error) * (1.0 + 1e-9);
+    let centre = std::array::from_fn(|axis| d[axis] + offset[axis]);
+    let rounding = d.iter().map(|x| x.abs()).fold(radius, f64::max) * 4.0 * ROUNDING;
+    (slack < 1e-3 && radius.is_finite()).then_some((centre, radius + rounding))
 }
 
 /// The signs of the components of (b - a) x (c - a), which are areas in the three projections.

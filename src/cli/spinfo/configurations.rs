@@ -42,10 +42,13 @@ pub(super) fn text(verdict: &Verdict) -> String {
         }
     };
     let mut text = "audit passed\n".to_string();
-    let Proof { knots, places, multiplicity_max, degrees } = proof;
+    let Proof { knots, places, multiplicity_max, degrees, functions } = proof;
     text += &format!("  {:<12} {knots} at {places} places, at most {multiplicity_max} at one\n", "knots");
     for degree in degrees {
         text += &format!("  {:<12} {}\n", format!("degree {}", degree.degree), proved(degree));
+    }
+    if *functions > 0 {
+        text += &format!("  {:<12} {functions}, whose pairs have links\n", "functions");
     }
     text
 }
@@ -79,6 +82,7 @@ pub(super) fn json(verdict: &Verdict, failure: Option<&Error>) -> Value {
             "places": proof.places,
             "multiplicity_max": proof.multiplicity_max,
             "degrees": degrees,
+            "functions": proof.functions,
         })
     });
     json!({"ok": verdict.is_ok(), "violation": violation, "proof": proof})

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{census, configurations, diagram};
 use crate::messages::escaped;
 use spmesh_audit::diagram::{Proof, Violation};
-use spmesh_audit::{Counts, Inventory, Report, shortest};
+use spmesh_audit::{Counts, Inventory, Report};
 use spmesh_core::error::Error;
 use spmesh_io::source::crs_name;
 use spmesh_model::bounds::Point;
@@ -283,7 +283,7 @@ impl Summary<'_> {
 
     /// World coordinates, as many as a point of the stream has.
     fn world(&self, stored: Point) -> Vec<f64> {
-        let world = self.header.coordinates.to_world(stored);
+        let world = self.header.coordinates.to_decimal(stored);
         world[..self.header.coordinates_per_point()].to_vec()
     }
 
@@ -351,7 +351,7 @@ fn crs_json(crs: &Crs) -> Value {
 }
 
 fn words(values: &[f64]) -> String {
-    let words: Vec<String> = values.iter().map(|&value| shortest(value)).collect();
+    let words: Vec<String> = values.iter().map(f64::to_string).collect();
     format!("({})", words.join(", "))
 }
 

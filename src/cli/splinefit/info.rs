@@ -135,7 +135,7 @@ fn smoothness_lines(smoothness: &Smoothness, layout: &Layout) -> Vec<(&'static s
     let (order, least) = (smoothness(*order), smoothness(least));
     let first = format!("{order} but for {} segments, where {what} (least: {least}):", found.len());
     let segment = |candidate: &Candidate| {
-        let [[a, b], [c, d]] = candidate.ends.map(|end| layout.frame.to_world(end));
+        let [[a, b], [c, d]] = candidate.ends.map(|end| layout.frame.to_decimal(end));
         ("", format!("{a} {b} to {c} {d}"))
     };
     let mut lines = vec![("smoothness", first)];
@@ -155,7 +155,7 @@ fn json(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> V
     };
     let segments = |candidates: &[Candidate]| -> Value {
         let segment = |candidate: &Candidate| {
-            let ends = candidate.ends.map(|end| layout.frame.to_world(end));
+            let ends = candidate.ends.map(|end| layout.frame.to_decimal(end));
             json!({"ends": ends, "order": candidate.order})
         };
         candidates.iter().map(segment).collect()

@@ -33,7 +33,7 @@ impl HistoricalCells {
             min = min.map(|x| x - 0.5);
             max = max.map(|x| x - 0.5);
         }
-        let (min, max) = (header.coordinates.to_world(min), header.coordinates.to_world(max));
+        let (min, max) = (header.coordinates.to_decimal(min), header.coordinates.to_decimal(max));
         let mut cells = HistoricalCells { tree, min, max, skipped: 0, is_complete: false };
         if tree.dims() == 2 {
             cells.set_height(header);
@@ -78,7 +78,7 @@ impl HistoricalCells {
     fn set_height(&mut self, header: &Header) {
         let (low, high) = match header.bounds {
             Some(bounds) if header.has_elevation => {
-                (header.coordinates.to_world(bounds.min)[2], header.coordinates.to_world(bounds.max)[2])
+                (header.coordinates.to_decimal(bounds.min)[2], header.coordinates.to_decimal(bounds.max)[2])
             }
             _ => (0.0, 0.0),
         };

@@ -7,9 +7,10 @@ use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Header;
 
-/// World coordinates of a stored point; z is 0 where points have none, whatever scale and offset say.
+/// World coordinates of a stored point, as the numbers with the shortest decimals that stand for it; z is 0
+/// where points have none, whatever scale and offset say.
 pub(super) fn world_of(header: &Header, stored: Point) -> Point {
-    let mut world = header.coordinates.to_world(stored);
+    let mut world = header.coordinates.to_decimal(stored);
     if header.coordinates_per_point() == 2 {
         world[2] = 0.0;
     }

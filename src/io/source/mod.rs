@@ -3,6 +3,7 @@
 
 mod base64;
 mod byte_order;
+mod checked;
 mod crs;
 mod events;
 mod grid;
@@ -59,6 +60,7 @@ mod vertices;
 mod vtk;
 mod words;
 
+pub use checked::Checked;
 pub use crs::crs_name;
 pub use events::EventSource;
 pub use gzip::Plain;

@@ -3,6 +3,7 @@
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
+use super::checked::Checked;
 use super::events::EventSource;
 use super::input::Input;
 use super::options::SourceOptions;
@@ -60,8 +61,8 @@ fn open_events(origin: &Origin, name: &str, options: &SourceOptions) -> Result<O
     let head = read_head(&mut origin.plain()?).map_err(|e| Error::io("reading", e))?;
     let events = || origin.plain().map(|plain| BufReader::with_capacity(1 << 18, plain));
     Ok(match options.reader.detect(&head)? {
-        Format::Stream => Some(Box::new(StreamReader::new(events()?, name)?)),
-        Format::Twin => Some(Box::new(TwinSource::new(origin.plain()?, name)?)),
+        Format::Stream => Some(Box::new(Checked::new(StreamReader::new(events()?, name)?))),
+        Format::Twin => Some(Box::new(Checked::new(TwinSource::new(origin.plain()?, name)?))),
         _ => None,
     })
 }

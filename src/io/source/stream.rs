@@ -1,8 +1,9 @@
-//! Points from streams of this project and their text twins, without the promises of cell tags; and the
-//! vertices of PLY and OBJ.
+//! Points from streams of this project and their text twins, whose cell tags are checked, but not used; and
+//! the vertices of PLY and OBJ.
 
 use std::io::BufReader;
 
+use super::checked::Checked;
 use super::events::EventSource;
 use super::obj::{self, ObjVertices};
 use super::origin::Bytes;
@@ -53,13 +54,14 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
 pub(super) struct EventPass<S>(S);
 
 /// Starts a pass over a stream.
-pub(super) fn pass(file: Bytes, name: &str) -> Result<EventPass<StreamReader<BufReader<Bytes>>>> {
-    StreamReader::new(BufReader::with_capacity(1 << 18, file), name).map(EventPass)
+pub(super) fn pass(file: Bytes, name: &str) -> Result<EventPass<Checked<StreamReader<BufReader<Bytes>>>>> {
+    let reader = StreamReader::new(BufReader::with_capacity(1 << 18, file), name)?;
+    Ok(EventPass(Checked::new(reader)))
 }
 
 /// Starts a pass over a text twin.
-pub(super) fn pass_of_twin(file: Bytes, name: &str) -> Result<EventPass<TwinSource<Bytes>>> {
-    TwinSource::new(file, name).map(EventPass)
+pub(super) fn pass_of_twin(file: Bytes, name: &str) -> Result<EventPass<Checked<TwinSource<Bytes>>>> {
+    Ok(EventPass(Checked::new(TwinSource::new(file, name)?)))
 }
 
 /// Starts a pass over the vertices of a PLY.

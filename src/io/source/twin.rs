@@ -93,7 +93,7 @@ impl<R: Read> TwinSource<R> {
         let mut header = TwinHeader::default();
         let mut is_first_content = false;
         while let Some(line) = lines.next_line()? {
-            let parsed = match line.strip_prefix(b"#spmesh ") {
+            let parsed = match header_statement(line) {
                 Some(rest) => header.line(rest),
                 None => {
                     is_first_content = is_content(line);
@@ -155,7 +155,7 @@ impl<R: Read> TwinSource<R> {
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
         let is_partial = self.header.kind.is_partial();
         let is_tetrahedral = self.header.kind == Kind::TetrahedralMesh;
-        let Totals { residual_points, walls, simplices, .. } = *self.tally.totals();
+        let Totals { residual_points, walls, simplices, vertices, .. } = *self.tally.totals();
         let kind = self.header.kind.name();
         let misplaced = || Error::malformed(format!("a {kind} cannot have this line here"));
         match (&mut self.group, statement) {
@@ -194,7 +194,7 @@ impl<R: Read> TwinSource<R> {
                             .ok_or_else(|| Error::malformed("a degree starts with a line \"degree\""))?,
                     ),
                     Statement::Four(ref first) if Group4::can_start(&self.header, first, simplices > 0) => {
-                        Group::Four(Group4::start(&self.header, first))
+                        Group::Four(Group4::start(&self.header, first, vertices))
                     }
                     _ => return Err(misplaced()),
                 };
@@ -309,6 +309,12 @@ impl Group {
     }
 }
 
+/// The part of a header line after `#spmesh`; `None` for other lines.
+fn header_statement(line: &[u8]) -> Option<&[u8]> {
+    let rest = line.trim_ascii_start().strip_prefix(b"#spmesh")?;
+    (rest.is_empty() || matches!(rest[0], b' ' | b'\t')).then_some(rest)
+}
+
 /// Whether a line is a statement of content or the end.
 fn is_content(line: &[u8]) -> bool {
     let mut fields = fields(line);
@@ -322,7 +328,12 @@ fn is_content(line: &[u8]) -> bool {
 /// The statement of a line; `None` for empty lines and comments.
 fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
     if !is_content(line) {
-        return Ok(None);
+        return match header_statement(line) {
+            None => Ok(None),
+            Some(_) => {
+                Err(Error::malformed("a line of the header (#spmesh) after the first line of content"))
+            }
+        };
     }
     let mut fields = fields(line);
     let fields = &mut fields;
@@ -388,15 +399,28 @@ fn statements_of(kind: Kind) -> &'static str {
 /// Converts world coordinates to a stored point and checks it against the header.
 fn parse_point<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, header: &Header) -> Result<Point> {
     let world = parse_decimals::<3>(fields)?;
-    let mut stored = header.coordinates.to_stored(world);
-    stored[header.coordinates_per_point()..].fill(0.0);
+    let (coordinates, axes) = (&header.coordinates, header.coordinates_per_point());
+    let mut stored = coordinates.to_stored(world);
+    stored[axes..].fill(0.0);
+    if let Some(z) = world[axes..].iter().find(|&&z| z != 0.0) {
+        return Err(Error::malformed(format!(
+            "z is {z}, but the points of this stream have none: expected 0"
+        )));
+    }
     if let Coordinates::I32 { .. } = header.coordinates {
         // Adding 0.0 turns a -0.0 from rounding into the integer 0.
         stored = stored.map(|value| value + 0.0);
     }
-    for (value, world) in stored.iter().zip(world) {
-        if !header.coordinates.can_store(*value) {
+    for axis in 0..axes {
+        let (value, world) = (stored[axis], world[axis]);
+        if !coordinates.can_store(value) {
             return Err(Error::malformed(format!("coordinate {world} does not fit the header's encoding")));
+        }
+        if !coordinates.is_decimal_of(axis, world, value) {
+            let nearest = coordinates.to_decimal(stored)[axis];
+            let message =
+                format!("coordinate {world} is not on the grid of the header, next to it is {nearest}");
+            return Err(Error::malformed(message));
         }
     }
     check_place(header, stored)?;

@@ -4,7 +4,7 @@ use super::statements::{expect_no_field, next_field, parse_decimals, parse_integ
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CELL_WORDS_MAX;
 use spmesh_model::cells4::{Cell4, Cells4, Point4};
-use spmesh_stream::{Event, Header, Kind, Points4, check_value};
+use spmesh_stream::{Event, Header, Kind, Points4, check_neighbour_count, check_value, check_vertex_count};
 
 /// Number of words from which a group of cells takes no further cell.
 const BATCH_WORDS: usize = 1 << 16;
@@ -93,12 +93,12 @@ impl Group4 {
         }
     }
 
-    /// The empty group that `first` starts.
-    pub(super) fn start(header: &Header, first: &Statement4) -> Self {
+    /// The empty group that `first` starts after `points` points.
+    pub(super) fn start(header: &Header, first: &Statement4, points: u64) -> Self {
         match first {
             Statement4::Vertex(..) => Group4::Points(Points4::new(header.has_elevation)),
             Statement4::Simplex(_) => Group4::Simplices(Vec::new()),
-            _ => Group4::Cells(CellLines::default()),
+            _ => Group4::Cells(CellLines { points, ..CellLines::default() }),
         }
     }
 
@@ -151,6 +151,8 @@ pub(super) struct CellLines {
     done: Cells4,
     open: Option<OpenCell>,
     words: usize,
+    /// Number of points before the cells.
+    points: u64,
 }
 
 struct OpenCell {
@@ -174,7 +176,7 @@ impl CellLines {
             (Statement4::More(numbers), Some(cell)) => {
                 self.words += numbers.len();
                 cell.neighbours.as_mut().unwrap_or(&mut cell.vertices).extend(numbers);
-                cell.check_words()?;
+                cell.check_words(self.points)?;
             }
             _ => return Err(Error::malformed("a cell has one line c4 or i4, and then one line n4")),
         }
@@ -192,7 +194,14 @@ impl CellLines {
 }
 
 impl OpenCell {
-    fn check_words(&self) -> Result<()> {
+    /// Checks the lists so far. One that is broken over lines is checked before the next line is read.
+    fn check_words(&self, points: u64) -> Result<()> {
+        let (vertices, neighbours) = (self.vertices.len() as u64, self.neighbours.as_ref().map(Vec::len));
+        if let Some(neighbours) = neighbours {
+            check_neighbour_count(self.is_infinite, vertices, neighbours as u64)?;
+        } else {
+            check_vertex_count(self.is_infinite, vertices, points)?;
+        }
         let words = 2 + self.vertices.len() + self.neighbours.as_ref().map_or(0, Vec::len);
         if words as u64 <= CELL_WORDS_MAX {
             return Ok(());

@@ -26,7 +26,7 @@ pub(super) struct TwinHeader {
 }
 
 impl TwinHeader {
-    /// Takes the part of a header line after `#spmesh `.
+    /// Takes the part of a header line after `#spmesh`.
     pub(super) fn line(&mut self, line: &[u8]) -> Result<()> {
         let key = fields(line).next().unwrap_or_default().to_vec();
         let rest = line[line.windows(key.len().max(1)).position(|w| w == key).unwrap_or(0) + key.len()..]

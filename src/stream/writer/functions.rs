@@ -11,11 +11,14 @@ impl<W: Write> StreamWriter<W> {
     /// Appends functions as sums of B-splines; all configurations must have been written before.
     ///
     /// # Errors
-    /// If functions are out of order, name unknown knots, or have no terms or too many for a block; or if
+    /// If there are no configurations of degree 1, functions are out of order, name unknown knots, or have no terms or too many for a block; or if
     /// writing fails.
     pub fn functions(&mut self, functions: &[Function]) -> Result<()> {
         self.flush_points()?;
         self.flush_configurations()?;
+        if !functions.is_empty() {
+            self.configuration_rules.check_functions()?;
+        }
         self.payload.clear();
         for function in functions {
             self.function_rules.function(function, self.totals.points)?;
@@ -31,8 +34,8 @@ impl<W: Write> StreamWriter<W> {
 
     /// Appends coefficients of a spline; all functions must have been written before.
     ///
+    /// # Errors
     /// If a coefficient is not finite, or writing fails.
-    /// If one is not finite, or writing fails.
     pub fn coefficients(&mut self, coefficients: &[f64]) -> Result<()> {
         self.flush_points()?;
         self.flush_configurations()?;

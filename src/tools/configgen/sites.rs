@@ -8,7 +8,7 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::detect::CONFIGGEN;
 use spmesh_io::source::{EventSource, Input, Opened, SourceOptions, name_of, open_planar};
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs, Event, LiveVertices};
+use spmesh_stream::{Coordinates, Crs, Event};
 
 /// The encoding of stored knots.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,14 +74,11 @@ fn read_mesh(mut mesh: Box<dyn EventSource>, name: String, done: &mut impl FnMut
     let frame = frame(header.coordinates, header.crs.clone(), header.has_elevation);
     let mut sites = Sites { name, points: Vec::new(), triangles: None, frame, notices: Vec::new() };
     let mut triangles = Vec::new();
-    let mut live: LiveVertices<()> = LiveVertices::new();
     while let Some(event) = mesh.next_event()? {
         let Event::Patch(patch) = event else { continue };
         sites.push(&patch.new)?;
-        let vertices = live.enter(&patch, |_, _| ()).map_err(|e| mesh.locate(e))?;
-        // There are at most MAX_POINTS of them, so that ids fit.
-        triangles
-            .extend(patch.triangles().map(|corners| corners.map(|local| vertices[local as usize].0 as u32)));
+        // There are at most MAX_POINTS vertices, so that ids fit.
+        triangles.extend(patch.triangles().map(|corners| corners.map(|local| patch.id(local) as u32)));
         done(sites.points.len() as u64);
     }
     sites.triangles = Some(triangles);

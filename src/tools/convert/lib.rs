@@ -16,8 +16,8 @@ use spmesh_io::sink::{
     SpmSink, TwinSink, VtuSink, surface_header,
 };
 use spmesh_io::source::{
-    EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader, TwinSource, open_obj,
-    open_ply, open_sma, open_smb,
+    Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader, TwinSource,
+    open_obj, open_ply, open_sma, open_smb,
 };
 use spmesh_stream::{Event, Kind, StreamReader};
 
@@ -41,7 +41,8 @@ pub struct Options {
 /// of points or vertices done. Returns notices for the user about what was lost. The output is complete only
 /// if the call succeeds.
 ///
-/// Memory: bounded, except for meshes that do not state when vertices are final.
+/// Memory: that of [`spmesh_stream::MemoryRules`], which is bounded by the width of a stream; meshes that do not
+/// state when vertices are final are held.
 ///
 /// # Errors
 /// Malformed, if the input is; usage, if its format is not recognized or `to` cannot hold it; I/O.
@@ -95,8 +96,11 @@ pub fn open_source(
     let input = Cursor::new(head).chain(input);
     let dims = options.dims.unwrap_or(2);
     Ok(match format {
-        Format::Spm => Box::new(StreamReader::new(BufReader::with_capacity(1 << 18, input), name)?),
-        Format::Text => Box::new(TwinSource::new(input, name)?),
+        Format::Spm => {
+            let reader = StreamReader::new(BufReader::with_capacity(1 << 18, input), name)?;
+            Box::new(Checked::new(reader))
+        }
+        Format::Text => Box::new(Checked::new(TwinSource::new(input, name)?)),
         Format::Obj => open_obj(input, name),
         Format::Sma => open_sma(input, name)?,
         Format::Smb => open_smb(BufReader::new(input), name)?,

@@ -35,8 +35,10 @@ pub(super) trait Bulk<const D: usize>: Default {
     const MESH: Kind;
     const PARTIAL_MESH: Kind;
 
-    /// Name of a simplex in messages.
+    /// Names of a simplex, of its facets, and of a triangulation in messages.
     const SIMPLEX: &'static str;
+    const FACET: &'static str;
+    const TRIANGULATION: &'static str;
 
     /// Bytes of a point that waits in a residual, with its walls; and of one that is being triangulated, beyond
     /// those.
@@ -81,8 +83,8 @@ pub(super) trait Bulk<const D: usize>: Default {
     /// Calls `found` with every wall.
     ///
     /// # Errors
-    /// [`spmesh_core::error::ErrorKind::Malformed`] if a wall is not a facet of this triangulation.
-    fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(WallSide)) -> Result<()>;
+    /// The number of a wall that is not a facet of this triangulation, if there is one.
+    fn find(&mut self, walls: &[[u32; D]], found: impl FnMut(WallSide)) -> std::result::Result<(), usize>;
 
     /// A facet as a wall with its simplex on the final side.
     fn wall(&self, facet: Facet) -> [u32; D];

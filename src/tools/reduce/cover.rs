@@ -94,14 +94,8 @@ fn uncovered<const D: usize>(whole: Region<D>, regions: &[&Region<D>], axis: usi
 
 fn in_world<const D: usize>(stored: &Region<D>, coordinates: &Coordinates) -> Region<D> {
     let stored = stored.in_space();
-    let [min, max] = [stored.min, stored.max].map(|corner| coordinates.to_world(corner).map(without_noise));
+    let [min, max] = [stored.min, stored.max].map(|corner| coordinates.to_decimal(corner));
     Region::between(min, max)
-}
-
-/// A world coordinate without what scale and offset leave in its last digits.
-fn without_noise(world: f64) -> f64 {
-    let rounded = (world * 1e6).round() / 1e6;
-    if (rounded - world).abs() <= 4.0 * f64::EPSILON * world.abs() { rounded } else { world }
 }
 
 #[cfg(test)]

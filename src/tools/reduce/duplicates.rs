@@ -36,7 +36,7 @@ impl Duplicates {
         if self == Duplicates::Error
             && let Some(&[_, vertex]) = duplicates.first()
         {
-            let point = coordinates.to_world(points.point(vertex as usize));
+            let point = coordinates.to_decimal(points.point(vertex as usize));
             let place: Vec<String> =
                 ["x", "y", "z"].iter().zip(point).take(D).map(|(axis, at)| format!("{axis} {at}")).collect();
             let policies = if D == 2 { "first, lowest, highest or mean" } else { "first" };

@@ -33,6 +33,7 @@ mod duplicates;
 mod merge;
 mod merging;
 mod node;
+mod origins;
 mod partial;
 mod patches;
 mod plan;

@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 use super::bulk::Bulk;
 use super::duplicates::Duplicates;
 use super::node::{Rules, Solver};
+use super::origins::Origins;
 use super::partial::Part;
 use super::plane::Plane;
 use super::residual::Residual;
@@ -69,8 +70,11 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);
     let mut stats = Stats { inner_nodes: 1, ..Stats::default() };
     let mut residual = Residual::<D>::default();
+    let mut origins = Origins::default();
     for reader in &mut readers {
-        copy_through(reader, &mut sequencer, &mut residual, &mut stats, &mut progress)?;
+        origins.begin(reader.name());
+        let note = &mut |event: &Event, reader: &StreamReader<R>| origins.note(event, D, reader);
+        copy_through(reader, &mut sequencer, &mut residual, &mut stats, note, &mut progress)?;
     }
     let points = residual.len();
     stats.inner_node_max = points as u64;
@@ -78,7 +82,8 @@ fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     sequencer.open(&[LEFT]);
     let mut solver = Solver::<B, D>::new(rules);
     let flush = &mut |blocks: &mut PatchBlocks| sequencer.patches(blocks);
-    let mut solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), flush)?;
+    let solved = solver.solve(MERGED, &mut residual, &region, PatchBlocks::default(), flush);
+    let mut solved = solved.map_err(|error| origins.locate(error, solver.misfit()))?;
     residual = std::mem::take(&mut solved.residual);
     let active = residual.active;
     sequencer.close(Output { number: MERGED, points, children: Vec::new(), active, solved })?;
@@ -173,7 +178,7 @@ pub(super) fn region_of<const D: usize>(header: &Header) -> Region<D> {
     header.region.map_or(Region::EVERYTHING, |region| Region::between(region.min, region.max))
 }
 
-/// Copies the final simplices of one input, and adds its residual to `residual`.
+/// Copies the final simplices of one input, and adds its residual to `residual`. Calls `note` with each event.
 ///
 /// # Errors
 /// If the input is malformed, or writing fails.
@@ -182,10 +187,12 @@ fn copy_through<R: Read, W: Write, const D: usize>(
     sequencer: &mut Sequencer<W>,
     residual: &mut Residual<D>,
     stats: &mut Stats,
+    note: &mut impl FnMut(&Event, &StreamReader<R>),
     progress: &mut impl FnMut(u64),
 ) -> Result<()> {
     let mut tile = Tile::<D>::new(region_of(reader.header()), sequencer.vertices());
     while let Some(event) = reader.next_event()? {
+        note(&event, reader);
         let taken = match event {
             Event::Patch(patch) => tile.patch(patch).and_then(|patch| sequencer.forward(&patch)),
             Event::ResidualPoints(points) => tile.residual_points(&points),

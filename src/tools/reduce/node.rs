@@ -88,6 +88,14 @@ impl<const D: usize> Solved<D> {
     }
 }
 
+/// What of the points does not fit, after an error: numbers of points or of a wall.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Misfit {
+    Point(u32),
+    Points([u32; 2]),
+    Wall(usize),
+}
+
 /// Triangulates one node after the other, in buffers that are used again.
 pub(super) struct Solver<B, const D: usize> {
     rules: Rules<D>,
@@ -105,6 +113,7 @@ pub(super) struct Solver<B, const D: usize> {
     /// Walls of the residual on the hull, as facets of active simplices.
     outer_walls: Vec<Facet>,
     builder: PatchBuilder<D>,
+    misfit: Option<Misfit>,
 }
 
 impl<B: Bulk<D>, const D: usize> Solver<B, D> {
@@ -120,6 +129,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
             walls: Vec::new(),
             outer_walls: Vec::new(),
             builder: PatchBuilder::default(),
+            misfit: None,
         }
     }
 
@@ -143,6 +153,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         self.bulk.triangulate(points)?;
         let duplicates = self.bulk.duplicates();
         if let Some(pair) = duplicates.iter().find(|pair| pair.iter().any(|&i| i as usize >= points.raw)) {
+            self.misfit = Some(Misfit::Points(*pair));
             return Err(overlap(points, pair[0], pair[1]));
         }
         self.rules.duplicates.settle(points, duplicates, &self.rules.coordinates)?;
@@ -155,6 +166,11 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         let (residual, references) = self.residual(number, points);
         let merged = self.bulk.duplicates().len() as u64;
         Ok(Solved { blocks, residual, references, merged })
+    }
+
+    /// What does not fit, after [`Solver::solve`] failed.
+    pub(super) fn misfit(&self) -> Option<Misfit> {
+        self.misfit
     }
 
     /// Decisions of the predicates so far.
@@ -178,7 +194,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         }
         wall_facets.resize(simplex_states.len(), 0);
         stack.clear();
-        self.bulk.find(walls, |side| {
+        let searched = self.bulk.find(walls, |side| {
             let Facet { simplex, corner } = match side {
                 WallSide::Final(facet) => facet,
                 WallSide::Open(Facet { simplex, corner }) => {
@@ -191,7 +207,13 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 simplex_states[simplex as usize] = SimplexState::Hole;
                 stack.push(simplex);
             }
-        })?;
+        });
+        if let Err(wall) = searched {
+            self.misfit = Some(Misfit::Wall(wall));
+            let (facet, triangulation) = (B::FACET, B::TRIANGULATION);
+            let message = format!("a wall of a residual is no {facet} of the {triangulation}");
+            return Err(Error::malformed(message));
+        }
         while let Some(simplex) = stack.pop() {
             for corner in 0..=D as u32 {
                 if wall_facets[simplex as usize] & 1 << corner != 0 {
@@ -202,6 +224,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                     if self.rules.sides.are_known() {
                         continue;
                     }
+                    self.misfit = Some(Misfit::Point(self.bulk.corners(simplex).as_ref()[0]));
                     return Err(Error::malformed("the walls of a residual do not close a hole"));
                 };
                 let state = &mut simplex_states[neighbour.simplex as usize];
@@ -299,6 +322,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
                 PointState::Hull if builder.is_unused(v) => unused.push(v),
                 PointState::Interior if builder.is_unused(v) => {
                     let point = points.point(v as usize);
+                    self.misfit = Some(Misfit::Point(v));
                     return Err(Error::malformed(format!(
                         "residual point {point:?} lies inside of a final {}",
                         B::SIMPLEX

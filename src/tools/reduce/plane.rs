@@ -3,7 +3,7 @@
 use super::bulk::{Bulk, Facet, WallSide};
 use super::disks::Disks;
 use super::residual::Residual;
-use spmesh_core::error::{Error, Result};
+use spmesh_core::error::Result;
 use spmesh_geometry::delaunay2::{Corner, Kernel, NONE, Triangles};
 use spmesh_geometry::predicates::PredicateCounts;
 use spmesh_geometry::predicates::circle::CircleBounds;
@@ -24,6 +24,8 @@ impl Bulk<2> for Plane {
     const MESH: Kind = Kind::TriangleMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTriangleMesh;
     const SIMPLEX: &'static str = "triangle";
+    const FACET: &'static str = "edge";
+    const TRIANGULATION: &'static str = "triangulation";
     const WAITING_BYTES: usize = 56;
     const KERNEL_BYTES: usize = 190;
     const SAMPLED_MIN: usize = 4_000;
@@ -74,14 +76,16 @@ impl Bulk<2> for Plane {
         })
     }
 
-    fn find(&mut self, walls: &[[u32; 2]], found: impl FnMut(WallSide)) -> Result<()> {
+    fn find(
+        &mut self,
+        walls: &[[u32; 2]],
+        mut found: impl FnMut(WallSide),
+    ) -> std::result::Result<(), usize> {
         let left_of = |a, b| self.triangulation.left_of(a, b).map(facet);
         let side = |&[a, b]: &[u32; 2]| {
-            let side = left_of(a, b).map(WallSide::Final).or_else(|| left_of(b, a).map(WallSide::Open));
-            side.ok_or_else(|| Error::malformed("a wall of a residual is no edge of the triangulation"))
+            left_of(a, b).map(WallSide::Final).or_else(|| left_of(b, a).map(WallSide::Open))
         };
-        let mut found = found;
-        walls.iter().try_for_each(|wall| side(wall).map(&mut found))
+        walls.iter().enumerate().try_for_each(|(number, wall)| side(wall).map(&mut found).ok_or(number))
     }
 
     fn wall(&self, edge: Facet) -> [u32; 2] {

@@ -1,11 +1,12 @@
 //! Tetrahedra: the reduction in space.
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 use super::bulk::{Bulk, Facet, WallSide};
 use super::residual::Residual;
-use super::walls::WallIndex;
-use spmesh_core::error::{Error, Result};
+use super::walls::{WallIndex, turned};
+use spmesh_core::error::Result;
 use spmesh_core::prefetch::prefetch;
 use spmesh_geometry::delaunay3::{Corner, Kernel, Tetrahedralization};
 use spmesh_geometry::order::sizes_to_starts;
@@ -62,6 +63,24 @@ impl Space {
     }
 }
 
+impl Space {
+    /// The number of the first wall that is no facet; there must be one. `index` has all walls.
+    #[cold]
+    fn missing(&self, walls: &[[u32; 3]], index: &WallIndex) -> usize {
+        let mut found = HashSet::new();
+        for simplex in 0..self.len() as u32 {
+            let vertices = self.corners(simplex);
+            for (corner, facet) in (0..).zip(TETRAHEDRON_FACETS_FROM_INSIDE) {
+                let [a, b, c] = facet.map(|i| vertices[i]);
+                let is_outer = self.neighbour(Facet { simplex, corner }).is_none();
+                let sides = [Some([a, b, c]), is_outer.then_some([b, a, c])];
+                found.extend(sides.into_iter().flatten().filter(|&side| index.contains(side)).map(turned));
+            }
+        }
+        walls.iter().position(|&wall| !found.contains(&turned(wall))).unwrap_or(0)
+    }
+}
+
 impl Bulk<3> for Space {
     type Corners = [u32; 4];
     type Balls = Balls;
@@ -69,6 +88,8 @@ impl Bulk<3> for Space {
     const MESH: Kind = Kind::TetrahedralMesh;
     const PARTIAL_MESH: Kind = Kind::PartialTetrahedralMesh;
     const SIMPLEX: &'static str = "tetrahedron";
+    const FACET: &'static str = "facet";
+    const TRIANGULATION: &'static str = "tetrahedralization";
     const WAITING_BYTES: usize = 130;
     const KERNEL_BYTES: usize = 640;
     const SAMPLED_MIN: usize = 50_000;
@@ -121,7 +142,11 @@ impl Bulk<3> for Space {
         self.hull.iter().copied()
     }
 
-    fn find(&mut self, walls: &[[u32; 3]], mut found: impl FnMut(WallSide)) -> Result<()> {
+    fn find(
+        &mut self,
+        walls: &[[u32; 3]],
+        mut found: impl FnMut(WallSide),
+    ) -> std::result::Result<(), usize> {
         if walls.is_empty() {
             return Ok(());
         }
@@ -142,12 +167,9 @@ impl Bulk<3> for Space {
                 }
             }
         }
+        let result = if count == walls.len() { Ok(()) } else { Err(self.missing(walls, &index)) };
         self.walls = index;
-        if count == walls.len() {
-            Ok(())
-        } else {
-            Err(Error::malformed("a wall of a residual is no facet of the tetrahedralization"))
-        }
+        result
     }
 
     fn wall(&self, Facet { simplex, corner }: Facet) -> [u32; 3] {

@@ -43,7 +43,7 @@ impl WallIndex {
 
 /// The same triangle in the same orientation, its least corner first.
 #[inline]
-fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
+pub(super) fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {

@@ -53,6 +53,13 @@ impl Frame {
         to_world(&self.coordinates, stored)
     }
 
+    /// The world coordinates of a stored place as users read them.
+    #[must_use]
+    pub fn to_decimal(&self, [x, y]: Point2) -> Point2 {
+        let [x, y, _] = self.coordinates.to_decimal([x, y, 0.0]);
+        [x, y]
+    }
+
     /// Length of a step of stored coordinates. Units: those of the world.
     #[must_use]
     pub fn step(&self) -> f64 {

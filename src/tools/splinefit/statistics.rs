@@ -51,7 +51,7 @@ impl Statistics {
             square += found.residual * found.residual;
             sketch.add(found.residual);
             if worst.is_none() || found.residual.abs() > greatest {
-                (greatest, worst) = (found.residual.abs(), Some(frame.to_world(found.point)));
+                (greatest, worst) = (found.residual.abs(), Some(frame.to_decimal(found.point)));
             }
         })?;
         let divisor = count.max(1) as f64;

@@ -47,7 +47,7 @@ impl Summary {
     /// # Errors
     /// As [`Smoothness::of`].
     pub fn of(layout: &Layout) -> Result<Summary> {
-        let points = layout.knots.points().iter().map(|&stored| layout.frame.to_world(stored));
+        let points = layout.knots.points().iter().map(|&stored| layout.frame.to_decimal(stored));
         let bounds = points.fold(None, |bounds: Option<Window>, point| {
             let Window { min, max } = bounds.unwrap_or(Window { min: point, max: point });
             let pick =

@@ -24,6 +24,7 @@ pub fn write_values(
     let (mut count, mut outside) = (0, 0);
     let (mut reader, mut batch) = (sites.read()?, Vec::new());
     let (mut scratch, mut text) = (Scratch::default(), Vec::new());
+    let coordinates = sites.description().coordinates;
     loop {
         reader.next_batch(&mut batch)?;
         if batch.is_empty() {
@@ -31,9 +32,10 @@ pub fn write_values(
         }
         text.clear();
         for &stored in &batch {
-            let [x, y, _] = sites.description().coordinates.to_world(stored);
+            let [x, y, _] = coordinates.to_world(stored);
             let jet = spline.jet([x, y], attribute, &mut scratch);
             outside += u64::from(jet.is_none());
+            let [x, y, _] = coordinates.to_decimal(stored);
             line(&mut text, [x, y], attribute, jet.as_ref());
         }
         count += batch.len() as u64;
