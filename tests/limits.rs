@@ -90,3 +90,17 @@ fn refused_threads_are_an_error_with_advice() {
         assert!(code == Some(0) || message.contains("take fewer --threads"), "{message}");
     }
 }
+
+/// The signal of the system would end the program without a word.
+#[test]
+#[cfg(target_os = "linux")]
+fn files_that_may_not_grow_are_an_error() {
+    let folder = Folder::new();
+    let text = folder.write("points.txt", cloud(5_000));
+    let output = folder.path("points.spm");
+    let limited = limited("-f 8", "spfinalize", &[&text, "-o", &output]);
+    let (code, message) = outcome(&limited);
+    assert_eq!(code, Some(1), "{message}");
+    assert!(message.contains("points.spm") && message.contains("large"), "{message}");
+    assert!(!std::path::Path::new(&output).exists());
+}

@@ -54,6 +54,10 @@ class Contestant:
         return self.median(lambda run: run.wall)
 
     @property
+    def cpu(self):
+        return self.median(lambda run: run.cpu)
+
+    @property
     def peaks(self):
         """The highest peak of each process over all runs."""
         return [max(peaks) for peaks in zip(*(run.peaks for run in self.runs))]

@@ -211,7 +211,8 @@ class Shapes:
         return rows
 
     def row(self, engine, shape, make, sizes):
-        """Median seconds and peak megabytes for each size, up to the first that takes too long."""
+        """Median seconds and peak megabytes for each size, up to the first that takes too long. Seconds are those
+        of the processor: programs run on one thread, and other work on the machine changes them little."""
         times, peaks = [], []
         for count in sizes:
             stream = self.stream(engine, shape, make, count)
@@ -226,7 +227,7 @@ class Shapes:
                 if run.failure:
                     return {"engine": engine, "shape": shape, "times": times, "peaks": peaks, "failure": run.failure}
                 contestant.runs.append(run)
-            times.append((count, contestant.wall))
+            times.append((count, contestant.cpu))
             peaks.append(contestant.peaks[0] / 1e6)
         return {"engine": engine, "shape": shape, "times": times, "peaks": peaks, "failure": ""}
 

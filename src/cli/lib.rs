@@ -43,6 +43,7 @@ use spmesh_model::bounds::Bounds;
 /// A closed output pipe ends the tool silently with 141, as a signal would; wrong usage gives 2.
 pub fn main<Flags: Parser>(run: impl FnOnce(Flags) -> anyhow::Result<()>) -> ExitCode {
     system::save_address_space();
+    system::report_large_files();
     system::exit_at_abort("not enough memory\n", ErrorKind::Memory.exit_code());
     let arguments = join_stats_format(std::env::args_os());
     let flags: Flags = match messages::parse(&arguments) {

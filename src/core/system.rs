@@ -103,6 +103,18 @@ pub fn save_address_space() {
 #[cfg(not(all(target_os = "linux", target_env = "gnu")))]
 pub fn save_address_space() {}
 
+/// From now on, a write beyond the largest file that this process may make (`ulimit -f`) fails as on a full disk.
+/// Without this call a signal ends the process without a message.
+#[cfg(unix)]
+pub fn report_large_files() {
+    // SAFETY: ignoring a signal runs no code.
+    unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
+}
+
+/// Does nothing: other systems have no such limit.
+#[cfg(not(unix))]
+pub fn report_large_files() {}
+
 /// Memory of a compressor of deflate, and of a decompressor, or more. Units: bytes.
 const DEFLATE_LEN: usize = 1 << 19;
 const INFLATE_LEN: usize = 1 << 18;

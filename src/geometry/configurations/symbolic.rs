@@ -1,6 +1,7 @@
 //! Signs for symbolically displaced knots ([`super::knots`]): determinants as polynomials in e.
 
 use super::knots::Knots;
+use crate::delaunay2::MAX_POINTS;
 use crate::predicates::forms::{Form, Incircle, Number, Orient2d, lift};
 use crate::predicates::residues::{Integers, Residue};
 use crate::predicates::{Point2, Sign, exact_integers};
@@ -79,6 +80,9 @@ fn sign<F: Form<N, 2>, const N: usize, const C: usize>(knots: &Knots, from: u32,
     }
 }
 
+// Squares of ranks fit.
+const _: () = assert!(MAX_POINTS < 1 << 31);
+
 /// Knots of P(e), one of which is the origin of the others.
 struct Displaced<const N: usize> {
     from: Point2,
@@ -97,7 +101,7 @@ impl<const N: usize> Displaced<N> {
         (degree - 1) * lengths.max(displacement) + displacement + 7
     }
 
-    /// Differences of ranks and of their squares: the derivatives of differences of points.
+    /// Differences of ranks, which are below [`MAX_POINTS`], and of their squares: the derivatives of differences of points.
     fn displacement(&self, i: usize) -> [i64; 2] {
         let (p, q) = (self.ranks[i], self.rank);
         [p - q, p * p - q * q]

@@ -39,11 +39,10 @@ pub(super) fn lifted_sphere<T: Number>([a, b, c, d]: [(&[T; 4], T); 4]) -> ([T; 
     let m = expansion(&p, &q, [0, 1, 2, 4, 5, 7]);
     // The lift replaces a coordinate; moving it to the end changes the sign for y and t.
     let x = expansion(&p, &q, [4, 5, 6, 7, 8, 9]); // y z t l
-    let y = expansion(&q, &p, [1, 2, 3, 7, 8, 9]); // x z t l
+    let minus_y = opposite_expansion(&q, &p, [1, 2, 3, 7, 8, 9]); // x z t l
     let z = expansion(&p, &q, [0, 2, 3, 5, 6, 9]); // x y t l
-    let t = expansion(&q, &p, [0, 1, 3, 4, 6, 8]); // x y z l
-    let zero = m.clone() - m.clone();
-    ([x, zero.clone() - y, z, zero - t], m)
+    let minus_t = opposite_expansion(&q, &p, [0, 1, 3, 4, 6, 8]); // x y z l
+    ([x, minus_y, z, minus_t], m)
 }
 
 #[inline(always)]
@@ -77,15 +76,24 @@ fn expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usi
         + (times(&p[il], &q[jk]) + times(&p[jk], &q[il]))
 }
 
+/// Minus [`expansion`]. A difference to zero would not do: [`Magnitude`] has no negative numbers.
+#[inline(always)]
+fn opposite_expansion<T: Number>(p: &[T; 10], q: &[T; 10], [ij, ik, il, jk, jl, kl]: [usize; 6]) -> T {
+    (times(&p[ik], &q[jl]) + times(&p[jl], &q[ik]))
+        - (times(&p[ij], &q[kl]) + times(&p[kl], &q[ij]))
+        - (times(&p[il], &q[jk]) + times(&p[jk], &q[il]))
+}
+
 /// The vector n such that n . x is the determinant of three vectors and x.
 #[inline(always)]
 pub(super) fn normal<T: Number>([a, b, c]: [&[T; 4]; 3]) -> [T; 4] {
     let minors = |i: usize, j: usize, k: usize| {
         times(&a[i], &minor(b, c, j, k)) - times(&a[j], &minor(b, c, i, k)) + times(&a[k], &minor(b, c, i, j))
     };
-    let (x, z) = (minors(1, 2, 3), minors(0, 1, 3));
-    let zero = || x.clone() - x.clone();
-    [zero() - x.clone(), minors(0, 2, 3), zero() - z, minors(0, 1, 2)]
+    let opposite_minors = |i: usize, j: usize, k: usize| {
+        times(&a[j], &minor(b, c, i, k)) - times(&a[i], &minor(b, c, j, k)) - times(&a[k], &minor(b, c, i, j))
+    };
+    [opposite_minors(1, 2, 3), minors(0, 2, 3), opposite_minors(0, 1, 3), minors(0, 1, 2)]
 }
 
 #[cfg(test)]

@@ -54,7 +54,8 @@ impl Budget {
             return Ok(());
         }
         let why = if 4 * fixed as u64 > 3 * limit {
-            format!("--threads {} alone takes {} MiB: take fewer", self.threads, fixed >> 20)
+            let alone = format!("--threads {} alone takes {} MiB", self.threads, fixed.div_ceil(1 << 20));
+            if self.threads > 1 { alone + ": take fewer" } else { alone }
         } else if held > raw + left {
             format!("{held} points wait for their cell to be complete: finalize them without --preserve")
         } else if next > (raw + left) / 2 {

@@ -92,7 +92,8 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         }
         let merged = self.bulk.duplicates().iter().filter(|pair| (pair[0] as usize) < count).count();
         let left = self.is_left[..count].iter().filter(|&&left| left).count();
-        Ok(left as f64 / (count - merged) as f64)
+        // Of points that are all merged none is left.
+        Ok(left as f64 / (count - merged).max(1) as f64)
     }
 
     /// Decisions of the predicates so far.
