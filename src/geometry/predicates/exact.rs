@@ -1,5 +1,7 @@
-//! The exact signs of determinants of floating-point coordinates, where rounded ones do not tell them: in residues
-//! if few digits hold the value, otherwise in pairs of `f64`, then in residues, then in arbitrary precision.
+//! The signs of determinants of floating-point coordinates that a filter leaves open.
+//!
+//! Each stage decides what the one before it cannot: residues of two digits, if all products of the coordinates
+//! fit them; pairs of `f64`; longer residues; big integers.
 
 use super::forms::Form;
 use super::residues::Integers;

@@ -1,9 +1,9 @@
 //! Determinants modulo a power of two: exact signs of values that are known to be small.
 //!
-//! Finite `f64` are integers in some power of two, the unit. A determinant of degree n is then an integer D in
-//! this unit to the power of n. Pairs of `f64` that leave the sign open have shown that D is near zero. If |D| <
-//! 2^(64 L - 1), the residue of D modulo 2^(64 L) tells D itself, zero included. Intermediates need not fit:
-//! they are residues, too. So a product takes a few native multiplications, and no memory is allocated.
+//! Finite `f64` are integers in units of a power of two, which may differ among the axes. In the product of these
+//! units a determinant is an integer V. If |V| < 2^(64 L - 1), its residue modulo 2^(64 L) tells V itself, zero
+//! included. Intermediates need not fit, as they are residues, too. So a product takes a few native
+//! multiplications and no memory. Pairs of `f64` that leave the sign open have shown that |V| is small.
 
 use super::Sign;
 use super::exact_integers::decompose;

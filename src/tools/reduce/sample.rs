@@ -4,8 +4,8 @@
 //! bounds (thesis 5.4), and in the plane, points on a curve have triangles whose circles are as large as the
 //! curve bends. If the cell is smaller, no simplex is final, and the time to triangulate it is lost.
 //!
-//! Random points show the shape of the whole node, neighbours that of its simplices. A node is passed up only if
-//! both samples would leave most of their points.
+//! Random points show the shape of the whole node, neighbours the size of its simplices: those of two close rows
+//! are far smaller than simplices of random points of the rows. A node is passed up only if both samples say so.
 
 use super::bulk::Bulk;
 use super::node::Rules;
@@ -28,8 +28,8 @@ const SAMPLED_ONE_OF: usize = 8;
 /// cube leaves 59 %, one of points on a surface nearly all.
 const SHARE_MAX: f64 = 0.85;
 
-/// The same for neighbours. Their sample misses the points around it, which make simplices active, so that it
-/// must be clear that nearly all are final, but at its border.
+/// Largest fraction that it may leave of the inner half of a sample of neighbours. It is strict, because the
+/// points around the sample are missing: they could make more simplices active.
 const NEAR_SHARE_MAX: f64 = 0.02;
 
 /// Triangulates samples of the points of nodes.
