@@ -8,6 +8,8 @@
 //! - [`StreamReader`] decodes and checks one block at a time, and returns it as an [`Event`]. It verifies
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
 //!   the stream.
+//!   It skips header records and blocks that it does not know if their tags allow that, and refuses others as
+//!   [`spmesh_core::error::ErrorKind::Unsupported`].
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
 //!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
 //!   reader alone cannot check.
@@ -60,6 +62,7 @@ mod event;
 mod finalized;
 mod functions;
 mod header;
+mod header_code;
 mod kind;
 mod live;
 mod memory_rules;
@@ -68,6 +71,7 @@ mod payload;
 mod points4;
 mod reader;
 mod rules4;
+mod tag_rules;
 mod tail;
 mod tally;
 mod triangles;
@@ -82,6 +86,7 @@ pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use functions::{function_kind, function_kind_of_name, function_kind_parts};
 pub use header::{Coordinates, Crs, Header};
+pub use header_code::{VERSION, check_version};
 pub use kind::Kind;
 pub use live::LiveVertices;
 pub use memory_rules::MemoryRules;
@@ -91,6 +96,7 @@ pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
 pub use rules4::{check_neighbour_count, check_vertex_count};
+pub use tag_rules::needs_newer;
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;

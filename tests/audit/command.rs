@@ -119,7 +119,8 @@ fn rules_of_the_stream_exit_with_3_and_not_with_4() {
         // An earlier block may break a claim. Some kinds have no audit, or none of their first block.
         let is_earlier = message.contains(" check failed: ") && !message.contains(vector.expected.trim_end());
         let expected = if is_earlier { Some(4) } else { Some(3) };
-        let is_unproved = output.status.code() == Some(2) && message.contains("claims nothing that takes a proof");
+        let is_unproved =
+            output.status.code() == Some(2) && message.contains("claims nothing that takes a proof");
         assert!(is_unproved || output.status.code() == expected, "{}: {message}", vector.name);
         let found_late = ["finalized", "referenced after", "final already", "that is final"];
         assert!(

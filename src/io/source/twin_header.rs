@@ -1,10 +1,11 @@
 //! The header lines of a text twin.
 
+use super::lines::quote;
 use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Coordinates, Crs, Header, Kind};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version, needs_newer};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -32,19 +33,26 @@ impl TwinHeader {
         let rest = line[line.windows(key.len().max(1)).position(|w| w == key).unwrap_or(0) + key.len()..]
             .trim_ascii();
         if self.seen.is_empty() != (key == b"version") {
-            return Err(Error::malformed("the header must start with one line \"#spmesh version 1\""));
+            let message = format!("the header must start with one line \"#spmesh version {VERSION}\"");
+            return Err(Error::malformed(message));
         }
         if self.seen.contains(&key) {
             return Err(Error::malformed("the header says this twice"));
         }
         let mut values = fields(rest);
         match &key[..] {
-            b"version" => expect_word(rest, &[("1", ())])?,
+            b"version" => check_version(only(parse_integer(next_field(&mut values)?)?, values)?)?,
             b"kind" => {
                 let kind = std::str::from_utf8(rest).ok().and_then(Kind::from_name);
-                self.kind = Some(kind.ok_or_else(|| unexpected(rest, "a kind of stream"))?);
+                self.kind = Some(kind.ok_or_else(|| unknown_word("kind", rest))?);
             }
-            b"coordinates" => self.is_i32 = expect_word(rest, &[("f64", false), ("i32", true)])?,
+            b"coordinates" => {
+                self.is_i32 = match rest {
+                    b"f64" => false,
+                    b"i32" => true,
+                    _ => return Err(unknown_word("coordinate type", rest)),
+                }
+            }
             b"scale" => self.scale = Some(only(parse_decimals(&mut values)?, values)?),
             b"offset" => self.offset = Some(only(parse_decimals(&mut values)?, values)?),
             b"dims" => self.dims = Some(expect_word(rest, &[("2", 2), ("3", 3), ("4", 4)])?),
@@ -101,6 +109,14 @@ impl TwinHeader {
         };
         header.check().map_err(Error::malformed)?;
         Ok(header)
+    }
+}
+
+/// The error about a word that is no `what`, unless a later version defines it.
+fn unknown_word(what: &str, word: &[u8]) -> Error {
+    match word {
+        b"" => unexpected(word, what),
+        _ => needs_newer(format_args!("{what} {}", quote(word))),
     }
 }
 
