@@ -36,7 +36,7 @@ labels of vertices as point data, Medit as references. Meshes of OBJ and PLY do 
 final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-5 not enough memory, 141 output closed by its reader.";
+5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "spconvert: not enough memory for the vertices of the mesh\n";

@@ -20,7 +20,8 @@ pub enum ErrorKind {
     Audit,
     /// The memory budget is too small (exit 5).
     Memory,
-    /// The input needs what this program does not know, because another version of spmesh made it (exit 6).
+    /// The input needs what this program does not know, because another version of
+    /// spmesh made it (exit 6).
     Unsupported,
     /// The reader of the output closed the pipe (exit 141, without a message).
     ClosedPipe,

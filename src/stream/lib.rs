@@ -96,7 +96,6 @@ pub use points4::Points4;
 pub use points4::check_value;
 pub use reader::StreamReader;
 pub use rules4::{check_neighbour_count, check_vertex_count};
-pub use tag_rules::needs_newer;
 pub use tail::ends_with_end;
 pub use tally::Tally;
 pub use triangles::write_triangles;

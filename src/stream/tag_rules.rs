@@ -29,8 +29,8 @@ pub(super) fn may_be_skipped(tag: TagBytes) -> bool {
     tag[0] & MAY_BE_SKIPPED != 0
 }
 
-/// The error about a `part` of a stream, or of its text twin, that this version does not know and must not skip.
-pub fn needs_newer(part: impl fmt::Display) -> Error {
+/// The error about a `part` of a stream that this version does not know and must not skip.
+pub(super) fn needs_newer(part: impl fmt::Display) -> Error {
     Error::unsupported(format!(
         "the stream needs {part}, which this program does not know: a newer spmesh made it"
     ))

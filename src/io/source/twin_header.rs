@@ -1,11 +1,10 @@
 //! The header lines of a text twin.
 
-use super::lines::quote;
 use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version, needs_newer};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -44,15 +43,9 @@ impl TwinHeader {
             b"version" => check_version(only(parse_integer(next_field(&mut values)?)?, values)?)?,
             b"kind" => {
                 let kind = std::str::from_utf8(rest).ok().and_then(Kind::from_name);
-                self.kind = Some(kind.ok_or_else(|| unknown_word("kind", rest))?);
+                self.kind = Some(kind.ok_or_else(|| unexpected(rest, "a kind of stream"))?);
             }
-            b"coordinates" => {
-                self.is_i32 = match rest {
-                    b"f64" => false,
-                    b"i32" => true,
-                    _ => return Err(unknown_word("coordinate type", rest)),
-                }
-            }
+            b"coordinates" => self.is_i32 = expect_word(rest, &[("f64", false), ("i32", true)])?,
             b"scale" => self.scale = Some(only(parse_decimals(&mut values)?, values)?),
             b"offset" => self.offset = Some(only(parse_decimals(&mut values)?, values)?),
             b"dims" => self.dims = Some(expect_word(rest, &[("2", 2), ("3", 3), ("4", 4)])?),
@@ -109,14 +102,6 @@ impl TwinHeader {
         };
         header.check().map_err(Error::malformed)?;
         Ok(header)
-    }
-}
-
-/// The error about a word that is no `what`, unless a later version defines it.
-fn unknown_word(what: &str, word: &[u8]) -> Error {
-    match word {
-        b"" => unexpected(word, what),
-        _ => needs_newer(format_args!("{what} {}", quote(word))),
     }
 }
 
