@@ -2,6 +2,7 @@
 
 mod configurations;
 mod four;
+mod newer;
 mod skipped;
 mod tools4;
 
