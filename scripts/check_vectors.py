@@ -3,7 +3,8 @@
 
     python3 check_vectors.py
 
-A vector in pass must give its text twin (.txt), one in fail must be refused with the words of its .err file.
+A vector in pass must give its text twin (.txt), one in fail must be refused with the words and the exit code of
+its .err file.
 Exit 0, or 1 with a line for each vector that came out otherwise.
 """
 
@@ -23,13 +24,13 @@ def load(path):
 
 
 def read(data):
-    """The text twin, and the error message if there is one."""
+    """The text twin, or None and the lines of the .err file with the whole message."""
     lines = []
     stream = spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lines.append))
     try:
         stream.read()
-    except spmesh_reader.Malformed as error:
-        return None, "%s: %s" % (stream.where, error)
+    except spmesh_reader.REFUSED as error:
+        return None, ("%s: %s" % (stream.where, error), "exit code %d" % error.exit_code)
     return "".join(lines), None
 
 
@@ -42,10 +43,11 @@ def main():
         if name.startswith("pass"):
             holds = text == load(stem + ".txt")
         else:
-            holds = error is not None and load(stem + ".err").strip() in error
+            words, code = load(stem + ".err").splitlines()
+            holds = error is not None and words in error[0] and code == error[1]
         if not holds:
             wrong += 1
-            print("check_vectors: %s: %s" % (name, error or "another text than expected"), file=sys.stderr)
+            print("check_vectors: %s: %s" % (name, ": ".join(error or ()) or "another text than expected"), file=sys.stderr)
     print("%d vectors, %d wrong" % (len(paths), wrong))
     return 1 if wrong or not paths else 0
 

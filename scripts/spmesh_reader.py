@@ -6,7 +6,7 @@
 A second reader, laid out like formats/spmesh.md and formats/text.md and written from them alone, with only
 the standard library. It checks every rule of the text except the orientation of simplices, including the
 rules that need to remember cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit
-1: the input cannot be read.
+6: the stream needs what this reader does not know. Exit 1: the input cannot be read.
 """
 
 import bisect
@@ -25,10 +25,50 @@ NOT_KNOWN = bytes.fromhex("000000000000f87f")
 class Malformed(Exception):
     """The input breaks a rule of the format."""
 
+    exit_code = 3
+
+
+class TooNew(Exception):
+    """The input needs what version 2 of the text does not know."""
+
+    exit_code = 6
+
+
+REFUSED = (Malformed, TooNew)
+
 
 def require(holds, message):
     if not holds:
         raise Malformed(message)
+
+
+# --- 4 Tags -------------------------------------------------------------------------------------------------
+
+
+LETTERS = frozenset(b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz")
+CHARACTERS = LETTERS | frozenset(b"0123456789 ")
+
+
+def escaped(tag):
+    return "".join(chr(b) if 32 <= b < 127 else "\\x%02x" % b for b in tag)
+
+
+def check_tag(tag, part):
+    require(
+        tag[0] in LETTERS and CHARACTERS.issuperset(tag),
+        '%s tag "%s", expected a letter, then letters, digits or spaces' % (part, escaped(tag)),
+    )
+
+
+def require_known(tag, known, part):
+    """Whether `tag` is known; if not, it must be one that may be skipped."""
+    if tag not in known and not tag[0] & 0x20:
+        needs('%s "%s"' % (part, escaped(tag)))
+    return tag in known
+
+
+def needs(part):
+    raise TooNew("the stream needs %s, which this program does not know: a newer spmesh made it" % part)
 
 
 # --- 4.1 CRC32C ---------------------------------------------------------------------------------------------
@@ -79,57 +119,121 @@ FUNCTIONS = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4)
 class Header:
     def __init__(self, data):
         """`data` is the header without its checksum, which has been verified."""
-        kind, length = struct.unpack_from("<HI", data, 10)
-        require(kind in KINDS, "unknown stream kind %d" % kind)
-        require(length >= 192, "header body of %d bytes, expected at least 192" % length)
+        (kind,) = struct.unpack_from("<H", data, 10)
+        coordinate_type, self.dims, elevation, flags, features, self.points = struct.unpack_from("<BBBBIQ", data, 16)
+        if kind not in KINDS:
+            needs("stream kind %d" % kind)
+        for bit in range(32):
+            if features >> bit & 1:
+                needs("feature bit %d" % bit)
+        if coordinate_type not in (1, 2):
+            needs("coordinate type %d" % coordinate_type)
         self.kind, dims_of_kind, self.phases = KINDS[kind]
-        coordinate_type, self.dims, elevation, flags, reserved = struct.unpack_from("<BBBBI", data, 16)
-        is_partial_in_space = self.kind == "partial tetrahedral mesh"
-        require(
-            reserved == 0 and elevation < 2 and flags < 16 and (is_partial_in_space or data[164:168] == bytes(4)),
-            "reserved bits are set",
-        )
-        require(coordinate_type in (1, 2), "coordinate type %d" % coordinate_type)
+        records = self.records(data[32:])
+        require(elevation < 2, "elevation %d, expected 0 or 1" % elevation)
+        require(flags < 2, "flags 0x%02x, of which all bits but bit 0 must be 0" % flags)
         require(
             self.dims in (2, 3, 4) and not (self.dims == 3 and elevation),
             "%d dimensions with elevation %d" % (self.dims, elevation),
         )
         self.is_4d = dims_of_kind == (4,)
+        self.is_integer = coordinate_type == 2
+        self.chunked = flags & 1 != 0
         if self.is_4d:
             require(self.dims == 4, "dims %d in a stream of kind %s, expected 4" % (self.dims, self.kind))
-            require(coordinate_type == 1, "integer coordinates in a stream of kind %s, expected f64" % self.kind)
-            require(
-                flags == 0, "a stream of kind %s has no bounding box, tree or region, and is not chunked" % self.kind
-            )
+            require(not self.is_integer, "integer coordinates in a stream of kind %s, expected f64" % self.kind)
         require(self.dims in dims_of_kind, "a %s in %d dimensions" % (self.kind, self.dims))
-        self.is_integer = coordinate_type == 2
         self.has_elevation = elevation == 1
         self.axes = self.dims + elevation
         self.record = struct.Struct("<%d%s" % (self.axes, "i" if self.is_integer else "d"))
         self.has_knots = self.kind in ("configurations", "splines")
         self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
-        (self.points,) = struct.unpack_from("<Q", data, 24)
-        self.scale, self.offset = struct.unpack_from("<3d", data, 32), struct.unpack_from("<3d", data, 56)
+        self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
+        self.producer = ""
+        for tag, payload in records.items():
+            RECORDS[tag](self, payload)
+        require(self.scale or not self.is_integer, 'no header record "GRID", which i32 coordinates need')
         if self.is_integer:
             self.check_grid()
-        require(
-            not flags & 2 or not (self.has_knots or is_partial_in_space),
-            "a stream of kind %s has no finalization tree" % self.kind,
-        )
-        self.tree = Tree(self.dims, data) if flags & 2 else None
-        self.bounds = struct.unpack_from("<6d", data, 80) if flags & 1 else None
-        self.check_scales()
+            self.check_scales()
+        if self.is_4d:
+            require(
+                not (self.bounds or self.region or self.chunked),
+                "a stream of kind %s has no bounding box, tree or region, and is not chunked" % self.kind,
+            )
         self.check_bounds()
-        self.region = None
-        if flags & 4:
-            self.region = struct.unpack_from("<6d", data, 152) if is_partial_in_space else struct.unpack_from("<4d", data, 168)
         self.check_region()
-        self.chunked = flags & 8 != 0
         require(
             not self.chunked or (self.tree and not self.is_mesh),
             "only points with a finalization tree can be chunked",
         )
-        self.read_tail(data, length)
+
+    # --- 2.6 Records of the header
+
+    @staticmethod
+    def records(data):
+        """The payloads of the records that this reader knows, by their tags."""
+        records, at = {}, 0
+        while at < len(data):
+            left = len(data) - at - 8
+            require(left >= 0, "%d bytes after the last header record" % (left + 8))
+            tag, length = struct.unpack_from("<4sI", data, at)
+            require(
+                length <= left,
+                'header record "%s" of %d bytes, but %d are left in the header' % (escaped(tag), length, left),
+            )
+            check_tag(tag, "header record")
+            require(tag not in records, 'two header records "%s"' % escaped(tag))
+            records[tag] = data[at + 8 : at + 8 + length]
+            at += 8 + length
+        return {tag: payload for tag, payload in records.items() if require_known(tag, RECORDS, "header record")}
+
+    def fields(self, tag, layout, payload):
+        """The numbers of a record of a layout."""
+        layout = struct.Struct("<" + layout)
+        require(
+            len(payload) == layout.size,
+            'header record "%s": %d bytes, expected %d' % (tag, len(payload), layout.size),
+        )
+        return layout.unpack(payload)
+
+    def read_grid(self, payload):
+        require(self.is_integer, 'header record "GRID": f64 coordinates have no grid')
+        numbers = self.fields("GRID", "6d", payload)
+        self.scale, self.offset = numbers[:3], numbers[3:]
+
+    def read_bounds(self, payload):
+        self.bounds = self.fields("BBOX", "6d", payload)
+
+    def read_tree(self, payload):
+        require(
+            not (self.is_4d or self.has_knots or self.kind == "partial tetrahedral mesh"),
+            "a stream of kind %s has no finalization tree" % self.kind,
+        )
+        *origin, side, depth = self.fields("TREE", "%ddI" % (self.dims + 1), payload)
+        self.tree = Tree(self.dims, tuple(origin), side, depth)
+
+    def read_region(self, payload):
+        self.region = self.fields("REGN", "%dd" % (2 * self.dims), payload)
+
+    def check_crs(self):
+        require(
+            self.wkt is None and self.geokeys is None, "the header has the CRS in another record already"
+        )
+
+    def read_wkt(self, payload):
+        self.check_crs()
+        self.wkt = utf8(payload, "CRS")
+
+    def read_geokeys(self, payload):
+        self.check_crs()
+        self.geokeys = geokeys(payload)
+
+    def read_producer(self, payload):
+        require(
+            len(payload) < 2**16, "a producer of %d bytes, the maximum is %d" % (len(payload), 2**16 - 1)
+        )
+        self.producer = utf8(payload, "producer")
 
     def check_grid(self):
         for scale, offset in zip(self.scale, self.offset):
@@ -141,7 +245,7 @@ class Header:
     def check_scales(self):
         is_free = self.kind == "points" and not self.tree
         require(
-            not self.is_integer or is_free or len(set(self.scale[: self.dims])) == 1,
+            is_free or len(set(self.scale[: self.dims])) == 1,
             "the axes of the geometry have the scales %s, expected one scale" % decimals(self.scale[: self.dims]),
         )
 
@@ -172,22 +276,6 @@ class Header:
             low, high = self.region[: self.dims], self.region[self.dims :]
             require(all(a < b for a, b in zip(low, high)), "the region is empty or not a number")
 
-    def read_tail(self, data, length):
-        encoding, producer_length, crs_length = struct.unpack_from("<HHI", data, 200)
-        require(
-            192 + producer_length + crs_length == length,
-            "lengths of CRS and producer do not add up to the header's length",
-        )
-        crs, producer = data[208 : 208 + crs_length], data[208 + crs_length :]
-        self.producer = utf8(producer, "producer")
-        self.wkt = self.geokeys = None
-        if encoding == 1:
-            self.wkt = utf8(crs, "CRS")
-        elif encoding == 2:
-            self.geokeys = geokeys(crs)
-        else:
-            require(encoding == 0 and not crs, "CRS encoding %d with %d bytes" % (encoding, crs_length))
-
     def point(self, stored):
         """Returns a stored point with its z, after checking the header's statements about all points."""
         point = stored if self.axes == 3 else stored + (0,)
@@ -217,6 +305,17 @@ class Header:
         return [self.point(stored) for stored in self.record.iter_unpack(data)]
 
 
+RECORDS = {
+    b"GRID": Header.read_grid,
+    b"BBOX": Header.read_bounds,
+    b"TREE": Header.read_tree,
+    b"REGN": Header.read_region,
+    b"cWKT": Header.read_wkt,
+    b"cGEO": Header.read_geokeys,
+    b"prod": Header.read_producer,
+}
+
+
 def utf8(data, what):
     try:
         return data.decode("utf-8")
@@ -240,20 +339,16 @@ def geokeys(data):
 
 
 class Tree:
-    def __init__(self, dims, data):
-        self.dims = dims
-        self.origin = struct.unpack_from("<3d", data, 128)
-        (self.side,) = struct.unpack_from("<d", data, 152)
-        (self.depth,) = struct.unpack_from("<I", data, 160)
+    def __init__(self, dims, origin, side, depth):
+        self.dims, self.origin, self.side, self.depth = dims, origin, side, depth
         out_of_range = "the finalization tree is out of range or not exact"
         require(self.depth <= (31 if dims == 2 else 20), out_of_range)
         require(2.0**-1022 <= self.side < math.inf and math.frexp(self.side)[0] == 0.5, out_of_range)
         unit = self.side / 2.0**31
-        for origin in self.origin[:dims]:
+        for origin in self.origin:
             steps = origin / unit
             require(steps.is_integer() and steps * unit == origin, out_of_range)
             require(abs(steps) + 2.0**31 < 2.0**53 and origin + self.side < math.inf, out_of_range)
-        require(dims == 3 or self.origin[2] == 0, "the finalization tree has other dimensions than the points")
 
     def contains(self, point):
         for x, origin in zip(point[: self.dims], self.origin):
@@ -395,8 +490,17 @@ class Stream:
         require(len(start) == 16, "truncated: found %d of the first 16 bytes" % len(start))
         self.offset = 16
         version, _, length = struct.unpack("<HHI", start[8:])
-        require(version == 1, "stream of version %d, this program reads 1" % version)
-        require(length <= 2**20, "header body of %d bytes, the maximum is %d" % (length, 2**20))
+        if version < 2:
+            raise TooNew(
+                "version %d; this program reads version 2 only: an older spmesh made it, make it again from its input"
+                % version
+            )
+        if version > 2:
+            raise TooNew("version %d; this program reads version 2: a newer spmesh made it" % version)
+        require(
+            16 <= length <= 2**20,
+            "header body of %d bytes, the minimum is 16, the maximum is %d" % (length, 2**20),
+        )
         data = start + self.take(length)
         require(
             crc32c(data) == int.from_bytes(self.take(4), "little"),
@@ -434,8 +538,9 @@ class Stream:
             b"COEF": self.coefficients,
             b"END ": self.end,
         }
-        escaped = "".join(chr(b) if 32 <= b < 127 else "\\x%02x" % b for b in tag)
-        require(tag in readers, 'unknown block tag "%s"' % escaped)
+        check_tag(tag, "block")
+        if not require_known(tag, readers, "block tag"):
+            return tag
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -810,7 +915,7 @@ class Text:
     def header(self, header):
         self.world = self.grid(header) if header.is_integer else decimals
         yes = {True: "yes", False: "no"}
-        lines = ["version 1", "kind " + header.kind, "coordinates " + ("i32" if header.is_integer else "f64")]
+        lines = ["version 2", "kind " + header.kind, "coordinates " + ("i32" if header.is_integer else "f64")]
         if header.is_integer:
             lines += ["scale " + decimals(header.scale), "offset " + decimals(header.offset)]
         lines += ["dims %d" % header.dims, "elevation " + yes[header.has_elevation]]
@@ -819,7 +924,8 @@ class Text:
         if header.points != UNKNOWN:
             lines.append("points %d" % header.points)
         if header.tree:
-            lines.append("tree %d %s" % (header.tree.depth, decimals(header.tree.origin + (header.tree.side,))))
+            cube = (header.tree.origin + (0,))[:3] + (header.tree.side,)
+            lines.append("tree %d %s" % (header.tree.depth, decimals(cube)))
         if header.region:
             lines.append("region " + decimals(header.region))
         lines.append("chunked " + yes[header.chunked])
@@ -877,10 +983,10 @@ def main(arguments):
             stream.read()
             sys.stdout.flush()
         return 0
-    except Malformed as error:
+    except REFUSED as error:
         sys.stdout.flush()
         print("spmesh_reader: %s: %s: %s" % (name, stream.where, error), file=sys.stderr)
-        return 3
+        return error.exit_code
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141

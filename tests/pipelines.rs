@@ -166,7 +166,7 @@ fn coordinates_are_printed_as_they_were_given() {
 fn scales_of_a_stream_meet_on_one_grid_before_its_points_are_triangulated() {
     let header = |tree: &str| {
         format!(
-            "#spmesh version 1\n#spmesh kind points\n#spmesh coordinates i32\n#spmesh scale 0.25 0.25 2\n\
+            "#spmesh version 2\n#spmesh kind points\n#spmesh coordinates i32\n#spmesh scale 0.25 0.25 2\n\
              #spmesh offset 0 0 0\n#spmesh dims 3\n#spmesh elevation no\n{tree}#spmesh chunked no\n"
         )
     };
@@ -363,7 +363,7 @@ fn tiles_of_space_merge_to_the_whole() {
         assert!(report["counts"]["walls"].as_u64() > Some(100), "{report}");
         let text = run("spconvert", &["--to", "text", part], &[]).stdout;
         let again = run("spconvert", &["--from", "text", "--to", "text", "-"], &text).stdout;
-        assert!(text.starts_with(b"#spmesh version 1") && again == text);
+        assert!(text.starts_with(b"#spmesh version 2") && again == text);
         let python = run_python("scripts/spmesh_reader.py", &["-"], &fs::read(part).unwrap());
         assert!(python.is_none_or(|python| python.status.success() && python.stdout == text));
     }

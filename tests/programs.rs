@@ -5,6 +5,10 @@ use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
+use spmesh_core::error::ErrorKind;
+
+use crate::vectors::kind_of_damage;
+
 /// A command for a tool of the project.
 pub fn tool(name: &str) -> Command {
     let path = match name {
@@ -69,20 +73,21 @@ pub fn assert_outcome(name: &str, arguments: &[&str], input: &[u8], code: i32, p
 pub fn assert_damage_leaves_no_file(name: &str, arguments: &[&str], names: [&str; 2], stream: &[u8]) {
     let folder = Folder::new();
     folder.file(names[0], "old");
-    let check = |bytes: &[u8], place: usize| {
+    let check = |bytes: &[u8], place: usize, expected: u8| {
         for output in names {
             let (code, message) =
                 outcome(&run(name, &[arguments, &["-o", &folder.path(output)]].concat(), bytes));
-            assert_eq!(code, Some(3), "{name} with {output}, at {place}: {message}");
+            assert_eq!(code, Some(expected.into()), "{name} with {output}, at {place}: {message}");
             assert!(message.contains("stdin: ") && !message.contains("panicked"), "{message}");
         }
         assert_eq!(folder.names(""), names[..1], "{name}, at {place}");
     };
     for place in (0..stream.len()).step_by(stream.len() / 7) {
-        check(&stream[..place], place);
+        check(&stream[..place], place, ErrorKind::Malformed.exit_code());
         let mut damaged = stream.to_vec();
-        damaged[(place + 9).min(stream.len() - 1)] ^= 4;
-        check(&damaged, place);
+        let changed = (place + 9).min(stream.len() - 1);
+        damaged[changed] ^= 4;
+        check(&damaged, place, kind_of_damage(changed).exit_code());
     }
     assert_eq!(fs::read_to_string(folder.path(names[0])).expect("a file"), "old");
 }

@@ -62,7 +62,8 @@ the smoothness of splines there; spdelaunay2d makes one of them. Knots that are 
 then those amid the edges of smooth creases. Knots of --patches come first, row by row.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, knots on one line, or too few of them, 3 malformed \
-or truncated input, 4 a link that theory excludes, 5 not enough memory, 141 output closed by its reader.";
+or truncated input, 4 a link that theory excludes, 5 not enough memory, 6 input of another \
+version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a lower degree\n";

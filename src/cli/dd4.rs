@@ -35,7 +35,7 @@ infinite ones, one for each facet of a cell on the hull. Without --quantum, coor
 that they are.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that span no 4 dimensions, 3 malformed \
-or truncated input, 5 not enough memory for the points, 141 output closed by its reader.";
+or truncated input, 5 not enough memory for the points, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "dd4: not enough memory: take fewer points, as with --count or --where\n";

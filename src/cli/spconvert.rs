@@ -37,7 +37,7 @@ stand for them: 28016 steps of 0.001 are 28.016. A text twin with a number off i
 final: all of them are at the end.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-5 not enough memory, 141 output closed by its reader.";
+5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "spconvert: not enough memory for the vertices of the mesh\n";

@@ -16,7 +16,7 @@ Examples:
     spdelaunay2d --merge tile*.spm -o whole.spm
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-5 not enough memory, 141 output closed by its reader.";
+5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// Triangulate a stream of points in the plane (Delaunay), in bounded memory.
 ///

@@ -21,7 +21,7 @@ Points that fill space need little memory; of points on surfaces most wait until
 the balls around their tetrahedra reach far.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input,
-5 not enough memory, 141 output closed by its reader.";
+5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// Tetrahedralize a stream of points in space (Delaunay), in bounded memory.
 ///

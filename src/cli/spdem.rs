@@ -64,7 +64,7 @@ Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson st
 and QGIS read it.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
-memory, 141 output closed by its reader.";
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spdem: not enough memory: take larger cells, or less --memory\n";

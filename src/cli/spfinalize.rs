@@ -33,7 +33,7 @@ Examples:
       spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
-141 output closed by its reader.";
+6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";

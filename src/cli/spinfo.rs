@@ -42,7 +42,7 @@ Examples:
   spinfo --json mesh.spm | jq .counts     for programs
 
 Exit codes: 0 fine, 1 I/O or runtime failure, 2 usage, 3 the stream is malformed or truncated,
-4 the audit found a violation, 5 not enough memory, 141 output closed by its reader.";
+4 the audit found a violation, 5 not enough memory, 6 a stream of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str =

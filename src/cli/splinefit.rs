@@ -46,7 +46,8 @@ with a border that is pulled apart, that is the convex hull of the knots. There 
 reproduce polynomials of degree k. Outside of the domain nothing is evaluated: sites get nan, cells no data.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, or points that do not determine a spline, 3 \
-malformed or truncated input, 5 not enough memory, 141 output closed by its reader.";
+malformed or truncated input, 5 not enough memory, 6 input of another version of spmesh, \
+141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "splinefit: not enough memory: take fewer knots\n";

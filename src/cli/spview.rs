@@ -55,7 +55,7 @@ stream; a cell shows the time of its first point in the middle and that of its l
 Units are those of the coordinates.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
-memory, 141 output closed by its reader.";
+memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message when memory runs out.
 const OUT_OF_MEMORY: &str = "spview: not enough memory: take less --width, or --raster\n";

@@ -43,7 +43,7 @@ records, with ligands, ions and water; and of alternate locations, for each resi
 that is occupied most.
 
 Exit codes: 0 success, 1 I/O or runtime failure, or a file of a sweep failed, 2 usage, 3 malformed or \
-truncated input, 5 not enough memory, 141 output closed by its reader.";
+truncated input, 5 not enough memory, 6 input of another version of spmesh, 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "tess3: not enough memory: take fewer points, or fewer --threads in a sweep\n";

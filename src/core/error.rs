@@ -20,6 +20,9 @@ pub enum ErrorKind {
     Audit,
     /// The memory budget is too small (exit 5).
     Memory,
+    /// The input needs what this program does not know, because another version of
+    /// spmesh made it (exit 6).
+    Unsupported,
     /// The reader of the output closed the pipe (exit 141, without a message).
     ClosedPipe,
 }
@@ -34,6 +37,7 @@ impl ErrorKind {
             ErrorKind::Malformed => 3,
             ErrorKind::Audit => 4,
             ErrorKind::Memory => 5,
+            ErrorKind::Unsupported => 6,
             ErrorKind::ClosedPipe => 141,
         }
     }
@@ -64,6 +68,11 @@ impl Error {
     /// Input that is malformed, truncated, or contradicts itself.
     pub fn malformed(message: impl Into<String>) -> Self {
         Error::new(ErrorKind::Malformed, message)
+    }
+
+    /// Input that needs what this program does not know, such as a newer version of a format.
+    pub fn unsupported(message: impl Into<String>) -> Self {
+        Error::new(ErrorKind::Unsupported, message)
     }
 
     /// A failure of the operating system during `what` ("reading", "creating the temporary file").

@@ -3,6 +3,9 @@
 /// Longest header body of a stream, in bytes.
 pub const HEADER_BODY_MAX: usize = 1 << 20;
 
+/// Longest name and version of the program that wrote a stream, in bytes.
+pub const PRODUCER_LEN_MAX: usize = (1 << 16) - 1;
+
 /// Longest coordinate reference system taken from an input, in bytes: a header body must hold it beside its
 /// fixed fields and the producer.
 pub const CRS_LEN_MAX: usize = HEADER_BODY_MAX - (1 << 12);

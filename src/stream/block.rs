@@ -1,12 +1,14 @@
 //! The frame around every block: tag, sequence number, length and checksum.
 
 use byteorder::{ByteOrder, LittleEndian as LE};
+
+use super::tag_rules::{TagBytes, check_tag, may_be_skipped, needs_newer};
 use spmesh_core::error::{Error, Result};
 
 /// Length of the frame before the payload, in bytes.
 pub(super) const FRAME_LEN: usize = 16;
 
-/// The type of a block.
+/// The types of blocks that this version knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tag {
     Points,
@@ -24,7 +26,7 @@ pub(super) enum Tag {
     End,
 }
 
-const NAMES: [(Tag, [u8; 4]); 13] = [
+const NAMES: [(Tag, TagBytes); 13] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -41,19 +43,30 @@ const NAMES: [(Tag, [u8; 4]); 13] = [
 ];
 
 impl Tag {
-    pub(super) fn bytes(self) -> [u8; 4] {
+    pub(super) fn bytes(self) -> TagBytes {
         NAMES.iter().find(|(tag, _)| *tag == self).expect("every tag has its name").1
     }
 
-    fn from_bytes(bytes: &[u8]) -> Option<Tag> {
-        NAMES.iter().find(|(_, name)| name == bytes).map(|(tag, _)| *tag)
+    /// The tag with this name; `None` if this version does not know it and may skip its block.
+    ///
+    /// # Errors
+    /// If the name is not that of a tag, or this version does not know it and must not skip its block.
+    pub(super) fn from_bytes(bytes: TagBytes) -> Result<Option<Tag>> {
+        if let Some((tag, _)) = NAMES.iter().find(|(_, name)| *name == bytes) {
+            return Ok(Some(*tag));
+        }
+        check_tag(bytes, "block")?;
+        if may_be_skipped(bytes) {
+            return Ok(None);
+        }
+        Err(needs_newer(format_args!("block tag \"{}\"", bytes.escape_ascii())))
     }
 }
 
 /// The frame of one block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
-    pub(super) tag: Option<Tag>,
+    pub(super) tag: TagBytes,
     pub(super) sequence: u32,
     pub(super) len: u32,
     checksum: u32,
@@ -68,7 +81,7 @@ impl Frame {
         head[0..4].copy_from_slice(&tag.bytes());
         LE::write_u32(&mut head[4..], sequence);
         LE::write_u32(&mut head[8..], len);
-        let mut frame = Frame { tag: Some(tag), sequence, len, checksum: 0, head };
+        let mut frame = Frame { tag: tag.bytes(), sequence, len, checksum: 0, head };
         frame.checksum = crc32c::crc32c_append(frame.checksum_with(payload[0]), payload[1]);
         frame
     }
@@ -77,7 +90,7 @@ impl Frame {
         let mut head = [0; 12];
         head.copy_from_slice(&bytes[..12]);
         Frame {
-            tag: Tag::from_bytes(&bytes[0..4]),
+            tag: [bytes[0], bytes[1], bytes[2], bytes[3]],
             sequence: LE::read_u32(&bytes[4..]),
             len: LE::read_u32(&bytes[8..]),
             checksum: LE::read_u32(&bytes[12..]),

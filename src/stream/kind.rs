@@ -192,8 +192,7 @@ impl Kind {
         self.row().blocks.contains(&Tag::Walls)
     }
 
-    /// Whether the header may have a finalization tree. For a partial mesh in space, the region takes up its
-    /// bytes.
+    /// Whether the header may have a finalization tree.
     #[must_use]
     pub fn may_have_tree(self) -> bool {
         !self.is_4d() && !self.has_knots() && self != Kind::PartialTetrahedralMesh

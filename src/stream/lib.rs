@@ -8,6 +8,8 @@
 //! - [`StreamReader`] decodes and checks one block at a time, and returns it as an [`Event`]. It verifies
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
 //!   the stream.
+//!   It skips header records and blocks that it does not know if their tags allow that, and refuses others as
+//!   [`spmesh_core::error::ErrorKind::Unsupported`].
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
 //!   patches may still use, and cells that no later point lies in. [`MemoryRules`] checks with both what the
 //!   reader alone cannot check.
@@ -62,6 +64,7 @@ mod event;
 mod finalized;
 mod functions;
 mod header;
+mod header_code;
 mod kind;
 mod live;
 mod memory_rules;
@@ -70,6 +73,7 @@ mod payload;
 mod points4;
 mod reader;
 mod rules4;
+mod tag_rules;
 mod tail;
 mod tally;
 mod triangles;
@@ -85,6 +89,7 @@ pub use event::{Event, Patch, Totals};
 pub use finalized::FinalizedCells;
 pub use functions::{function_kind, function_kind_of_name, function_kind_parts};
 pub use header::{Crs, Header};
+pub use header_code::{VERSION, check_version};
 pub use kind::Kind;
 pub use live::LiveVertices;
 pub use memory_rules::MemoryRules;

@@ -10,18 +10,19 @@ use super::cell_words::CellWords;
 use super::configurations::ConfigurationBlock;
 use super::event::{Event, Totals};
 use super::functions;
-use super::header::{Header, MAGIC, PREAMBLE_LEN, VERSION};
-use super::kind::Kind;
+use super::header::Header;
+use super::header_code::{MAGIC, PREAMBLE_LEN, decode_preamble};
 use super::payload;
 use super::points4::{self, Points4};
 use super::tally::Tally;
 use spmesh_core::error::{Error, ErrorKind, Result};
-use spmesh_core::limits::{BLOCK_PAYLOAD_MAX, HEADER_BODY_MAX};
+use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::{Bounds, Point};
 
 /// Reads one stream.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`] (or I/O) and names input, block and byte.
+/// Every error is [`spmesh_core::error::ErrorKind::Malformed`], [`spmesh_core::error::ErrorKind::Unsupported`]
+/// if the stream needs what this version does not know, or I/O. It names input, block and byte.
 /// Memory: one block with its decoded event, and the incomplete words of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
@@ -46,7 +47,8 @@ impl<R: Read> StreamReader<R> {
     /// Reads the header; messages call the input `name`.
     ///
     /// # Errors
-    /// If the input is not a stream of this version, or its header is damaged.
+    /// If the input is not a stream of this version, its header is damaged, or needs what this version does not
+    /// know.
     pub fn new(mut input: R, name: impl Into<String>) -> Result<Self> {
         let name = name.into();
         let (header, offset) =
@@ -114,29 +116,33 @@ impl<R: Read> StreamReader<R> {
         error.at(self.place()).of_input(&self.name)
     }
 
-    /// The next block; `None` after END. END is returned only if the input ends there.
+    /// The next block that this version knows; `None` after END. END is returned only if the input ends there.
     ///
     /// # Errors
-    /// If the input ends before END, goes on after it, or a block is damaged or breaks a rule.
+    /// If the input ends before END, goes on after it, a block is damaged or breaks a rule, or this version
+    /// does not know it and must not skip it.
     pub fn next_event(&mut self) -> Result<Option<Event>> {
-        if self.ended {
-            return Ok(None);
-        }
-        let tag = match self.read_block() {
-            Ok(tag) => tag,
-            Err(error) => {
-                let position = format!("block {} at byte {}", self.block, self.offset);
-                return Err(error.at(position).of_input(&self.name));
+        while !self.ended {
+            let tag = match self.read_block() {
+                Ok(tag) => tag,
+                Err(error) => {
+                    let position = format!("block {} at byte {}", self.block, self.offset);
+                    return Err(error.at(position).of_input(&self.name));
+                }
+            };
+            self.block += 1;
+            self.block_start = self.offset;
+            self.offset += (FRAME_LEN + self.payload.len()) as u64;
+            if let Some(tag) = tag {
+                return self.decode(tag).map(Some).map_err(|error| self.locate(error));
             }
-        };
-        self.block += 1;
-        self.block_start = self.offset;
-        self.offset += (FRAME_LEN + self.payload.len()) as u64;
-        self.decode(tag).map(Some).map_err(|error| self.locate(error))
+        }
+        Ok(None)
     }
 
-    /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
-    fn read_block(&mut self) -> Result<Tag> {
+    /// Reads frame and payload of a block, and verifies everything that does not depend on its content. Returns
+    /// `None` for a block that this version skips.
+    fn read_block(&mut self) -> Result<Option<Tag>> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
         let found = read_full(&mut self.input, &mut bytes)?;
@@ -166,10 +172,7 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        let tag = frame.tag.ok_or_else(|| {
-            let found = bytes[..4].escape_ascii();
-            Error::malformed(format!("unknown block tag \"{found}\": the stream is newer, or damaged"))
-        })?;
+        let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok(None) };
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
                 "no block \"{}\" may stand here in a stream of kind {}",
@@ -178,7 +181,7 @@ impl<R: Read> StreamReader<R> {
             )));
         }
         self.last_tag = Some(tag);
-        Ok(tag)
+        Ok(Some(tag))
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {
@@ -242,16 +245,7 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
     if found < PREAMBLE_LEN {
         return Err(Error::malformed(format!("truncated: found {found} of the first {PREAMBLE_LEN} bytes")));
     }
-    let (version, kind) = (LE::read_u16(&bytes[8..]), LE::read_u16(&bytes[10..]));
-    if version != VERSION {
-        return Err(Error::malformed(format!("stream of version {version}, this program reads {VERSION}")));
-    }
-    let body_len = LE::read_u32(&bytes[12..]) as usize;
-    if body_len > HEADER_BODY_MAX {
-        return Err(Error::malformed(format!(
-            "header body of {body_len} bytes, the maximum is {HEADER_BODY_MAX}"
-        )));
-    }
+    let (kind, body_len) = decode_preamble(&bytes)?;
     let end = PREAMBLE_LEN + body_len;
     bytes.resize(end + 4, 0);
     let found = read_full(input, &mut bytes[PREAMBLE_LEN..])?;
@@ -261,8 +255,6 @@ fn read_header(input: &mut impl Read) -> Result<(Header, u64)> {
     if crc32c::crc32c(&bytes[..end]) != LE::read_u32(&bytes[end..]) {
         return Err(Error::malformed("checksum does not match: the header is damaged"));
     }
-    let kind =
-        Kind::from_code(kind).ok_or_else(|| Error::malformed(format!("unknown stream kind {kind}")))?;
     Ok((Header::decode(kind, &bytes[PREAMBLE_LEN..end])?, (end + 4) as u64))
 }
 

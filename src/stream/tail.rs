@@ -21,5 +21,5 @@ pub fn ends_with_end(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     file.read_exact(&mut bytes)?;
     let (head, payload) = bytes.split_first_chunk::<FRAME_LEN>().expect("longer than a frame");
     let frame = Frame::decode(head);
-    Ok(frame.tag == Some(Tag::End) && frame.len as usize == payload.len() && frame.verifies(payload))
+    Ok(frame.tag == Tag::End.bytes() && frame.len as usize == payload.len() && frame.verifies(payload))
 }

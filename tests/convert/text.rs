@@ -61,7 +61,10 @@ fn errors_name_the_line() {
         ("simplices 1", "simplices 2", "END states"),
         ("#spmesh dims 2\n", "", "does not say the dims"),
         ("#spmesh dims 2", "#spmesh dims 5", "expected 2 or 3 or 4"),
-        ("version 1", "version 2", "expected 1"),
+        ("version 2", "version", "a field is missing"),
+        ("version 2", "version two", "an integer"),
+        ("version 2", "version 2 3", "end of the line"),
+        ("kind partial triangle mesh", "kind of its own", "a kind of stream"),
     ];
     for (found, replaced, expected) in cases {
         assert_refused(&text, found, replaced, expected);
@@ -177,10 +180,10 @@ fn header_lines_are_known_and_come_first() {
 
 #[test]
 fn lines_and_patches_have_a_maximum() {
-    let line = [b"#spmesh version 1\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();
+    let line = [b"#spmesh version 2\n# ".as_slice(), &vec![b'x'; 1 << 17]].concat();
     let error = converted(&line, Format::Text, Format::Spm).unwrap_err();
     assert!(error.to_string().contains("line of more than 65536 bytes"), "{error}");
-    let header = "#spmesh version 1\n#spmesh kind triangle mesh\n#spmesh coordinates f64\n#spmesh dims 2\n\
+    let header = "#spmesh version 2\n#spmesh kind triangle mesh\n#spmesh coordinates f64\n#spmesh dims 2\n\
                   #spmesh elevation no\n#spmesh chunked no\n#spmesh producer \"\"\n# patch\n";
     let patch = header.to_string() + &"v 0 0 0\n".repeat(70_000);
     let error = converted(patch.as_bytes(), Format::Text, Format::Spm).unwrap_err();
@@ -200,7 +203,7 @@ fn twins_of_the_vectors_are_those_of_the_specification() {
 fn the_examples_of_the_specification_are_twins() {
     let text = std::fs::read_to_string(crate::vectors::repository("formats/text.md")).unwrap();
     let lines: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("    ")).collect();
-    let starts: Vec<usize> = (0..lines.len()).filter(|&i| lines[i] == "#spmesh version 1").collect();
+    let starts: Vec<usize> = (0..lines.len()).filter(|&i| lines[i] == "#spmesh version 2").collect();
     assert_eq!(starts.len(), 4);
     for (i, &start) in starts.iter().enumerate() {
         let end = starts.get(i + 1).copied().unwrap_or(lines.len());

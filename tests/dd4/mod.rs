@@ -100,7 +100,7 @@ fn text_twins_are_the_same_stream() {
     for input in [&stream, &text] {
         assert!(diagram(&["-"], input) == stream, "the points of a diagram have another diagram");
     }
-    let header = "#spmesh version 1\n#spmesh kind points in 4 dimensions\n#spmesh coordinates f64\n#spmesh dims 4\n\
+    let header = "#spmesh version 2\n#spmesh kind points in 4 dimensions\n#spmesh coordinates f64\n#spmesh dims 4\n\
                   #spmesh elevation no\n#spmesh chunked no\n#spmesh producer \"test\"\n";
     let text = String::from_utf8(text).unwrap();
     let points: Vec<&str> = text.lines().filter(|line| line.starts_with("v4")).collect();

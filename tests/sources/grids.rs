@@ -143,7 +143,7 @@ fn text_twins_are_streams_too() {
     let tile = sample("hextest.las");
     let stream = run("spfinalize", &["--cell-points", "3", tile.to_str().unwrap()], &[]).stdout;
     let twin = String::from_utf8(run("spconvert", &["--to", "text"], &stream).stdout).unwrap();
-    assert!(twin.starts_with("#spmesh version 1\n"), "{twin}");
+    assert!(twin.starts_with("#spmesh version 2\n"), "{twin}");
     let (stream, whole) = (folder.file("a.spm", &stream), folder.file("a.txt", &twin));
     let [a, b] = [&stream, &whole].map(|path| Input::open(std::slice::from_ref(path), &flat()).unwrap());
     assert_eq!(a.description().coordinates, b.description().coordinates);

@@ -179,7 +179,7 @@ fn a_whole_diagram_is_read_from_cells_and_from_points() {
 /// A list that is broken over lines is refused when it gets too long, not when its cell ends.
 #[test]
 fn endless_lists_in_twins_are_refused_at_their_line() {
-    let header = "#spmesh version 1\n#spmesh kind cells in 4 dimensions\n#spmesh coordinates f64\n\
+    let header = "#spmesh version 2\n#spmesh kind cells in 4 dimensions\n#spmesh coordinates f64\n\
                   #spmesh dims 4\n#spmesh elevation no\n#spmesh chunked no\n";
     let points: String = (0..6).map(|i| format!("v4 {i} 0 0 0\n")).collect();
     let start = [header, &points].concat();

@@ -7,7 +7,7 @@ use super::world::{world_of, write_numbers};
 use super::{EventSink, twin_functions, twin4, write_error};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals};
+use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
 
 /// Writes the text twin.
 pub struct TwinSink<W> {
@@ -104,7 +104,7 @@ impl<W: Write> EventSink for TwinSink<W> {
 fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
     let yes_no = |yes: bool| if yes { "yes" } else { "no" };
     let mut line = |line: std::fmt::Arguments| writeln!(output, "#spmesh {line}").map_err(write_error);
-    line(format_args!("version 1"))?;
+    line(format_args!("version {VERSION}"))?;
     line(format_args!("kind {}", header.kind.name()))?;
     match &header.coordinates {
         Coordinates::F64 => line(format_args!("coordinates f64"))?,

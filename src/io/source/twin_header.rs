@@ -4,7 +4,7 @@ use super::statements::{expect_no_field, fields, next_field, parse_decimals, par
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
-use spmesh_stream::{Coordinates, Crs, Header, Kind};
+use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version};
 
 /// The header as stated by the lines so far.
 #[derive(Default)]
@@ -32,14 +32,15 @@ impl TwinHeader {
         let rest = line[line.windows(key.len().max(1)).position(|w| w == key).unwrap_or(0) + key.len()..]
             .trim_ascii();
         if self.seen.is_empty() != (key == b"version") {
-            return Err(Error::malformed("the header must start with one line \"#spmesh version 1\""));
+            let message = format!("the header must start with one line \"#spmesh version {VERSION}\"");
+            return Err(Error::malformed(message));
         }
         if self.seen.contains(&key) {
             return Err(Error::malformed("the header says this twice"));
         }
         let mut values = fields(rest);
         match &key[..] {
-            b"version" => expect_word(rest, &[("1", ())])?,
+            b"version" => check_version(only(parse_integer(next_field(&mut values)?)?, values)?)?,
             b"kind" => {
                 let kind = std::str::from_utf8(rest).ok().and_then(Kind::from_name);
                 self.kind = Some(kind.ok_or_else(|| unexpected(rest, "a kind of stream"))?);
