@@ -553,7 +553,7 @@ def failing_headers():
         ("version", "version 3; this program reads version 2: a newer spmesh made it", dict(version=b"\3\0")),
         ("version-1", "version 1; this program reads version 2 only: an older spmesh made it, make it again", dict(version=b"\1\0")),
         ("version-huge", "version 65535; this program reads version 2: a newer spmesh made it", dict(version=b"\xff\xff", checksum=bytes(4))),
-        ("kind", "the stream needs stream kind 99", dict(code=b"\x63\0")),
+        ("kind", "the stream needs kind 99", dict(code=b"\x63\0")),
         ("feature-bit", "the stream needs feature bit 3", dict(features=b"\x08\0\0\0")),
         ("feature-bit-last", "the stream needs feature bit 31", dict(features=b"\0\0\0\x80", type=b"\3", dims=b"\7")),
         ("header-oversize", "the maximum is 1048576", dict(length=struct.pack("<I", 2**20 + 1))),

@@ -122,7 +122,7 @@ class Header:
         (kind,) = struct.unpack_from("<H", data, 10)
         coordinate_type, self.dims, elevation, flags, features, self.points = struct.unpack_from("<BBBBIQ", data, 16)
         if kind not in KINDS:
-            needs("stream kind %d" % kind)
+            needs("kind %d" % kind)
         for bit in range(32):
             if features >> bit & 1:
                 needs("feature bit %d" % bit)

@@ -101,13 +101,14 @@ impl Header {
         LE::write_u64(&mut body[8..], self.points.unwrap_or(COUNT_UNKNOWN));
     }
 
-    /// Reads the body after a preamble. `kind` comes from the preamble; the reader has verified the checksum. What this version does not know is reported before what is malformed in it.
+    /// Reads the body after a preamble, whose checksum the reader has verified. `kind` is the code in the
+    /// preamble. What this version does not know is reported before rules that a newer version may change.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Unsupported`] if the stream needs what this version does not know;
     /// [`spmesh_core::error::ErrorKind::Malformed`] if the header breaks a rule.
     pub(super) fn decode(kind: u16, body: &[u8]) -> Result<Header> {
-        let kind = Kind::from_code(kind).ok_or_else(|| needs_newer(format_args!("stream kind {kind}")))?;
+        let kind = Kind::from_code(kind).ok_or_else(|| needs_newer(format_args!("kind {kind}")))?;
         let (fixed, records) = body.split_first_chunk().expect("the preamble states a sufficient length");
         let mut header = decode_fixed(kind, fixed)?;
         check_tags(records)?;

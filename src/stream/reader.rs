@@ -21,8 +21,8 @@ use spmesh_model::bounds::{Bounds, Point};
 
 /// Reads one stream.
 ///
-/// Every error is [`spmesh_core::error::ErrorKind::Malformed`], [`spmesh_core::error::ErrorKind::Unsupported`]
-/// if the stream needs what this version does not know, or I/O. It names input, block and byte.
+/// Every error is [`ErrorKind::Malformed`], [`ErrorKind::Unsupported`] if the stream needs what this version
+/// does not know, or I/O. It names input, block and byte.
 /// Memory: one block with its decoded event, and the incomplete words of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
@@ -47,8 +47,8 @@ impl<R: Read> StreamReader<R> {
     /// Reads the header; messages call the input `name`.
     ///
     /// # Errors
-    /// If the input is not a stream of this version, its header is damaged, or needs what this version does not
-    /// know.
+    /// If the input is not a stream of this version, or its header is damaged or needs what this version does
+    /// not know.
     pub fn new(mut input: R, name: impl Into<String>) -> Result<Self> {
         let name = name.into();
         let (header, offset) =
@@ -116,7 +116,8 @@ impl<R: Read> StreamReader<R> {
         error.at(self.place()).of_input(&self.name)
     }
 
-    /// The next block that this version knows; `None` after END. END is returned only if the input ends there.
+    /// The next block that this version knows; `None` after END. END is returned only if the input ends
+    /// there.
     ///
     /// # Errors
     /// If the input ends before END, goes on after it, a block is damaged or breaks a rule, or this version
@@ -140,8 +141,8 @@ impl<R: Read> StreamReader<R> {
         Ok(None)
     }
 
-    /// Reads frame and payload of a block, and verifies everything that does not depend on its content. Returns
-    /// `None` for a block that this version skips.
+    /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
+    /// Returns `None` for a block that this version skips.
     fn read_block(&mut self) -> Result<Option<Tag>> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
