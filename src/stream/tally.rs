@@ -130,7 +130,7 @@ impl Tally {
         Ok(())
     }
 
-    /// Compares the totals that END states with the events before (`formats/spmesh.md` 4.14). For a mesh,
+    /// Compares the totals that END states with the events before (`formats/spmesh.md` 4.15). For a mesh,
     /// points are those of its input: each is a vertex, was merged, or waits in the residual.
     ///
     /// # Errors
