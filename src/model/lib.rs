@@ -2,6 +2,7 @@
 //!
 //! | module | what it holds |
 //! |---|---|
+//! | [`attributes`] | what points carry beside their coordinates |
 //! | [`points`] | points of the plane and of space, as arrays of f64 |
 //! | [`bounds`] | closed bounding boxes, and half-open regions for tiles |
 //! | [`bits`] | interleaved bits: Morton keys and location codes |
@@ -25,6 +26,7 @@
 //! assert_eq!(tree.parent(cell).and_then(|parent| tree.parent(parent)), Some(CellCode::ROOT));
 //! ```
 
+pub mod attributes;
 pub mod bits;
 pub mod bounds;
 pub mod cells;

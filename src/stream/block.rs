@@ -23,10 +23,11 @@ pub(super) enum Tag {
     Configurations,
     Functions,
     Coefficients,
+    Rows,
     End,
 }
 
-const NAMES: [(Tag, TagBytes); 13] = [
+const NAMES: [(Tag, TagBytes); 14] = [
     (Tag::Points, *b"PNTS"),
     (Tag::Cells, *b"CELL"),
     (Tag::Patch, *b"PTCH"),
@@ -39,6 +40,7 @@ const NAMES: [(Tag, TagBytes); 13] = [
     (Tag::Configurations, *b"CONF"),
     (Tag::Functions, *b"FUNC"),
     (Tag::Coefficients, *b"COEF"),
+    (Tag::Rows, *b"attp"),
     (Tag::End, *b"END "),
 ];
 

@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::coordinates::{Coordinates, is_grid};
 use super::kind::Kind;
 use spmesh_core::limits::PRODUCER_LEN_MAX;
+use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
 
@@ -55,6 +56,9 @@ pub struct Header {
     pub chunked: bool,
     /// Coordinate reference system.
     pub crs: Crs,
+    /// What points carry beside their coordinates. A program that makes a stream from another either passes
+    /// attributes on or states none.
+    pub attributes: Attributes,
     /// Program and version that wrote the stream.
     pub producer: String,
 }
@@ -74,6 +78,7 @@ impl Header {
             region: None,
             chunked: false,
             crs: Crs::Unknown,
+            attributes: Attributes::default(),
             producer: concat!("spmesh ", env!("CARGO_PKG_VERSION")).to_string(),
         }
     }
@@ -88,6 +93,12 @@ impl Header {
     #[must_use]
     pub fn point_len(&self) -> usize {
         self.coordinates_per_point() * self.coordinates.width()
+    }
+
+    /// Bytes of a point with its row.
+    #[must_use]
+    pub fn record_len(&self) -> usize {
+        self.point_len() + self.attributes.row_len()
     }
 
     /// Checks the rules between fields; writer and reader share them.
@@ -117,6 +128,9 @@ impl Header {
             return Err("the finalization tree has other dimensions than the points".into());
         }
         check_tree(self.kind, self.tree.is_some())?;
+        if !self.attributes.is_empty() && !self.kind.may_have_attributes() {
+            return Err(format!("a stream of kind {} has no attributes", self.kind.name()));
+        }
         if self.chunked && (self.kind != Kind::Points || self.tree.is_none()) {
             return Err("only points with a finalization tree can be chunked".into());
         }

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use byteorder::{ByteOrder, LittleEndian as LE};
 
+use super::attribute_code::{decode_attributes, encode_attributes};
 use super::coordinates::Coordinates;
 use super::header::{COUNT_UNKNOWN, Crs, Header, check_tree};
 use super::kind::Kind;
@@ -33,7 +34,7 @@ const TYPE_I32: u8 = 2;
 const FLAG_CHUNKED: u8 = 1;
 
 /// Why a record is malformed.
-type Fault = String;
+pub(super) type Fault = String;
 
 /// A record of the header.
 struct Row {
@@ -47,13 +48,14 @@ struct Row {
 const GRID: TagBytes = *b"GRID";
 
 /// All records that this version knows, in the order in which they are written.
-const ROWS: [Row; 7] = [
+const ROWS: [Row; 8] = [
     Row { tag: GRID, encode: encode_grid, decode: decode_grid },
     Row { tag: *b"BBOX", encode: encode_bounds, decode: decode_bounds },
     Row { tag: *b"TREE", encode: encode_tree, decode: decode_tree },
     Row { tag: *b"REGN", encode: encode_region, decode: decode_region },
     Row { tag: *b"cWKT", encode: encode_wkt, decode: decode_wkt },
     Row { tag: *b"cGEO", encode: encode_geo_keys, decode: decode_geo_keys },
+    Row { tag: *b"attr", encode: encode_attributes, decode: decode_attributes },
     Row { tag: *b"prod", encode: encode_producer, decode: decode_producer },
 ];
 

@@ -210,6 +210,12 @@ impl Kind {
         self.vertices_per_simplex().saturating_sub(1)
     }
 
+    /// Whether points of such a stream may carry attributes.
+    #[must_use]
+    pub fn may_have_attributes(self) -> bool {
+        self == Kind::Points || self.vertices_per_simplex() > 0
+    }
+
     /// Whether a block of tag `tag` may follow one of tag `last` (`None` at the start) in such a stream.
     pub(super) fn allows(self, last: Option<Tag>, tag: Tag) -> bool {
         let Row { blocks, is_ordered, .. } = self.row();

@@ -51,6 +51,7 @@
 //! # }
 //! ```
 
+mod attribute_code;
 mod block;
 mod cell_words;
 mod chunks;

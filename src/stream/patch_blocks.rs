@@ -15,6 +15,7 @@ pub struct PointCode {
     coordinates: Coordinates,
     per_point: usize,
     per_simplex: usize,
+    row_len: usize,
 }
 
 impl PointCode {
@@ -25,7 +26,14 @@ impl PointCode {
             coordinates: header.coordinates,
             per_point: header.coordinates_per_point(),
             per_simplex: header.kind.vertices_per_simplex(),
+            row_len: header.attributes.row_len(),
         }
+    }
+
+    /// Bytes of the row of a point; 0 without attributes.
+    #[must_use]
+    pub fn row_len(&self) -> usize {
+        self.row_len
     }
 }
 
@@ -41,6 +49,8 @@ pub struct PatchBlocks {
     used: usize,
     /// Finalized vertices of all patches, encoded.
     finalized: Vec<u8>,
+    /// Attributes of the new vertices of all patches.
+    rows: Vec<u8>,
     patches: Vec<Place>,
 }
 
@@ -55,6 +65,8 @@ struct Place {
     imports: usize,
     /// One past the last byte of its finalized vertices, which start where those of the previous patch end.
     finalized_end: usize,
+    /// One past the last byte of the rows of its new vertices.
+    rows_end: usize,
 }
 
 impl PatchBlocks {
@@ -62,6 +74,7 @@ impl PatchBlocks {
     pub fn clear(&mut self) {
         self.used = 0;
         self.finalized.clear();
+        self.rows.clear();
         self.patches.clear();
     }
 
@@ -76,16 +89,18 @@ impl PatchBlocks {
         self.patches.len()
     }
 
-    /// Adds a patch: new vertices, references to imported ones, simplices in local indices.
+    /// Adds a patch: new vertices, references to imported ones, simplices in local indices. Without attributes,
+    /// `rows` is empty; otherwise it gives the row of each new vertex.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding.
-    pub fn push(
+    pub fn push<'r>(
         &mut self,
         code: PointCode,
         new: impl ExactSizeIterator<Item = Point>,
         imported: impl ExactSizeIterator<Item = u64>,
         simplices: impl ExactSizeIterator<Item = u32>,
+        rows: impl Iterator<Item = &'r [u8]>,
     ) -> Result<()> {
         let (start, imports) = (self.used, imported.len());
         let counts = [new.len(), imports, simplices.len() / code.per_simplex];
@@ -107,7 +122,11 @@ impl PatchBlocks {
         ids.chunks_exact_mut(8).zip(imported).for_each(|(bytes, id)| LE::write_u64(bytes, id));
         locals.chunks_exact_mut(4).zip(simplices).for_each(|(bytes, local)| LE::write_u32(bytes, local));
         let imported = start + FRAME_LEN + PATCH_FIXED_LEN + points_len;
-        self.patches.push(Place { start, end: start + len, imported, imports, finalized_end: 0 });
+        if code.row_len > 0 {
+            rows.for_each(|row| self.rows.extend_from_slice(row));
+        }
+        let rows_end = self.rows.len();
+        self.patches.push(Place { start, end: start + len, imported, imports, finalized_end: 0, rows_end });
         Ok(())
     }
 
@@ -130,8 +149,9 @@ impl PatchBlocks {
         sequence: u32,
         id_of: impl Fn(u64) -> u64,
     ) -> EncodedPatch<'_> {
-        let finalized_start = patch.checked_sub(1).map_or(0, |before| self.patches[before].finalized_end);
-        let Place { start, end, imported, imports, finalized_end } = self.patches[patch];
+        let before = patch.checked_sub(1).map(|before| self.patches[before]);
+        let (finalized_start, rows_start) = before.map_or((0, 0), |it| (it.finalized_end, it.rows_end));
+        let Place { start, end, imported, imports, finalized_end, rows_end } = self.patches[patch];
         for bytes in self.bytes[imported..imported + 8 * imports].chunks_exact_mut(8) {
             LE::write_u64(bytes, id_of(LE::read_u64(bytes)));
         }
@@ -139,7 +159,8 @@ impl PatchBlocks {
         LE::write_u64(payload, first_id);
         let finalized = &self.finalized[finalized_start..finalized_end];
         frame.copy_from_slice(&Frame::of(Tag::Patch, sequence, [payload, finalized]).encode());
-        EncodedPatch { block: &self.bytes[start..end], finalized }
+        let rows = &self.rows[rows_start..rows_end];
+        EncodedPatch { block: &self.bytes[start..end], finalized, rows }
     }
 
     /// Reserves `len` more bytes with unspecified contents.
@@ -161,6 +182,8 @@ pub(super) struct EncodedPatch<'a> {
     pub(super) block: &'a [u8],
     /// The finalized vertices.
     pub(super) finalized: &'a [u8],
+    /// The attributes of the new vertices.
+    pub(super) rows: &'a [u8],
 }
 
 impl EncodedPatch<'_> {
@@ -200,6 +223,8 @@ fn encode<const WIDTH: usize, const N: usize>(
 
 #[cfg(test)]
 mod tests {
+    use std::iter;
+
     use super::*;
     use crate::{Event, Kind, Patch, StreamReader, StreamWriter};
 
@@ -220,7 +245,7 @@ mod tests {
         for patch in [&first, &second] {
             let references = patch.imported.iter().map(|&id| 100 - id).collect::<Vec<_>>();
             let (new, simplices) = (patch.new.iter().copied(), patch.simplices.iter().copied());
-            blocks.push(code, new, references.into_iter(), simplices).unwrap();
+            blocks.push(code, new, references.into_iter(), simplices, iter::empty()).unwrap();
         }
         for (number, patch) in [&first, &second].into_iter().enumerate() {
             blocks.finalize(number, patch.finalized.iter().copied());

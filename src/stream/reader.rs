@@ -29,6 +29,8 @@ pub struct StreamReader<R: Read> {
     name: String,
     header: Header,
     payload: Vec<u8>,
+    /// The rows of the points of the last event.
+    rows: Vec<u8>,
     /// A buffer of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
@@ -36,7 +38,8 @@ pub struct StreamReader<R: Read> {
     /// Number of blocks read, and the byte at which the next one starts.
     block: u64,
     offset: u64,
-    block_start: u64,
+    /// Number and first byte of the block of the last event.
+    event_place: [u64; 2],
     last_tag: Option<Tag>,
     tally: Tally,
     cell_words: CellWords,
@@ -59,11 +62,12 @@ impl<R: Read> StreamReader<R> {
             name,
             header,
             payload: Vec::new(),
+            rows: Vec::new(),
             spare: Vec::new(),
             points_bounds: None,
             block: 0,
             offset,
-            block_start: 0,
+            event_place: [0; 2],
             last_tag: None,
             tally,
             cell_words: CellWords::default(),
@@ -101,13 +105,14 @@ impl<R: Read> StreamReader<R> {
         self.spare = points;
     }
 
-    /// Where the last block that was read is: its number and its first byte.
+    /// Where the block of the last event is: its number and its first byte.
     #[must_use]
     pub fn place(&self) -> String {
-        format!("block {} at byte {}", self.block.saturating_sub(1), self.block_start)
+        let [block, byte] = self.event_place;
+        format!("block {block} at byte {byte}")
     }
 
-    /// Adds input and position to an error about the last block that was read. Errors about anything else,
+    /// Adds input and position to an error about the last event. Errors about anything else,
     /// like a full disk on the output side, stay as they are.
     pub fn locate(&self, error: Error) -> Error {
         if !matches!(error.kind(), ErrorKind::Malformed | ErrorKind::Audit) {
@@ -123,22 +128,86 @@ impl<R: Read> StreamReader<R> {
     /// If the input ends before END, goes on after it, a block is damaged or breaks a rule, or this version
     /// does not know it and must not skip it.
     pub fn next_event(&mut self) -> Result<Option<Event>> {
-        while !self.ended {
-            let tag = match self.read_block() {
-                Ok(tag) => tag,
-                Err(error) => {
-                    let position = format!("block {} at byte {}", self.block, self.offset);
-                    return Err(error.at(position).of_input(&self.name));
-                }
-            };
+        if self.ended {
+            return Ok(None);
+        }
+        self.rows.clear();
+        let tag = self.next_block(None)?;
+        let event = self.decode(tag).map_err(|error| self.locate(error))?;
+        let rows = if self.header.attributes.is_empty() { 0 } else { rows_behind(&event) };
+        if rows > 0 {
+            let place = self.event_place;
+            self.next_block(Some(rows))?;
+            std::mem::swap(&mut self.rows, &mut self.payload);
+            self.event_place = place;
+        }
+        Ok(Some(event))
+    }
+
+    /// The attributes of the points of the last event, row by row: of all points of [`Event::Points`], of the
+    /// new vertices of [`Event::Patch`], and of all points of [`Event::ResidualPoints`]. Empty if the stream
+    /// has no attributes.
+    #[must_use]
+    pub fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    /// Reads the next block that this version knows: one of as many `rows` where they must stand, or else any
+    /// other block.
+    fn next_block(&mut self, rows: Option<usize>) -> Result<Tag> {
+        loop {
+            let found = self
+                .read_block()
+                .and_then(|tag| tag.map(|tag| self.check_order(tag, rows).map(|()| tag)).transpose());
+            let tag = found.map_err(|error| {
+                error.at(format!("block {} at byte {}", self.block, self.offset)).of_input(&self.name)
+            })?;
+            self.event_place = [self.block, self.offset];
             self.block += 1;
-            self.block_start = self.offset;
             self.offset += (FRAME_LEN + self.payload.len()) as u64;
             if let Some(tag) = tag {
-                return self.decode(tag).map(Some).map_err(|error| self.locate(error));
+                return Ok(tag);
             }
         }
-        Ok(None)
+    }
+
+    /// Checks that a block of this tag may stand here. Where there must be `rows`, checks their number.
+    fn check_order(&mut self, tag: Tag, rows: Option<usize>) -> Result<()> {
+        let name = tag.bytes();
+        let name = name.escape_ascii();
+        match (tag, rows) {
+            (Tag::Rows, Some(rows)) => {
+                let (len, row_len) = (self.payload.len(), self.header.attributes.row_len());
+                if len != rows * row_len {
+                    return Err(Error::malformed(format!(
+                        "{len} bytes of attributes, expected {rows} rows of {row_len} bytes"
+                    )));
+                }
+                return Ok(());
+            }
+            (Tag::Rows, None) if self.header.attributes.is_empty() => {
+                return Err(Error::malformed(format!("block \"{name}\" in a stream without attributes")));
+            }
+            (Tag::Rows, None) => {
+                return Err(Error::malformed(format!(
+                    "no block \"{name}\" may stand here: no points precede"
+                )));
+            }
+            (_, Some(_)) => {
+                return Err(Error::malformed(format!(
+                    "block \"{name}\", expected the attributes of the points before it"
+                )));
+            }
+            (_, None) => {}
+        }
+        if !self.header.kind.allows(self.last_tag, tag) {
+            return Err(Error::malformed(format!(
+                "no block \"{name}\" may stand here in a stream of kind {}",
+                self.header.kind.name()
+            )));
+        }
+        self.last_tag = Some(tag);
+        Ok(())
     }
 
     /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
@@ -173,16 +242,7 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok(None) };
-        if !self.header.kind.allows(self.last_tag, tag) {
-            return Err(Error::malformed(format!(
-                "no block \"{}\" may stand here in a stream of kind {}",
-                tag.bytes().escape_ascii(),
-                self.header.kind.name()
-            )));
-        }
-        self.last_tag = Some(tag);
-        Ok(Some(tag))
+        Tag::from_bytes(frame.tag)
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {
@@ -211,6 +271,7 @@ impl<R: Read> StreamReader<R> {
             Tag::Functions => Event::Functions(functions::decode(payload)?),
             Tag::Coefficients => Event::Coefficients(functions::decode_coefficients(payload)?),
             Tag::End => Event::End(payload::totals(payload)?),
+            Tag::Rows => unreachable!("rows are read with their points"),
         };
         self.tally.count(&event)?;
         if let Event::End(stated) = &event {
@@ -228,6 +289,16 @@ impl<R: Read> StreamReader<R> {
             0 => Ok(()),
             _ => Err(Error::malformed("the input goes on after END").at(format!("byte {}", self.offset))),
         }
+    }
+}
+
+/// Number of rows that follow an event in a stream with attributes.
+fn rows_behind(event: &Event) -> usize {
+    match event {
+        Event::Points(points) => points.len(),
+        Event::Patch(patch) => patch.new.len(),
+        Event::ResidualPoints(points) => points.len(),
+        _ => 0,
     }
 }
 

@@ -3,6 +3,7 @@
 mod configurations;
 mod four;
 mod functions;
+mod rows;
 
 use std::io::Write;
 
@@ -15,6 +16,7 @@ use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
+use rows::write_rows_of;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
@@ -35,6 +37,8 @@ pub struct StreamWriter<W: Write> {
     last_tag: Option<Tag>,
     /// Encoded points, or other records, until their block is full; and the tag of that block.
     points: Vec<u8>,
+    /// The rows of these points.
+    rows: Vec<u8>,
     points_tag: Tag,
     payload: Vec<u8>,
     totals: Totals,
@@ -60,6 +64,7 @@ impl<W: Write> StreamWriter<W> {
             sequence: 0,
             last_tag: None,
             points: Vec::with_capacity(POINTS_PAYLOAD),
+            rows: Vec::new(),
             points_tag: Tag::Points,
             payload: Vec::new(),
             totals: Totals::default(),
@@ -81,11 +86,12 @@ impl<W: Write> StreamWriter<W> {
         self.totals
     }
 
-    /// Appends points to a points stream.
+    /// Appends points to a points stream without attributes.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding of the header, or writing fails.
     pub fn points(&mut self, points: &[Point]) -> Result<()> {
+        self.expect_no_attributes();
         let point_len = self.header.point_len();
         let mut rest = points;
         while !rest.is_empty() {
@@ -101,11 +107,12 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends points that [`encode_points`] has encoded.
+    /// Appends points that [`encode_points`] has encoded to a stream without attributes.
     ///
     /// # Errors
     /// If writing fails.
     pub fn encoded_points(&mut self, bytes: &[u8]) -> Result<()> {
+        self.expect_no_attributes();
         let point_len = self.header.point_len();
         debug_assert!(bytes.len().is_multiple_of(point_len));
         let mut rest = bytes;
@@ -138,11 +145,21 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends a patch to a mesh stream; `first_id` must be the number of vertices written before.
+    /// Appends a patch to a mesh stream without attributes, as [`StreamWriter::patch_with_rows`].
     ///
     /// # Errors
-    /// If a coordinate does not fit the encoding, the patch is longer than a block, or writing fails.
+    /// As there.
     pub fn patch(&mut self, patch: &Patch) -> Result<()> {
+        self.patch_with_rows(patch, &[])
+    }
+
+    /// Appends a patch to a mesh stream; `first_id` must be the number of vertices written before. `rows` are
+    /// the attributes of its new vertices; empty if the stream has none.
+    ///
+    /// # Errors
+    /// If a coordinate does not fit the encoding, the patch or its rows are longer than a block, or writing
+    /// fails.
+    pub fn patch_with_rows(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
         assert_eq!(patch.first_id, self.totals.vertices, "vertex ids count up in stream order");
         let per_simplex = self.header.kind.vertices_per_simplex();
         debug_assert!(
@@ -164,6 +181,7 @@ impl<W: Write> StreamWriter<W> {
             payload.extend_from_slice(&local.to_le_bytes());
         }
         self.flush_block(Tag::Patch)?;
+        self.write_rows(patch.new.len(), rows)?;
         self.totals.vertices += patch.new.len() as u64;
         self.totals.simplices += simplices as u64;
         Ok(())
@@ -197,6 +215,7 @@ impl<W: Write> StreamWriter<W> {
             self.output.write_all(patch.block).map_err(write_error)?;
             self.output.write_all(patch.finalized).map_err(write_error)?;
             let [new, simplices, finalized] = patch.counts();
+            write_rows_of(&self.header, &mut self.sequence, &mut self.output, new as usize, patch.rows)?;
             self.totals.vertices += new;
             self.totals.simplices += simplices;
             count(new, finalized);
@@ -221,18 +240,34 @@ impl<W: Write> StreamWriter<W> {
         Ok(())
     }
 
-    /// Appends residual points, each with its id if an earlier patch has the vertex.
+    /// Appends residual points of a stream without attributes, as
+    /// [`StreamWriter::residual_points_with_rows`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
+        self.residual_points_with_rows(points, &[])
+    }
+
+    /// Appends residual points, each with its id if an earlier patch has the vertex. `rows` are their
+    /// attributes; empty if the stream has none.
     ///
     /// # Errors
     /// If a coordinate does not fit the encoding, or writing fails.
-    pub fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
-        for points in points.chunks(BLOCK_PAYLOAD_MAX / (8 + self.header.point_len())) {
+    pub fn residual_points_with_rows(&mut self, points: &[(Option<u64>, Point)], rows: &[u8]) -> Result<()> {
+        let row_len = self.header.attributes.row_len();
+        let longest = row_len.max(8 + self.header.point_len());
+        let mut rest = rows;
+        for points in points.chunks(BLOCK_PAYLOAD_MAX / longest) {
             self.payload.clear();
             for &(id, point) in points {
                 self.payload.extend_from_slice(&id.unwrap_or(u64::MAX).to_le_bytes());
                 encode_point(&self.header, point, &mut self.payload)?;
             }
             self.flush_block(Tag::ResidualPoints)?;
+            let (rows, after) = rest.split_at(points.len() * row_len);
+            rest = after;
+            self.write_rows(points.len(), rows)?;
             self.totals.residual_points += points.len() as u64;
         }
         Ok(())
@@ -293,16 +328,12 @@ impl<W: Write> StreamWriter<W> {
         std::mem::swap(&mut self.points, &mut self.payload);
         self.flush_block(self.points_tag)?;
         self.points.clear();
-        Ok(())
+        self.flush_rows()
     }
 
     fn flush_block(&mut self, tag: Tag) -> Result<()> {
         self.start_block(tag);
-        check_len(self.payload.len())?;
-        let frame = Frame::of(tag, self.sequence, [&self.payload, &[]]);
-        self.sequence = self.sequence.wrapping_add(1);
-        self.output.write_all(&frame.encode()).map_err(write_error)?;
-        self.output.write_all(&self.payload).map_err(write_error)
+        write_block(&mut self.output, &mut self.sequence, tag, &self.payload)
     }
 
     fn start_block(&mut self, tag: Tag) {
@@ -314,6 +345,14 @@ impl<W: Write> StreamWriter<W> {
         );
         self.last_tag = Some(tag);
     }
+}
+
+fn write_block(output: &mut impl Write, sequence: &mut u32, tag: Tag, payload: &[u8]) -> Result<()> {
+    check_len(payload.len())?;
+    let frame = Frame::of(tag, *sequence, [payload, &[]]);
+    *sequence = sequence.wrapping_add(1);
+    output.write_all(&frame.encode()).map_err(write_error)?;
+    output.write_all(payload).map_err(write_error)
 }
 
 fn check_len(payload_len: usize) -> Result<()> {

@@ -29,15 +29,24 @@ pub(super) struct Load {
 pub(super) struct Budget {
     limit: Option<u64>,
     threads: usize,
-    /// Bytes of a point that waits in a residual, and of one that is being triangulated.
-    bytes: [usize; 2],
+    /// Bytes of a point from the stream, of one that waits in a residual, and of one that is being
+    /// triangulated.
+    bytes: [usize; 3],
     /// Points of the largest nodes so far, as many as there are threads: their kernels keep their memory.
     largest: usize,
 }
 
 impl Budget {
-    pub(super) fn new<B: Bulk<D>, const D: usize>(limit: Option<u64>, threads: usize) -> Self {
-        Budget { limit, threads: threads.max(1), bytes: [B::WAITING_BYTES, B::KERNEL_BYTES], largest: 0 }
+    /// A limit for points with rows of `row_len` bytes.
+    pub(super) fn new<B: Bulk<D>, const D: usize>(
+        limit: Option<u64>,
+        threads: usize,
+        row_len: usize,
+    ) -> Self {
+        // Rows have room to grow, too, and those of a node are copied into its patches.
+        let raw = RAW_BYTES + row_len + row_len / 8;
+        let bytes = [raw, B::WAITING_BYTES + row_len, B::KERNEL_BYTES + 2 * row_len];
+        Budget { limit, threads: threads.max(1), bytes, largest: 0 }
     }
 
     /// Checks that points that wait for their cell, those in nodes, and a node of `next` points fit.
@@ -47,9 +56,10 @@ impl Budget {
     pub(super) fn check(&mut self, Load { held, raw, left }: Load, next: usize) -> Result<()> {
         let Some(limit) = self.limit else { return Ok(()) };
         self.largest = self.largest.max(next);
-        let kernels = self.bytes[1] * (self.largest + (self.threads - 1) * self.largest.min(1 << 16));
+        let [raw_bytes, left_bytes, kernel_bytes] = self.bytes;
+        let kernels = kernel_bytes * (self.largest + (self.threads - 1) * self.largest.min(1 << 16));
         let fixed = PROGRAM_BYTES + self.threads * THREAD_BYTES;
-        let needed = (fixed + RAW_BYTES * (held + raw) + self.bytes[0] * left + kernels) as u64;
+        let needed = (fixed + raw_bytes * (held + raw) + left_bytes * left + kernels) as u64;
         if needed <= limit {
             return Ok(());
         }
@@ -82,9 +92,9 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_named() {
         let load = |held, raw, left| Load { held, raw, left };
-        let mut unlimited = Budget::new::<Plane, 2>(None, 2);
+        let mut unlimited = Budget::new::<Plane, 2>(None, 2, 0);
         unlimited.check(load(usize::MAX / 64, 0, 0), 0).expect("no limit");
-        let mut budget = Budget::new::<Plane, 2>(Some(64 << 20), 1);
+        let mut budget = Budget::new::<Plane, 2>(Some(64 << 20), 1, 0);
         budget.check(load(1_000_000, 10_000, 0), 10_000).expect("enough");
         let refused = |budget: &mut Budget, load, next| {
             let error = budget.check(load, next).unwrap_err();
@@ -94,7 +104,7 @@ mod tests {
         assert!(refused(&mut budget, load(3_000_000, 0, 10_000), 0).contains("--preserve"));
         assert!(refused(&mut budget, load(0, 0, 2_000_000), 10_000).contains("later points"));
         assert!(refused(&mut budget, load(0, 500_000, 0), 500_000).contains("at once"));
-        let mut tiny = Budget::new::<Plane, 2>(Some(20 << 20), 2);
+        let mut tiny = Budget::new::<Plane, 2>(Some(20 << 20), 2, 0);
         assert!(refused(&mut tiny, load(9_000, 0, 0), 9_000).contains("take fewer"));
         assert!(refused(&mut budget, Load::default(), 0).contains("MiB"), "kernels keep their memory");
     }

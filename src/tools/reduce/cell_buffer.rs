@@ -9,6 +9,13 @@ use spmesh_model::bounds::{Bounds, Point, Region};
 use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::FinalizedCells;
 
+/// Points of one deepest cell, with their rows if there are attributes.
+#[derive(Default)]
+struct Bucket {
+    points: Vec<Point>,
+    rows: Vec<u8>,
+}
+
 /// Points whose cell is not final yet.
 ///
 /// In a chunked stream these are the points since the last tag, all in the cell that is tagged next. In any
@@ -22,7 +29,7 @@ pub(super) struct CellBuffer<const D: usize> {
     merging: Merging,
     /// A box that contains `current`.
     bounds: Option<Bounds>,
-    buckets: BTreeMap<u64, Vec<Point>>,
+    buckets: BTreeMap<u64, Bucket>,
     in_buckets: usize,
     held_max: usize,
     accepted: u64,
@@ -48,20 +55,22 @@ impl<const D: usize> CellBuffer<D> {
         }
     }
 
-    /// Takes points of the stream with their bounding box, and drops those outside of the region.
+    /// Takes points of the stream with their bounding box, and with their rows if there are attributes. Drops
+    /// those outside of the region.
     ///
     /// # Errors
     /// If a point lies in a cell that is final, or outside of the tree.
-    pub(super) fn points(&mut self, points: &[Point], bounds: &Bounds) -> Result<()> {
+    pub(super) fn points(&mut self, points: &[Point], rows: &[u8], bounds: &Bounds) -> Result<()> {
         if let Some(finalized) = &mut self.finalized {
             finalized.check_points_in(points, bounds)?;
         }
         if self.region.contains(bounds.min) && self.region.contains(bounds.max) {
-            self.current.extend_raw(points);
+            self.current.extend_raw(points, rows);
         } else {
-            let before = self.current.len();
-            for point in points.iter().filter(|&&point| self.region.contains(point)) {
-                self.current.extend_raw(std::slice::from_ref(point));
+            let (before, row_len) = (self.current.len(), rows.len() / points.len());
+            for (i, point) in points.iter().enumerate().filter(|&(_, &point)| self.region.contains(point)) {
+                let row = &rows[i * row_len..][..row_len];
+                self.current.extend_raw(std::slice::from_ref(point), row);
             }
             self.outside += (points.len() - (self.current.len() - before)) as u64;
         }
@@ -142,9 +151,9 @@ impl<const D: usize> CellBuffer<D> {
         }
         let mut points = Residual::default();
         for bucket in keys.iter().filter_map(|key| self.buckets.remove(key)) {
-            self.in_buckets -= bucket.len();
-            self.accepted += bucket.len() as u64;
-            points.extend_raw(&bucket);
+            self.in_buckets -= bucket.points.len();
+            self.accepted += bucket.points.len() as u64;
+            points.extend_raw(&bucket.points, &bucket.rows);
         }
         points.append_raw(&current);
         points
@@ -153,7 +162,9 @@ impl<const D: usize> CellBuffer<D> {
     fn move_to_buckets(&mut self, tree: &CellTree) {
         for i in 0..self.current.len() {
             let point = self.current.point(i);
-            self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default().push(point);
+            let bucket = self.buckets.entry(tree.cell_of(point, tree.depth()).0).or_default();
+            bucket.points.push(point);
+            bucket.rows.extend_from_slice(self.current.row(i));
         }
         self.in_buckets += self.current.len();
         self.current.clear();

@@ -31,7 +31,9 @@ impl<const D: usize> Division<D> {
     pub(super) fn of(points: &mut Residual<D>, region: Region<D>) -> Division<D> {
         debug_assert!(points.raw == points.len());
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        Cloud { at: &mut points.at, elevation: &mut points.elevation, order: &mut order }.divide(region)
+        let row_len = points.row_len();
+        let Residual { at, elevation, rows, .. } = points;
+        Cloud { at, elevation, rows, row_len, order: &mut order }.divide(region)
     }
 }
 
@@ -40,6 +42,9 @@ struct Cloud<'a, const D: usize> {
     at: &'a mut [[f64; D]],
     /// As many, or none.
     elevation: &'a mut [f64],
+    /// As many rows of so many bytes, or none.
+    rows: &'a mut [u8],
+    row_len: usize,
     order: &'a mut [u32],
 }
 
@@ -108,13 +113,21 @@ impl<const D: usize> Cloud<'_, D> {
         if !self.elevation.is_empty() {
             self.elevation.swap(i, j);
         }
+        for byte in 0..self.row_len {
+            self.rows.swap(i * self.row_len + byte, j * self.row_len + byte);
+        }
     }
 
     fn split(&mut self, below: usize) -> [Cloud<'_, D>; 2] {
         let (at, upper_at) = self.at.split_at_mut(below);
         let (order, upper_order) = self.order.split_at_mut(below);
         let (elevation, upper) = self.elevation.split_at_mut(below.min(self.elevation.len()));
-        [Cloud { at, elevation, order }, Cloud { at: upper_at, elevation: upper, order: upper_order }]
+        let row_len = self.row_len;
+        let (rows, upper_rows) = self.rows.split_at_mut(below * row_len);
+        [
+            Cloud { at, elevation, rows, row_len, order },
+            Cloud { at: upper_at, elevation: upper, rows: upper_rows, row_len, order: upper_order },
+        ]
     }
 }
 
@@ -150,7 +163,8 @@ mod tests {
 
     fn check(points: &[[f64; 3]], expected: impl Fn(usize) -> bool) {
         let mut raw = Residual::<2>::default();
-        raw.extend_raw(points);
+        let rows: Vec<u8> = points.iter().flat_map(|point| (point[2] as u16).to_le_bytes()).collect();
+        raw.extend_raw(points, &rows);
         let division = Division::of(&mut raw, Region::PLANE);
         let mut found = Vec::new();
         pieces(&division, &mut found);
@@ -159,8 +173,9 @@ mod tests {
             assert!(expected(count), "{count} points");
             let piece: Vec<[f64; 3]> = (next..next + count).map(|i| raw.point(i)).collect();
             assert!(piece.iter().all(|&point| region.contains(point)));
-            // Elevations are the places in the stream.
+            // Elevations are the places in the stream, and so are rows.
             assert!(piece.windows(2).all(|pair| pair[0][2] < pair[1][2]));
+            assert!(piece.iter().zip(next..).all(|(point, i)| raw.row(i) == (point[2] as u16).to_le_bytes()));
             next += count;
         }
         assert_eq!(next, points.len());
@@ -187,7 +202,7 @@ mod tests {
     fn coinciding_points_are_one_piece() {
         let raw = vec![[1e300, -1e300, 0.0]; 2 * PIECE_MAX];
         let mut points = Residual::<2>::default();
-        points.extend_raw(&raw);
+        points.extend_raw(&raw, &[]);
         assert!(
             matches!(Division::of(&mut points, Region::PLANE), Division::Piece { points, .. } if points == raw.len())
         );

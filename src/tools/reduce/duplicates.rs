@@ -4,7 +4,8 @@ use super::residual::Residual;
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::Coordinates;
 
-/// Which elevation survives where points coincide in x and y.
+/// Which elevation survives where points coincide in x and y. The attributes are those of the point whose
+/// elevation survives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Duplicates {
     /// The elevation of the first point in the stream.
@@ -14,7 +15,8 @@ pub enum Duplicates {
     Lowest,
     /// The highest.
     Highest,
-    /// The mean; with integer coordinates rounded to the nearest, halves away from zero.
+    /// The mean; with integer coordinates rounded to the nearest, halves away from zero. The attributes are
+    /// those of the first point.
     Mean,
     /// Coinciding points are an error.
     Error,
@@ -55,7 +57,16 @@ impl Duplicates {
             group.clear();
             group.push(points.elevation[vertex]);
             group.extend(same.iter().map(|&[point, _]| points.elevation[point as usize]));
-            points.elevation[vertex] = self.choose(&mut group, coordinates);
+            let chosen = self.choose(&mut group, coordinates);
+            let has = |point: usize| points.elevation[point].total_cmp(&chosen).is_eq();
+            // The first of several that have the elevation; pairs of a vertex are in the order of the stream.
+            if self != Duplicates::Mean
+                && !has(vertex)
+                && let Some(&[point, _]) = same.iter().find(|pair| has(pair[0] as usize))
+            {
+                points.copy_row(point as usize, vertex);
+            }
+            points.elevation[vertex] = chosen;
         }
         Ok(())
     }
@@ -90,10 +101,26 @@ mod tests {
 
     fn settled(policy: Duplicates, elevations: &[f64]) -> Result<f64> {
         let mut points = Residual::<2>::default();
-        elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]]));
+        elevations.iter().for_each(|&z| points.extend_raw(&[[3.0, 4.0, z]], &[]));
         let mut pairs: Vec<_> = (1..elevations.len() as u32).rev().map(|i| [i, 0]).collect();
         let grid = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
         policy.settle(&mut points, &mut pairs, &grid).map(|()| points.elevation[0])
+    }
+
+    #[test]
+    fn rows_are_those_of_the_point_with_the_elevation() {
+        let row_of = |policy: Duplicates| {
+            let mut points = Residual::<2>::default();
+            let elevations = [5.0, 9.0, 2.0, 2.0, 9.0];
+            (0..).zip(elevations).for_each(|(row, z)| points.extend_raw(&[[3.0, 4.0, z]], &[row, 7]));
+            let mut pairs = [[3, 0], [1, 0], [4, 0], [2, 0]];
+            policy.settle(&mut points, &mut pairs, &Coordinates::F64).expect("a policy that allows them");
+            points.row(0).to_vec()
+        };
+        assert_eq!(row_of(Duplicates::First), [0, 7]);
+        assert_eq!(row_of(Duplicates::Lowest), [2, 7]);
+        assert_eq!(row_of(Duplicates::Highest), [1, 7]);
+        assert_eq!(row_of(Duplicates::Mean), [0, 7]);
     }
 
     #[test]

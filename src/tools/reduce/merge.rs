@@ -114,6 +114,7 @@ fn merged_header<B: Bulk<D>, R: Read, const D: usize>(
     let kind = if part.is_some() { B::PARTIAL_MESH } else { B::MESH };
     let mut header = Header::new(kind, one.coordinates, one.dims, one.has_elevation);
     header.crs = one.crs.clone();
+    header.attributes = one.attributes.clone();
     let outer = part.map(|part| part.region(one)).transpose()?;
     header.region = outer.map(|outer| outer.in_space());
     let bounds: Option<Vec<Bounds>> = readers.iter().map(|reader| reader.header().bounds).collect();
@@ -160,6 +161,9 @@ fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Res
     if a.coordinates != b.coordinates || a.has_elevation != b.has_elevation {
         return differs("their coordinate grid", ": finalize both with the same --scale and --offset");
     }
+    if a.attributes != b.attributes {
+        return differs("their attributes", ": finalize both with the same --attributes");
+    }
     if a.crs != b.crs {
         return differs("their coordinate reference system", "");
     }
@@ -194,8 +198,10 @@ fn copy_through<R: Read, W: Write, const D: usize>(
     while let Some(event) = reader.next_event()? {
         note(&event, reader);
         let taken = match event {
-            Event::Patch(patch) => tile.patch(patch).and_then(|patch| sequencer.forward(&patch)),
-            Event::ResidualPoints(points) => tile.residual_points(&points),
+            Event::Patch(patch) => {
+                tile.patch(patch).and_then(|patch| sequencer.forward(&patch, reader.rows()))
+            }
+            Event::ResidualPoints(points) => tile.residual_points(&points, reader.rows()),
             Event::Walls(walls) => {
                 tile.walls(&walls);
                 Ok(())

@@ -59,7 +59,7 @@ mod tests {
 
     fn merged(policy: Duplicates, points: &[[f64; 3]]) -> (Vec<[f64; 3]>, u64) {
         let mut raw = Residual::<2>::default();
-        raw.extend_raw(points);
+        raw.extend_raw(points, &[]);
         let mut merging = Merging::new(policy, Coordinates::F64);
         let gone = merging.merge(&mut raw).expect("a policy that allows them");
         ((0..raw.len()).map(|i| raw.point(i)).collect(), gone)
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn coinciding_points_can_be_an_error() {
         let mut raw = Residual::<2>::default();
-        raw.extend_raw(&vec![[1.0, 2.0, 3.0]; FEW]);
+        raw.extend_raw(&vec![[1.0, 2.0, 3.0]; FEW], &[]);
         assert!(Merging::new(Duplicates::Error, Coordinates::F64).merge(&mut raw).is_err());
     }
 }

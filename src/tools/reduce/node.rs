@@ -241,7 +241,7 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
     /// no other point exists, `everything` is final.
     fn split(&mut self, points: &Residual<D>, region: &Region<D>, everything: bool) {
         let balls = B::balls(&self.rules.coordinates, *region);
-        self.builder.start(points.len());
+        self.builder.start(points.len(), self.rules.code);
         self.active.clear();
         for simplex in (0..self.simplex_states.len()).map(|k| self.bulk.nth(k)) {
             let state = &mut self.simplex_states[simplex as usize];
@@ -374,7 +374,8 @@ impl<B: Bulk<D>, const D: usize> Solver<B, D> {
         for (v, _) in (0..).zip(&self.point_states).filter(|&(_, &state)| state == PointState::Residual) {
             let reference = self.builder.reference(v, points);
             index_above[v as usize] = residual.len() as u32;
-            residual.push(points.point(v as usize), self.builder.key(v, number, points));
+            let key = self.builder.key(v, number, points);
+            residual.push(points.point(v as usize), points.row(v as usize), key);
             references.push(reference);
         }
         let above = |v: u32| index_above[v as usize];

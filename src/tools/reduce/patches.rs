@@ -8,13 +8,14 @@
 
 use super::residual::{Residual, UNWRITTEN};
 use spmesh_core::error::Result;
+use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_stream::{PatchBlocks, PointCode};
 
-/// Isolated or imported vertices per patch, which take 36 bytes at most.
+/// Isolated or imported vertices per patch, which take 36 bytes at most; fewer if their rows are long.
 const PATCH_VERTICES: usize = 16384;
 
 /// Simplices of D + 1 corners per patch. If all their vertices are new, a triangle takes at most 108 bytes
-/// and a tetrahedron 128, so that a patch stays below the maximum of a block.
+/// and a tetrahedron 128, so that a patch stays below the maximum of a block. Fewer if rows are long.
 const fn patch_simplices(dimensions: usize) -> usize {
     if dimensions == 2 { 8192 } else { 8000 }
 }
@@ -45,9 +46,14 @@ const KEPT: u32 = u32::MAX - 1;
 pub(super) struct PatchBuilder<const D: usize> {
     /// For each point, the number of the last patch that uses it, [`UNUSED`] or [`KEPT`].
     last: Vec<u32>,
-    /// Simplices that are planned, and patches that are closed.
-    planned: usize,
+    /// Number of the patch that is planned, and simplices that it still takes.
+    planned: u32,
+    room: usize,
+    /// Patches that are closed.
     closed: u32,
+    /// Simplices and isolated vertices per patch.
+    simplices_max: usize,
+    vertices_max: usize,
     /// For each point, its code in the last patch so far that uses it; 0 if none does.
     codes: Vec<u32>,
     /// Code of the first vertex of the patch.
@@ -72,12 +78,17 @@ pub(super) type Flush<'f> = dyn FnMut(&mut PatchBlocks) -> Result<()> + 'f;
 
 impl<const D: usize> PatchBuilder<D> {
     /// Begins a node of `points` points.
-    pub(super) fn start(&mut self, points: usize) {
+    pub(super) fn start(&mut self, points: usize, code: PointCode) {
+        // New vertices whose rows fill a block.
+        let rows_max = BLOCK_PAYLOAD_MAX.checked_div(code.row_len()).unwrap_or(usize::MAX);
+        self.simplices_max = patch_simplices(D).min(rows_max / (D + 1));
+        self.vertices_max = PATCH_VERTICES.min(rows_max);
         for (array, value) in [(&mut self.codes, 0), (&mut self.own, NO_VERTEX), (&mut self.last, UNUSED)] {
             array.clear();
             array.resize(points, value);
         }
         self.planned = 0;
+        self.room = self.simplices_max;
         self.closed = 0;
         self.first_code = 1;
         self.own_count = 0;
@@ -88,10 +99,13 @@ impl<const D: usize> PatchBuilder<D> {
     /// Plans a final simplex.
     #[inline]
     pub(super) fn plan(&mut self, simplex: &[u32]) {
-        let patch = (self.planned / patch_simplices(D)) as u32;
-        self.planned += 1;
+        if self.room == 0 {
+            self.planned += 1;
+            self.room = self.simplices_max;
+        }
+        self.room -= 1;
         for &v in simplex {
-            self.last[v as usize] = patch;
+            self.last[v as usize] = self.planned;
         }
     }
 
@@ -122,7 +136,7 @@ impl<const D: usize> PatchBuilder<D> {
             let index = self.index(v);
             self.corners.push(index);
         }
-        if self.corners.len() < (D + 1) * patch_simplices(D) {
+        if self.corners.len() < (D + 1) * self.simplices_max {
             return Ok(());
         }
         self.close(points, code, blocks)?;
@@ -144,7 +158,7 @@ impl<const D: usize> PatchBuilder<D> {
         self.close(points, code, blocks)?;
         for v in unused {
             self.index(v);
-            if self.vertices.len() == PATCH_VERTICES {
+            if self.vertices.len() == self.vertices_max {
                 self.close(points, code, blocks)?;
                 flush(blocks)?;
             }
@@ -215,7 +229,8 @@ impl<const D: usize> PatchBuilder<D> {
         let new = self.order[..imported_start].iter().map(|&v| points.point(v as usize));
         let imported = self.order[imported_start..].iter().map(|&v| self.reference(v, points));
         let simplices = self.corners.iter().map(|&i| self.locals[i as usize]);
-        blocks.push(code, new, imported, simplices)?;
+        let rows = self.order[..imported_start].iter().map(|&v| points.row(v as usize));
+        blocks.push(code, new, imported, simplices, rows)?;
         let is_last = |v: u32| self.last[v as usize] == self.closed || self.last[v as usize] == UNUSED;
         let locals = (0..).zip(&self.order).filter(|&(_, &v)| is_last(v)).map(|(local, _)| local);
         blocks.finalize(blocks.count() - 1, locals);

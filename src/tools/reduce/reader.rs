@@ -76,7 +76,7 @@ impl<R: Read, const D: usize> CellReader<R, D> {
             match self.reader.next_event()? {
                 Some(Event::Points(points)) => {
                     if let Some(bounds) = self.reader.points_bounds() {
-                        let taken = self.buffer.points(&points, &bounds);
+                        let taken = self.buffer.points(&points, self.reader.rows(), &bounds);
                         taken.map_err(|e| self.reader.locate(e))?;
                     }
                     self.reader.give_back(points);

@@ -16,6 +16,8 @@ pub(super) struct Residual<const D: usize> {
     pub(super) at: Vec<[f64; D]>,
     /// Elevation of each point of the plane, zero if the stream has none; empty in space.
     pub(super) elevation: Vec<f64>,
+    /// The row of each point; empty if the stream has no attributes.
+    pub(super) rows: Vec<u8>,
     /// Number of points that no node has triangulated yet. They are the first ones; only they may coincide.
     pub(super) raw: usize,
     /// For each point after the raw ones, a number that orders vertices as the stream does, or [`UNWRITTEN`].
@@ -40,6 +42,7 @@ impl<const D: usize> Residual<D> {
         Residual {
             at: Vec::with_capacity(points),
             elevation: Vec::with_capacity(if Self::HAS_ELEVATION { points } else { 0 }),
+            rows: Vec::new(),
             raw: 0,
             keys: Vec::with_capacity(points),
             walls: Vec::with_capacity(walls),
@@ -65,6 +68,7 @@ impl<const D: usize> Residual<D> {
     pub(super) fn clear(&mut self) {
         self.at.clear();
         self.elevation.clear();
+        self.rows.clear();
         self.raw = 0;
         self.keys.clear();
         self.walls.clear();
@@ -73,16 +77,18 @@ impl<const D: usize> Residual<D> {
     }
 
     /// Adds a point that a node has left.
-    pub(super) fn push(&mut self, point: Point, key: u64) {
+    pub(super) fn push(&mut self, point: Point, row: &[u8], key: u64) {
         self.at.push(geometry(&point));
         if Self::HAS_ELEVATION {
             self.elevation.push(point[2]);
         }
+        self.rows.extend_from_slice(row);
         self.keys.push(key);
     }
 
-    /// Adds points from the stream. All points so far must be raw.
-    pub(super) fn extend_raw(&mut self, points: &[Point]) {
+    /// Adds points from the stream, with the row of each if there are attributes. All points so far must be
+    /// raw.
+    pub(super) fn extend_raw(&mut self, points: &[Point], rows: &[u8]) {
         debug_assert_eq!(self.raw, self.len());
         // Grow by an eighth: doubling would leave up to half of the memory of each leaf under way idle.
         let growth = points.len().max(self.len() / 8);
@@ -91,35 +97,44 @@ impl<const D: usize> Residual<D> {
             if Self::HAS_ELEVATION {
                 self.elevation.reserve_exact(growth);
             }
+            self.rows.reserve_exact(growth * (rows.len() / points.len()));
         }
         self.at.extend(points.iter().map(geometry));
         if Self::HAS_ELEVATION {
             self.elevation.extend(points.iter().map(|point| point[2]));
         }
+        self.rows.extend_from_slice(rows);
         self.raw += points.len();
     }
 
     /// Removes the last `count` points, all raw, and gives back their memory.
     pub(super) fn split_off(&mut self, count: usize) -> Self {
-        let kept = self.len() - count;
+        let (kept, row_len) = (self.len() - count, self.row_len());
         let mut last = Residual { at: self.at.split_off(kept), raw: count, ..Residual::default() };
         self.at.shrink_to_fit();
         if Self::HAS_ELEVATION {
             last.elevation = self.elevation.split_off(kept);
             self.elevation.shrink_to_fit();
         }
+        last.rows = self.rows.split_off(kept * row_len);
+        self.rows.shrink_to_fit();
         self.raw = kept;
         last
     }
 
     /// Removes points, all raw; the others keep their order.
     pub(super) fn remove(&mut self, points: impl Iterator<Item = u32>) {
+        let row_len = self.row_len();
         let mut is_gone = vec![false; self.len()];
         points.for_each(|point| is_gone[point as usize] = true);
         let mut kept = is_gone.iter().map(|&gone| !gone);
         self.at.retain(|_| kept.next().unwrap_or(true));
         let mut kept = is_gone.iter().map(|&gone| !gone);
         self.elevation.retain(|_| kept.next().unwrap_or(true));
+        if row_len > 0 {
+            let kept = self.rows.chunks_exact(row_len).zip(&is_gone).filter(|&(_, &gone)| !gone);
+            self.rows = kept.flat_map(|(row, _)| row).copied().collect();
+        }
         self.raw = self.at.len();
         if self.at.len() < self.at.capacity() / 4 {
             self.at.shrink_to_fit();
@@ -130,6 +145,23 @@ impl<const D: usize> Residual<D> {
     pub(super) fn point(&self, index: usize) -> Point {
         let at = &self.at[index];
         if Self::HAS_ELEVATION { [at[0], at[1], self.elevation[index]] } else { [at[0], at[1], at[2]] }
+    }
+
+    /// Bytes of a row; 0 without attributes, and without points.
+    pub(super) fn row_len(&self) -> usize {
+        self.rows.len().checked_div(self.len()).unwrap_or(0)
+    }
+
+    /// The row of a point; empty without attributes.
+    pub(super) fn row(&self, index: usize) -> &[u8] {
+        let len = self.row_len();
+        &self.rows[index * len..][..len]
+    }
+
+    /// Gives point `to` the row of point `from`.
+    pub(super) fn copy_row(&mut self, from: usize, to: usize) {
+        let len = self.row_len();
+        self.rows.copy_within(from * len..(from + 1) * len, to * len);
     }
 
     /// Key of a point; raw ones are unwritten.
@@ -144,6 +176,7 @@ impl<const D: usize> Residual<D> {
         if Self::HAS_ELEVATION {
             self.elevation.extend_from_slice(&other.elevation[..other.raw]);
         }
+        self.rows.extend_from_slice(&other.rows[..other.raw * other.row_len()]);
         self.raw += other.raw;
     }
 
@@ -155,6 +188,7 @@ impl<const D: usize> Residual<D> {
         if Self::HAS_ELEVATION {
             self.elevation.extend_from_slice(&other.elevation[other.raw..]);
         }
+        self.rows.extend_from_slice(&other.rows[other.raw * other.row_len()..]);
         self.keys.extend_from_slice(&other.keys);
         let here = |corner: u32| match (corner as usize).checked_sub(other.raw) {
             Some(left) => (first + left) as u32,
@@ -190,6 +224,7 @@ impl<const D: usize> Residual<D> {
         if Self::HAS_ELEVATION {
             self.elevation.reserve_exact(points);
         }
+        self.rows.reserve_exact(parts.iter().map(|part| part.rows.len()).sum());
         self.keys.reserve_exact(parts.iter().map(|part| part.keys.len()).sum());
         self.walls.reserve_exact(parts.iter().map(|part| part.walls.len()).sum());
     }

@@ -126,7 +126,7 @@ where
         level: tree.map_or(0, |tree| u64::from(tree.depth())),
         rules,
         schedule: Schedule::new(Plan::new(tree), Boxes::new(tree, bounds, outer)),
-        budget: Budget::new::<B, D>(options.memory, options.threads),
+        budget: Budget::new::<B, D>(options.memory, options.threads, header.attributes.row_len()),
     };
     let merging = Merging::new(options.duplicates, header.coordinates);
     let (cells, sequencer) = (CellReader::new(reader, outer, merging), Sequencer::new(stream));
@@ -163,6 +163,7 @@ fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<
     header.bounds = points.bounds.and_then(|bounds| bounds.within(&outer, are_whole));
     header.region = part.map(|region| region.in_space());
     header.crs = points.crs.clone();
+    header.attributes = points.attributes.clone();
     header
 }
 

@@ -108,7 +108,7 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         let count = most.min(points.raw / SAMPLED_ONE_OF);
         let sample: Vec<Point> = (0..count).map(choose).collect();
         self.points.clear();
-        self.points.extend_raw(&sample);
+        self.points.extend_raw(&sample, &[]);
     }
 
     /// Draws one point at random, and the points nearest to it, in the order of their distances.
@@ -125,7 +125,7 @@ impl<B: Bulk<D>, const D: usize> Sample<B, D> {
         near.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         let sample: Vec<Point> = near.iter().map(|&(_, i)| points.point(i as usize)).collect();
         self.points.clear();
-        self.points.extend_raw(&sample);
+        self.points.extend_raw(&sample, &[]);
     }
 
     /// Finds the vertices that are on the hull or in simplices that are not final.
@@ -195,7 +195,7 @@ mod tests {
         let mut rules = Rules::<3>::new(&header, Duplicates::First, false);
         rules.every_node = every_node;
         let mut raw = Residual::<3>::default();
-        raw.extend_raw(points);
+        raw.extend_raw(points, &[]);
         Sample::<Space, 3>::new(rules).leaves_most(&raw, &region).unwrap()
     }
 
@@ -229,7 +229,7 @@ mod tests {
             let mut rules = Rules::new(&header, Duplicates::First, false);
             rules.sides = sides;
             let mut raw = Residual::<2>::default();
-            raw.extend_raw(points);
+            raw.extend_raw(points, &[]);
             Sample::<Plane, 2>::new(rules).leaves_most(&raw, &cell).unwrap()
         };
         let count = 4 * <Plane as Bulk<2>>::SAMPLED_MIN;

@@ -67,8 +67,8 @@ impl<W: Write> Sequencer<W> {
     ///
     /// # Errors
     /// If writing fails.
-    pub(super) fn forward(&mut self, patch: &Patch) -> Result<()> {
-        self.stream.patch(patch)?;
+    pub(super) fn forward(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
+        self.stream.patch_with_rows(patch, rows)?;
         self.live += patch.new.len() as u64;
         self.live_max = self.live_max.max(self.live);
         self.live -= patch.finalized.len() as u64;
@@ -153,7 +153,9 @@ impl<W: Write> Sequencer<W> {
                     .zip(ids)
                     .map(|(i, &id)| ((id != UNWRITTEN).then_some(id), residual.point(i))),
             );
-            self.stream.residual_points(&chunk)?;
+            let row_len = residual.row_len();
+            let rows = &residual.rows[number * RESIDUAL_CHUNK * row_len..][..chunk.len() * row_len];
+            self.stream.residual_points_with_rows(&chunk, rows)?;
         }
         self.stream.walls(residual.walls.as_flattened())
     }

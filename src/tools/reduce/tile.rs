@@ -35,15 +35,18 @@ impl<const D: usize> Tile<D> {
         Ok(patch)
     }
 
-    /// Takes residual points.
+    /// Takes residual points, with a row for each if there are attributes.
     ///
     /// # Errors
     /// If a point lies outside of the region, or is not where its vertex is.
-    pub(super) fn residual_points(&mut self, points: &[(Option<u64>, Point)]) -> Result<()> {
-        points.iter().try_for_each(|&(id, point)| self.residual_point(id, point))
+    pub(super) fn residual_points(&mut self, points: &[(Option<u64>, Point)], rows: &[u8]) -> Result<()> {
+        let row_len = rows.len().checked_div(points.len()).unwrap_or(0);
+        (0..)
+            .zip(points)
+            .try_for_each(|(i, &(id, point))| self.residual_point(id, point, &rows[i * row_len..][..row_len]))
     }
 
-    fn residual_point(&mut self, id: Option<u64>, point: Point) -> Result<()> {
+    fn residual_point(&mut self, id: Option<u64>, point: Point, row: &[u8]) -> Result<()> {
         if !self.region.contains(point) {
             return Err(Error::malformed(format!(
                 "residual point {point:?} lies outside of the stream's region"
@@ -54,7 +57,7 @@ impl<const D: usize> Tile<D> {
         {
             return Err(Error::malformed(format!("residual point {point:?} is not where vertex {id} is")));
         }
-        self.residual.push(point, id.map_or(UNWRITTEN, |id| id + self.id_offset));
+        self.residual.push(point, row, id.map_or(UNWRITTEN, |id| id + self.id_offset));
         Ok(())
     }
 

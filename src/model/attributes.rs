@@ -1,0 +1,418 @@
+//! Attributes of points: what each point carries beside its coordinates, such as intensity or colour.
+//!
+//! The *row* of a point is the stored numbers of all its attributes, one after the other, little-endian and
+//! without padding (`formats/spmesh.md`, section 2.7). Programs pass rows on byte by byte.
+
+use std::fmt;
+use std::ops::Range;
+
+/// Greatest length of a row, in bytes.
+pub const ROW_LEN_MAX: usize = 1024;
+
+/// Greatest length of a name, in bytes.
+pub const NAME_LEN_MAX: usize = 255;
+
+/// The type of a stored number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NumberType {
+    /// Unsigned, 8 bits.
+    U8,
+    /// Signed, 8 bits.
+    I8,
+    /// Unsigned, 16 bits.
+    U16,
+    /// Signed, 16 bits.
+    I16,
+    /// Unsigned, 32 bits.
+    U32,
+    /// Signed, 32 bits.
+    I32,
+    /// Unsigned, 64 bits.
+    U64,
+    /// Signed, 64 bits.
+    I64,
+    /// Floating point, 32 bits.
+    F32,
+    /// Floating point, 64 bits.
+    F64,
+}
+
+/// All types, in the order of their codes, which start at 1.
+const TYPES: [(NumberType, &str, usize); 10] = [
+    (NumberType::U8, "u8", 1),
+    (NumberType::I8, "i8", 1),
+    (NumberType::U16, "u16", 2),
+    (NumberType::I16, "i16", 2),
+    (NumberType::U32, "u32", 4),
+    (NumberType::I32, "i32", 4),
+    (NumberType::U64, "u64", 8),
+    (NumberType::I64, "i64", 8),
+    (NumberType::F32, "f32", 4),
+    (NumberType::F64, "f64", 8),
+];
+
+impl NumberType {
+    /// The code in a stream.
+    #[must_use]
+    pub fn code(self) -> u8 {
+        self as u8 + 1
+    }
+
+    /// The type with this code, if there is one.
+    #[must_use]
+    pub fn from_code(code: u8) -> Option<Self> {
+        TYPES.get(usize::from(code).checked_sub(1)?).map(|row| row.0)
+    }
+
+    /// The name in texts, such as `u16`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        TYPES[self as usize].1
+    }
+
+    /// The type with this name, if there is one.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        TYPES.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+
+    /// Bytes of a number.
+    #[must_use]
+    pub fn width(self) -> usize {
+        TYPES[self as usize].2
+    }
+
+    /// The number in the first bytes of `bytes`.
+    ///
+    /// # Panics
+    /// If there are fewer bytes than the type has.
+    #[must_use]
+    pub fn read(self, bytes: &[u8]) -> Number {
+        fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
+            *bytes.first_chunk().expect("all bytes of a number")
+        }
+        match self {
+            NumberType::U8 => Number::Unsigned(bytes[0].into()),
+            NumberType::I8 => Number::Signed(i8::from_le_bytes(first(bytes)).into()),
+            NumberType::U16 => Number::Unsigned(u16::from_le_bytes(first(bytes)).into()),
+            NumberType::I16 => Number::Signed(i16::from_le_bytes(first(bytes)).into()),
+            NumberType::U32 => Number::Unsigned(u32::from_le_bytes(first(bytes)).into()),
+            NumberType::I32 => Number::Signed(i32::from_le_bytes(first(bytes)).into()),
+            NumberType::U64 => Number::Unsigned(u64::from_le_bytes(first(bytes))),
+            NumberType::I64 => Number::Signed(i64::from_le_bytes(first(bytes))),
+            NumberType::F32 => Number::F32(f32::from_le_bytes(first(bytes))),
+            NumberType::F64 => Number::F64(f64::from_le_bytes(first(bytes))),
+        }
+    }
+
+    /// Appends the number that `text` says: an integer, or for types of floating point a decimal, `inf`,
+    /// `-inf`, or the bits of a NaN as `0x` and hexadecimal digits. `None` if it is none of this type.
+    pub fn parse(self, text: &str, bytes: &mut Vec<u8>) -> Option<()> {
+        match self {
+            NumberType::U8 => bytes.extend(text.parse::<u8>().ok()?.to_le_bytes()),
+            NumberType::I8 => bytes.extend(text.parse::<i8>().ok()?.to_le_bytes()),
+            NumberType::U16 => bytes.extend(text.parse::<u16>().ok()?.to_le_bytes()),
+            NumberType::I16 => bytes.extend(text.parse::<i16>().ok()?.to_le_bytes()),
+            NumberType::U32 => bytes.extend(text.parse::<u32>().ok()?.to_le_bytes()),
+            NumberType::I32 => bytes.extend(text.parse::<i32>().ok()?.to_le_bytes()),
+            NumberType::U64 => bytes.extend(text.parse::<u64>().ok()?.to_le_bytes()),
+            NumberType::I64 => bytes.extend(text.parse::<i64>().ok()?.to_le_bytes()),
+            NumberType::F32 => bytes.extend(parse_f32(text)?.to_le_bytes()),
+            NumberType::F64 => bytes.extend(parse_f64(text)?.to_le_bytes()),
+        }
+        Some(())
+    }
+}
+
+fn parse_f32(text: &str) -> Option<f32> {
+    match text.strip_prefix("0x") {
+        Some(bits) => Some(f32::from_bits(u32::from_str_radix(bits, 16).ok()?)),
+        None => text.parse().ok().filter(|value: &f32| !value.is_nan()),
+    }
+}
+
+fn parse_f64(text: &str) -> Option<f64> {
+    match text.strip_prefix("0x") {
+        Some(bits) => Some(f64::from_bits(u64::from_str_radix(bits, 16).ok()?)),
+        None => text.parse().ok().filter(|value: &f64| !value.is_nan()),
+    }
+}
+
+/// A stored number. It is shown so that [`NumberType::parse`] reads the same bits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Number {
+    /// An integer without sign.
+    Unsigned(u64),
+    /// An integer.
+    Signed(i64),
+    /// A binary32 number.
+    F32(f32),
+    /// A binary64 number.
+    F64(f64),
+}
+
+impl Number {
+    /// The nearest f64.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        match self {
+            Number::Unsigned(value) => value as f64,
+            Number::Signed(value) => value as f64,
+            Number::F32(value) => value.into(),
+            Number::F64(value) => value,
+        }
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Number::Unsigned(value) => value.fmt(f),
+            Number::Signed(value) => value.fmt(f),
+            Number::F32(value) if value.is_nan() => write!(f, "{:#010x}", value.to_bits()),
+            Number::F64(value) if value.is_nan() => write!(f, "{:#018x}", value.to_bits()),
+            Number::F32(value) => value.fmt(f),
+            Number::F64(value) => value.fmt(f),
+        }
+    }
+}
+
+/// One attribute of all points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attribute {
+    /// Its name, which no other attribute of the points has.
+    pub name: String,
+    /// Type of its stored numbers.
+    pub number: NumberType,
+    /// Numbers per point, at least 1.
+    pub components: u8,
+    /// Its unit; empty if there is none, or it is not known.
+    pub unit: String,
+    /// What the LAS specification calls it; empty if it has no such name.
+    pub las_name: String,
+    /// Scale and offset: a stored number stands for number * scale + offset.
+    pub scale: Option<[f64; 2]>,
+    /// The bytes of the stored number that says that the value is unknown.
+    pub unknown: Option<Vec<u8>>,
+}
+
+impl Attribute {
+    /// An attribute of one number per point, whose stored numbers are its values.
+    #[must_use]
+    pub fn new(name: impl Into<String>, number: NumberType) -> Self {
+        Attribute {
+            name: name.into(),
+            number,
+            components: 1,
+            unit: String::new(),
+            las_name: String::new(),
+            scale: None,
+            unknown: None,
+        }
+    }
+
+    /// Bytes that it takes in a row.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.number.width() * usize::from(self.components)
+    }
+
+    /// The stored numbers in the bytes of this attribute.
+    pub fn numbers<'a>(&self, bytes: &'a [u8]) -> impl Iterator<Item = Number> + use<'a> {
+        let number = self.number;
+        bytes.chunks_exact(number.width()).map(move |bytes| number.read(bytes))
+    }
+
+    /// The value that the bytes of a stored number stand for; `None` if it is unknown.
+    #[must_use]
+    pub fn value(&self, stored: &[u8]) -> Option<f64> {
+        if self.unknown.as_deref() == Some(stored) {
+            return None;
+        }
+        let number = self.number.read(stored).to_f64();
+        Some(self.scale.map_or(number, |[scale, offset]| number * scale + offset))
+    }
+
+    /// Checks the rules of one attribute.
+    ///
+    /// # Errors
+    /// A text about the rule that is broken.
+    pub fn check(&self) -> Result<(), String> {
+        let name = &self.name;
+        if name.is_empty() || name.len() > NAME_LEN_MAX {
+            return Err(format!(
+                "an attribute whose name has {} bytes, expected 1 to {NAME_LEN_MAX}",
+                name.len()
+            ));
+        }
+        let texts = [name, &self.unit, &self.las_name];
+        if texts.iter().any(|text| text.len() > NAME_LEN_MAX || text.chars().any(char::is_control)) {
+            return Err(format!(
+                "the name, unit or LAS name of attribute \"{}\" is too long or has control characters",
+                name.escape_default()
+            ));
+        }
+        if self.components == 0 {
+            return Err(format!("attribute \"{name}\" has no components"));
+        }
+        if let Some([scale, offset]) = self.scale
+            && !(scale.is_finite() && offset.is_finite() && scale != 0.0)
+        {
+            return Err(format!("attribute \"{name}\" has the scale {scale} and the offset {offset}"));
+        }
+        if let Some(unknown) = &self.unknown
+            && unknown.len() != self.number.width()
+        {
+            return Err(format!("the unknown number of attribute \"{name}\" has another type"));
+        }
+        Ok(())
+    }
+}
+
+/// The attributes of all points of a stream, in the order of their numbers in a row.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Attributes(Vec<Attribute>);
+
+impl Attributes {
+    /// A list of attributes.
+    ///
+    /// # Errors
+    /// A text about the rule that is broken: those of [`Attribute::check`], different names, and rows of at
+    /// most [`ROW_LEN_MAX`] bytes.
+    pub fn new(attributes: Vec<Attribute>) -> Result<Self, String> {
+        attributes.iter().try_for_each(Attribute::check)?;
+        let mut names: Vec<&str> = attributes.iter().map(|attribute| attribute.name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(format!("two attributes \"{}\"", pair[0]));
+        }
+        let len: usize = attributes.iter().map(Attribute::width).sum();
+        if len > ROW_LEN_MAX {
+            return Err(format!(
+                "rows of {len} bytes, the maximum is {ROW_LEN_MAX}: choose fewer attributes"
+            ));
+        }
+        Ok(Attributes(attributes))
+    }
+
+    /// The attributes in their order.
+    pub fn iter(&self) -> std::slice::Iter<'_, Attribute> {
+        self.0.iter()
+    }
+
+    /// Whether points carry nothing but coordinates.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Bytes of a row.
+    #[must_use]
+    pub fn row_len(&self) -> usize {
+        self.0.iter().map(Attribute::width).sum()
+    }
+
+    /// Each attribute with its place in a row.
+    pub fn places(&self) -> impl Iterator<Item = (&Attribute, Range<usize>)> {
+        self.0.iter().scan(0, |end, attribute| {
+            let start = *end;
+            *end += attribute.width();
+            Some((attribute, start..*end))
+        })
+    }
+
+    /// The attribute with this name and its place in a row, if there is one.
+    #[must_use]
+    pub fn find(&self, name: &str) -> Option<(&Attribute, Range<usize>)> {
+        self.places().find(|(attribute, _)| attribute.name == name)
+    }
+
+    /// The names, for messages.
+    #[must_use]
+    pub fn names(&self) -> String {
+        self.0.iter().map(|attribute| attribute.name.as_str()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl<'a> IntoIterator for &'a Attributes {
+    type Item = &'a Attribute;
+    type IntoIter = std::slice::Iter<'a, Attribute>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_shown_as_they_are_read() {
+        let cases: [(NumberType, &str, &[u8]); 9] = [
+            (NumberType::U8, "255", &[255]),
+            (NumberType::I8, "-1", &[255]),
+            (NumberType::I16, "-32768", &[0, 128]),
+            (NumberType::U64, "18446744073709551615", &[255; 8]),
+            (NumberType::F32, "0.1", &0.1f32.to_le_bytes()),
+            (NumberType::F32, "0x7fc00001", &0x7fc0_0001u32.to_le_bytes()),
+            (NumberType::F64, "-0", &(-0.0f64).to_le_bytes()),
+            (NumberType::F64, "-inf", &f64::NEG_INFINITY.to_le_bytes()),
+            (NumberType::F64, "0xfff8000000000000", &(-f64::NAN).to_bits().to_le_bytes()),
+        ];
+        for (number, text, bytes) in cases {
+            let mut read = Vec::new();
+            number.parse(text, &mut read).expect("a number of this type");
+            assert_eq!(read, bytes, "{text}");
+            assert_eq!(number.read(bytes).to_string(), text);
+        }
+        for (number, text) in [(NumberType::U8, "256"), (NumberType::I64, "1.5"), (NumberType::F64, "nan")] {
+            assert_eq!(number.parse(text, &mut Vec::new()), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn codes_and_names_stand_for_types() {
+        for (number, name, _) in TYPES {
+            assert_eq!(NumberType::from_code(number.code()), Some(number));
+            assert_eq!(NumberType::from_name(name), Some(number));
+        }
+        assert_eq!(NumberType::from_code(0), None);
+        assert_eq!(NumberType::from_code(11), None);
+    }
+
+    #[test]
+    fn rows_have_places() {
+        let colour = Attribute { components: 3, ..Attribute::new("rgb", NumberType::U16) };
+        let list = vec![Attribute::new("a", NumberType::U8), colour, Attribute::new("t", NumberType::F64)];
+        let attributes = Attributes::new(list).expect("all rules hold");
+        assert_eq!(attributes.row_len(), 15);
+        assert_eq!(attributes.find("t").map(|(_, place)| place), Some(7..15));
+        assert_eq!(attributes.names(), "a, rgb, t");
+    }
+
+    #[test]
+    fn values_have_scales_and_may_be_unknown() {
+        let angle = Attribute {
+            scale: Some([0.5, 1.0]),
+            unknown: Some(vec![0, 128]),
+            ..Attribute::new("angle", NumberType::I16)
+        };
+        assert_eq!(angle.value(&[255, 255]), Some(0.5));
+        assert_eq!(angle.value(&[0, 128]), None);
+    }
+
+    #[test]
+    fn broken_rules_are_named() {
+        let of = |attribute: Attribute| Attributes::new(vec![attribute]).expect_err("a broken rule");
+        let plain = || Attribute::new("a", NumberType::U8);
+        assert!(of(Attribute::new("", NumberType::U8)).contains("0 bytes"));
+        assert!(of(Attribute::new("a\u{9b}", NumberType::U8)).contains("control characters"));
+        assert!(of(Attribute { components: 0, ..plain() }).contains("no components"));
+        assert!(of(Attribute { scale: Some([0.0, 1.0]), ..plain() }).contains("scale 0"));
+        assert!(of(Attribute { unknown: Some(vec![0; 2]), ..plain() }).contains("another type"));
+        let wide = |name: &str| Attribute { components: 255, ..Attribute::new(name, NumberType::F32) };
+        assert!(Attributes::new(vec![wide("a"), wide("b")]).expect_err("too long").contains("2040 bytes"));
+        assert!(Attributes::new(vec![plain(), plain()]).expect_err("one name").contains("two attributes"));
+    }
+}
