@@ -1,5 +1,6 @@
 //! The reader trusts no input, and the writer loses nothing.
 
+mod attributes;
 mod configurations;
 mod four;
 mod newer;
@@ -12,7 +13,7 @@ use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, Patch, StreamReader, StreamWriter};
 
 use crate::allocation::largest_during;
-use crate::vectors::{is_refused, kind_of_damage, load, run_python, verify};
+use crate::vectors::{is_refused, kind_of_damage, load, run_python, verify, verify_rows};
 
 /// SplitMix64 (Steele, Lea and Flood 2014).
 struct Random(u64);
@@ -37,14 +38,19 @@ impl Random {
 
 /// Writes events as a stream. Residual and points blocks may be cut differently.
 fn write(header: &Header, events: &[Event]) -> Result<Vec<u8>> {
+    write_rows(header, events, &vec![Vec::new(); events.len()])
+}
+
+/// As [`write`], with the attributes of the points of each event.
+fn write_rows(header: &Header, events: &[Event], rows: &[Vec<u8>]) -> Result<Vec<u8>> {
     let mut writer = StreamWriter::new(Vec::new(), header.clone())?;
-    for event in events {
+    for (event, rows) in events.iter().zip(rows) {
         match event {
-            Event::Points(points) => writer.points(points)?,
+            Event::Points(points) => writer.points_with_rows(points, rows)?,
             Event::Cells(cells) => writer.cells(cells)?,
-            Event::Patch(patch) => writer.patch(patch)?,
+            Event::Patch(patch) => writer.patch_with_rows(patch, rows)?,
             Event::Labels(labels) => writer.labels(labels)?,
-            Event::ResidualPoints(points) => writer.residual_points(points)?,
+            Event::ResidualPoints(points) => writer.residual_points_with_rows(points, rows)?,
             Event::Walls(walls) => writer.walls(walls)?,
             Event::Points4(points) => writer.points4(&points.points, points.values.as_deref())?,
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell))?,
@@ -104,9 +110,11 @@ fn assert_malformed(bytes: &[u8], case: &str) {
 #[test]
 fn what_was_read_can_be_written() {
     for vector in load("pass", "txt") {
-        let (header, events) = verify(&vector.bytes).unwrap();
-        let (header_again, events_again) = verify(&write(&header, &events).unwrap()).unwrap();
+        let (header, events, rows) = verify_rows(&vector.bytes).unwrap();
+        let (header_again, events_again, rows_again) =
+            verify_rows(&write_rows(&header, &events, &rows).unwrap()).unwrap();
         assert_eq!(header_again, header, "{}", vector.name);
+        assert_eq!(rows_again.concat(), rows.concat(), "{}", vector.name);
         assert_eq!(joined(events_again), joined(events), "{}", vector.name);
     }
 }
@@ -224,11 +232,13 @@ fn sealed_damage_never_panics_and_what_is_accepted_can_be_written() {
         for _ in 0..1 + random.below(3) {
             mutate(&mut random, &mut pieces);
         }
-        match verify(&seal(pieces)) {
-            Ok((header, events)) => {
+        match verify_rows(&seal(pieces)) {
+            Ok((header, events, rows)) => {
                 accepted += 1;
-                let (header_again, events_again) = verify(&write(&header, &events).unwrap()).unwrap();
+                let (header_again, events_again, rows_again) =
+                    verify_rows(&write_rows(&header, &events, &rows).unwrap()).unwrap();
                 assert_eq!(header_again, header, "seed {seed}");
+                assert_eq!(rows_again.concat(), rows.concat(), "seed {seed}");
                 assert_eq!(joined(events_again), joined(events), "seed {seed}");
             }
             Err(error) => assert!(is_refused(&error), "seed {seed}: {error}"),
@@ -441,8 +451,11 @@ fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
     header.points = random.coin().then_some(input_points);
     header.bounds = if random.coin() { Bounds::of_points(&points) } else { None };
     let end = spmesh_stream::Totals { points: input_points, merged, ..Default::default() };
+    if random.coin() {
+        header.attributes = attributes::random_attributes(&mut random);
+    }
     let all = [&events[..], &[Event::End(end)]].concat();
-    let bytes = write(&header, &all).unwrap();
+    let bytes = write_rows(&header, &all, &attributes::rows_of(&header, &all)).unwrap();
     (header, events, bytes)
 }
 
@@ -450,9 +463,10 @@ fn random_stream(seed: u64) -> (Header, Vec<Event>, Vec<u8>) {
 fn random_streams_come_back_as_they_were_written() {
     for seed in 0..2_000 {
         let (header, events, bytes) = random_stream(seed);
-        let (header_again, mut events_again) =
-            verify(&bytes).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        let (header_again, mut events_again, rows) =
+            verify_rows(&bytes).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
         assert_eq!(header_again, header, "seed {seed}");
+        assert_eq!(rows.concat(), attributes::rows_of(&header, &events).concat(), "seed {seed}");
         assert!(matches!(events_again.pop(), Some(Event::End(_))));
         assert_eq!(joined(events_again), joined(events), "seed {seed}");
     }

@@ -51,15 +51,21 @@ fn parse_hex(text: &str) -> Vec<u8> {
 
 /// Reads a whole stream and checks every rule, including the rules that need to remember cells and vertices.
 pub fn verify(bytes: &[u8]) -> Result<(Header, Vec<Event>)> {
+    verify_rows(bytes).map(|(header, events, _)| (header, events))
+}
+
+/// As [`verify`], with the attributes of the points of each event.
+pub fn verify_rows(bytes: &[u8]) -> Result<(Header, Vec<Event>, Vec<Vec<u8>>)> {
     let mut reader = StreamReader::new(bytes, "vector")?;
     let header = reader.header().clone();
     let mut rules = MemoryRules::new(&header);
-    let mut events = Vec::new();
+    let (mut events, mut rows) = (Vec::new(), Vec::new());
     while let Some(event) = reader.next_event()? {
         rules.check(&event).map_err(|error| reader.locate(error))?;
         events.push(event);
+        rows.push(reader.rows().to_vec());
     }
-    Ok((header, events))
+    Ok((header, events, rows))
 }
 
 /// Whether the error says that a stream is malformed, or needs what this version does not know.

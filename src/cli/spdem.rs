@@ -19,7 +19,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::raster::{Light, RasterFormat};
 use spmesh_terrain::contours::LineFormat;
-use spmesh_terrain::dem::{self, Attribute, Options, Stats};
+use spmesh_terrain::dem::{self, Interpolation, Options, Quantity, Stats};
 
 const TOOL: &str = "spdem";
 
@@ -32,6 +32,10 @@ Examples:
   Slopes, and a hillshade with light from the north-west:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
+  The intensity of the returns, and their classes:
+    spfinalize tiles/*.laz --attributes intensity,classification | spdelaunay2d > all.spm
+    spdem --step 1 --attribute intensity all.spm -o intensity.tif
+    spdem --step 1 --attribute classification --interpolation nearest all.spm -o classes.tif
   For the web, with overviews, and gaps of up to 20 cells filled:
     spdem --step 1 --fill 20 --cog ground.spm -o terrain.tif
   A part as a text grid:
@@ -52,6 +56,10 @@ A cell has the value of the mesh at its centre; outside the mesh there is no dat
 drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is full, so only incomplete tiles \
 take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
 from the top, with 256 rows in memory.
+
+An attribute is drawn as elevations are, or with --interpolation nearest as the value of the nearest corner of \
+the triangle. With linear interpolation, triangles with a corner whose value is unknown are left out. A raster has \
+one band of 32-bit numbers; for a picture in colour, join those of red, green and blue (gdalbuildvrt -separate).
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
 level triangles have none. Elevations and coordinates must have the same unit.
@@ -94,6 +102,16 @@ pub struct Flags {
     /// The quantity in the cells
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Elevation)]
     kind: KindFlag,
+
+    /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
+    /// components; red, green and blue are those of rgb
+    #[arg(long, value_name = "NAME", conflicts_with = "kind")]
+    attribute: Option<String>,
+
+    /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
+    /// classes need it [default: linear]
+    #[arg(long, value_enum, value_name = "HOW", requires = "attribute")]
+    interpolation: Option<InterpolationFlag>,
 
     /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
     /// [default: 315,45]
@@ -138,6 +156,13 @@ enum KindFlag {
     Hillshade,
 }
 
+/// The values of `--interpolation`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum InterpolationFlag {
+    Linear,
+    Nearest,
+}
+
 /// The values of `--format`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FormatFlag {
@@ -171,6 +196,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let options = flags.options()?;
     let mut output = cells::create(&flags.output, options.raster.format)?;
     let mut reader = open_stream(&flags.input)?;
+    dem::check(reader.header(), &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let grid = flags.cells.grid(|| dem::window(reader.header()).map_err(|e| e.of_input(reader.name())))?;
     let mut progress = Progress::new(&flags.common, "rasterizing", reader.header().points);
     let done = |vertices| progress.set(vertices);
@@ -204,14 +230,19 @@ impl Flags {
             return Err(Error::usage("--light is for a hillshade: add --kind hillshade"));
         }
         let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
-        let attribute = match self.kind {
-            KindFlag::Elevation => Attribute::Elevation,
-            KindFlag::Slope => Attribute::Slope,
-            KindFlag::Aspect => Attribute::Aspect,
-            KindFlag::Hillshade => Attribute::Hillshade(Light::from(azimuth, altitude)),
+        let interpolation = match self.interpolation {
+            None | Some(InterpolationFlag::Linear) => Interpolation::Linear,
+            Some(InterpolationFlag::Nearest) => Interpolation::Nearest,
+        };
+        let quantity = match (&self.attribute, self.kind) {
+            (Some(name), _) => Quantity::Attribute(name.clone(), interpolation),
+            (None, KindFlag::Elevation) => Quantity::Elevation,
+            (None, KindFlag::Slope) => Quantity::Slope,
+            (None, KindFlag::Aspect) => Quantity::Aspect,
+            (None, KindFlag::Hillshade) => Quantity::Hillshade(Light::from(azimuth, altitude)),
         };
         let raster = self.raster.options(self.format()?)?;
-        Ok(Options { attribute, kill, fill: self.fill, memory: self.memory, raster })
+        Ok(Options { quantity, kill, fill: self.fill, memory: self.memory, raster })
     }
 
     fn line_format(&self) -> Result<LineFormat, Error> {
@@ -237,12 +268,13 @@ impl Flags {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 17] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 18] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
         ("triangles", "triangles", stats.triangles),
         ("triangles with a long edge", "killed", stats.killed),
+        ("triangles with an unknown value", "unknown", stats.unknown),
         ("width (live vertices)", "width", stats.width),
         ("cells", "cells", stats.cells),
         ("cells with data", "known", stats.known),

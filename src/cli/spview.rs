@@ -88,6 +88,11 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "WHAT")]
     fill: Option<FillFlag>,
 
+    /// Show an attribute of the points: its name, with :1, :2 ... for one of several components. One of three
+    /// components, such as rgb, is taken as a colour
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["fill", "oblique"])]
+    colour_by: Option<String>,
+
     /// Whether to draw the edges of triangles
     #[arg(long, value_enum, value_name = "WHEN", default_value_t = WhenFlag::Auto)]
     edges: WhenFlag,
@@ -222,6 +227,7 @@ impl Flags {
                 FillFlag::Relief => Fill::Relief,
                 FillFlag::Time => Fill::Time,
             }),
+            colour_by: self.colour_by.clone(),
             edges: match self.edges {
                 WhenFlag::Auto => When::Auto,
                 WhenFlag::Always => When::Always,

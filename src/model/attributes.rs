@@ -327,10 +327,79 @@ impl Attributes {
         self.places().find(|(attribute, _)| attribute.name == name)
     }
 
+    /// The column that `choice` names: the name of an attribute, with a colon and the number of a component
+    /// from 1 if it has several; `red`, `green` and `blue` are components of `rgb`.
+    ///
+    /// # Errors
+    /// A text about what there is instead.
+    pub fn column(&self, choice: &str) -> Result<Column, String> {
+        let (name, component) = self.component(choice);
+        let Some((attribute, place)) = self.find(name) else {
+            return Err(match self.names() {
+                names if names.is_empty() => format!("points have no attribute \"{choice}\": they have none"),
+                names => format!("points have no attribute \"{choice}\": they have {names}"),
+            });
+        };
+        let count = usize::from(attribute.components);
+        let component = match component {
+            Some(component) if (1..=count).contains(&component) => component,
+            None if count == 1 => 1,
+            _ => {
+                return Err(format!(
+                    "\"{name}\" has {count} components: choose one of {name}:1 to {name}:{count}"
+                ));
+            }
+        };
+        let at = place.start + (component - 1) * attribute.number.width();
+        Ok(Column { attribute: attribute.clone(), at, row_len: self.row_len() })
+    }
+
+    /// The name of an attribute and the number of a component in `choice`.
+    fn component<'a>(&self, choice: &'a str) -> (&'a str, Option<usize>) {
+        let colours = ["red", "green", "blue"];
+        if self.find(choice).is_some() {
+            return (choice, None);
+        }
+        if let Some(component) = colours.iter().position(|&colour| colour == choice) {
+            return ("rgb", Some(component + 1));
+        }
+        match choice.rsplit_once(':').and_then(|(name, number)| Some((name, number.parse().ok()?))) {
+            Some((name, component)) => (name, Some(component)),
+            None => (choice, None),
+        }
+    }
+
     /// The names, for messages.
     #[must_use]
     pub fn names(&self) -> String {
         self.0.iter().map(|attribute| attribute.name.as_str()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// One number of each row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    attribute: Attribute,
+    at: usize,
+    row_len: usize,
+}
+
+impl Column {
+    /// Name and unit for a legend.
+    #[must_use]
+    pub fn label(&self) -> String {
+        let Attribute { name, unit, .. } = &self.attribute;
+        if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") }
+    }
+
+    /// The value of the point with this number; NaN if it is unknown.
+    ///
+    /// # Panics
+    /// If there is no such row.
+    #[must_use]
+    pub fn of(&self, rows: &[u8], point: usize) -> f64 {
+        let stored = &rows[point * self.row_len + self.at..][..self.attribute.number.width()];
+        self.attribute.value(stored).unwrap_or(f64::NAN)
     }
 }
 
@@ -389,6 +458,21 @@ mod tests {
         assert_eq!(attributes.row_len(), 15);
         assert_eq!(attributes.find("t").map(|(_, place)| place), Some(7..15));
         assert_eq!(attributes.names(), "a, rgb, t");
+    }
+
+    #[test]
+    fn columns_are_chosen_by_name_and_component() {
+        let colour = Attribute { components: 3, ..Attribute::new("rgb", NumberType::U16) };
+        let list = vec![Attribute::new("a", NumberType::U8), colour];
+        let attributes = Attributes::new(list).expect("all rules hold");
+        let rows = [9, 1, 0, 2, 0, 3, 0, 8, 4, 0, 5, 0, 6, 0];
+        let of = |choice: &str, point| attributes.column(choice).expect("a column").of(&rows, point);
+        assert_eq!([of("a", 0), of("a", 1), of("a:1", 1)], [9.0, 8.0, 8.0]);
+        assert_eq!([of("rgb:2", 0), of("green", 1), of("blue", 1)], [2.0, 5.0, 6.0]);
+        let refused = |choice: &str| attributes.column(choice).expect_err("no column");
+        assert!(refused("rgb").contains("choose one of rgb:1 to rgb:3"));
+        assert!(refused("rgb:4").contains("3 components"));
+        assert!(refused("b").contains("they have a, rgb"));
     }
 
     #[test]

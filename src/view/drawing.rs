@@ -13,6 +13,7 @@ use super::projection::PAD;
 use super::request;
 use super::scene::Scene;
 use super::sheet::{Furniture, Legend, Mark, Shape};
+use super::shown::Shown;
 use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
 use super::{configurations, svg, ticks};
@@ -65,9 +66,10 @@ pub fn draw<R: Read>(
         let picture = configurations::picture(&knots, &set, header.coordinates, options);
         return take(&picture?);
     }
-    let mut drawing = Drawing::new(&header, options, moments)?;
+    let mut drawing =
+        Drawing::new(&header, options, moments).map_err(|error| error.of_input(reader.name()))?;
     while let Some(event) = reader.next_event()? {
-        drawing.event(event, take).map_err(|error| reader.locate(error))?;
+        drawing.event(event, reader.rows(), take).map_err(|error| reader.locate(error))?;
         progress(reader.totals().points.max(reader.totals().vertices));
     }
     drawing.end(take)
@@ -88,6 +90,7 @@ struct Drawing<'a> {
     moments: Moments,
     kind: Kind,
     coordinates: Coordinates,
+    shown: Shown,
     style: Style,
     scene: Option<Scene>,
     /// The number of points, if the header states it; then the colours of time agree in all pictures.
@@ -121,16 +124,22 @@ impl<'a> Drawing<'a> {
         let scene = (stated.is_some() || options.bounds.is_some())
             .then(|| scene_of(&stated.unwrap_or(anywhere), options))
             .transpose()?;
-        let has_cells = options.cells && !is_mesh && options.fill.is_none_or(|fill| fill == Fill::Time);
+        let shown = Shown::of(&header.attributes, options)?;
+        let has_elevation = has_elevation && matches!(shown, Shown::Elevation);
+        let has_cells = matches!(shown, Shown::Elevation)
+            && options.cells
+            && !is_mesh
+            && options.fill.is_none_or(|fill| fill == Fill::Time);
         let tree = header.tree.filter(|tree| has_cells && tree.dims() == 2);
         let cells = tree.zip(scene.as_ref()).map(|(tree, scene)| Cells::new(tree, coordinates, scene));
         Ok(Drawing {
-            style: Style::of(options, has_elevation, if is_mesh { "triangles" } else { "points" }),
+            style: Style::of(options, &shown, has_elevation, if is_mesh { "triangles" } else { "points" }),
             front: Front::new(moments.at.is_some() || moments.every.is_some()),
             options,
             moments,
             kind: header.kind,
             coordinates,
+            shown,
             scene,
             count: header.points.filter(|_| !is_mesh),
             stated: stated.filter(|_| has_elevation).map(|bounds| [bounds.min[2], bounds.max[2]]),
@@ -145,12 +154,14 @@ impl<'a> Drawing<'a> {
         })
     }
 
-    fn event(&mut self, event: Event, take: &mut Take) -> Result<()> {
+    fn event(&mut self, event: Event, rows: &[u8], take: &mut Take) -> Result<()> {
         match event {
             _ if self.is_over => Ok(()),
-            Event::Points(points) => points.into_iter().try_for_each(|point| self.point(point, take)),
+            Event::Points(points) => {
+                (0..).zip(points).try_for_each(|(number, point)| self.point(point, rows, number, take))
+            }
             Event::Cells(cells) => cells.into_iter().try_for_each(|cell| self.tag(cell)),
-            Event::Patch(patch) => self.patch(&patch, take),
+            Event::Patch(patch) => self.patch(&patch, rows, take),
             Event::ResidualPoints(points) => {
                 let world = points.into_iter().map(|(_, stored)| self.coordinates.to_world(stored));
                 self.residual.extend(world);
@@ -169,33 +180,38 @@ impl<'a> Drawing<'a> {
         if self.is_over { Ok(()) } else { take(&self.picture(":")?) }
     }
 
-    fn patch(&mut self, patch: &Patch, take: &mut Take) -> Result<()> {
-        let coordinates = self.coordinates;
-        self.front.begin(patch, |stored| coordinates.to_world(stored))?;
+    fn patch(&mut self, patch: &Patch, rows: &[u8], take: &mut Take) -> Result<()> {
+        let (coordinates, shown) = (self.coordinates, &self.shown);
+        let place = |number: usize, stored: Point| shown.place(coordinates.to_world(stored), rows, number);
+        self.front.begin(patch, place)?;
         for local in patch.triangles() {
             self.take_due(take)?;
             if self.is_over {
                 return Ok(());
             }
             let triangle = self.front.triangle(local, self.done);
-            self.triangles.push(triangle, self.scene.as_ref(), &self.style)?;
+            if triangle.corners.iter().all(|corner| !corner[2].is_nan()) {
+                self.triangles.push(triangle, self.scene.as_ref(), &self.style)?;
+            }
             self.done += 1;
         }
         self.front.end();
         Ok(())
     }
 
-    fn point(&mut self, stored: Point, take: &mut Take) -> Result<()> {
+    fn point(&mut self, stored: Point, rows: &[u8], number: usize, take: &mut Take) -> Result<()> {
         self.take_due(take)?;
         if self.is_over {
             return Ok(());
         }
-        let point = DrawnPoint { at: self.coordinates.to_world(stored), number: self.done };
+        let at = self.shown.place(self.coordinates.to_world(stored), rows, number);
+        let point = DrawnPoint { at, number: self.done };
         match (&mut self.cells, &self.scene) {
             (Some(cells), Some(scene)) => {
                 cells.point(stored, self.done, scene);
                 self.points.push_few(point, scene);
             }
+            _ if at[2].is_nan() => {}
             _ => self.points.push(point, self.scene.as_ref(), &self.style)?,
         }
         self.done += 1;

@@ -32,12 +32,13 @@ impl Front {
         Front { is_drawn, open: HashMap::new(), ..Front::default() }
     }
 
-    /// Begins a patch; `to_world` maps stored coordinates to the world.
+    /// Begins a patch; `to_world` maps the number of a new vertex and its stored coordinates to the world.
     ///
     /// # Errors
     /// If the patch uses a vertex that is finalized or unknown.
-    pub(super) fn begin(&mut self, patch: &Patch, to_world: impl Fn(Point) -> Point) -> Result<()> {
-        let local = self.live.enter(patch, |_, stored| to_world(stored))?;
+    pub(super) fn begin(&mut self, patch: &Patch, to_world: impl Fn(usize, Point) -> Point) -> Result<()> {
+        let number = |id: u64| (id - patch.first_id) as usize;
+        let local = self.live.enter(patch, |id, stored| to_world(number(id), stored))?;
         self.local.clear();
         self.local.extend_from_slice(local);
         self.leaving = patch.finalized.iter().map(|&local| patch.id(local)).collect();

@@ -32,6 +32,7 @@ mod projection;
 mod request;
 mod scene;
 mod sheet;
+mod shown;
 mod style;
 mod svg;
 mod ticks;

@@ -16,6 +16,10 @@ pub enum Fill {
     Relief,
     /// The position in the stream.
     Time,
+    /// The value of an attribute, in a plan.
+    Attribute,
+    /// The colour that points have as an attribute, in a plan.
+    Colour,
 }
 
 /// Whether something is drawn.
@@ -47,6 +51,9 @@ pub struct Options {
     pub name: String,
     /// What triangles and points show; depends on the stream if `None`.
     pub fill: Option<Fill>,
+    /// The attribute that they show instead, as `spmesh_model::attributes::Attributes::column` takes it, or the
+    /// name of one with three components, which is a colour.
+    pub colour_by: Option<String>,
     /// Edges of triangles.
     pub edges: When,
     /// Cells of finalized points.
@@ -81,6 +88,7 @@ impl Options {
         Options {
             name: name.into(),
             fill: None,
+            colour_by: None,
             edges: When::Auto,
             cells: true,
             form: Form::Auto,

@@ -4,6 +4,7 @@ use super::canvas::Paint;
 use super::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
 use super::options::{Fill, Options, When};
 use super::sheet::Legend;
+use super::shown::{self, Shown};
 use spmesh_io::raster::Light;
 use spmesh_model::bounds::Point;
 
@@ -11,7 +12,7 @@ use spmesh_model::bounds::Point;
 const BARE: Colour = [255; 3];
 
 /// What triangles and points show.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Style {
     fill: Option<Fill>,
     edges: When,
@@ -22,10 +23,12 @@ pub(super) struct Style {
     has_elevation: bool,
     /// The plural of the counted items.
     unit: &'static str,
+    /// What values are called, if they are not times.
+    label: String,
 }
 
 /// The map from values to colours, when the range of values is known.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Colours {
     fill: Fill,
     colour_map: &'static ColourMap,
@@ -34,12 +37,14 @@ pub(super) struct Colours {
     level: f64,
     has_middle: bool,
     unit: &'static str,
+    label: String,
 }
 
 impl Style {
-    pub(super) fn of(options: &Options, has_elevation: bool, unit: &'static str) -> Style {
+    pub(super) fn of(options: &Options, shown: &Shown, has_elevation: bool, unit: &'static str) -> Style {
         let Options { fill, edges, light, range, middle, .. } = *options;
-        Style { fill, edges, light, range, middle, has_elevation, unit }
+        let (fill, label) = (shown.fill().or(fill), shown.label());
+        Style { fill, edges, light, range, middle, has_elevation, unit, label }
     }
 
     /// What triangles show. By default, the relief if they have elevations; otherwise nothing but edges, or
@@ -67,7 +72,8 @@ impl Style {
     /// before it.
     pub(super) fn paint(&self, fill: Fill, corners: &[Point; 3], number: u64) -> Paint {
         let values = match fill {
-            Fill::Elevation | Fill::Relief => corners.map(|corner| corner[2]),
+            Fill::Elevation | Fill::Relief | Fill::Attribute => corners.map(|corner| corner[2]),
+            Fill::Colour => [shown::mean(corners.map(|corner| corner[2])); 3],
             Fill::Time => [number as f64; 3],
             Fill::Hillshade | Fill::None => [0.0; 3],
         };
@@ -79,7 +85,7 @@ impl Style {
     /// The value of a point; `number` is the number of points before it.
     pub(super) fn value(&self, fill: Fill, at: Point, number: u64) -> f64 {
         match fill {
-            Fill::Elevation => at[2],
+            Fill::Elevation | Fill::Attribute | Fill::Colour => at[2],
             _ => number as f64,
         }
     }
@@ -87,7 +93,7 @@ impl Style {
     /// The colours of a range of elevations, or of times up to `count`.
     pub(super) fn colours(&self, fill: Fill, elevations: [f64; 2], count: u64) -> Colours {
         let elevations = self.range.unwrap_or(elevations);
-        let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief);
+        let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief | Fill::Attribute);
         let (colour_map, range) = match self.middle {
             _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64]),
             None => (&BATLOW, elevations),
@@ -98,7 +104,8 @@ impl Style {
             }
         };
         let level = colour_map::shade(&self.light, [0.0; 2]).clamp(0.05, 0.95);
-        Colours { fill, colour_map, range, level, has_middle: self.middle.is_some(), unit: self.unit }
+        let (has_middle, unit, label) = (self.middle.is_some(), self.unit, self.label.clone());
+        Colours { fill, colour_map, range, level, has_middle, unit, label }
     }
 }
 
@@ -108,7 +115,8 @@ impl Colours {
         match self.fill {
             Fill::None => BARE,
             Fill::Hillshade => colour_map::grey(shade),
-            Fill::Elevation | Fill::Time => self.colour_map.at(self.part(value)),
+            Fill::Colour => shown::unpack(value),
+            Fill::Elevation | Fill::Time | Fill::Attribute => self.colour_map.at(self.part(value)),
             Fill::Relief => colour_map::lit(self.colour_map.at(self.part(value)), shade, self.level),
         }
     }
@@ -116,12 +124,10 @@ impl Colours {
     /// The legend of the colours, if they show values.
     pub(super) fn legend(&self) -> Option<Legend> {
         let label = match self.fill {
-            Fill::None | Fill::Hillshade => return None,
+            Fill::None | Fill::Hillshade | Fill::Colour => return None,
             Fill::Time => format!("Position in the stream ({})", self.unit),
-            Fill::Elevation | Fill::Relief if self.has_middle => {
-                "Elevation, below and above the middle".to_string()
-            }
-            Fill::Elevation | Fill::Relief => "Elevation".to_string(),
+            _ if self.has_middle => format!("{}, below and above the middle", self.label),
+            Fill::Elevation | Fill::Relief | Fill::Attribute => self.label.clone(),
         };
         let is_count = self.fill == Fill::Time;
         Some(Legend { label, colour_map: self.colour_map, range: self.range, is_count })

@@ -2,7 +2,7 @@
 
 use spmesh_io::raster::{Cells, Grid, RasterFormat, Window};
 use spmesh_stream::Coordinates;
-use spmesh_terrain::dem::{Attribute, Options};
+use spmesh_terrain::dem::{Options, Quantity};
 
 use super::{Mesh, file, is_same, options, raster, values};
 use spmesh_reference::sets::{DEGENERATE_FAMILIES, Random, degenerate, uniform};
@@ -85,8 +85,8 @@ fn check(mesh: &Mesh, grid: &Grid, bits: i32, [scale, offset]: [f64; 2]) -> [usi
     let stream = mesh.stream(coordinates);
     let places = mesh.points.iter().map(|&[x, y, _]| [units(x, bits), units(y, bits)]).collect();
     let reference = Reference { mesh, places };
-    let slopes = raster(&stream, grid, &options(Attribute::Slope));
-    let elevations = raster(&stream, grid, &options(Attribute::Elevation));
+    let slopes = raster(&stream, grid, &options(Quantity::Slope));
+    let elevations = raster(&stream, grid, &options(Quantity::Elevation));
     let (mut ties, mut outside) = (0, 0);
     for cell in 0..grid.cells() as usize {
         let (column, row) = ((cell % grid.columns as usize) as u32, (cell / grid.columns as usize) as u32);
@@ -165,7 +165,7 @@ fn squares_with_centres_on_all_vertices_lose_no_border() {
     let grid = Grid { left: -1.0, top: 13.0, step: 2.0, columns: 7, rows: 7 };
     assert_eq!(grid.center(0, 6), [0.0, 0.0]);
     assert_eq!(check(&mesh, &grid, 4, [1.0, 0.0])[1], 0);
-    let elevations = raster(&mesh.stream(Coordinates::F64), &grid, &options(Attribute::Elevation));
+    let elevations = raster(&mesh.stream(Coordinates::F64), &grid, &options(Quantity::Elevation));
     let expected: Vec<f32> = (0..49)
         .map(|cell| (cell % 7, 6 - cell / 7))
         .map(|(column, row)| points.iter().position(|&point| point == [2 * column, 2 * row]).unwrap())
@@ -213,15 +213,15 @@ fn the_order_of_triangles_changes_nothing() {
     let mut random = Random::new(3);
     let points = uniform(&mut random, 200, 40);
     let mesh = Mesh::of(&mut random, &points);
-    for attribute in [Attribute::Elevation, Attribute::Slope, Attribute::Aspect] {
+    for quantity in [Quantity::Elevation, Quantity::Slope, Quantity::Aspect] {
         for (step, min) in [(1.0, -0.5), (0.5, 0.0), (3.0, -1.5)] {
             let grid = grid(min, 40.0, step);
-            let first = raster(&mesh.stream(Coordinates::F64), &grid, &options(attribute));
+            let first = raster(&mesh.stream(Coordinates::F64), &grid, &options(quantity.clone()));
             for _ in 0..4 {
                 let stream = mesh.shuffled(&mut random).stream(Coordinates::F64);
                 assert!(
-                    is_same(&raster(&stream, &grid, &options(attribute)), &first),
-                    "{attribute:?} {step}"
+                    is_same(&raster(&stream, &grid, &options(quantity.clone())), &first),
+                    "{quantity:?} {step}"
                 );
             }
         }
@@ -242,7 +242,7 @@ fn long_edges_leave_holes() {
             })
         };
         let killed = mesh.triangles.iter().filter(|triangle| !is_short(triangle)).count() as u64;
-        let limited = Options { kill: Some(kill), ..options(Attribute::Slope) };
+        let limited = Options { kill: Some(kill), ..options(Quantity::Slope) };
         let (text, stats) =
             file(&mesh.stream(Coordinates::F64), RasterFormat::Ascii, &grid, &limited).unwrap();
         assert_eq!(stats.killed, killed);
@@ -250,7 +250,7 @@ fn long_edges_leave_holes() {
         let mut short = mesh.clone();
         short.triangles.retain(is_short);
         if let Some(expected) = short.without_unused() {
-            let expected = raster(&expected.stream(Coordinates::F64), &grid, &options(Attribute::Slope));
+            let expected = raster(&expected.stream(Coordinates::F64), &grid, &options(Quantity::Slope));
             assert!(is_same(&values(&text), &expected), "{kill}");
         }
     }

@@ -2,7 +2,7 @@
 
 use spmesh_io::raster::{Grid, RasterFormat};
 use spmesh_stream::Coordinates;
-use spmesh_terrain::dem::Attribute;
+use spmesh_terrain::dem::Quantity;
 
 use super::{Mesh, file, options};
 use crate::programs::{
@@ -95,7 +95,7 @@ fn what_is_no_mesh_in_the_plane_is_malformed() {
     let of = |triangles: &[[u32; 3]]| {
         let stream = Mesh { points: points.clone(), triangles: triangles.to_vec() }.stream(Coordinates::F64);
         [RasterFormat::Ascii, RasterFormat::GeoTiff].map(|format| {
-            let outcome = file(&stream, format, &grid, &options(Attribute::Elevation));
+            let outcome = file(&stream, format, &grid, &options(Quantity::Elevation));
             outcome.map_or_else(|error| (error.exit_code(), error.to_string()), |_| (0, String::new()))
         })
     };
@@ -112,16 +112,16 @@ fn what_is_no_mesh_in_the_plane_is_malformed() {
 #[test]
 fn numbers_that_cells_cannot_hold_are_refused() {
     let grid = Grid { left: 0.0, top: 1.0, step: 1.0, columns: 1, rows: 1 };
-    let message = |points: [[f64; 3]; 3], attribute| {
+    let message = |points: [[f64; 3]; 3], quantity: Quantity| {
         let stream = Mesh { points: points.to_vec(), triangles: vec![[0, 1, 2]] }.stream(Coordinates::F64);
-        file(&stream, RasterFormat::Ascii, &grid, &options(attribute)).unwrap_err().to_string()
+        file(&stream, RasterFormat::Ascii, &grid, &options(quantity)).unwrap_err().to_string()
     };
     let high = [[0.0, 0.0, 1e39], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0]];
-    assert!(message(high, Attribute::Elevation).contains("1e39 is too great for a raster"));
+    assert!(message(high, Quantity::Elevation).contains("1e39 is too great for a raster"));
     let wide = [[-1e300, -1e300, 0.0], [1e300, -1e300, 1.0], [0.0, 1e300, 2.0]];
-    for attribute in [Attribute::Elevation, Attribute::Slope] {
-        let found = message(wide, attribute);
-        assert!(found.contains("too great or too small to interpolate between"), "{attribute:?}: {found}");
+    for quantity in [Quantity::Elevation, Quantity::Slope] {
+        let found = message(wide, quantity.clone());
+        assert!(found.contains("too great or too small to interpolate between"), "{quantity:?}: {found}");
     }
 }
 

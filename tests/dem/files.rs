@@ -3,7 +3,7 @@
 use std::io::Cursor;
 
 use spmesh_io::raster::{NoData, RasterFormat, RasterOptions, TILE};
-use spmesh_terrain::dem::{Attribute, Options};
+use spmesh_terrain::dem::{Options, Quantity};
 use tiff::decoder::Decoder;
 
 use super::tiles::{mesh_and_grid, tiff_values};
@@ -34,7 +34,7 @@ fn filled(values: &[f32], columns: usize, at: [usize; 2], reach: i64) -> f32 {
 #[test]
 fn holes_are_filled_from_what_is_near() {
     let (stream, grid) = mesh_and_grid();
-    let whole = Options { kill: Some(150.0), ..options(Attribute::Elevation) };
+    let whole = Options { kill: Some(150.0), ..options(Quantity::Elevation) };
     let drawn = raster(&stream, &grid, &whole);
     let columns = grid.columns as usize;
     for reach in [1, 40] {
@@ -66,7 +66,7 @@ fn complete_tiles_are_sources_for_their_neighbours() {
     let mesh = super::Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
     let stream = mesh.stream(spmesh_stream::Coordinates::F64);
     let grid = spmesh_io::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
-    let options = Options { fill: Some(100), ..options(Attribute::Elevation) };
+    let options = Options { fill: Some(100), ..options(Quantity::Elevation) };
     let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
     assert_eq!((stats.known, stats.filled), (400 * 256, 100 * 256));
     let found = tiff_values(&bytes, &grid);
@@ -80,7 +80,7 @@ fn overviews_change_no_cell() {
         let plain = RasterOptions { no_data, ..RasterOptions::default() };
         let with = RasterOptions { has_overviews: true, ..plain.clone() };
         let decoded = [plain, with].map(|raster| {
-            let options = Options { raster, ..options(Attribute::Elevation) };
+            let options = Options { raster, ..options(Quantity::Elevation) };
             let (bytes, _) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
             let values = tiff_values(&bytes, &grid);
             let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();

@@ -13,7 +13,7 @@ use spmesh_core::error::Result;
 use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
-use spmesh_terrain::dem::{Attribute, Options, Stats, rasterize};
+use spmesh_terrain::dem::{Options, Quantity, Stats, rasterize};
 
 use spmesh_reference::incremental;
 use spmesh_reference::sets::Random;
@@ -50,8 +50,8 @@ impl Mesh {
     }
 }
 
-fn options(attribute: Attribute) -> Options {
-    Options { attribute, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default() }
+fn options(quantity: Quantity) -> Options {
+    Options { quantity, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default() }
 }
 
 /// The bytes of a raster file.

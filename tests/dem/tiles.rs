@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use spmesh_io::raster::{Cells, Grid, RasterFormat, TILE, Window};
 use spmesh_stream::Coordinates;
-use spmesh_terrain::dem::{Attribute, Options};
+use spmesh_terrain::dem::{Options, Quantity};
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::Tag;
 
@@ -50,8 +50,8 @@ pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
 #[test]
 fn tiles_are_those_of_the_whole() {
     let (stream, grid) = mesh_and_grid();
-    for attribute in [Attribute::Elevation, Attribute::Aspect] {
-        let whole = raster(&stream, &grid, &options(attribute));
+    for quantity in [Quantity::Elevation, Quantity::Aspect] {
+        let whole = raster(&stream, &grid, &options(quantity.clone()));
         assert!(whole.iter().any(|value| value.is_nan()) && whole.iter().any(|value| !value.is_nan()));
         // A raster of a single cell has the value of that cell.
         for cell in (0..whole.len()).step_by(4_001) {
@@ -64,7 +64,9 @@ fn tiles_are_those_of_the_whole() {
                 rows: 1,
                 ..grid
             };
-            let [alone] = raster(&stream, &single, &options(attribute))[..] else { panic!("one cell") };
+            let [alone] = raster(&stream, &single, &options(quantity.clone()))[..] else {
+                panic!("one cell")
+            };
             let is_near = (alone - whole[cell]).abs() <= 1e-3 || alone.is_nan() && whole[cell].is_nan();
             assert!(is_near, "{alone} and {} at {column}, {row}", whole[cell]);
         }
@@ -74,9 +76,9 @@ fn tiles_are_those_of_the_whole() {
 #[test]
 fn memory_and_formats_change_nothing() {
     let (stream, grid) = mesh_and_grid();
-    let whole = raster(&stream, &grid, &options(Attribute::Elevation));
+    let whole = raster(&stream, &grid, &options(Quantity::Elevation));
     for (memory, may_spill) in [(0, true), (600_000, true), (1 << 30, false)] {
-        let limited = Options { memory, ..options(Attribute::Elevation) };
+        let limited = Options { memory, ..options(Quantity::Elevation) };
         for format in [RasterFormat::Ascii, RasterFormat::GeoTiff] {
             let (bytes, stats) = file(&stream, format, &grid, &limited).unwrap();
             assert_eq!(stats.spilled > 0, may_spill, "{memory} {format:?}");
@@ -103,7 +105,7 @@ fn tiles_that_are_full_leave_memory() {
         points: points.iter().map(|&[x, y]| [x as f64, y as f64, x as f64]).collect(),
         triangles: (0..500).flat_map(square).collect(),
     };
-    let limited = Options { memory: 3 * 270_336, ..options(Attribute::Elevation) };
+    let limited = Options { memory: 3 * 270_336, ..options(Quantity::Elevation) };
     for is_back in [false, true] {
         if is_back {
             mesh.triangles.reverse();
@@ -132,7 +134,7 @@ fn huge_rasters_of_small_meshes_are_small() {
     small.points.truncate(3);
     let grid = Grid { left: 0.0, top: 60_000.0, step: 1.0, columns: 60_000, rows: 60_000 };
     let (bytes, stats) =
-        file(&small.stream(Coordinates::F64), RasterFormat::GeoTiff, &grid, &options(Attribute::Slope))
+        file(&small.stream(Coordinates::F64), RasterFormat::GeoTiff, &grid, &options(Quantity::Slope))
             .unwrap();
     assert_eq!((stats.cells, stats.known), (3_600_000_000, 300 * 299 / 2 + 300));
     assert!(bytes.len() < 2_000_000, "{}", bytes.len());

@@ -1,5 +1,6 @@
 //! The reduction gives the same simplices for any cells, order, threads and tiles.
 
+mod attributes;
 mod audited_parts;
 mod equality;
 mod failures;

@@ -184,6 +184,7 @@ fn writers_write_records_in_the_order_of_the_text() {
             (b"REGN", header.region.is_some()),
             (b"cWKT", matches!(header.crs, Crs::Wkt(_))),
             (b"cGEO", matches!(header.crs, Crs::GeoKeys { .. })),
+            (b"attr", !header.attributes.is_empty()),
             (b"prod", !header.producer.is_empty()),
         ];
         let expected: Vec<_> =
@@ -192,7 +193,7 @@ fn writers_write_records_in_the_order_of_the_text() {
         orders.push(tags);
     }
     let all: std::collections::BTreeSet<_> = orders.concat().into_iter().collect();
-    assert_eq!(all.len(), 7);
+    assert_eq!(all.len(), 8);
 }
 
 #[test]

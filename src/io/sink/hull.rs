@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use foldhash::{HashMap, HashMapExt};
 
-use super::EventSink;
+use super::{EventSink, lost_attributes};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 use spmesh_model::simplex::TETRAHEDRON_FACETS;
@@ -33,12 +33,16 @@ pub struct HullSink<S> {
     /// Keyed by the sorted ids of the vertices.
     open: HashMap<[u64; 3], Facet>,
     facets: usize,
+    /// The notice about attributes that are lost, if there are any.
+    lost: Option<String>,
 }
 
 impl<S: EventSink> HullSink<S> {
-    /// A sink of tetrahedral meshes in front of `surface`, which was opened with [`surface_header`].
-    pub fn new(surface: S, format: &'static str) -> Self {
-        HullSink { surface, format, live: LiveVertices::new(), open: HashMap::new(), facets: 0 }
+    /// A sink of the tetrahedral mesh that `header` describes in front of `surface`, which was opened with
+    /// [`surface_header`].
+    pub fn new(surface: S, format: &'static str, header: &Header) -> Self {
+        let lost = lost_attributes(header, &format!("{format} of a hull"));
+        HullSink { surface, format, live: LiveVertices::new(), open: HashMap::new(), facets: 0, lost }
     }
 
     fn patch(&mut self, patch: &Patch) -> Result<()> {
@@ -70,8 +74,9 @@ impl<S: EventSink> HullSink<S> {
         };
         self.facets = facets.len();
         let (vertices, simplices) = (patch.new.len() as u64, facets.len() as u64);
-        self.surface.event(&Event::Patch(patch))?;
-        self.surface.event(&Event::End(Totals { points: vertices, vertices, simplices, ..Totals::default() }))
+        self.surface.event(&Event::Patch(patch), &[])?;
+        let totals = Totals { points: vertices, vertices, simplices, ..Totals::default() };
+        self.surface.event(&Event::End(totals), &[])
     }
 }
 
@@ -82,7 +87,7 @@ pub fn surface_header(header: &Header) -> Header {
 }
 
 impl<S: EventSink> EventSink for HullSink<S> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Patch(patch) => self.patch(patch),
             Event::End(_) => self.end(),
@@ -92,6 +97,7 @@ impl<S: EventSink> EventSink for HullSink<S> {
 
     fn notices(&self) -> Vec<String> {
         let mut notices = self.surface.notices();
+        notices.extend(self.lost.clone());
         let Self { format, facets, .. } = self;
         notices
             .push(format!("{format} holds no tetrahedra: only the {facets} facets of the hull were written"));

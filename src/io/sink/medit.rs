@@ -8,7 +8,7 @@ use std::io::Write;
 use std::path::Path;
 
 use super::spool::MeshSpool;
-use super::{EventSink, expect_kind, lost_of_header, write_error};
+use super::{EventSink, expect_kind, lost_attributes, lost_of_header, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_stream::{Event, Header, Kind, Totals};
 
@@ -97,15 +97,16 @@ fn numbers(record: &[u8; 24]) -> [u64; 3] {
 }
 
 impl<W: Write> EventSink for MeditSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::End(totals) => self.end(totals),
-            event => self.mesh.event(event),
+            event => self.mesh.event(event, &[]),
         }
     }
 
     fn notices(&self) -> Vec<String> {
         let mut notices = lost_of_header(self.mesh.header(), "Medit");
+        notices.extend(lost_attributes(self.mesh.header(), "Medit"));
         if self.has_labels() && !self.labels_fit() {
             notices.push("a label is beyond 2^31 - 1, which Medit cannot say: all labels dropped".into());
         }

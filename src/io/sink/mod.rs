@@ -6,6 +6,8 @@ mod hull;
 mod medit;
 mod obj;
 mod ply;
+mod ply_properties;
+mod rows;
 mod sma;
 mod smb;
 mod spa;
@@ -40,11 +42,12 @@ use spmesh_stream::{Coordinates, Crs, Event, Header, Kind};
 
 /// An output that takes the events of a stream, whatever its format.
 pub trait EventSink {
-    /// Writes an event. The last event is [`Event::End`]; after it the output is complete and flushed.
+    /// Writes an event. `rows` are the attributes of its points; empty if the header lists none. The last event
+    /// is [`Event::End`]; after it the output is complete and flushed.
     ///
     /// # Errors
     /// If the format cannot express the event, or writing fails.
-    fn event(&mut self, event: &Event) -> Result<()>;
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()>;
 
     /// Notices for the user about what the format could not hold. Complete after the end.
     fn notices(&self) -> Vec<String>;
@@ -79,9 +82,32 @@ fn lost_of_header(header: &Header, format: &str) -> Vec<String> {
     crs.into_iter().chain(grid).collect()
 }
 
+/// Notices about scales and unknown numbers of attributes, in a format that holds the stored numbers.
+fn lost_of_attributes(header: &Header, format: &str) -> Vec<String> {
+    let scaled = header.attributes.iter().filter_map(|attribute| {
+        let [scale, offset] = attribute.scale?;
+        let name = &attribute.name;
+        Some(format!(
+            "{format} holds no scale: {name} is the stored number, its value is number * {scale} + {offset}"
+        ))
+    });
+    let unknown = header.attributes.iter().filter_map(|attribute| {
+        let number = attribute.number.read(attribute.unknown.as_ref()?);
+        Some(format!("{format} has no unknown values: {number} stands for them in {}", attribute.name))
+    });
+    scaled.chain(unknown).collect()
+}
+
+/// The notice about the attributes of a format that holds none.
+fn lost_attributes(header: &Header, format: &str) -> Option<String> {
+    let attributes = &header.attributes;
+    (!attributes.is_empty()).then(|| format!("{format} holds no attributes: {} dropped", attributes.names()))
+}
+
 /// Notices about what a historical points format cannot hold.
 fn lost_of_points(header: &Header, format: &str, cells: Option<&HistoricalCells>) -> Vec<String> {
     let mut lost = lost_of_header(header, format);
+    lost.extend(lost_attributes(header, format));
     match cells {
         None if header.tree.is_some() => {
             lost.push(format!("{format} cannot say the cells of this tree: finalization tags dropped"));

@@ -1,16 +1,53 @@
 //! Writes OBJ: `v` and `f` lines.
 
 use std::io::Write;
+use std::ops::Range;
 
+use super::rows::Rows;
 use super::world::{world_of, write_numbers};
 use super::{EventSink, expect_kind, lost_of_header, write_error};
 use spmesh_core::error::Result;
+use spmesh_model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_stream::{Event, Header, Kind};
 
-/// Writes a triangle mesh or points as OBJ. Vertices are counted from 1; finalization is not written.
+/// Writes a triangle mesh or points as OBJ. Vertices are counted from 1; finalization is not written. An
+/// attribute `rgb` of whole numbers becomes three numbers from 0 to 1 behind the coordinates, as many programs
+/// read them.
 pub struct ObjSink<W> {
     output: W,
     header: Header,
+    colour: Option<Colour>,
+}
+
+/// The attribute that OBJ has room for.
+const COLOUR: &str = "rgb";
+
+/// Where a colour is in a row.
+struct Colour {
+    number: NumberType,
+    place: Range<usize>,
+    max: f64,
+}
+
+impl Colour {
+    /// The colour of points, if they have one of three whole numbers.
+    fn of_points(attributes: &Attributes) -> Option<Self> {
+        let (attribute, place) = attributes.find(COLOUR)?;
+        let max = match attribute.number {
+            NumberType::U8 => f64::from(u8::MAX),
+            NumberType::U16 => f64::from(u16::MAX),
+            _ => return None,
+        };
+        (attribute.components == 3).then_some(Colour { number: attribute.number, place, max })
+    }
+
+    /// Red, green and blue from 0 to 1.
+    fn of(&self, row: &[u8]) -> [f64; 3] {
+        let mut numbers = row[self.place.clone()].chunks_exact(self.number.width());
+        std::array::from_fn(|_| {
+            numbers.next().map_or(0.0, |bytes| self.number.read(bytes).to_f64() / self.max)
+        })
+    }
 }
 
 impl<W: Write> ObjSink<W> {
@@ -21,20 +58,29 @@ impl<W: Write> ObjSink<W> {
     pub fn new(mut output: W, header: &Header) -> Result<Self> {
         expect_kind(header, "OBJ", &[Kind::Points, Kind::TriangleMesh])?;
         output.write_all(b"# OBJ written by spmesh\n").map_err(write_error)?;
-        Ok(ObjSink { output, header: header.clone() })
+        Ok(ObjSink { output, header: header.clone(), colour: Colour::of_points(&header.attributes) })
     }
 }
 
 impl<W: Write> EventSink for ObjSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         let points = match event {
             Event::Points(points) => points,
             Event::Patch(patch) => &patch.new,
             Event::End(_) => return self.output.flush().map_err(write_error),
             _ => return Ok(()),
         };
+        let mut rows = Rows::new(&self.header, rows);
         for &point in points {
-            write_numbers(&mut self.output, "v", &world_of(&self.header, point))?;
+            let [x, y, z] = world_of(&self.header, point);
+            let row = rows.next();
+            match &self.colour {
+                None => write_numbers(&mut self.output, "v", &[x, y, z])?,
+                Some(colour) => {
+                    let [r, g, b] = colour.of(row);
+                    write_numbers(&mut self.output, "v", &[x, y, z, r, g, b])?;
+                }
+            }
         }
         if let Event::Patch(patch) = event {
             for triangle in patch.triangles() {
@@ -46,6 +92,13 @@ impl<W: Write> EventSink for ObjSink<W> {
     }
 
     fn notices(&self) -> Vec<String> {
-        lost_of_header(&self.header, "OBJ")
+        let mut lost = lost_of_header(&self.header, "OBJ");
+        let is_lost = |attribute: &&Attribute| self.colour.is_none() || attribute.name != COLOUR;
+        let names: Vec<&str> =
+            self.header.attributes.iter().filter(is_lost).map(|attribute| attribute.name.as_str()).collect();
+        if !names.is_empty() {
+            lost.push(format!("OBJ holds no attributes but colours: {} dropped", names.join(", ")));
+        }
+        lost
     }
 }

@@ -3,9 +3,11 @@
 use std::io::Write;
 use std::path::Path;
 
+use super::ply_properties::{self as properties, Properties};
+use super::rows::Rows;
 use super::spool::Spool;
 use super::world::world_of;
-use super::{EventSink, expect_kind, lost_of_header, write_error};
+use super::{EventSink, expect_kind, lost_of_attributes, lost_of_header, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch, Totals};
@@ -27,6 +29,7 @@ pub struct PlySink<W> {
     output: W,
     header: Header,
     encoding: PlyEncoding,
+    properties: Properties,
     vertices: Spool,
     faces: Spool,
 }
@@ -39,19 +42,33 @@ impl<W: Write> PlySink<W> {
     pub fn new(output: W, header: &Header, encoding: PlyEncoding, temp_dir: Option<&Path>) -> Result<Self> {
         expect_kind(header, "PLY", &[Kind::Points, Kind::TriangleMesh])?;
         let (vertices, faces) = (Spool::new(temp_dir)?, Spool::new(temp_dir)?);
-        Ok(PlySink { output, header: header.clone(), encoding, vertices, faces })
+        let properties = Properties::of(&header.attributes);
+        Ok(PlySink { output, header: header.clone(), encoding, properties, vertices, faces })
     }
 
-    fn vertex(&mut self, point: Point) -> Result<()> {
+    fn points(&mut self, points: &[Point], rows: &[u8]) -> Result<()> {
+        let mut rows = Rows::new(&self.header, rows);
+        points.iter().try_for_each(|&point| self.vertex(point, rows.next()))
+    }
+
+    fn vertex(&mut self, point: Point, row: &[u8]) -> Result<()> {
         let [x, y, z] = world_of(&self.header, point);
+        let (attributes, vertices) = (&self.header.attributes, &mut self.vertices);
         match self.encoding {
-            PlyEncoding::Ascii => self.vertices.text(format_args!("{x} {y} {z}\n")),
-            PlyEncoding::Binary => [x, y, z].iter().try_for_each(|x| self.vertices.bytes(&x.to_le_bytes())),
+            PlyEncoding::Ascii => {
+                vertices.text(format_args!("{x} {y} {z}"))?;
+                properties::text(attributes, row, |number| vertices.text(format_args!(" {number}")))?;
+                vertices.text(format_args!("\n"))
+            }
+            PlyEncoding::Binary => {
+                [x, y, z].iter().try_for_each(|x| vertices.bytes(&x.to_le_bytes()))?;
+                properties::bytes(attributes, row, |bytes| vertices.bytes(bytes))
+            }
         }
     }
 
-    fn patch(&mut self, patch: &Patch) -> Result<()> {
-        patch.new.iter().try_for_each(|&point| self.vertex(point))?;
+    fn patch(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
+        self.points(&patch.new, rows)?;
         if patch.first_id + patch.new.len() as u64 > i32::MAX as u64 {
             return Err(Error::usage("more than 2^31 - 1 vertices: PLY cannot number them"));
         }
@@ -82,6 +99,7 @@ impl<W: Write> PlySink<W> {
         let vertices = if is_mesh { totals.vertices } else { totals.points };
         let mut header = format!("ply\nformat {format} 1.0\ncomment spmesh\nelement vertex {vertices}\n");
         header += "property double x\nproperty double y\nproperty double z\n";
+        header += self.properties.lines();
         if is_mesh {
             header += &format!("element face {}\n", totals.simplices);
             header += "property list uchar int vertex_indices\n";
@@ -95,16 +113,19 @@ impl<W: Write> PlySink<W> {
 }
 
 impl<W: Write> EventSink for PlySink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         match event {
-            Event::Points(points) => points.iter().try_for_each(|&point| self.vertex(point)),
-            Event::Patch(patch) => self.patch(patch),
+            Event::Points(points) => self.points(points, rows),
+            Event::Patch(patch) => self.patch(patch, rows),
             Event::End(totals) => self.end(totals),
             _ => Ok(()),
         }
     }
 
     fn notices(&self) -> Vec<String> {
-        lost_of_header(&self.header, "PLY")
+        let mut lost = lost_of_header(&self.header, "PLY");
+        lost.extend(lost_of_attributes(&self.header, "PLY"));
+        lost.extend(self.properties.rounded());
+        lost
     }
 }

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::triangles::final_corners;
 use super::world::{world_bounds, world_of, write_numbers};
-use super::{EventSink, expect_kind, lost_of_header, write_error};
+use super::{EventSink, expect_kind, lost_attributes, lost_of_header, write_error};
 use spmesh_core::error::Result;
 use spmesh_stream::{Event, Header, Kind, Patch};
 
@@ -55,7 +55,7 @@ impl<W: Write> SmaSink<W> {
 }
 
 impl<W: Write> EventSink for SmaSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Patch(patch) => self.patch(patch),
             Event::End(_) => self.output.flush().map_err(write_error),
@@ -64,6 +64,7 @@ impl<W: Write> EventSink for SmaSink<W> {
     }
 
     fn notices(&self) -> Vec<String> {
-        lost_of_header(&self.header, "SMA")
+        let lost = lost_of_header(&self.header, "SMA");
+        lost.into_iter().chain(lost_attributes(&self.header, "SMA")).collect()
     }
 }

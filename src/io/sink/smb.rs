@@ -7,7 +7,7 @@ use super::elements::ElementBlocks;
 use super::spool::Spool;
 use super::triangles::{Corner, final_corners};
 use super::world::{world_bounds, world_of};
-use super::{EventSink, expect_kind, lost_of_header, write_error};
+use super::{EventSink, expect_kind, lost_attributes, lost_of_header, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, Kind, Patch};
@@ -95,7 +95,7 @@ impl<W: Write> SmbSink<W> {
 }
 
 impl<W: Write> EventSink for SmbSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Patch(patch) => self.patch(patch),
             Event::End(_) => self.end(),
@@ -105,6 +105,7 @@ impl<W: Write> EventSink for SmbSink<W> {
 
     fn notices(&self) -> Vec<String> {
         let mut notices = lost_of_header(&self.header, "SMB");
+        notices.extend(lost_attributes(&self.header, "SMB"));
         if self.rounded > 0 {
             notices.push(format!(
                 "{} of {} vertices were rounded: SMB has coordinates of 32 bits",

@@ -49,7 +49,7 @@ impl<W: Write> SpaSink<W> {
 }
 
 impl<W: Write> EventSink for SpaSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Points(points) => points
                 .iter()

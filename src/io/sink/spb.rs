@@ -66,7 +66,7 @@ impl<W: Write> SpbSink<W> {
 }
 
 impl<W: Write> EventSink for SpbSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, _rows: &[u8]) -> Result<()> {
         match event {
             Event::Points(points) => points
                 .iter()

@@ -22,14 +22,14 @@ impl<W: Write> SpmSink<W> {
 }
 
 impl<W: Write> EventSink for SpmSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         let writer = self.writer.as_mut().expect("no event follows the end");
         match event {
-            Event::Points(points) => writer.points(points),
+            Event::Points(points) => writer.points_with_rows(points, rows),
             Event::Cells(cells) => writer.cells(cells),
-            Event::Patch(patch) => writer.patch(patch),
+            Event::Patch(patch) => writer.patch_with_rows(patch, rows),
             Event::Labels(labels) => writer.labels(labels),
-            Event::ResidualPoints(points) => writer.residual_points(points),
+            Event::ResidualPoints(points) => writer.residual_points_with_rows(points, rows),
             Event::Walls(walls) => writer.walls(walls),
             Event::Points4(points) => writer.points4(&points.points, points.values.as_deref()),
             Event::Cells4(cells) => cells.iter().try_for_each(|cell| writer.cell4(cell)),

@@ -89,6 +89,8 @@ pub(super) struct MeshSpool {
     pub(super) corners: Spool,
     /// Labels, a u64 each, little-endian.
     pub(super) labels: Spool,
+    /// The numbers of each attribute, as they are stored.
+    pub(super) columns: Vec<Spool>,
     /// Number of labels, and the greatest one.
     pub(super) label_count: u64,
     pub(super) label_max: u64,
@@ -102,9 +104,16 @@ impl MeshSpool {
             vertices: Spool::new(temp_dir)?,
             corners: Spool::new(temp_dir)?,
             labels: Spool::new(temp_dir)?,
+            columns: Vec::new(),
             label_count: 0,
             label_max: 0,
         })
+    }
+
+    /// Takes attributes, too.
+    pub(super) fn with_attributes(mut self, temp_dir: Option<&Path>) -> Result<Self> {
+        self.columns = self.header.attributes.iter().map(|_| Spool::new(temp_dir)).collect::<Result<_>>()?;
+        Ok(self)
     }
 
     /// The header of the stream.
@@ -112,8 +121,8 @@ impl MeshSpool {
         &self.header
     }
 
-    /// Takes an event that is not the end.
-    pub(super) fn event(&mut self, event: &Event) -> Result<()> {
+    /// Takes an event that is not the end, with the rows of its points.
+    pub(super) fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         let points = match event {
             Event::Points(points) => points,
             Event::Patch(patch) => &patch.new,
@@ -123,6 +132,10 @@ impl MeshSpool {
         for &point in points {
             let coordinates = world_of(&self.header, point);
             coordinates.iter().try_for_each(|x| self.vertices.bytes(&x.to_le_bytes()))?;
+        }
+        for (column, (_, place)) in self.columns.iter_mut().zip(self.header.attributes.places()) {
+            let row_len = self.header.attributes.row_len();
+            rows.chunks_exact(row_len).try_for_each(|row| column.bytes(&row[place.clone()]))?;
         }
         if let Event::Patch(patch) = event {
             let mut ids = patch.simplices.iter().map(|&local| patch.id(local));

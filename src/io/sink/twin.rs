@@ -2,10 +2,12 @@
 
 use std::io::Write;
 
+use super::rows::Rows;
 use super::twin_configurations::OpenGroup;
 use super::world::{world_of, write_numbers};
 use super::{EventSink, twin_functions, twin4, write_error};
 use spmesh_core::error::Result;
+use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
 
@@ -26,17 +28,31 @@ impl<W: Write> TwinSink<W> {
         Ok(TwinSink { output, header: header.clone(), open: OpenGroup::default() })
     }
 
-    fn point(&mut self, start: &str, point: Point) -> Result<()> {
-        write_numbers(&mut self.output, start, &world_of(&self.header, point))
+    fn point(&mut self, start: &str, point: Point, row: &[u8]) -> Result<()> {
+        write_numbers(&mut self.output, start, &world_of(&self.header, point))?;
+        write_row(&mut self.output, &self.header.attributes, row)
+    }
+
+    fn vertices(&mut self, points: &[Point], rows: &[u8]) -> Result<()> {
+        let mut rows = Rows::new(&self.header, rows);
+        points.iter().try_for_each(|&point| self.point("v", point, rows.next()))
+    }
+
+    fn residual_points(&mut self, points: &[(Option<u64>, Point)], rows: &[u8]) -> Result<()> {
+        let mut rows = Rows::new(&self.header, rows);
+        points.iter().try_for_each(|&(id, point)| match id {
+            Some(id) => self.point(&format!("r {}", id + 1), point, rows.next()),
+            None => self.point("r -", point, rows.next()),
+        })
     }
 
     fn line(&mut self, line: std::fmt::Arguments) -> Result<()> {
         writeln!(self.output, "{line}").map_err(write_error)
     }
 
-    fn patch(&mut self, patch: &Patch) -> Result<()> {
+    fn patch(&mut self, patch: &Patch, rows: &[u8]) -> Result<()> {
         self.line(format_args!("# patch"))?;
-        patch.new.iter().try_for_each(|&point| self.point("v", point))?;
+        self.vertices(&patch.new, rows)?;
         if self.header.kind.vertices_per_simplex() == 4 {
             for tetrahedron in patch.tetrahedra() {
                 let [a, b, c, d] = tetrahedron.map(|local| patch.id(local) + 1);
@@ -71,20 +87,17 @@ impl<W: Write> TwinSink<W> {
 }
 
 impl<W: Write> EventSink for TwinSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         match event {
-            Event::Points(points) => points.iter().try_for_each(|&point| self.point("v", point)),
+            Event::Points(points) => self.vertices(points, rows),
             Event::Cells(cells) => {
                 cells.iter().try_for_each(|cell| self.line(format_args!("x cell {}", cell.0)))
             }
-            Event::Patch(patch) => self.patch(patch),
+            Event::Patch(patch) => self.patch(patch, rows),
             Event::Labels(labels) => {
                 labels.iter().try_for_each(|label| self.line(format_args!("label {label}")))
             }
-            Event::ResidualPoints(points) => points.iter().try_for_each(|&(id, point)| match id {
-                Some(id) => self.point(&format!("r {}", id + 1), point),
-                None => self.point("r -", point),
-            }),
+            Event::ResidualPoints(points) => self.residual_points(points, rows),
             Event::Walls(walls) => self.walls(walls),
             Event::Points4(points) => twin4::points(&mut self.output, points),
             Event::Cells4(cells) => twin4::cells(&mut self.output, cells),
@@ -137,7 +150,33 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
             line(format_args!("geokeys {} {} {}", hex(directory), hex(doubles), hex(ascii)))?;
         }
     }
+    for attribute in &header.attributes {
+        line(format_args!("attribute {}", attribute_fields(attribute)))?;
+    }
     line(format_args!("producer {}", string(&header.producer)))
+}
+
+/// The fields of the line of an attribute.
+fn attribute_fields(attribute: &Attribute) -> String {
+    let Attribute { name, number, components, unit, las_name, scale, unknown } = attribute;
+    let scale = scale.map_or("- -".to_string(), |scale| numbers(&scale));
+    let unknown = unknown.as_ref().map_or("-".to_string(), |bytes| number.read(bytes).to_string());
+    let (name, unit, las_name) = (string(name), string(unit), string(las_name));
+    format!("{name} {} {components} {unit} {las_name} {scale} {unknown}", number.name())
+}
+
+/// The line of a row, if there are attributes.
+fn write_row(output: &mut impl Write, attributes: &Attributes, row: &[u8]) -> Result<()> {
+    if attributes.is_empty() {
+        return Ok(());
+    }
+    output.write_all(b"a").map_err(write_error)?;
+    for (attribute, place) in attributes.places() {
+        for number in attribute.numbers(&row[place]) {
+            write!(output, " {number}").map_err(write_error)?;
+        }
+    }
+    output.write_all(b"\n").map_err(write_error)
 }
 
 fn numbers(numbers: &[f64]) -> String {

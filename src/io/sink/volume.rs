@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::vtu::{Cells, Content, END, VALUES, arrays, head};
+use super::vtu::{Cells, Content, Data, END, arrays, head};
 use super::write_error;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
@@ -24,13 +24,13 @@ pub fn write_volume(
     }
     let (vertices, count) = (points.len() as u64, tetrahedra.len() as u64);
     let cells = Cells { vertices, cells: count, corners: 4, code: 10 };
-    let arrays = arrays(&cells, values.map(|_| VALUES));
+    let arrays = arrays(&cells, values.map(|_| Data::values()).as_slice());
     let mut put = |bytes: &[u8]| output.write_all(bytes).map_err(write_error);
     put(head(&cells, &arrays).as_bytes())?;
     for array in &arrays {
         put(&array.len.to_le_bytes())?;
         match array.content {
-            Content::Data => {
+            Content::Data(_) => {
                 values.unwrap_or_default().iter().try_for_each(|value| put(&value.to_le_bytes()))?;
             }
             Content::Vertices => points.as_flattened().iter().try_for_each(|x| put(&x.to_le_bytes()))?,

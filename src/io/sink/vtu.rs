@@ -7,8 +7,9 @@ use std::io::Write;
 use std::path::Path;
 
 use super::spool::MeshSpool;
-use super::{EventSink, expect_kind, lost_of_header, write_error};
+use super::{EventSink, expect_kind, lost_of_attributes, lost_of_header, write_error};
 use spmesh_core::error::Result;
+use spmesh_model::attributes::{Attribute, NumberType};
 use spmesh_stream::{Event, Header, Kind, Totals};
 
 const START: &str = "\
@@ -19,8 +20,8 @@ const START: &str = "\
 
 pub(super) const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
 
-/// Writes points or a mesh as VTU: the vertices with their labels as the point data `label`, the simplices as
-/// cells, points as cells of one vertex. World coordinates as doubles; finalization is not written.
+/// Writes points or a mesh as VTU: the vertices with their labels as the point data `label` and their
+/// attributes under their names, the simplices as cells, points as cells of one vertex. World coordinates as doubles; finalization is not written.
 ///
 /// VTU states its counts first, so everything waits in unnamed temporary files until the end. Memory: buffers
 /// only.
@@ -32,8 +33,8 @@ pub struct VtuSink<W> {
 /// What an array holds.
 #[derive(Clone, Copy)]
 pub(super) enum Content {
-    /// Data of the vertices: labels or values.
-    Data,
+    /// Data of the vertices: labels, values or an attribute, by their number.
+    Data(usize),
     Vertices,
     Connectivity,
     Offsets,
@@ -44,8 +45,8 @@ pub(super) enum Content {
 pub(super) struct Array {
     pub(super) content: Content,
     /// Attributes of its element, and the tags before and after it.
-    attributes: &'static str,
-    open: &'static str,
+    attributes: String,
+    open: String,
     close: &'static str,
     /// Length of the values in bytes.
     pub(super) len: u64,
@@ -61,17 +62,51 @@ pub(super) struct Cells {
     pub(super) code: u8,
 }
 
-/// Data of 8 bytes per vertex: the tag around its array, and the array's attributes.
+/// Data of the vertices: name, type and components of its array, and bytes per vertex.
 pub(super) struct Data {
-    pub(super) open: &'static str,
-    pub(super) attributes: &'static str,
+    name: String,
+    number: &'static str,
+    components: u8,
+    width: u64,
 }
 
-const LABELS: Data =
-    Data { open: "<PointData Scalars=\"label\">\n", attributes: "type=\"UInt64\" Name=\"label\"" };
+impl Data {
+    fn labels() -> Self {
+        Data { name: "label".into(), number: "UInt64", components: 1, width: 8 }
+    }
 
-pub(super) const VALUES: Data =
-    Data { open: "<PointData Scalars=\"value\">\n", attributes: "type=\"Float64\" Name=\"value\"" };
+    pub(super) fn values() -> Self {
+        Data { name: "value".into(), number: "Float64", components: 1, width: 8 }
+    }
+
+    fn of(attribute: &Attribute) -> Self {
+        let number = match attribute.number {
+            NumberType::U8 => "UInt8",
+            NumberType::I8 => "Int8",
+            NumberType::U16 => "UInt16",
+            NumberType::I16 => "Int16",
+            NumberType::U32 => "UInt32",
+            NumberType::I32 => "Int32",
+            NumberType::U64 => "UInt64",
+            NumberType::I64 => "Int64",
+            NumberType::F32 => "Float32",
+            NumberType::F64 => "Float64",
+        };
+        let (name, components) = (escaped(&attribute.name), attribute.components);
+        Data { name, number, components, width: attribute.width() as u64 }
+    }
+
+    fn attributes(&self) -> String {
+        let Data { name, number, components, .. } = self;
+        let several = format!(" NumberOfComponents=\"{components}\"");
+        format!("type=\"{number}\" Name=\"{name}\"{}", if *components > 1 { &several } else { "" })
+    }
+}
+
+/// Text in an attribute of XML.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
 
 impl<W: Write> VtuSink<W> {
     /// Opens the temporary files, in `temp_dir` or the system's folder for them.
@@ -80,12 +115,14 @@ impl<W: Write> VtuSink<W> {
     /// Usage, if VTU does not hold the kind of stream; I/O, if there is no room for temporary files.
     pub fn new(output: W, header: &Header, temp_dir: Option<&Path>) -> Result<Self> {
         expect_kind(header, "VTU", &[Kind::Points, Kind::TriangleMesh, Kind::TetrahedralMesh])?;
-        Ok(VtuSink { output, mesh: MeshSpool::new(header, temp_dir)? })
+        Ok(VtuSink { output, mesh: MeshSpool::new(header, temp_dir)?.with_attributes(temp_dir)? })
     }
 
     fn end(&mut self, totals: &Totals) -> Result<()> {
         let cells = Cells::of(self.mesh.header().kind, totals);
-        let arrays = arrays(&cells, (self.mesh.label_count > 0).then_some(LABELS));
+        let labels = (self.mesh.label_count > 0).then(Data::labels);
+        let attributes = self.mesh.header().attributes.iter().map(Data::of);
+        let arrays = arrays(&cells, &attributes.chain(labels).collect::<Vec<_>>());
         self.put(head(&cells, &arrays).as_bytes())?;
         for array in &arrays {
             self.put(&array.len.to_le_bytes())?;
@@ -97,7 +134,10 @@ impl<W: Write> VtuSink<W> {
 
     fn values(&mut self, content: Content, cells: &Cells) -> Result<()> {
         match content {
-            Content::Data => self.mesh.labels.copy_to(&mut self.output),
+            Content::Data(number) => {
+                let columns = &mut self.mesh.columns;
+                columns.get_mut(number).unwrap_or(&mut self.mesh.labels).copy_to(&mut self.output)
+            }
             Content::Vertices => self.mesh.vertices.copy_to(&mut self.output),
             // The points of a points stream are in no simplex.
             Content::Connectivity if cells.corners == 1 => {
@@ -129,16 +169,26 @@ pub(super) fn head(cells: &Cells, arrays: &[Array]) -> String {
 }
 
 /// The arrays in the order of the appended data.
-pub(super) fn arrays(cells: &Cells, data: Option<Data>) -> Vec<Array> {
-    let array = |content, attributes, open, close, len| Array { content, attributes, open, close, len };
+pub(super) fn arrays(cells: &Cells, data: &[Data]) -> Vec<Array> {
+    let array = |content, attributes: &str, open: &str, close, len| Array {
+        content,
+        attributes: attributes.to_string(),
+        open: open.to_string(),
+        close,
+        len,
+    };
     let point = "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"";
     let corner = "type=\"Int64\" Name=\"connectivity\"";
     let offset = "type=\"Int64\" Name=\"offsets\"";
     let code = "type=\"UInt8\" Name=\"types\"";
     let &Cells { vertices, cells, corners, .. } = cells;
     let mut arrays = Vec::new();
-    if let Some(Data { open, attributes }) = data {
-        arrays.push(array(Content::Data, attributes, open, "</PointData>\n", 8 * vertices));
+    for (number, array_data) in data.iter().enumerate() {
+        let start = format!("<PointData Scalars=\"{}\">\n", array_data.name);
+        let open = if number == 0 { start.as_str() } else { "" };
+        let close = if number + 1 == data.len() { "</PointData>\n" } else { "" };
+        let len = array_data.width * vertices;
+        arrays.push(array(Content::Data(number), &array_data.attributes(), open, close, len));
     }
     arrays.extend([
         array(Content::Vertices, point, "<Points>\n", "</Points>\n", 24 * vertices),
@@ -161,14 +211,15 @@ impl Cells {
 }
 
 impl<W: Write> EventSink for VtuSink<W> {
-    fn event(&mut self, event: &Event) -> Result<()> {
+    fn event(&mut self, event: &Event, rows: &[u8]) -> Result<()> {
         match event {
             Event::End(totals) => self.end(totals),
-            event => self.mesh.event(event),
+            event => self.mesh.event(event, rows),
         }
     }
 
     fn notices(&self) -> Vec<String> {
-        lost_of_header(self.mesh.header(), "VTU")
+        let header = self.mesh.header();
+        lost_of_header(header, "VTU").into_iter().chain(lost_of_attributes(header, "VTU")).collect()
     }
 }

@@ -31,6 +31,10 @@ impl<S: EventSource> EventSource for Checked<S> {
         Ok(event)
     }
 
+    fn rows(&self) -> &[u8] {
+        self.source.rows()
+    }
+
     fn locate(&self, error: Error) -> Error {
         self.source.locate(error)
     }

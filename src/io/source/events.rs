@@ -16,6 +16,12 @@ pub trait EventSource {
     /// If the input cannot be read, is truncated or malformed; input and position are named.
     fn next_event(&mut self) -> Result<Option<Event>>;
 
+    /// The attributes of the points of the last event, row by row, as [`StreamReader::rows`]; empty if the
+    /// header lists none.
+    fn rows(&self) -> &[u8] {
+        &[]
+    }
+
     /// Adds input and position to an error about the event that was read last.
     fn locate(&self, error: Error) -> Error;
 
@@ -32,6 +38,10 @@ impl<R: Read> EventSource for StreamReader<R> {
 
     fn next_event(&mut self) -> Result<Option<Event>> {
         StreamReader::next_event(self)
+    }
+
+    fn rows(&self) -> &[u8] {
+        StreamReader::rows(self)
     }
 
     fn locate(&self, error: Error) -> Error {

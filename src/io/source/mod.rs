@@ -55,6 +55,7 @@ mod twin4;
 mod twin_configurations;
 mod twin_functions;
 mod twin_header;
+mod twin_rows;
 mod values;
 mod vertices;
 mod vtk;

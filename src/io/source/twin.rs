@@ -9,6 +9,7 @@ use super::statements::{expect_no_field, fields, next_field, parse_decimals, par
 use super::twin_configurations::{self, ConfigurationLine, OpenLines};
 use super::twin_functions::{self, FunctionGroup, FunctionLine};
 use super::twin_header::TwinHeader;
+use super::twin_rows::parse_row;
 use super::twin4::{self, Group4, Statement4};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
@@ -31,6 +32,8 @@ enum Statement {
     Final(u64),
     Label(u64),
     Residual(Option<u64>, Point),
+    /// The attributes of the point before.
+    Row(Vec<u8>),
     /// In the plane, a wall uses the first two.
     Wall([u64; 3]),
     Four(Statement4),
@@ -78,6 +81,9 @@ pub struct TwinSource<R> {
     header: Header,
     held: Option<Statement>,
     group: Group,
+    /// Rows of the points of the group, and of the last event.
+    group_rows: Vec<u8>,
+    rows: Vec<u8>,
     open: OpenLines,
     tally: Tally,
     ended: bool,
@@ -108,7 +114,9 @@ impl<R: Read> TwinSource<R> {
         let header = header.finish().map_err(|e| lines.locate(e))?;
         let tally = Tally::new(&header);
         let (group, open) = (Group::Empty, OpenLines::default());
-        let mut source = TwinSource { lines, header, held: None, group, open, tally, ended: false };
+        let (group_rows, rows) = (Vec::new(), Vec::new());
+        let mut source =
+            TwinSource { lines, header, held: None, group, group_rows, rows, open, tally, ended: false };
         if is_first_content {
             source.held =
                 parse_statement(source.lines.current(), &source.header).map_err(|e| source.locate(e))?;
@@ -148,8 +156,33 @@ impl<R: Read> TwinSource<R> {
         }
     }
 
+    /// Checks that each point of the group has its row, if the header lists attributes.
+    fn check_rows(&self) -> Result<()> {
+        let rows_len = self.group.points() * self.header.attributes.row_len();
+        if self.group_rows.len() == rows_len {
+            return Ok(());
+        }
+        Err(Error::malformed("a line \"a\" with the attributes of the point before is missing"))
+    }
+
+    /// Adds the row of the last point of the group.
+    fn push_row(&mut self, row: &[u8]) -> Result<()> {
+        self.group_rows.extend_from_slice(row);
+        if self.group_rows.len() > self.group.points() * self.header.attributes.row_len() {
+            return Err(Error::malformed("attributes without a point before them"));
+        }
+        if matches!(self.group, Group::Patch(_)) && self.group_rows.len() > BLOCK_PAYLOAD_MAX {
+            return Err(too_long());
+        }
+        Ok(())
+    }
+
     /// Adds a statement to the group, or starts a group with it.
     fn push(&mut self, statement: Statement) -> Result<()> {
+        if let Statement::Row(row) = &statement {
+            return self.push_row(row);
+        }
+        self.check_rows()?;
         let is_mesh = self.header.kind.vertices_per_simplex() > 0;
         let is_points = self.header.kind == Kind::Points
             || self.header.kind.has_knots() && !self.open.is_begun() && !self.has_functions();
@@ -212,6 +245,9 @@ impl<R: Read> TwinSource<R> {
 
     /// The event of the group, checked by the rules of streams.
     fn take_group(&mut self) -> Result<Event> {
+        self.check_rows()?;
+        self.rows.clear();
+        std::mem::swap(&mut self.group_rows, &mut self.rows);
         let vertices = self.tally.totals().vertices;
         let event = match std::mem::replace(&mut self.group, Group::Empty) {
             Group::Empty => unreachable!("the empty group takes every statement"),
@@ -283,16 +319,31 @@ impl<R: Read> EventSource for TwinSource<R> {
         self.advance().map(Some).map_err(|e| self.locate(e))
     }
 
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
     fn locate(&self, error: Error) -> Error {
         self.lines.locate(error)
     }
 }
 
 impl Group {
+    /// Number of its points that have rows.
+    fn points(&self) -> usize {
+        match self {
+            Group::Points(points) => points.len(),
+            Group::Patch(patch) => patch.new.len(),
+            Group::Residual(points) => points.len(),
+            _ => 0,
+        }
+    }
+
     /// Whether the statement belongs to the group's event.
     fn takes(&self, statement: &Statement) -> bool {
         match (self, statement) {
             (Group::Empty, _) => true,
+            (Group::Points(_) | Group::Patch(_) | Group::Residual(_), Statement::Row(_)) => true,
             (Group::Points(points), Statement::Vertex(_)) => points.len() < BATCH_MAX,
             (Group::Cells(cells), Statement::Cell(_)) => cells.len() < BATCH_MAX,
             (Group::Patch(_), Statement::Vertex(_) | Statement::Simplex(_) | Statement::Final(_)) => true,
@@ -355,6 +406,7 @@ fn parse_statement(line: &[u8], header: &Header) -> Result<Option<Statement>> {
         b"v" => Statement::Vertex(parse_point(fields, header)?),
         b"f" if per_simplex == 3 => Statement::Simplex(parse_simplex(fields, 3)?),
         b"c" if per_simplex == 4 => Statement::Simplex(parse_simplex(fields, 4)?),
+        b"a" if !header.attributes.is_empty() => Statement::Row(parse_row(fields, &header.attributes)?),
         b"label" => Statement::Label(parse_integer(next_field(fields)?)?),
         b"x" => match next_field(fields)? {
             b"cell" => Statement::Cell(parse_cell(next_field(fields)?, header)?),

@@ -1,7 +1,9 @@
 //! The header lines of a text twin.
 
 use super::statements::{expect_no_field, fields, next_field, parse_decimals, parse_integer, unexpected};
+use super::twin_rows::parse_attribute;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_model::cells::CellTree;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, VERSION, check_version};
@@ -22,6 +24,7 @@ pub(super) struct TwinHeader {
     region: Option<Vec<f64>>,
     chunked: bool,
     crs: Crs,
+    attributes: Vec<Attribute>,
     producer: String,
 }
 
@@ -34,6 +37,10 @@ impl TwinHeader {
         if self.seen.is_empty() != (key == b"version") {
             let message = format!("the header must start with one line \"#spmesh version {VERSION}\"");
             return Err(Error::malformed(message));
+        }
+        if key == b"attribute" {
+            self.attributes.push(parse_attribute(rest)?);
+            return Ok(());
         }
         if self.seen.contains(&key) {
             return Err(Error::malformed("the header says this twice"));
@@ -98,6 +105,7 @@ impl TwinHeader {
             region: self.region.map(|sides| region_of(&sides, dims)).transpose()?,
             chunked: self.chunked,
             crs: self.crs,
+            attributes: Attributes::new(self.attributes).map_err(Error::malformed)?,
             producer: self.producer,
         };
         header.check().map_err(Error::malformed)?;

@@ -58,7 +58,7 @@ pub fn convert(
     let mut source = open_source(input, name, options)?;
     let mut sink = open_sink(to, output, source.as_ref(), options)?;
     while let Some(event) = source.next_event()? {
-        sink.event(&event).map_err(|error| match error.kind() {
+        sink.event(&event, source.rows()).map_err(|error| match error.kind() {
             ErrorKind::Malformed | ErrorKind::Usage => source.locate(error),
             _ => error,
         })?;
@@ -145,10 +145,12 @@ fn open_sink<'a>(
     if header.kind == Kind::TetrahedralMesh {
         let surface = surface_header(header);
         match to {
-            Format::Obj => return Ok(Box::new(HullSink::new(ObjSink::new(output, &surface)?, "OBJ"))),
+            Format::Obj => {
+                return Ok(Box::new(HullSink::new(ObjSink::new(output, &surface)?, "OBJ", header)));
+            }
             Format::Ply => {
                 let ply = PlySink::new(output, &surface, encoding, temp_dir)?;
-                return Ok(Box::new(HullSink::new(ply, "PLY")));
+                return Ok(Box::new(HullSink::new(ply, "PLY", header)));
             }
             _ => {}
         }

@@ -87,7 +87,7 @@ pub fn write_surface(surface: &Surface, form: Form, output: &mut impl Write) -> 
 /// Passes a mesh to a sink as one patch.
 fn feed(mut sink: impl EventSink, points: &[Point], corners: &[u32], count: usize) -> Result<()> {
     let patch = Patch { new: points.to_vec(), simplices: corners.to_vec(), ..Patch::default() };
-    sink.event(&Event::Patch(patch))?;
+    sink.event(&Event::Patch(patch), &[])?;
     let totals = Totals { vertices: points.len() as u64, simplices: count as u64, ..Totals::default() };
-    sink.event(&Event::End(totals))
+    sink.event(&Event::End(totals), &[])
 }

@@ -7,13 +7,13 @@ use spmesh_stream::{Coordinates, Header, Kind};
 /// Relative tolerance, so that edges exactly at the limit pass however their length is rounded.
 const LENGTH_TOLERANCE: f64 = 1e-12;
 
-/// Checks that a stream is a triangle mesh with elevations.
+/// Checks that a stream is a triangle mesh; it must have elevations if they are needed.
 ///
 /// # Errors
 /// Usage, if it is not.
-pub(crate) fn check_input(header: &Header) -> Result<()> {
+pub(crate) fn check_input(header: &Header, needs_elevation: bool) -> Result<()> {
     let what = match header.kind {
-        Kind::TriangleMesh if header.has_elevation => return Ok(()),
+        Kind::TriangleMesh if header.has_elevation || !needs_elevation => return Ok(()),
         Kind::TriangleMesh => "vertices have no elevation: give points x y z to spfinalize".to_string(),
         Kind::PartialTriangleMesh => {
             "this is a partial triangle mesh: finish it with spdelaunay2d --merge".to_string()

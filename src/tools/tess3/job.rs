@@ -12,6 +12,7 @@ use spmesh_core::error::Result;
 use spmesh_core::output::Output;
 use spmesh_geometry::delaunay3::Tetrahedralization;
 use spmesh_io::source::structure::{Models, Selected, Structure};
+use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs, Header, Kind, StreamWriter};
 
@@ -174,6 +175,7 @@ impl Job<'_> {
             region: None,
             chunked: false,
             crs: Crs::Unknown,
+            attributes: Attributes::default(),
             producer,
         }
     }

@@ -22,12 +22,14 @@ pub fn stream(bytes: &[u8]) {
 
 fn read_stream(bytes: &[u8]) {
     let Ok(mut reader) = StreamReader::new(bytes, "fuzz") else { return };
-    let Some((header, events)) = read(&mut reader) else { return };
+    let Some((header, events, rows)) = read(&mut reader) else { return };
     examine(&header, &events);
     // The text twin of a valid stream can be read.
     let mut text = Vec::new();
     let mut sink = TwinSink::new(&mut text, &header).expect("memory takes the header");
-    events.iter().try_for_each(|event| sink.event(event)).expect("memory takes the events");
+    for (event, rows) in events.iter().zip(&rows) {
+        sink.event(event, rows).expect("memory takes the events");
+    }
     let mut twin = TwinSource::new(&text[..], "twin").expect("a twin that was just written");
     loop {
         match twin.next_event().expect("a twin that was just written") {
@@ -41,22 +43,25 @@ fn read_stream(bytes: &[u8]) {
 /// Reads a text twin and examines its events.
 pub fn twin(bytes: &[u8]) {
     let Ok(mut twin) = TwinSource::new(bytes, "fuzz") else { return };
-    if let Some((header, events)) = read(&mut twin) {
+    if let Some((header, events, _)) = read(&mut twin) {
         examine(&header, &events);
     }
 }
 
-/// Header and events, if the whole input is well-formed.
-fn read(source: &mut impl EventSource) -> Option<(Header, Vec<Event>)> {
-    let mut events = Vec::new();
+/// Header and events, and the attributes of the points of each event, if the whole input is well-formed.
+fn read(source: &mut impl EventSource) -> Option<(Header, Vec<Event>, Vec<Vec<u8>>)> {
+    let (mut events, mut rows) = (Vec::new(), Vec::new());
     loop {
         match source.next_event() {
-            Ok(Some(event)) => events.push(event),
+            Ok(Some(event)) => {
+                events.push(event);
+                rows.push(source.rows().to_vec());
+            }
             Ok(None) => break,
             Err(_) => return None,
         }
     }
-    Some((source.header().clone(), events))
+    Some((source.header().clone(), events, rows))
 }
 
 fn end_of(events: &[Event]) -> Option<Totals> {

@@ -98,7 +98,7 @@ pub fn contour<R: Read, W: Write>(
     mut progress: impl FnMut(u64),
 ) -> Result<Stats> {
     let header = reader.header().clone();
-    check_input(&header).map_err(|e| e.of_input(reader.name()))?;
+    check_input(&header, true).map_err(|e| e.of_input(reader.name()))?;
     let mut tracer = Tracer::new(&header, options);
     let mut drain = Drain::new(&header, LineWriter::new(output, format, &header.crs), options.levels);
     let mut live = LiveVertices::new();

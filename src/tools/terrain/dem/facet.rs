@@ -9,7 +9,7 @@ use spmesh_model::bounds::Point;
 /// always accurate.
 const BROAD: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// A triangle with stored coordinates and elevations of the world.
+/// A triangle with stored coordinates and elevations of the world, or other values of its corners.
 #[derive(Debug)]
 pub(super) struct Facet {
     corners: [Point; 3],
@@ -68,6 +68,18 @@ impl Facet {
         Ok(())
     }
 
+    /// The values of the nearest corners with known values.
+    pub(super) fn row_of_nearest(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) {
+        for (value, x) in row.iter_mut().zip(abscissae) {
+            let known = self.corners.iter().filter(|corner| !corner[2].is_nan());
+            let nearest = known.min_by(|p, q| {
+                let distance = |corner: &Point| (corner[0] - x).hypot(corner[1] - y);
+                distance(p).total_cmp(&distance(q))
+            });
+            *value = nearest.map_or(f32::NAN, |corner| corner[2] as f32);
+        }
+    }
+
     #[cold]
     fn row_by_areas(&self, y: f64, abscissae: impl Iterator<Item = f64>, row: &mut [f32]) -> Result<()> {
         for (value, x) in row.iter_mut().zip(abscissae) {
@@ -123,6 +135,16 @@ mod tests {
         assert_eq!(elevation(&facet, [quarter, quarter]).unwrap(), 2.5);
         assert_eq!(elevation(&facet, [quarter, quarter + 0.5 * height]).unwrap(), 3.5);
         assert_eq!(elevation(&facet, [half, half + height]).unwrap(), 7.0);
+    }
+
+    #[test]
+    fn nearest_corners_with_values_count() {
+        let facet = Facet::of([[0.0, 0.0, 1.0], [8.0, 0.0, 2.0], [0.0, 8.0, f64::NAN]]);
+        let mut row = [0.0; 3];
+        facet.row_of_nearest(1.0, [1.0, 4.0, 5.0].into_iter(), &mut row);
+        assert_eq!(row, [1.0, 1.0, 2.0]);
+        facet.row_of_nearest(7.0, [0.0].into_iter(), &mut row);
+        assert_eq!(row[0], 1.0);
     }
 
     #[test]

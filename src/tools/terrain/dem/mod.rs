@@ -20,7 +20,7 @@ mod tile_cache;
 
 use std::io::{Read, Seek, Write};
 
-pub use options::{Attribute, Options};
+pub use options::{Interpolation, Options, Quantity};
 
 use crate::surface::check_input;
 use fill::Filler;
@@ -29,6 +29,7 @@ use rasterizer::{Rasterizer, TileSink};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::{PredicateCounts, Predicates2};
 use spmesh_io::raster::{self, Grid, RasterFormat, TILE, Tiles, Window};
+use spmesh_model::attributes::Column;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
 use tile_cache::TilePlace;
@@ -42,6 +43,8 @@ pub struct Stats {
     pub triangles: u64,
     /// Triangles left out because of a long edge.
     pub killed: u64,
+    /// Triangles left out because a corner has no known value.
+    pub unknown: u64,
     /// The high-water mark of live vertices.
     pub width: u64,
     /// Cells of the raster.
@@ -63,9 +66,8 @@ pub struct Stats {
 /// The window that a mesh covers, in world coordinates.
 ///
 /// # Errors
-/// Usage, if the stream is not a mesh that can be drawn, or its header has no bounds.
+/// Usage, if the header has no bounds.
 pub fn window(header: &Header) -> Result<Window> {
-    check_input(header)?;
     let Some(bounds) = header.bounds else {
         return Err(Error::usage("the header does not say where the mesh is: give --bounds"));
     };
@@ -94,14 +96,14 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     progress: impl FnMut(u64),
 ) -> Result<Stats> {
     let header = reader.header().clone();
-    check_input(&header).map_err(|e| e.of_input(reader.name()))?;
+    let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let filler = options.fill.map(Filler::new).transpose()?;
     let mut rasterizer = Rasterizer::new(*grid, &header.coordinates, options)?;
     let file = options.file(*grid, &header.crs);
     let (mut width, mut known, mut filled) = (0, 0, 0);
     match options.raster.format {
         RasterFormat::Ascii => {
-            width = read(reader, &mut rasterizer, None, progress)?;
+            width = read(reader, column.as_ref(), &mut rasterizer, None, progress)?;
             let mut flush = Flush::new(&mut rasterizer.cache, filler);
             let band_width = (grid.columns as usize).next_multiple_of(TILE);
             let mut band = vec![f32::NAN; band_width * TILE];
@@ -122,7 +124,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
                 tiles.tile(column, row, values)
             };
             let mut complete = |at: TilePlace, values: &[f32]| write(tiles, at, values);
-            width = read(reader, &mut rasterizer, Some(&mut complete), progress)?;
+            width = read(reader, column.as_ref(), &mut rasterizer, Some(&mut complete), progress)?;
             let mut flush = Flush::new(&mut rasterizer.cache, filler);
             flush.write_rest(tiles, |tiles, [column, row], values| tiles.read(column, row, values), write)?;
             filled = flush.filled;
@@ -134,6 +136,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         vertices: totals.vertices,
         triangles: totals.simplices,
         killed: rasterizer.killed,
+        unknown: rasterizer.unknown,
         width,
         cells: grid.cells(),
         known,
@@ -145,18 +148,40 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     })
 }
 
-/// Draws all triangles of a stream and returns its width.
+/// Checks that a stream holds triangles with what is to be drawn; returns the column of an attribute.
+///
+/// # Errors
+/// Usage, if not.
+pub fn check(header: &Header, quantity: &Quantity) -> Result<Option<Column>> {
+    let Quantity::Attribute(choice, _) = quantity else {
+        check_input(header, true)?;
+        return Ok(None);
+    };
+    check_input(header, false)?;
+    let column = header.attributes.column(choice).map_err(|what| {
+        Error::usage(format!("{what}: spfinalize --attributes takes attributes of points along"))
+    })?;
+    Ok(Some(column))
+}
+
+/// Draws all triangles of a stream and returns its width. Values are those of `column`, or elevations.
 fn read<R: Read>(
     reader: &mut StreamReader<R>,
+    column: Option<&Column>,
     rasterizer: &mut Rasterizer,
     mut complete: Option<&mut TileSink>,
     mut progress: impl FnMut(u64),
 ) -> Result<u64> {
     let coordinates = reader.header().coordinates;
-    let to_drawn = |stored: Point| [stored[0], stored[1], coordinates.to_world(stored)[2]];
     let mut live = LiveVertices::new();
     while let Some(event) = reader.next_event()? {
         if let Event::Patch(patch) = event {
+            let rows = reader.rows();
+            let value_of = |id: u64, stored: Point| match column {
+                None => coordinates.to_world(stored)[2],
+                Some(column) => column.of(rows, (id - patch.first_id) as usize),
+            };
+            let to_drawn = |id, stored: Point| [stored[0], stored[1], value_of(id, stored)];
             let drawn = draw(&patch, to_drawn, &mut live, rasterizer, complete.as_deref_mut());
             drawn.map_err(|error| reader.locate(error))?;
             progress(reader.totals().vertices);
@@ -168,12 +193,12 @@ fn read<R: Read>(
 /// Draws the triangles of a patch.
 fn draw(
     patch: &Patch,
-    to_drawn: impl Fn(Point) -> Point,
+    to_drawn: impl Fn(u64, Point) -> Point,
     live: &mut LiveVertices<Point>,
     rasterizer: &mut Rasterizer,
     mut complete: Option<&mut TileSink>,
 ) -> Result<()> {
-    let vertices = live.enter(patch, |_, stored| to_drawn(stored))?;
+    let vertices = live.enter(patch, to_drawn)?;
     if let Some((_, [.., elevation])) = vertices.iter().find(|(_, [.., z])| z.abs() > f64::from(f32::MAX)) {
         let what =
             format!("elevation {elevation:e} is too great for a raster, which has 32 bits: scale elevations");

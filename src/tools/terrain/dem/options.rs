@@ -6,9 +6,18 @@ use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction};
 use spmesh_stream::Crs;
 
+/// How values between vertices follow from those of the vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Linear in each triangle.
+    Linear,
+    /// The value of the nearest corner of the triangle; of several, the one with the least x, then the least y.
+    Nearest,
+}
+
 /// The quantity that cells hold.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Attribute {
+#[derive(Debug, Clone, PartialEq)]
+pub enum Quantity {
     /// The elevation at the centre.
     Elevation,
     /// The angle of the triangle with the horizontal, in degrees.
@@ -17,13 +26,15 @@ pub enum Attribute {
     Aspect,
     /// The brightness of the triangle in some light, from 0 to 255.
     Hillshade(Light),
+    /// An attribute of the points, as `spmesh_model::attributes::Attributes::column` takes it.
+    Attribute(String, Interpolation),
 }
 
 /// What is drawn, and the memory for it.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The quantity that cells hold.
-    pub attribute: Attribute,
+    pub quantity: Quantity,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
     /// Cells without data are filled from data at most this many cells away.
@@ -37,30 +48,38 @@ pub struct Options {
 impl Options {
     /// The raster file.
     pub(super) fn file<'a>(&'a self, grid: Grid, crs: &'a Crs) -> RasterFile<'a> {
-        // Directions have no mean: that of north-east and north-west would be south.
-        let reduction = match self.attribute {
-            Attribute::Aspect => Reduction::First,
+        // Directions have no mean: that of north-east and north-west would be south. Nor have classes.
+        let reduction = match self.quantity {
+            Quantity::Aspect | Quantity::Attribute(_, Interpolation::Nearest) => Reduction::First,
             _ => Reduction::Mean,
         };
-        let are_elevations = self.attribute == Attribute::Elevation;
+        let are_elevations = self.quantity == Quantity::Elevation;
         // Holes are filled from tiles that are already written, so these must be readable.
         let is_staged = self.fill.is_some();
         RasterFile { options: &self.raster, grid, crs, are_elevations, reduction, is_staged }
     }
 }
 
-impl Attribute {
+impl Quantity {
+    /// How values vary in a triangle.
+    pub(super) fn interpolation(&self) -> Interpolation {
+        match self {
+            Quantity::Attribute(_, interpolation) => *interpolation,
+            _ => Interpolation::Linear,
+        }
+    }
+
     /// The value of a whole plane, from its gradient in world coordinates; `None` if it varies.
     ///
     /// # Errors
     /// Usage, if the gradient overflows.
-    pub(super) fn of_plane(self, gradient: Point2) -> Result<Option<f32>> {
+    pub(super) fn of_plane(&self, gradient: Point2) -> Result<Option<f32>> {
         let value = match self {
-            Attribute::Elevation => return Ok(None),
+            Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),
             _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
-            Attribute::Slope => raster::slope(gradient),
-            Attribute::Aspect => raster::aspect(gradient),
-            Attribute::Hillshade(light) => light.shade(gradient),
+            Quantity::Slope => raster::slope(gradient),
+            Quantity::Aspect => raster::aspect(gradient),
+            Quantity::Hillshade(light) => light.shade(gradient),
         };
         Ok(Some(value as f32))
     }

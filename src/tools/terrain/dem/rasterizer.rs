@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::centers::Centers;
 use super::facet::{Facet, place};
-use super::options::{Attribute, Options};
+use super::options::{Interpolation, Options, Quantity};
 use super::span::{Edges, Span};
 use super::tile::overlap;
 use super::tile_cache::{TileCache, TilePlace};
@@ -22,12 +22,14 @@ pub(super) type TileSink<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
 #[derive(Debug)]
 pub(super) struct Rasterizer {
     centers: Centers,
-    attribute: Attribute,
+    quantity: Quantity,
     long_edges: LongEdges,
     pub(super) cache: TileCache,
     pub(super) predicates: FiniteFloatPredicates,
     /// Number of triangles left out because of a long edge.
     pub(super) killed: u64,
+    /// Number of triangles left out because the value of a corner is unknown.
+    pub(super) unknown: u64,
     /// The spans of a triangle in one row of tiles; a field so that the allocation is reused.
     spans: Vec<Span>,
 }
@@ -40,16 +42,17 @@ impl Rasterizer {
     pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Rasterizer> {
         Ok(Rasterizer {
             centers: Centers::new(grid, coordinates),
-            attribute: options.attribute,
+            quantity: options.quantity.clone(),
             long_edges: LongEdges::new(options.kill, coordinates),
             cache: TileCache::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
             predicates: FiniteFloatPredicates::default(),
             killed: 0,
+            unknown: 0,
             spans: Vec::with_capacity(TILE),
         })
     }
 
-    /// Draws a triangle with corners in stored coordinates and elevations of the world. Tiles that become
+    /// Draws a triangle with corners in stored coordinates and values of the world, NaN if unknown. Tiles that become
     /// complete go to `complete`, if there is one.
     ///
     /// # Errors
@@ -58,6 +61,10 @@ impl Rasterizer {
     pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut TileSink>) -> Result<()> {
         let corners = least_first(corners);
         let places = corners.map(place);
+        if self.is_unknown(corners) {
+            self.unknown += 1;
+            return Ok(());
+        }
         if self.long_edges.are_in(places) {
             self.killed += 1;
             return Ok(());
@@ -81,6 +88,15 @@ impl Rasterizer {
             from = end;
         }
         Ok(())
+    }
+
+    /// Whether no cell can have a value: linear values need those of all corners.
+    fn is_unknown(&self, corners: [Point; 3]) -> bool {
+        let unknown = corners.iter().filter(|corner| corner[2].is_nan()).count();
+        match self.quantity.interpolation() {
+            Interpolation::Linear => unknown > 0,
+            Interpolation::Nearest => unknown == 3,
+        }
     }
 
     /// Draws the part of a triangle in one row of tiles.
@@ -122,7 +138,8 @@ impl Rasterizer {
         if spans.iter().all(|span| within(&span.cells).is_empty()) {
             return Ok(());
         }
-        let flat = self.attribute.of_plane(self.centers.gradient_to_world(facet.gradient))?;
+        let interpolation = self.quantity.interpolation();
+        let flat = self.quantity.of_plane(self.centers.gradient_to_world(facet.gradient))?;
         let Some(tile) = self.cache.tile(at)? else {
             // All cells of a written tile belong to other triangles, so this one may only touch them.
             let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
@@ -135,7 +152,14 @@ impl Rasterizer {
                     values.fill(value);
                     Ok(())
                 }
-                None => facet.row(y, cells.map(|column| self.centers.columns.at(column)), values),
+                None => {
+                    let abscissae = cells.map(|column| self.centers.columns.at(column));
+                    match interpolation {
+                        Interpolation::Linear => facet.row(y, abscissae, values)?,
+                        Interpolation::Nearest => facet.row_of_nearest(y, abscissae, values),
+                    }
+                    Ok(())
+                }
             };
             let place = |cells: &Range<u32>| (cells.start - left) as usize..(cells.end - left) as usize;
             let owned = within(&(span.cells.start..span.owned_end));
