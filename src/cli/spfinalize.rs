@@ -14,7 +14,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
-use spmesh_io::source::{Input, RawType, SourceOptions};
+use spmesh_io::source::{AttributeChoice, Input, RawType, SourceOptions};
 use spmesh_model::bounds::Bounds;
 
 const TOOL: &str = "spfinalize";
@@ -27,6 +27,8 @@ Examples:
       spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
   A grid of 2^6 x 2^6 cells, points in their own order, with the counts of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
+  Intensities, classes and times of the points along with them:
+      spfinalize --attributes intensity,classification,gps_time tile.laz | spdelaunay2d -o tile.spm
   Points of space from compressed text:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
   Particles as floats without a header, the files of two processes as one input:
@@ -100,6 +102,10 @@ pub struct Flags {
     /// ahead
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+
+    /// Take attributes of the points along: their names, or all that every file has
+    #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
+    attributes: Vec<String>,
 
     /// Keep only points of these classes
     #[arg(long, value_name = "CLASS", value_delimiter = ',')]
@@ -211,9 +217,18 @@ impl Flags {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
+    fn attribute_choice(&self) -> AttributeChoice {
+        match &self.attributes[..] {
+            [] => AttributeChoice::None,
+            [all] if all == "all" => AttributeChoice::All,
+            names => AttributeChoice::Named(names.to_vec()),
+        }
+    }
+
     fn source_options(&self) -> SourceOptions {
         SourceOptions {
             reader: &SPFINALIZE,
+            attributes: self.attribute_choice(),
             keep_class: self.keep_class.clone(),
             drop_class: self.drop_class.clone(),
             first_only: self.first_only,

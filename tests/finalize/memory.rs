@@ -5,6 +5,7 @@ use std::cell::Cell;
 use spmesh_core::error::Result;
 use spmesh_finalize::{Observer, Passes};
 use spmesh_io::source::{Description, PointReader};
+use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::Point;
 use spmesh_stream::Crs;
 
@@ -29,6 +30,7 @@ impl Memory {
             crs: Crs::Wkt("LOCAL_CS[\"test\"]".into()),
             stated_bounds: None,
             stated_points: None,
+            attributes: Attributes::default(),
         };
         Memory {
             description,

@@ -14,6 +14,7 @@ use super::placement::Placement;
 use super::point_arrays::{self, ArrayPass, PointArray};
 use super::reader::{Description, PointReader};
 use super::records::RecordPass;
+use super::row_plan::{self, RowPlan};
 use super::text::Columns;
 use super::{raw, spa, spb, stream, text, vtk};
 use crate::detect::{Format, read_head};
@@ -52,6 +53,8 @@ pub struct Input {
     sources: Arc<[Source]>,
     options: SourceOptions,
     description: Description,
+    /// How the rows of each file are made.
+    plans: Arc<[RowPlan]>,
     notices: Vec<String>,
 }
 
@@ -94,8 +97,9 @@ impl Input {
     }
 
     fn of_sources(sources: Vec<Source>, options: &SourceOptions, mut notices: Vec<String>) -> Result<Input> {
-        let description = describe(&sources, options, &mut notices)?;
-        Ok(Input { sources: sources.into(), options: options.clone(), description, notices })
+        let (description, plans) = describe(&sources, options, &mut notices)?;
+        let (sources, plans) = (sources.into(), plans.into());
+        Ok(Input { sources, options: options.clone(), description, plans, notices })
     }
 
     /// What is known before the points are read.
@@ -144,6 +148,8 @@ impl Input {
     pub fn read(&self) -> Result<Box<dyn PointReader>> {
         let mut reader = InputReader {
             sources: Arc::clone(&self.sources),
+            plans: Arc::clone(&self.plans),
+            rows: Vec::new(),
             options: self.options.clone(),
             coordinates: self.description.coordinates,
             next: 0,
@@ -203,18 +209,19 @@ impl Source {
         Ok(())
     }
 
-    fn pass(&self, options: &SourceOptions) -> Result<Box<dyn Pass>> {
+    /// Starts a pass, with the rows of `plan`.
+    fn pass(&self, options: &SourceOptions, plan: RowPlan) -> Result<Box<dyn Pass>> {
         let origin = &self.origin;
         Ok(match &self.content {
-            Content::Las(header) => Box::new(RecordPass::new(origin.view()?, header, options)?),
-            Content::Stream => Box::new(stream::pass(origin.plain()?, &self.name)?),
-            Content::Twin => Box::new(stream::pass_of_twin(origin.plain()?, &self.name)?),
+            Content::Las(header) => Box::new(RecordPass::new(origin.view()?, header, options, plan)?),
+            Content::Stream => Box::new(stream::pass(origin.plain()?, &self.name, plan)?),
+            Content::Twin => Box::new(stream::pass_of_twin(origin.plain()?, &self.name, plan)?),
             Content::Spa => Box::new(spa::pass(origin.plain()?)?),
             Content::Spb => Box::new(spb::pass(origin.plain()?)?),
-            Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name)?),
+            Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays))),
-            Content::Text(columns) => Box::new(text::TextPass::new(origin.plain()?, columns.clone())),
+            Content::Text(columns) => Box::new(text::TextPass::new(origin.plain()?, columns.clone(), plan)),
         })
     }
 }
@@ -266,6 +273,7 @@ impl Content {
                     crs: header.crs.clone(),
                     bounds: header.bounds,
                     points: Some(header.points),
+                    offers: header.offers.clone(),
                 };
                 (Content::Las(Box::new(header)), stated)
             }
@@ -331,7 +339,11 @@ fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
     Ok(())
 }
 
-fn describe(sources: &[Source], options: &SourceOptions, notices: &mut Vec<String>) -> Result<Description> {
+fn describe(
+    sources: &[Source],
+    options: &SourceOptions,
+    notices: &mut Vec<String>,
+) -> Result<(Description, Vec<RowPlan>)> {
     let coordinates = match options.grid {
         Some((scale, offset)) => Coordinates::I32 { scale, offset },
         None => {
@@ -342,14 +354,18 @@ fn describe(sources: &[Source], options: &SourceOptions, notices: &mut Vec<Strin
             grid::common(&sources.iter().map(member).collect::<Vec<_>>(), options.dims)?
         }
     };
-    Ok(Description {
+    let offers: Vec<_> = sources.iter().map(|source| (&source.name[..], &source.stated.offers[..])).collect();
+    let (attributes, plans) = row_plan::choose(&options.attributes, &offers, notices)?;
+    let description = Description {
         coordinates,
         dims: options.dims,
         has_elevation: has_z(sources)? && options.dims == 2,
         crs: crs::common(sources.iter().map(|source| (&source.name[..], &source.stated.crs)), notices)?,
         stated_bounds: stated_bounds(sources, &coordinates),
         stated_points: sources.iter().map(|source| source.stated.points).sum(),
-    })
+        attributes,
+    };
+    Ok((description, plans))
 }
 
 fn has_z(sources: &[Source]) -> Result<bool> {
@@ -381,6 +397,9 @@ fn stated_bounds(sources: &[Source], coordinates: &Coordinates) -> Option<Bounds
 /// One pass over all files.
 struct InputReader {
     sources: Arc<[Source]>,
+    plans: Arc<[RowPlan]>,
+    /// Rows of the last batch.
+    rows: Vec<u8>,
     options: SourceOptions,
     coordinates: Coordinates,
     /// Number of the file after the current one.
@@ -397,7 +416,8 @@ impl InputReader {
             self.invalid += placement.invalid;
         }
         if let Some(source) = self.sources.get(self.next) {
-            let pass = source.pass(&self.options).map_err(|e| e.of_input(&source.name))?;
+            let plan = self.plans[self.next].clone();
+            let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
             let Stated { coordinates, .. } = source.stated;
             let SourceOptions { bounds, skip_invalid, .. } = self.options;
             self.current =
@@ -411,9 +431,11 @@ impl InputReader {
 impl PointReader for InputReader {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
         batch.clear();
+        self.rows.clear();
         while let Some((pass, placement)) = &mut self.current {
             let source = &self.sources[self.next - 1];
-            let goes_on = pass.next_batch(placement, batch).map_err(|e| e.of_input(&source.name))?;
+            let goes_on = pass.next_batch(placement, batch, &mut self.rows);
+            let goes_on = goes_on.map_err(|e| e.of_input(&source.name))?;
             if !batch.is_empty() {
                 return Ok(());
             }
@@ -422,6 +444,10 @@ impl PointReader for InputReader {
             }
         }
         Ok(())
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
     }
 
     fn invalid(&self) -> u64 {

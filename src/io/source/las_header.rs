@@ -5,8 +5,10 @@ use std::io::BufReader;
 use las::raw;
 use laz::LazVlr;
 
+use super::las_fields;
 use super::laz_table;
 use super::origin::FileView;
+use super::row_plan::Offer;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::HEADER_BODY_MAX;
 use spmesh_model::bounds::{Bounds, Point};
@@ -43,6 +45,8 @@ pub(super) struct LasHeader {
     pub(super) bounds: Option<Bounds>,
     /// Coordinate reference system.
     pub(super) crs: Crs,
+    /// Fields of the records beside the coordinates.
+    pub(super) offers: Vec<Offer>,
 }
 
 /// The laszip record.
@@ -95,6 +99,7 @@ impl LasHeader {
             laz: records.laz(is_compressed)?,
             coordinates,
             bounds: stored_bounds(&raw, &coordinates),
+            offers: las_fields::offers(format, record_len, least, records.extra_bytes.as_deref()),
             crs: records.crs(raw.global_encoding & GLOBAL_ENCODING_WKT != 0, notices),
         };
         header.check_len(file, notices)?;
@@ -226,6 +231,7 @@ struct Records {
     laszip: Option<Vec<u8>>,
     wkt: Option<Vec<u8>>,
     geo_keys: [Option<Vec<u8>>; 3],
+    extra_bytes: Option<Vec<u8>>,
 }
 
 impl Records {
@@ -304,6 +310,7 @@ impl Records {
     fn slot(&mut self, user: &[u8], record: u16) -> Option<&mut Option<Vec<u8>>> {
         match (user, record) {
             (b"laszip encoded", 22204) => Some(&mut self.laszip),
+            (b"LASF_Spec", 4) => Some(&mut self.extra_bytes),
             (b"LASF_Projection", 2112) => Some(&mut self.wkt),
             (b"LASF_Projection", 34735..=34737) => Some(&mut self.geo_keys[usize::from(record - 34735)]),
             _ => None,

@@ -74,13 +74,15 @@ pub(super) struct LazRecords {
 }
 
 impl LazRecords {
+    /// Records of which all fields are decompressed if `is_whole`, else coordinates, class and return numbers.
     pub(super) fn new(
         file: FileView,
         header: &LasHeader,
         laszip: &Laszip,
         threads: usize,
+        is_whole: bool,
     ) -> Result<LazRecords> {
-        let codec = Codec::new(laszip.vlr.clone(), header)?;
+        let codec = Codec::new(laszip.vlr.clone(), header, is_whole)?;
         let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
             Chunks::Table(chunks) => (chunks, None),
             Chunks::Unknown { start, points_per_chunk } => {

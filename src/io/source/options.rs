@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::origin::Admitted;
 use super::raw_type::RawType;
+use super::row_plan::AttributeChoice;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::Bounds;
@@ -14,6 +15,8 @@ use spmesh_model::bounds::Bounds;
 pub struct SourceOptions {
     /// The reading tool, for messages.
     pub reader: &'static Reader,
+    /// What points carry beside their coordinates.
+    pub attributes: AttributeChoice,
     /// Keep only points of these classes, if any are given.
     pub keep_class: Vec<u8>,
     /// Drop points of these classes.

@@ -1,6 +1,7 @@
 //! The interface of all formats of an input: what a file states, and a pass over its points.
 
 use super::placement::Placement;
+use super::row_plan::Offer;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
@@ -10,9 +11,14 @@ pub(super) const BATCH_POINTS: usize = 1 << 14;
 
 /// One pass over the points of one file.
 pub(super) trait Pass: Send {
-    /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters. Returns
-    /// false at the end of the file, without appending any.
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool>;
+    /// Appends the next points to `batch`, about `BATCH_POINTS` of them, possibly none after filters, and their
+    /// rows to `rows`, if points carry attributes. Returns false at the end of the file, without appending any.
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        rows: &mut Vec<u8>,
+    ) -> Result<bool>;
 }
 
 /// What a file states about itself.
@@ -25,4 +31,6 @@ pub(super) struct Stated {
     /// Bounding box, in stored coordinates.
     pub(super) bounds: Option<Bounds>,
     pub(super) points: Option<u64>,
+    /// What points can carry beside their coordinates.
+    pub(super) offers: Vec<Offer>,
 }

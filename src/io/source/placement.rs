@@ -70,18 +70,19 @@ impl Placement {
         matches!(self.step, Step::Same) && self.bounds.is_none()
     }
 
-    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it.
+    /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it. Returns
+    /// whether it did.
     ///
     /// # Errors
     /// If a coordinate is not finite (unless such points are skipped), or does not fit the input's grid. The
     /// caller adds the record's position.
     #[inline]
-    pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<()> {
+    pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<bool> {
         if let Some(bounds) = &self.bounds
             && !bounds.contains(stored)
             && stored.iter().all(|value| value.is_finite())
         {
-            return Ok(());
+            return Ok(false);
         }
         let placed = match &self.step {
             Step::Same => stored,
@@ -103,14 +104,14 @@ impl Placement {
             )));
         }
         batch.push(placed);
-        Ok(())
+        Ok(true)
     }
 
     #[cold]
-    fn refuse(&mut self, stored: Point) -> Result<()> {
+    fn refuse(&mut self, stored: Point) -> Result<bool> {
         if self.skip_invalid {
             self.invalid += 1;
-            return Ok(());
+            return Ok(false);
         }
         Err(Error::malformed(format!(
             "coordinates {stored:?} are not finite (spfinalize --skip-invalid drops and counts such points)"

@@ -11,9 +11,10 @@ use super::patches::Order;
 use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
 use super::sample_type::SampleType;
-use super::statements::{expect_no_field, fields, next_field, parse_decimal};
+use super::statements::{expect_no_field, fields, next_field, parse_decimal, unexpected};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::NumberType;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
 
@@ -51,6 +52,9 @@ pub(super) fn open_vertices<R: Read>(input: R, name: &str) -> Result<VertexPoint
 fn points<R: Read>(rows: Rows<R>, dims: u8) -> VertexPoints<PlyVertices<R>> {
     let mut header = Header::new(Kind::Points, Coordinates::F64, dims, dims == 2);
     header.points = Some(rows.header.rows(Sort::Vertex));
+    // Properties that cannot be attributes are skipped.
+    header.attributes = rows.header.attributes().unwrap_or_default();
+    let rows = Rows { keeps_attributes: !header.attributes.is_empty(), ..rows };
     VertexPoints::new(PlyVertices { rows }, header)
 }
 
@@ -68,6 +72,10 @@ impl<R: Read> Vertices for PlyVertices<R> {
                 None => return Ok(None),
             }
         }
+    }
+
+    fn row(&self) -> &[u8] {
+        &self.rows.attributes
     }
 
     fn locate(&self, error: Error) -> Error {
@@ -126,6 +134,9 @@ struct Rows<R: Read> {
     header: PlyHeader,
     table: usize,
     row: u64,
+    /// Whether attributes of vertices are read, and those of the last one.
+    keeps_attributes: bool,
+    attributes: Vec<u8>,
 }
 
 impl<R: Read> Rows<R> {
@@ -133,7 +144,7 @@ impl<R: Read> Rows<R> {
     fn open(input: R, name: impl Into<String>) -> Result<Self> {
         let mut lines = Lines::new(input, name);
         let header = PlyHeader::read(&mut lines).map_err(|e| lines.locate(e))?;
-        Ok(Rows { lines, header, table: 0, row: 0 })
+        Ok(Rows { lines, header, table: 0, row: 0, keeps_attributes: false, attributes: Vec::new() })
     }
 
     /// The next vertex or face; rows of other elements are skipped.
@@ -144,9 +155,14 @@ impl<R: Read> Rows<R> {
                 continue;
             }
             self.row += 1;
+            self.attributes.clear();
+            let keeps = self.keeps_attributes && table.sort == Sort::Vertex;
+            let attributes = keeps.then_some(&mut self.attributes);
             let (point, corners) = match self.header.encoding {
-                Encoding::Ascii => read_text_row(&mut self.lines, &table.properties)?,
-                Encoding::Binary(order) => read_binary_row(self.lines.input(), &table.properties, order)?,
+                Encoding::Ascii => read_text_row(&mut self.lines, &table.properties, attributes)?,
+                Encoding::Binary(order) => {
+                    read_binary_row(self.lines.input(), &table.properties, order, attributes)?
+                }
             };
             match table.sort {
                 Sort::Vertex => return Ok(Some(Row::Vertex(point))),
@@ -210,7 +226,7 @@ impl RowValues {
                 Ok(())
             }
             Role::Corners => Err(Error::malformed(format!("vertex number {value}"))),
-            Role::Length | Role::Other => Ok(()),
+            Role::Length | Role::Attribute | Role::Other => Ok(()),
         }
     }
 
@@ -230,14 +246,23 @@ impl RowValues {
     }
 }
 
-fn read_text_row<R: Read>(lines: &mut Lines<R>, properties: &[Property]) -> Result<(Point, Vec<u64>)> {
+/// Reads a row; appends its attributes if they are asked for.
+fn read_text_row<R: Read>(
+    lines: &mut Lines<R>,
+    properties: &[Property],
+    mut attributes: Option<&mut Vec<u8>>,
+) -> Result<(Point, Vec<u64>)> {
     let mut values = RowValues::default();
     let line = lines.next_line()?.ok_or_else(truncated)?;
     let mut fields = fields(line);
     for property in properties {
-        values.property(property, |role, _| match role {
+        values.property(property, |role, scalar| match (role, &mut attributes) {
+            (Role::Attribute, Some(attributes)) => {
+                let field = next_field(&mut fields)?;
+                parse_attribute(field, scalar, attributes).map(|()| 0.0)
+            }
             // A skipped value need not be a finite number.
-            Role::Other => next_field(&mut fields).map(|_| 0.0),
+            (Role::Attribute | Role::Other, _) => next_field(&mut fields).map(|_| 0.0),
             _ => parse_decimal(next_field(&mut fields)?),
         })?;
     }
@@ -249,20 +274,43 @@ fn read_binary_row(
     input: &mut impl Read,
     properties: &[Property],
     order: ByteOrder,
+    mut attributes: Option<&mut Vec<u8>>,
 ) -> Result<(Point, Vec<u64>)> {
     let mut values = RowValues::default();
     for property in properties {
-        values.property(property, |_, scalar| {
+        values.property(property, |role, scalar| {
             let mut bytes = [0; 8];
             let bytes = &mut bytes[..scalar.len()];
             input.read_exact(bytes).map_err(|e| match e.kind() {
                 std::io::ErrorKind::UnexpectedEof => truncated(),
                 _ => Error::io("reading", e),
             })?;
+            if let (Role::Attribute, Some(attributes)) = (role, &mut attributes) {
+                let start = attributes.len();
+                attributes.extend_from_slice(bytes);
+                if order == ByteOrder::Big {
+                    attributes[start..].reverse();
+                }
+            }
             Ok(scalar.number(bytes, order))
         })?;
     }
     Ok((values.point, values.corners))
+}
+
+/// Appends the number of an attribute. Any NaN becomes the usual one.
+fn parse_attribute(field: &[u8], scalar: SampleType, attributes: &mut Vec<u8>) -> Result<()> {
+    let number = scalar.number_type();
+    let text = std::str::from_utf8(field).unwrap_or_default();
+    let is_nan = text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("nan");
+    match number {
+        NumberType::F32 if is_nan => attributes.extend(f32::NAN.to_le_bytes()),
+        NumberType::F64 if is_nan => attributes.extend(f64::NAN.to_le_bytes()),
+        _ => number
+            .parse(text, attributes)
+            .ok_or_else(|| unexpected(field, &format!("a number of type {}", number.name())))?,
+    }
+    Ok(())
 }
 
 fn truncated() -> Error {

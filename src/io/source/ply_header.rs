@@ -7,6 +7,7 @@ use super::lines::Lines;
 use super::sample_type::SampleType;
 use super::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::{Attribute, Attributes};
 
 /// Greatest number of elements and properties of a header: far above any real header, and little memory.
 const ITEMS_MAX: usize = 1000;
@@ -27,6 +28,8 @@ pub(super) enum Role {
     Corners,
     /// Length of a list.
     Length,
+    /// A single number of a vertex that is none of its coordinates.
+    Attribute,
     /// Anything else: skipped.
     Other,
 }
@@ -56,6 +59,8 @@ pub(super) struct ElementTable {
     pub(super) sort: Sort,
     pub(super) rows: u64,
     pub(super) properties: Vec<Property>,
+    /// The names of the properties.
+    pub(super) names: Vec<String>,
 }
 
 /// Encoding, and the elements in the order of the file.
@@ -86,8 +91,9 @@ impl PlyHeader {
                 b"property" => {
                     let table =
                         tables.last_mut().ok_or_else(|| Error::malformed("property of no element"))?;
-                    let property = parse_property(&mut fields, table.sort)?;
+                    let (property, name) = parse_property(&mut fields, table.sort)?;
                     table.properties.push(property);
+                    table.names.push(name);
                 }
                 b"end_header" => break,
                 other => return Err(unexpected(other, "a statement of a PLY header")),
@@ -100,6 +106,26 @@ impl PlyHeader {
         let header = PlyHeader { encoding, tables };
         header.check()?;
         Ok(header)
+    }
+
+    /// The attributes of vertices. Red, green and blue in this order are one attribute.
+    ///
+    /// # Errors
+    /// A text about the rule that they break: two have one name, or they are too many.
+    pub(super) fn attributes(&self) -> std::result::Result<Attributes, String> {
+        let mut attributes: Vec<Attribute> = Vec::new();
+        for table in self.tables.iter().filter(|table| table.sort == Sort::Vertex) {
+            let properties = table.properties.iter().zip(&table.names);
+            let singles = properties.filter(|(property, _)| property.role == Role::Attribute);
+            attributes
+                .extend(singles.map(|(property, name)| Attribute::new(name, property.scalar.number_type())));
+        }
+        if let Some(at) = attributes.windows(3).position(is_colour) {
+            let number = attributes[at].number;
+            let colour = Attribute { components: 3, ..Attribute::new("rgb", number) };
+            attributes.splice(at..at + 3, [colour]);
+        }
+        Attributes::new(attributes)
     }
 
     /// Number of rows of a type.
@@ -137,6 +163,12 @@ impl PlyHeader {
     }
 }
 
+fn is_colour(attributes: &[Attribute]) -> bool {
+    let names = attributes.iter().map(|attribute| attribute.name.as_str());
+    names.eq(["red", "green", "blue"])
+        && attributes.iter().all(|attribute| attribute.number == attributes[0].number)
+}
+
 fn parse_type(name: &[u8]) -> Result<SampleType> {
     match name {
         b"char" | b"int8" => Ok(SampleType::I8),
@@ -169,10 +201,10 @@ fn parse_element<'a>(fields: &mut impl Iterator<Item = &'a [u8]>) -> Result<Elem
     };
     let rows = parse_integer(next_field(fields)?)?;
     expect_no_field(fields)?;
-    Ok(ElementTable { sort, rows, properties: Vec::new() })
+    Ok(ElementTable { sort, rows, properties: Vec::new(), names: Vec::new() })
 }
 
-fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -> Result<Property> {
+fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -> Result<(Property, String)> {
     let first = next_field(fields)?;
     let is_list = first == b"list";
     let length = is_list.then(|| parse_type(next_field(fields)?)).transpose()?;
@@ -184,7 +216,8 @@ fn parse_property<'a>(fields: &mut impl Iterator<Item = &'a [u8]>, sort: Sort) -
         (Sort::Vertex, false, b"y") => Role::Axis(1),
         (Sort::Vertex, false, b"z") => Role::Axis(2),
         (Sort::Face, true, b"vertex_indices" | b"vertex_index") => Role::Corners,
+        (Sort::Vertex, false, _) => Role::Attribute,
         _ => Role::Other,
     };
-    Ok(Property { role, length, scalar })
+    Ok((Property { role, length, scalar }, String::from_utf8_lossy(name).into_owned()))
 }

@@ -93,6 +93,7 @@ pub(super) fn state(arrays: &[PointArray]) -> Stated {
         crs: Crs::Unknown,
         bounds: None,
         points: arrays.iter().try_fold(0u64, |sum, array| sum.checked_add(array.points)),
+        offers: Vec::new(),
     }
 }
 
@@ -130,7 +131,12 @@ impl ArrayPass {
 }
 
 impl Pass for ArrayPass {
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        _rows: &mut Vec<u8>,
+    ) -> Result<bool> {
         while self.at < self.arrays.len() {
             if self.read()? {
                 let array = &self.arrays[self.at];

@@ -25,6 +25,7 @@ impl PointEvents {
         let mut header =
             Header::new(Kind::Points, description.coordinates, description.dims, description.has_elevation);
         header.crs = description.crs.clone();
+        header.attributes = description.attributes.clone();
         let reader = input.read()?;
         Ok(PointEvents { input, header, reader, points: 0, ended: false })
     }
@@ -47,6 +48,10 @@ impl EventSource for PointEvents {
         }
         self.points += batch.len() as u64;
         Ok(Some(Event::Points(batch)))
+    }
+
+    fn rows(&self) -> &[u8] {
+        self.reader.rows()
     }
 
     fn locate(&self, error: Error) -> Error {

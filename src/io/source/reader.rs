@@ -1,6 +1,7 @@
 //! The interface of an input of points.
 
 use spmesh_core::error::Result;
+use spmesh_model::attributes::Attributes;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
@@ -17,6 +18,8 @@ pub struct Description {
     pub crs: Crs,
     /// Bounding box that the headers state, in stored coordinates; not verified.
     pub stated_bounds: Option<Bounds>,
+    /// What points carry beside their coordinates.
+    pub attributes: Attributes,
     /// Number of points that the headers state, before filters.
     pub stated_points: Option<u64>,
 }
@@ -29,6 +32,11 @@ pub trait PointReader: Send {
     /// # Errors
     /// If the input cannot be read, is malformed, or has an invalid point (file and record are named).
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()>;
+
+    /// The rows of the points of the last batch; empty if points carry no attributes.
+    fn rows(&self) -> &[u8] {
+        &[]
+    }
 
     /// Points dropped so far because a coordinate is not finite.
     fn invalid(&self) -> u64;

@@ -7,6 +7,7 @@ use super::origin::FileView;
 use super::pass::{BATCH_POINTS, Pass};
 use super::placement::Placement;
 use super::record_reader::RecordReader;
+use super::row_plan::RowPlan;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::Point;
 
@@ -58,6 +59,7 @@ impl RecordFilter {
 pub(super) struct RecordPass {
     reader: Box<dyn RecordReader>,
     filter: RecordFilter,
+    plan: RowPlan,
     record_len: usize,
     records: Vec<u8>,
     /// Bytes of `records` already used, and number of records in the file before `records`.
@@ -66,14 +68,23 @@ pub(super) struct RecordPass {
 }
 
 impl RecordPass {
-    pub(super) fn new(file: FileView, header: &LasHeader, options: &SourceOptions) -> Result<Self> {
+    pub(super) fn new(
+        file: FileView,
+        header: &LasHeader,
+        options: &SourceOptions,
+        plan: RowPlan,
+    ) -> Result<Self> {
         let reader: Box<dyn RecordReader> = match &header.laz {
-            Some(laszip) => Box::new(LazRecords::new(file, header, laszip, options.threads())?),
+            Some(laszip) => {
+                let is_whole = !plan.is_empty();
+                Box::new(LazRecords::new(file, header, laszip, options.threads(), is_whole)?)
+            }
             None => Box::new(PlainRecords::new(file, header)),
         };
         Ok(RecordPass {
             reader,
             filter: RecordFilter::new(options, header.format),
+            plan,
             record_len: header.record_len,
             records: Vec::new(),
             used: 0,
@@ -83,7 +94,12 @@ impl RecordPass {
 }
 
 impl Pass for RecordPass {
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        rows: &mut Vec<u8>,
+    ) -> Result<bool> {
         if self.used == self.records.len() {
             self.before += (self.records.len() / self.record_len) as u64;
             self.used = 0;
@@ -94,14 +110,20 @@ impl Pass for RecordPass {
         }
         let end = self.records.len().min(self.used + BATCH_POINTS * self.record_len);
         if self.filter.wants_all() && placement.keeps_integers() {
-            batch.extend(self.records[self.used..end].chunks_exact(self.record_len).map(raw_point));
+            let records = || self.records[self.used..end].chunks_exact(self.record_len);
+            batch.extend(records().map(raw_point));
+            if !self.plan.is_empty() {
+                records().for_each(|record| self.plan.append(record, rows));
+            }
             self.used = end;
             return Ok(true);
         }
         let first = self.before + (self.used / self.record_len) as u64;
         for (record, index) in self.records[self.used..end].chunks_exact(self.record_len).zip(first..) {
-            if self.filter.wants(record) {
-                placement.put(raw_point(record), batch).map_err(|e| e.at(format!("record {index}")))?;
+            if self.filter.wants(record)
+                && placement.put(raw_point(record), batch).map_err(|e| e.at(format!("record {index}")))?
+            {
+                self.plan.append(record, rows);
             }
         }
         self.used = end;

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::byte_order::ByteOrder;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::NumberType;
 
 /// How a number is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,6 +65,22 @@ impl SampleType {
     /// Whether numbers are integers, so that none is NaN.
     pub(super) fn is_integer(self) -> bool {
         !matches!(self, SampleType::F32 | SampleType::F64)
+    }
+
+    /// The type of an attribute of such numbers.
+    pub(super) fn number_type(self) -> NumberType {
+        match self {
+            SampleType::I8 => NumberType::I8,
+            SampleType::U8 => NumberType::U8,
+            SampleType::I16 => NumberType::I16,
+            SampleType::U16 => NumberType::U16,
+            SampleType::I32 => NumberType::I32,
+            SampleType::U32 => NumberType::U32,
+            SampleType::I64 => NumberType::I64,
+            SampleType::U64 => NumberType::U64,
+            SampleType::F32 => NumberType::F32,
+            SampleType::F64 => NumberType::F64,
+        }
     }
 
     /// Length of a number in bytes.

@@ -92,6 +92,7 @@ impl SpHeader {
             crs: Crs::Unknown,
             bounds: bounds.filter(finite),
             points: self.points,
+            offers: Vec::new(),
         }
     }
 }
@@ -121,7 +122,12 @@ impl<R: SpReader> SpPass<R> {
 }
 
 impl<R: SpReader + Send> Pass for SpPass<R> {
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        _rows: &mut Vec<u8>,
+    ) -> Result<bool> {
         for count in 0..BATCH_POINTS {
             match self.reader.next_event()? {
                 Some(SpEvent::Point(point)) => {

@@ -10,6 +10,7 @@ use super::origin::Bytes;
 use super::pass::{Pass, Stated};
 use super::placement::Placement;
 use super::ply::{self, PlyVertices};
+use super::row_plan::{RowPlan, offers_of};
 use super::twin::TwinSource;
 use super::vertices::VertexPoints;
 use spmesh_core::error::{Error, Result};
@@ -47,39 +48,74 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
         crs: header.crs.clone(),
         bounds: header.bounds,
         points: header.points,
+        offers: offers_of(&header.attributes),
     })
 }
 
 /// One pass over the points of a stream, of a text twin, or of a mesh.
-pub(super) struct EventPass<S>(S);
+pub(super) struct EventPass<S> {
+    source: S,
+    plan: RowPlan,
+    row_len: usize,
+}
+
+impl<S: EventSource> EventPass<S> {
+    /// A pass over `source` with the rows of `plan`.
+    fn new(source: S, plan: RowPlan) -> Self {
+        let row_len = source.header().attributes.row_len();
+        EventPass { source, plan, row_len }
+    }
+}
 
 /// Starts a pass over a stream.
-pub(super) fn pass(file: Bytes, name: &str) -> Result<EventPass<Checked<StreamReader<BufReader<Bytes>>>>> {
+pub(super) fn pass(
+    file: Bytes,
+    name: &str,
+    plan: RowPlan,
+) -> Result<EventPass<Checked<StreamReader<BufReader<Bytes>>>>> {
     let reader = StreamReader::new(BufReader::with_capacity(1 << 18, file), name)?;
-    Ok(EventPass(Checked::new(reader)))
+    Ok(EventPass::new(Checked::new(reader), plan))
 }
 
 /// Starts a pass over a text twin.
-pub(super) fn pass_of_twin(file: Bytes, name: &str) -> Result<EventPass<Checked<TwinSource<Bytes>>>> {
-    Ok(EventPass(Checked::new(TwinSource::new(file, name)?)))
+pub(super) fn pass_of_twin(
+    file: Bytes,
+    name: &str,
+    plan: RowPlan,
+) -> Result<EventPass<Checked<TwinSource<Bytes>>>> {
+    Ok(EventPass::new(Checked::new(TwinSource::new(file, name)?), plan))
 }
 
 /// Starts a pass over the vertices of a PLY.
-pub(super) fn pass_of_ply(file: Bytes, name: &str) -> Result<EventPass<VertexPoints<PlyVertices<Bytes>>>> {
-    ply::open_vertices(file, name).map(EventPass)
+pub(super) fn pass_of_ply(
+    file: Bytes,
+    name: &str,
+    plan: RowPlan,
+) -> Result<EventPass<VertexPoints<PlyVertices<Bytes>>>> {
+    Ok(EventPass::new(ply::open_vertices(file, name)?, plan))
 }
 
 /// Starts a pass over the vertices of an OBJ.
 pub(super) fn pass_of_obj(file: Bytes, name: &str) -> EventPass<VertexPoints<ObjVertices<Bytes>>> {
-    EventPass(obj::open_vertices(file, name))
+    EventPass::new(obj::open_vertices(file, name), RowPlan::default())
 }
 
 impl<S: EventSource + Send> Pass for EventPass<S> {
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
-        while let Some(event) = self.0.next_event()? {
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        rows: &mut Vec<u8>,
+    ) -> Result<bool> {
+        while let Some(event) = self.source.next_event()? {
             if let Event::Points(points) = event {
-                let put = points.into_iter().try_for_each(|point| placement.put(point, batch));
-                put.map_err(|error| self.0.locate(error))?;
+                for (number, point) in points.into_iter().enumerate() {
+                    let is_put = placement.put(point, batch).map_err(|error| self.source.locate(error))?;
+                    if is_put && !self.plan.is_empty() {
+                        let row = &self.source.rows()[number * self.row_len..][..self.row_len];
+                        self.plan.append(row, rows);
+                    }
+                }
                 return Ok(true);
             }
         }

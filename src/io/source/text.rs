@@ -4,7 +4,9 @@ use super::lines::{Lines, number, quote};
 use super::origin::Bytes;
 use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
+use super::row_plan::{RowPlan, offers_of};
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -21,6 +23,8 @@ pub(super) struct Columns {
     delimiter: Delimiter,
     /// Columns of x, y and, if points have one, z.
     axes: Vec<usize>,
+    /// The other columns, in their order: each is a number of the record of a line.
+    others: Vec<usize>,
     /// Line of the column names, if there is one.
     names_line: Option<u64>,
     /// Whether the first line of points has only two columns, so that a third column in another line is an
@@ -44,7 +48,7 @@ struct Names {
 pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
     let mut lines = Lines::new(file, "");
     let mut names: Option<Names> = None;
-    let mut columns = None;
+    let (mut columns, mut named) = (None, None);
     while let Some(line) = lines.next_trimmed()? {
         let line = without_comment(line);
         if line.is_empty() {
@@ -53,7 +57,9 @@ pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
         let delimiter = delimiter_of(line);
         let fields: Vec<&[u8]> = fields(line, delimiter).collect();
         if names.is_some() || fields.iter().any(|field| number(field).is_some()) {
-            columns = Some(columns_of(delimiter, &fields, names.as_ref())?);
+            let found = columns_of(delimiter, &fields, names.as_ref())?;
+            named = attributes_of(&found, names.as_ref()).ok();
+            columns = Some(found);
             break;
         }
         let fields = fields.into_iter().map(<[u8]>::to_vec).collect();
@@ -68,25 +74,29 @@ pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
         (None, _) => Columns {
             delimiter: Delimiter::WhiteSpace,
             axes: vec![0, 1],
+            others: Vec::new(),
             names_line: Some(0),
             only_two: false,
         },
     };
-    let stated =
-        Stated { coordinates: Coordinates::F64, has_z, crs: Crs::Unknown, bounds: None, points: None };
+    let offers = named.iter().flat_map(offers_of).collect();
+    let (coordinates, crs) = (Coordinates::F64, Crs::Unknown);
+    let stated = Stated { coordinates, has_z, crs, bounds: None, points: None, offers };
     Ok((columns, stated))
 }
 
 /// The columns, from the first line of points and any names above it.
 fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> Result<Columns> {
-    let axes = (0..fields.len().clamp(2, 3)).collect();
+    let axes: Vec<usize> = (0..fields.len().clamp(2, 3)).collect();
+    let others = (axes.len()..fields.len()).collect();
     let only_two = fields.len() == 2;
     let Some(names) = names else {
-        return Ok(Columns { delimiter, axes, names_line: None, only_two });
+        return Ok(Columns { delimiter, axes, others, names_line: None, only_two });
     };
     let names_line = Some(names.line);
     if let Some(axes) = named_axes(&names.fields) {
-        return Ok(Columns { delimiter: names.delimiter, axes, names_line, only_two: false });
+        let others = (0..names.fields.len()).filter(|column| !axes.contains(column)).collect();
+        return Ok(Columns { delimiter: names.delimiter, axes, others, names_line, only_two: false });
     }
     let has_number = fields.iter().any(|field| number(field).is_some());
     if names.fields.len() != fields.len() || !has_number {
@@ -96,7 +106,23 @@ fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> 
         let reason = "cannot tell which columns are the coordinates: call them x, y and z";
         return Err(Error::malformed(reason).at(format!("line {}", names.line)));
     }
-    Ok(Columns { delimiter, axes, names_line, only_two })
+    Ok(Columns { delimiter, axes, others, names_line, only_two })
+}
+
+/// The columns beside the coordinates as attributes: by their names, or by their numbers from 1 on.
+///
+/// # Errors
+/// If they cannot be attributes: two have one name, or they are too many.
+fn attributes_of(columns: &Columns, names: Option<&Names>) -> std::result::Result<Attributes, String> {
+    let name_of = |&column: &usize| {
+        let name = names.and_then(|names| names.fields.get(column)).filter(|name| !name.is_empty());
+        name.map_or(format!("column{}", column + 1), |name| String::from_utf8_lossy(name).into_owned())
+    };
+    let attribute = |column: &usize| Attribute {
+        unknown: Some(f64::NAN.to_le_bytes().to_vec()),
+        ..Attribute::new(name_of(column), NumberType::F64)
+    };
+    Attributes::new(columns.others.iter().map(attribute).collect())
 }
 
 fn no_text_of_points(line: u64) -> Error {
@@ -156,16 +182,23 @@ pub(super) fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = 
 pub(super) struct TextPass {
     lines: Lines<Bytes>,
     columns: Columns,
+    plan: RowPlan,
+    record: Vec<u8>,
 }
 
 impl TextPass {
-    pub(super) fn new(file: Bytes, columns: Columns) -> Self {
-        TextPass { lines: Lines::new(file, ""), columns }
+    pub(super) fn new(file: Bytes, columns: Columns, plan: RowPlan) -> Self {
+        TextPass { lines: Lines::new(file, ""), columns, plan, record: Vec::new() }
     }
 }
 
 impl Pass for TextPass {
-    fn next_batch(&mut self, placement: &mut Placement, batch: &mut Vec<Point>) -> Result<bool> {
+    fn next_batch(
+        &mut self,
+        placement: &mut Placement,
+        batch: &mut Vec<Point>,
+        rows: &mut Vec<u8>,
+    ) -> Result<bool> {
         for count in 0..BATCH_POINTS {
             let Some(line) = self.lines.next_trimmed()? else { return Ok(count > 0) };
             let line = without_comment(line);
@@ -177,10 +210,40 @@ impl Pass for TextPass {
                 Err(_) if self.columns.names_line == Some(self.lines.number()) => continue,
                 Err(error) => return Err(error.at(self.lines.position())),
             };
-            placement.put(point, batch).map_err(|e| e.at(self.lines.position()))?;
+            if !self.plan.is_empty() {
+                let read = read_others(line, &self.columns, &self.plan, &mut self.record);
+                read.map_err(|e| e.at(self.lines.position()))?;
+            }
+            if placement.put(point, batch).map_err(|e| e.at(self.lines.position()))? {
+                self.plan.append(&self.record, rows);
+            }
         }
         Ok(true)
     }
+}
+
+/// Replaces `record` by the numbers of the columns beside the coordinates, of which those in the plan count.
+/// Empty and missing fields are NaN.
+fn read_others(line: &[u8], columns: &Columns, plan: &RowPlan, record: &mut Vec<u8>) -> Result<()> {
+    record.clear();
+    let mut found: Vec<&[u8]> = fields(line, columns.delimiter).collect();
+    found.resize(found.len().max(columns.others.last().map_or(0, |last| last + 1)), b"");
+    for &column in &columns.others {
+        let field = found[column];
+        let value = match number(field) {
+            Some(value) => value,
+            None if field.is_empty() || !plan.uses(record.len()) => f64::NAN,
+            None => {
+                return Err(Error::malformed(format!(
+                    "found {} in column {}, expected a number",
+                    quote(field),
+                    column + 1
+                )));
+            }
+        };
+        record.extend(value.to_le_bytes());
+    }
+    Ok(())
 }
 
 fn parse(line: &[u8], columns: &Columns) -> Result<Point> {

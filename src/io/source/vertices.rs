@@ -16,6 +16,11 @@ pub(super) trait Vertices {
     /// If reading fails or the file is malformed.
     fn next_vertex(&mut self) -> Result<Option<Point>>;
 
+    /// The row of the vertex before; empty if the header lists no attributes.
+    fn row(&self) -> &[u8] {
+        &[]
+    }
+
     /// Adds the current position to an error.
     fn locate(&self, error: Error) -> Error;
 }
@@ -24,6 +29,7 @@ pub(super) trait Vertices {
 pub(super) struct VertexPoints<V> {
     vertices: V,
     header: Header,
+    rows: Vec<u8>,
     points: u64,
     ended: bool,
 }
@@ -31,7 +37,7 @@ pub(super) struct VertexPoints<V> {
 impl<V: Vertices> VertexPoints<V> {
     /// The points of `vertices`, described by `header`.
     pub(super) fn new(vertices: V, header: Header) -> Self {
-        VertexPoints { vertices, header, points: 0, ended: false }
+        VertexPoints { vertices, header, rows: Vec::new(), points: 0, ended: false }
     }
 }
 
@@ -42,9 +48,11 @@ impl<V: Vertices> EventSource for VertexPoints<V> {
 
     fn next_event(&mut self) -> Result<Option<Event>> {
         let mut batch: Vec<Point> = Vec::new();
+        self.rows.clear();
         while batch.len() < BATCH_POINTS {
             let Some(point) = self.vertices.next_vertex().map_err(|e| self.locate(e))? else { break };
             batch.push(point);
+            self.rows.extend_from_slice(self.vertices.row());
         }
         self.points += batch.len() as u64;
         if !batch.is_empty() {
@@ -52,6 +60,10 @@ impl<V: Vertices> EventSource for VertexPoints<V> {
         }
         let totals = Totals { points: self.points, ..Totals::default() };
         Ok((!std::mem::replace(&mut self.ended, true)).then_some(Event::End(totals)))
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
     }
 
     fn locate(&self, error: Error) -> Error {

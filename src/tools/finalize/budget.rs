@@ -17,6 +17,9 @@ const ENGINE_MIN: u64 = 64 << 10;
 /// million counters, and several grids coexist. With 32 MiB, 10 million points took 13 MB more.
 const COUNTERS_MAX: u64 = 16 << 20;
 
+/// Points of the batches that are under way. Their rows are held twice, alone and in records.
+const BATCHES_LEN: u64 = 3 << 14;
+
 /// Memory for counters, leaves and waiting points, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Budget {
@@ -59,6 +62,23 @@ impl Budget {
             ));
         }
         Ok(Budget { bytes })
+    }
+
+    /// What is left beside the rows of batches, if points carry rows of `row_len` bytes.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if it is too little.
+    pub(super) fn beside_rows(self, row_len: usize) -> Result<Budget> {
+        let rows = BATCHES_LEN * 2 * row_len as u64;
+        Budget::of_engine(self.bytes.saturating_sub(rows)).map_err(|_| {
+            Error::new(
+                ErrorKind::Memory,
+                format!(
+                    "attributes of {row_len} bytes need {} MiB more: give more memory, or take fewer",
+                    (rows + ENGINE_MIN - self.bytes).div_ceil(1 << 20)
+                ),
+            )
+        })
     }
 
     /// The whole budget, in bytes.

@@ -1,5 +1,6 @@
 //! Passes 1 and 2: the bounding box, and the number of points per cell.
 
+use super::batch::PointBatch;
 use super::cell_counts::CellCounts;
 use super::cell_grid::CellGrid;
 use super::changed::input_changed;
@@ -145,12 +146,12 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     /// Those of the input.
     fn bounding_box(&mut self) -> Result<(Option<Bounds>, u64)> {
         let (mut bounds, mut points) = (None, 0);
-        let prepare = |batch: &[Point], found: &mut Option<Bounds>| {
-            *found = bounds_of(batch);
+        let prepare = |batch: &PointBatch, found: &mut Option<Bounds>| {
+            *found = bounds_of(&batch.points);
             Ok(())
         };
         self.read_all(Pass::Bounds, prepare, |batch, found| {
-            points += batch.len() as u64;
+            points += batch.points.len() as u64;
             bounds = union(bounds, *found);
             Ok(())
         })?;
@@ -168,12 +169,12 @@ impl<P: Passes + ?Sized> Work<'_, P> {
             Leaves::Collapsed { .. } => Counters::adaptive(tree, tree.depth(), options.budget.counters()),
         };
         let (mut bounds, mut points, mut outside) = (None, 0, 0);
-        let prepare = |batch: &[Point], found: &mut BatchCells| {
-            found.prepare(&tree, batch);
+        let prepare = |batch: &PointBatch, found: &mut BatchCells| {
+            found.prepare(&tree, &batch.points);
             Ok(())
         };
         self.read_all(Pass::Count, prepare, |batch, found| {
-            points += batch.len() as u64;
+            points += batch.points.len() as u64;
             bounds = union(bounds, found.bounds);
             outside += found.outside;
             counters.add(&found.cells)
@@ -193,8 +194,8 @@ impl<P: Passes + ?Sized> Work<'_, P> {
             let mut counters =
                 Counters::adaptive(counts.tree, counts.tree.depth(), options.budget.counters());
             let known = &*counts;
-            let prepare = |batch: &[Point], found: &mut BatchCells| {
-                found.prepare(&known.tree, batch);
+            let prepare = |batch: &PointBatch, found: &mut BatchCells| {
+                found.prepare(&known.tree, &batch.points);
                 if found.outside > 0 {
                     return Err(input_changed());
                 }

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 
+use super::batch::{PointBatch, encode_records};
 use super::buffer::CellBuffers;
 use super::changed::input_changed;
 use super::locate::Locator;
@@ -11,7 +12,7 @@ use super::plan::Plan;
 use super::work::Work;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{Header, StreamWriter, encode_points};
+use spmesh_stream::{Header, StreamWriter};
 
 /// Complete leaves are written after every so many points of the input. Batches play no role, so that the
 /// output depends on the input alone.
@@ -22,14 +23,16 @@ const WINDOW: u64 = 1 << 16;
 struct Located {
     leaves: Vec<u32>,
     records: Vec<u8>,
+    /// A buffer.
+    points: Vec<u8>,
 }
 
 impl Located {
-    fn prepare(&mut self, locator: &Locator, header: &Header, points: &[Point]) -> Result<()> {
-        expect_inside(&header.bounds, points)?;
-        locator.locate(points, &mut self.leaves)?;
+    fn prepare(&mut self, locator: &Locator, header: &Header, batch: &PointBatch) -> Result<()> {
+        expect_inside(&header.bounds, &batch.points)?;
+        locator.locate(&batch.points, &mut self.leaves)?;
         self.records.clear();
-        encode_points(header, points, &mut self.records)
+        encode_records(header, batch, &mut self.points, &mut self.records)
     }
 
     /// Every run of points in one leaf: the leaf, and the bytes of the records.
@@ -60,7 +63,7 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     ) -> Result<()> {
         writer.cells(&plan.take_empty())?;
         let header = writer.header().clone();
-        let record_len = header.point_len();
+        let record_len = header.record_len();
         let bytes = options.budget.bytes() - plan.bytes();
         let records = header.points.unwrap_or(u64::MAX);
         let mut buffers =
@@ -69,12 +72,12 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         let mut write_leaves = |complete: &mut Vec<usize>, buffers: &mut CellBuffers| {
             complete.sort_unstable();
             complete.drain(..).try_for_each(|leaf| {
-                buffers.drain(leaf, |bytes| writer.encoded_points(bytes))?;
+                buffers.drain(leaf, |bytes| writer.encoded_records(bytes))?;
                 writer.cells(&[locator.leaves()[leaf]])
             })
         };
         let (mut complete, mut points, mut window_end) = (Vec::new(), 0, WINDOW);
-        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        let prepare = |batch: &PointBatch, located: &mut Located| located.prepare(&locator, &header, batch);
         self.read_all(Pass::Write, prepare, |_, located| {
             for (leaf, records) in located.runs(record_len) {
                 let is_complete = countdown.take(leaf, records.len() / record_len)?;
@@ -108,11 +111,11 @@ impl<P: Passes + ?Sized> Work<'_, P> {
         writer.cells(&plan.take_empty())?;
         let header = writer.header().clone();
         let (locator, mut countdown) = plan.split();
-        let prepare = |points: &[Point], located: &mut Located| located.prepare(&locator, &header, points);
+        let prepare = |batch: &PointBatch, located: &mut Located| located.prepare(&locator, &header, batch);
         self.read_all(Pass::Write, prepare, |_, located| {
-            for (leaf, records) in located.runs(header.point_len()) {
-                writer.encoded_points(records)?;
-                if countdown.take(leaf, records.len() / header.point_len())? {
+            for (leaf, records) in located.runs(header.record_len()) {
+                writer.encoded_records(records)?;
+                if countdown.take(leaf, records.len() / header.record_len())? {
                     writer.cells(&[locator.leaves()[leaf]])?;
                 }
             }
@@ -129,8 +132,10 @@ impl<P: Passes + ?Sized> Work<'_, P> {
     pub(super) fn write_untagged<W: Write>(&mut self, mut writer: StreamWriter<W>) -> Result<()> {
         let header = writer.header().clone();
         if header.points != Some(0) {
-            let prepare = |points: &[Point], (): &mut ()| expect_inside(&header.bounds, points);
-            self.read_all(Pass::Write, prepare, |batch, ()| writer.points(batch))?;
+            let prepare = |batch: &PointBatch, (): &mut ()| expect_inside(&header.bounds, &batch.points);
+            self.read_all(Pass::Write, prepare, |batch, ()| {
+                writer.points_with_rows(&batch.points, &batch.rows)
+            })?;
         }
         if header.points != Some(writer.totals().points) {
             return Err(input_changed());

@@ -10,6 +10,7 @@
 //!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
+mod batch;
 mod budget;
 mod buffer;
 mod cell_counts;

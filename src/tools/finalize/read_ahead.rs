@@ -1,9 +1,9 @@
 //! Reading ahead: a thread decodes and prepares the next batches while the calling thread works on one.
 
+use super::batch::PointBatch;
 use spmesh_core::error::Result;
 use spmesh_core::parallel;
 use spmesh_io::source::PointReader;
-use spmesh_model::bounds::Point;
 
 /// Batches in all: one that is being read, one that waits, and one that the calling thread works on.
 const BATCHES: usize = 3;
@@ -11,7 +11,7 @@ const BATCHES: usize = 3;
 /// Points, and what was prepared of them on the reader's thread.
 #[derive(Default)]
 struct Batch<T> {
-    points: Vec<Point>,
+    points: PointBatch,
     prepared: T,
 }
 
@@ -24,12 +24,12 @@ struct Batch<T> {
 /// The first error in the order of the points, whichever thread it happens on.
 pub(super) fn read_ahead<T: Default + Send>(
     reader: &mut dyn PointReader,
-    mut prepare: impl FnMut(&[Point], &mut T) -> Result<()> + Send,
-    mut consume: impl FnMut(&[Point], &mut T) -> Result<()>,
+    mut prepare: impl FnMut(&PointBatch, &mut T) -> Result<()> + Send,
+    mut consume: impl FnMut(&PointBatch, &mut T) -> Result<()>,
 ) -> Result<()> {
     let read = |batch: &mut Batch<T>| {
-        reader.next_batch(&mut batch.points)?;
-        if batch.points.is_empty() {
+        batch.points.read(reader)?;
+        if batch.points.points.is_empty() {
             return Ok(false);
         }
         prepare(&batch.points, &mut batch.prepared)?;

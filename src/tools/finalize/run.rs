@@ -30,6 +30,8 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     output: W,
 ) -> Result<Stats> {
     options.check(input.description().dims)?;
+    let budget = options.budget.beside_rows(input.description().attributes.row_len())?;
+    let options = &Options { budget, ..options.clone() };
     let mut work = Work::new(input, options, observer);
     work.write(options, output).map_err(|error| match input.name() {
         // An error without a name concerns the input as a whole.
@@ -68,12 +70,13 @@ impl<P: Passes + ?Sized> Work<'_, P> {
 }
 
 fn header_of(description: &Description, counts: &PointCounts, options: &Options) -> Header {
-    let Description { coordinates, dims, has_elevation, ref crs, .. } = *description;
+    let Description { coordinates, dims, has_elevation, ref crs, ref attributes, .. } = *description;
     Header {
         bounds: counts.bounds,
         points: Some(counts.points),
         chunked: counts.cells.is_some() && options.order == Order::Chunked,
         crs: crs.clone(),
+        attributes: attributes.clone(),
         ..Header::new(Kind::Points, coordinates, dims, has_elevation)
     }
 }

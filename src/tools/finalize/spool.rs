@@ -31,6 +31,13 @@ pub enum Spooling {
     Never,
 }
 
+/// How points are encoded.
+fn header_of(description: &Description) -> Header {
+    let Description { coordinates, dims, has_elevation, ref attributes, .. } = *description;
+    let header = Header::new(Kind::Points, coordinates, dims, has_elevation);
+    Header { attributes: attributes.clone(), ..header }
+}
+
 /// Points in a temporary file, in input order.
 pub(super) struct Spool {
     file: TemporaryFile,
@@ -42,9 +49,8 @@ pub(super) struct Spool {
 
 impl Spool {
     fn create(folder: &Path, description: &Description) -> Result<Spool> {
-        let Description { coordinates, dims, has_elevation, .. } = *description;
         let file = TemporaryFile::create(Some(folder))?;
-        let header = Header::new(Kind::Points, coordinates, dims, has_elevation);
+        let header = header_of(description);
         Ok(Spool { file, header, bytes: 0, points: 0, invalid: 0 })
     }
 
@@ -60,13 +66,15 @@ impl Spool {
 
     /// Starts a pass over the points.
     pub(super) fn read(&self) -> SpoolReader<'_> {
-        SpoolReader { spool: self, at: 0, payload: Vec::new() }
+        SpoolReader { spool: self, at: 0, payload: Vec::new(), rows: Vec::new() }
     }
 
-    fn append(&mut self, points: &[Point], block: &mut Vec<u8>) -> Result<()> {
+    /// Appends points, then their rows.
+    fn append(&mut self, points: &[Point], rows: &[u8], block: &mut Vec<u8>) -> Result<()> {
         block.clear();
         block.resize(BLOCK_HEADER_LEN, 0);
         encode_points(&self.header, points, block)?;
+        block.extend_from_slice(rows);
         let payload = &block[BLOCK_HEADER_LEN..];
         let (len, checksum) = (payload.len() as u32, crc32c::crc32c(payload));
         block[..4].copy_from_slice(&len.to_le_bytes());
@@ -83,6 +91,7 @@ pub(super) struct SpoolReader<'a> {
     spool: &'a Spool,
     at: u64,
     payload: Vec<u8>,
+    rows: Vec<u8>,
 }
 
 impl SpoolReader<'_> {
@@ -105,7 +114,11 @@ impl SpoolReader<'_> {
         if crc32c::crc32c(&self.payload) != checksum {
             return Err(damaged());
         }
-        decode_points(&self.spool.header, &self.payload, batch);
+        let header = &self.spool.header;
+        let points = self.payload.len() / header.record_len();
+        let (points, rows) = self.payload.split_at(points * header.point_len());
+        decode_points(header, points, batch);
+        self.rows.extend_from_slice(rows);
         Ok(())
     }
 }
@@ -120,10 +133,15 @@ fn damaged() -> Error {
 impl PointReader for SpoolReader<'_> {
     fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
         batch.clear();
+        self.rows.clear();
         if self.at == self.spool.bytes {
             return Ok(());
         }
         self.read_block(batch).map_err(|e| e.of_input(self.spool.file.name()))
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
     }
 
     fn invalid(&self) -> u64 {
@@ -148,9 +166,8 @@ impl SpoolPlan {
     ) -> Option<SpoolPlan> {
         let is_named = folder.is_some();
         let folder = folder.map_or_else(std::env::temp_dir, Path::to_path_buf);
-        let Description { coordinates, dims, has_elevation, stated_points, .. } = *description;
-        let point_len = Header::new(Kind::Points, coordinates, dims, has_elevation).point_len() as u64;
-        let bytes = stated_points.unwrap_or(0).saturating_mul(point_len);
+        let record_len = header_of(description).record_len() as u64;
+        let bytes = description.stated_points.unwrap_or(0).saturating_mul(record_len);
         let is_kept = match rule {
             Spooling::Always => true,
             Spooling::Never => false,
@@ -220,7 +237,7 @@ impl<'a> Tee<'a> {
                 .of_input(spool.file.name()));
             }
         }
-        spool.append(batch, &mut self.block)
+        spool.append(batch, self.reader.rows(), &mut self.block)
     }
 }
 
@@ -236,6 +253,10 @@ impl PointReader for Tee<'_> {
             Ok(()) => {}
         }
         Ok(())
+    }
+
+    fn rows(&self) -> &[u8] {
+        self.reader.rows()
     }
 
     fn invalid(&self) -> u64 {

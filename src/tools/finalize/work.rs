@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::batch::PointBatch;
 use super::options::Options;
 use super::passes::{Observer, Pass, Passes};
 use super::read_ahead::read_ahead;
@@ -9,7 +10,6 @@ use super::spool::{Spool, SpoolPlan, Tee};
 use super::stats::Stats;
 use spmesh_core::error::Result;
 use spmesh_io::source::PointReader;
-use spmesh_model::bounds::Point;
 
 /// The state that all passes share.
 pub(super) struct Work<'a, P: Passes + ?Sized> {
@@ -43,8 +43,8 @@ impl<'a, P: Passes + ?Sized> Work<'a, P> {
     pub(super) fn read_all<T: Default + Send>(
         &mut self,
         pass: Pass,
-        prepare: impl FnMut(&[Point], &mut T) -> Result<()> + Send,
-        mut consume: impl FnMut(&[Point], &mut T) -> Result<()>,
+        prepare: impl FnMut(&PointBatch, &mut T) -> Result<()> + Send,
+        mut consume: impl FnMut(&PointBatch, &mut T) -> Result<()>,
     ) -> Result<()> {
         let start = Instant::now();
         let total = match self.stats.points {
@@ -54,9 +54,9 @@ impl<'a, P: Passes + ?Sized> Work<'a, P> {
         self.observer.pass(pass, total);
         let mut done = 0;
         let observer = &mut *self.observer;
-        let consume = |batch: &[Point], prepared: &mut T| {
+        let consume = |batch: &PointBatch, prepared: &mut T| {
             consume(batch, prepared)?;
-            done += batch.len() as u64;
+            done += batch.points.len() as u64;
             observer.done(done);
             Ok(())
         };
