@@ -54,6 +54,7 @@
 mod block;
 mod cell_words;
 mod chunks;
+mod compression;
 mod configuration_rules;
 mod configuration_set;
 mod configurations;

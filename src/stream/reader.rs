@@ -7,6 +7,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::cell_words::CellWords;
+use super::compression::Decompressor;
 use super::configurations::ConfigurationBlock;
 use super::event::{Event, Totals};
 use super::functions;
@@ -29,6 +30,10 @@ pub struct StreamReader<R: Read> {
     name: String,
     header: Header,
     payload: Vec<u8>,
+    /// The compressed form of the payload, if the block has one.
+    compressed: Vec<u8>,
+    decompressor: Decompressor,
+    payload_bytes: u64,
     /// A buffer of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
@@ -59,6 +64,9 @@ impl<R: Read> StreamReader<R> {
             name,
             header,
             payload: Vec::new(),
+            compressed: Vec::new(),
+            decompressor: Decompressor::default(),
+            payload_bytes: 0,
             spare: Vec::new(),
             points_bounds: None,
             block: 0,
@@ -89,6 +97,11 @@ impl<R: Read> StreamReader<R> {
     /// Bytes read so far.
     pub fn bytes_read(&self) -> u64 {
         self.offset
+    }
+
+    /// Bytes of the payloads read so far, decompressed.
+    pub fn payload_bytes_read(&self) -> u64 {
+        self.payload_bytes
     }
 
     /// Bounding box of the points of the last [`Event::Points`]; `None` if it held no points.
@@ -124,8 +137,8 @@ impl<R: Read> StreamReader<R> {
     /// does not know it and must not skip it.
     pub fn next_event(&mut self) -> Result<Option<Event>> {
         while !self.ended {
-            let tag = match self.read_block() {
-                Ok(tag) => tag,
+            let (tag, is_compressed) = match self.read_block() {
+                Ok(read) => read,
                 Err(error) => {
                     let position = format!("block {} at byte {}", self.block, self.offset);
                     return Err(error.at(position).of_input(&self.name));
@@ -134,16 +147,19 @@ impl<R: Read> StreamReader<R> {
             self.block += 1;
             self.block_start = self.offset;
             self.offset += (FRAME_LEN + self.payload.len()) as u64;
-            if let Some(tag) = tag {
-                return self.decode(tag).map(Some).map_err(|error| self.locate(error));
+            let Some(tag) = tag else { continue };
+            if is_compressed {
+                self.decompress(tag).map_err(|error| self.locate(error))?;
             }
+            self.payload_bytes += self.payload.len() as u64;
+            return self.decode(tag).map(Some).map_err(|error| self.locate(error));
         }
         Ok(None)
     }
 
     /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
-    /// Returns `None` for a block that this version skips.
-    fn read_block(&mut self) -> Result<Option<Tag>> {
+    /// Returns its tag, `None` for a block that this version skips, and whether it is compressed.
+    fn read_block(&mut self) -> Result<(Option<Tag>, bool)> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
         let found = read_full(&mut self.input, &mut bytes)?;
@@ -154,6 +170,11 @@ impl<R: Read> StreamReader<R> {
         }
         let frame = Frame::decode(&bytes);
         let len = frame.len as usize;
+        if frame.is_compressed && !self.header.compressed {
+            return Err(Error::malformed(
+                "a compressed block in a stream without feature bit 0: damaged, or not a spmesh stream",
+            ));
+        }
         if len > BLOCK_PAYLOAD_MAX {
             return Err(Error::malformed(format!(
                 "block of {len} bytes, the maximum is {BLOCK_PAYLOAD_MAX}: damaged, or not a spmesh stream"
@@ -173,7 +194,7 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok(None) };
+        let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok((None, frame.is_compressed)) };
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
                 "no block \"{}\" may stand here in a stream of kind {}",
@@ -182,7 +203,16 @@ impl<R: Read> StreamReader<R> {
             )));
         }
         self.last_tag = Some(tag);
-        Ok(Some(tag))
+        Ok((Some(tag), frame.is_compressed))
+    }
+
+    /// Replaces the compressed payload of a block by the payload.
+    fn decompress(&mut self, tag: Tag) -> Result<()> {
+        if tag == Tag::End {
+            return Err(Error::malformed("END is compressed: it must not be"));
+        }
+        std::mem::swap(&mut self.payload, &mut self.compressed);
+        self.decompressor.decompress(&self.compressed, &mut self.payload)
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {

@@ -97,6 +97,7 @@ impl TwinHeader {
             tree: tree.transpose()?,
             region: self.region.map(|sides| region_of(&sides, dims)).transpose()?,
             chunked: self.chunked,
+            compressed: false,
             crs: self.crs,
             producer: self.producer,
         };

@@ -173,6 +173,7 @@ impl Job<'_> {
             tree: None,
             region: None,
             chunked: false,
+            compressed: self.options.compress,
             crs: Crs::Unknown,
             producer,
         }
