@@ -16,11 +16,13 @@ mod patch_triangles;
 mod points;
 mod predictors;
 mod records;
+mod shapes;
 
 use super::block::Tag;
 use super::coordinates::Coordinates;
 use super::header::Header;
 use frames::{Packer, Unpacker};
+use shapes::Shapes;
 use spmesh_core::error::{Error, Result};
 
 /// Shorter payloads stay as they are: heads of methods and frames would take what compression saves.
@@ -51,6 +53,7 @@ impl Method {
 #[derive(Default)]
 pub(super) struct Compressor {
     packer: Packer,
+    shapes: Shapes,
     compressed: Vec<u8>,
 }
 
@@ -72,7 +75,7 @@ impl Compressor {
             };
         if !has_columns {
             compressed.clear();
-            records::encode(payload, record_len(header, tag), packer, compressed);
+            self.shapes.encode(header, tag, payload, packer, compressed);
         }
         (self.compressed.len() < payload.len()).then_some(&self.compressed)
     }
@@ -109,19 +112,6 @@ impl Decompressor {
 
 fn has_three_integers(header: &Header) -> bool {
     matches!(header.coordinates, Coordinates::I32 { .. }) && header.coordinates_per_point() == 3
-}
-
-/// The length of records that the writer takes for the payload of a tag.
-fn record_len(header: &Header, tag: Tag) -> usize {
-    match tag {
-        Tag::Points | Tag::Points4 => header.point_len(),
-        Tag::ResidualPoints => 8 + header.point_len(),
-        Tag::Cells | Tag::Labels | Tag::Coefficients | Tag::End => 8,
-        Tag::Patch => header.coordinates.width(),
-        Tag::Walls => 4 * header.kind.vertices_per_wall(),
-        Tag::Simplices4 => 20,
-        Tag::Cells4 | Tag::Configurations | Tag::Functions => 4,
-    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,9 @@ use super::operations::{Apex, Given, Operation};
 /// Triangles at a vertex that the encoder looks at.
 const SEARCH: usize = 24;
 
+/// Why a triangle is refused in any place.
+const REPEATED: Fault = "a triangle that uses a vertex twice";
+
 /// Three vertices of a patch, as local indices.
 pub(super) type Triangle = [u32; 3];
 
@@ -187,8 +190,8 @@ impl Corners {
     }
 }
 
-/// The triangles of the columns, and the parents of the new vertices. Vertices of triangles are in range; they
-/// may be equal.
+/// The triangles of the columns, and the parents of the new vertices. Vertices of triangles are in range and
+/// different.
 ///
 /// # Errors
 /// If the columns are too short, or refer to what does not exist.
@@ -233,6 +236,10 @@ impl Decoder<'_> {
         let (is_near, apex, edge, rotation) = match operation {
             Operation::Loose([a, b, c]) => {
                 let triangle = [self.given(a)?, self.given(b)?, self.given(c)?];
+                let [a, b, c] = triangle;
+                if a == b || b == c || c == a {
+                    return Err(REPEATED);
+                }
                 self.walk.border.triangle(triangle);
                 return Ok(triangle);
             }
@@ -251,6 +258,9 @@ impl Decoder<'_> {
         };
         if x == NONE {
             return Err("an open edge that does not exist");
+        }
+        if x == p || x == q {
+            return Err(REPEATED);
         }
         self.walk.border.triangle([p, q, x]);
         Ok(match rotation {
