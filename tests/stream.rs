@@ -1,5 +1,7 @@
 //! The reader trusts no input, and the writer loses nothing.
 
+mod compressed;
+mod compressed_tools;
 mod configurations;
 mod four;
 mod newer;

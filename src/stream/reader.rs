@@ -33,7 +33,8 @@ pub struct StreamReader<R: Read> {
     /// The compressed form of the payload, if the block has one.
     compressed: Vec<u8>,
     decompressor: Decompressor,
-    payload_bytes: u64,
+    /// The byte at which the next block would start if none were compressed.
+    plain_offset: u64,
     /// A buffer of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
@@ -66,7 +67,7 @@ impl<R: Read> StreamReader<R> {
             payload: Vec::new(),
             compressed: Vec::new(),
             decompressor: Decompressor::default(),
-            payload_bytes: 0,
+            plain_offset: offset,
             spare: Vec::new(),
             points_bounds: None,
             block: 0,
@@ -99,9 +100,10 @@ impl<R: Read> StreamReader<R> {
         self.offset
     }
 
-    /// Bytes of the payloads read so far, decompressed.
-    pub fn payload_bytes_read(&self) -> u64 {
-        self.payload_bytes
+    /// Bytes that the stream so far would have if no block were compressed. Blocks that are skipped count as
+    /// they are.
+    pub fn plain_bytes_read(&self) -> u64 {
+        self.plain_offset
     }
 
     /// Bounding box of the points of the last [`Event::Points`]; `None` if it held no points.
@@ -147,11 +149,11 @@ impl<R: Read> StreamReader<R> {
             self.block += 1;
             self.block_start = self.offset;
             self.offset += (FRAME_LEN + self.payload.len()) as u64;
+            self.plain_offset += (FRAME_LEN + self.payload.len()) as u64;
             let Some(tag) = tag else { continue };
             if is_compressed {
                 self.decompress(tag).map_err(|error| self.locate(error))?;
             }
-            self.payload_bytes += self.payload.len() as u64;
             return self.decode(tag).map(Some).map_err(|error| self.locate(error));
         }
         Ok(None)
@@ -212,7 +214,9 @@ impl<R: Read> StreamReader<R> {
             return Err(Error::malformed("END is compressed: it must not be"));
         }
         std::mem::swap(&mut self.payload, &mut self.compressed);
-        self.decompressor.decompress(&self.compressed, &mut self.payload)
+        self.decompressor.decompress(&self.compressed, &mut self.payload)?;
+        self.plain_offset = self.plain_offset - self.compressed.len() as u64 + self.payload.len() as u64;
+        Ok(())
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {
