@@ -182,7 +182,7 @@ fn seal(mut frames: Vec<Vec<u8>>) -> Vec<u8> {
     let checksum = crc32c::crc32c(&header[..body_end]);
     header[body_end..].copy_from_slice(&checksum.to_le_bytes());
     for (sequence, block) in (0u32..).zip(&mut frames[1..]) {
-        let len = block.len() as u32 - 16 | u32::from(block[11] & 0x80) << 24;
+        let len = (block.len() as u32 - 16) | (u32::from(block[11] & 0x80) << 24);
         block[4..8].copy_from_slice(&sequence.to_le_bytes());
         block[8..12].copy_from_slice(&len.to_le_bytes());
         let checksum = crc32c::crc32c_append(crc32c::crc32c(&block[..12]), &block[16..]);

@@ -43,8 +43,8 @@ impl Walk {
         Walk { new, border: Border::new(vertices), parents, next: 0, last_import: new }
     }
 
-    /// Gives parents to the new vertices from `first` on: the greatest lower corner of `triangle`, or else the
-    /// vertex before.
+    /// Gives parents to the new vertices from `first` on: the greatest lower corner of `triangle`, or else
+    /// the vertex before.
     #[inline(always)]
     fn set_parents(&mut self, first: u32, triangle: Triangle) {
         for vertex in first..self.next {
@@ -157,8 +157,8 @@ impl Corners {
         }
     }
 
-    /// Of the edges that earlier triangles have in the other direction, one of the latest triangle: the corner
-    /// where it starts there, and the place where it starts in this triangle.
+    /// Of the edges that earlier triangles have in the other direction, one of the latest triangle: the
+    /// corner where it starts there, and the place where it starts in this triangle.
     #[inline(always)]
     fn latest_beside(&self, [a, b, c]: Triangle) -> Option<(u32, usize)> {
         let mut latest: Option<(u32, usize)> = None;

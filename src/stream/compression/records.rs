@@ -1,6 +1,6 @@
 //! Any payload as records of one length: the first bytes of all records, then the second ones, and so on.
-//! Bytes of one meaning stand together then, which zstd makes use of. Words may be replaced before by what they
-//! differ from those of the record before.
+//! Bytes of one meaning then stand together, which zstd makes use of. Before that, words may be replaced by
+//! their differences from the words of the record before.
 
 use super::bytes::Bytes;
 use super::frames::{Packer, Unpacker};
@@ -131,7 +131,8 @@ fn restore_planes(content: &[u8], record_len: usize, payload: &mut [u8]) {
     tail.copy_from_slice(rest);
 }
 
-/// The payload with words of `WIDTH` bytes replaced by what `difference` makes of them and of the words before.
+/// The payload with words of `WIDTH` bytes replaced by what `difference` makes of them and of the words
+/// before.
 fn differences<const WIDTH: usize>(
     payload: &[u8],
     record_len: usize,
