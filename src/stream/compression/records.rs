@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn payloads_come_back() {
         for len in [0usize, 1, 23, 24, 100, 4096] {
-            let payload: Vec<u8> = (0..len).map(|i| (i * i * 7 >> 3) as u8).collect();
+            let payload: Vec<u8> = (0..len).map(|i| (i * i * 7 / 8) as u8).collect();
             for record_len in [1, 4, 8, 20, 24, 65_528] {
                 for words in [Words::Kept, Words::U32, Words::U64].into_iter().filter(|w| w.fit(record_len)) {
                     let (mut compressed, mut restored) = (Vec::new(), Vec::new());

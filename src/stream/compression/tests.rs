@@ -114,7 +114,7 @@ fn patches_come_back() {
         };
         let patch = Patch {
             new: (0..new)
-                .map(|_| std::array::from_fn(|_| random.next() as i32 >> random.below(32)))
+                .map(|_| std::array::from_fn(|_| (random.next() as i32) >> random.below(32)))
                 .collect(),
             imported: (0..imported).map(|_| random.next() >> random.below(64)).collect(),
             triangles: (0..random.below(200)).map(|_| triangle(&mut random)).collect(),
