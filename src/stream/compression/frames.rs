@@ -1,5 +1,7 @@
 //! zstd frames (RFC 8878), in contexts that are used again.
 
+use std::alloc::{Layout, handle_alloc_error};
+
 use zstd::zstd_safe::zstd_sys::ZSTD_EndDirective as End;
 use zstd::zstd_safe::{
     CCtx, CParameter, DCtx, InBuffer, OutBuffer, ParamSwitch, ResetDirective, compress_bound,
@@ -18,8 +20,8 @@ const RECORDS_LEVEL: i32 = 3;
 const SEGMENT_MIN: usize = 64;
 /// Bytes that a block of the frame adds at most.
 const SEGMENT_HEAD: usize = 16;
-/// Settings and frames in memory fail for no input.
-const SOUND: &str = "zstd takes these settings and has room for the frame";
+/// Settings do not depend on the input.
+const SOUND: &str = "zstd takes these settings";
 
 /// Compresses bytes into frames.
 #[derive(Default)]
@@ -59,7 +61,7 @@ impl Packer {
 
 /// Starts a frame of `len` bytes.
 fn start<'c>(context: &'c mut Option<CCtx<'static>>, level: i32, len: usize) -> &'c mut CCtx<'static> {
-    let context = context.get_or_insert_with(CCtx::create);
+    let context = context.get_or_insert_with(|| CCtx::try_create().unwrap_or_else(|| out_of_memory()));
     context.reset(ResetDirective::SessionAndParameters).expect(SOUND);
     context.set_parameter(CParameter::CompressionLevel(level)).expect(SOUND);
     context.set_pledged_src_size(Some(len as u64)).expect(SOUND);
@@ -73,7 +75,13 @@ fn reserve(frame: &mut Vec<u8>, len: usize) {
 
 fn write(context: &mut CCtx, output: &mut OutBuffer<Vec<u8>>, bytes: &[u8], end: End) {
     let mut input = InBuffer::around(bytes);
-    while context.compress_stream2(output, &mut input, end).expect(SOUND) != 0 {}
+    // There is room for the frame, so only the memory of zstd itself can be lacking.
+    while context.compress_stream2(output, &mut input, end).unwrap_or_else(|_| out_of_memory()) != 0 {}
+}
+
+/// Ends the program as an allocation does that fails.
+fn out_of_memory() -> ! {
+    handle_alloc_error(Layout::new::<[u8; 1 << 20]>())
 }
 
 /// Decompresses frames.
@@ -96,7 +104,8 @@ impl Unpacker {
         }
         self.content.clear();
         self.content.reserve_exact(len_max);
-        let context = self.context.get_or_insert_with(DCtx::create);
+        let create = || DCtx::try_create().unwrap_or_else(|| out_of_memory());
+        let context = self.context.get_or_insert_with(create);
         let len = context.decompress(&mut self.content, frame);
         match len {
             Ok(len) if len <= len_max => Ok(&self.content),
