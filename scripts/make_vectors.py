@@ -59,7 +59,7 @@ class Vector:
     """A stream under construction: pieces of bytes, each with a comment, and the lines of its text twin."""
 
     def __init__(self, kind="points", **fields):
-        self.pieces, self.lines, self.sequence = [], [], 0
+        self.pieces, self.lines, self.sequence, self.body = [], [], 0, None
         self.header(kind, **fields)
 
     def put(self, data, comment):
@@ -68,7 +68,7 @@ class Vector:
         return self
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
-               chunked=False, wkt=None, geokeys=None, producer="vector", edit=None, raw=None):
+               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, edit=None, raw=None):
         """`grid` is scale and offset; `raw` overrides fields, by their names below, and payloads of records,
         by their tags, with bytes, and adds a "tail" behind the records; `edit` changes the list of records, which are pairs of tag and payload."""
         raw = raw or {}
@@ -88,7 +88,7 @@ class Vector:
             ("dims", bytes([dims]), "dims"),
             ("elevation", bytes([elevation]), "elevation"),
             ("flags", bytes([chunked]), "flags"),
-            ("features", bytes(4), "features"),
+            ("features", struct.pack("<I", compressed), "features" + ": compressed blocks" * compressed),
             ("points", struct.pack("<Q", UNKNOWN if points is None else points), "points"),
         ]
         assert set(raw) <= {name for name, _, _ in fields} | {tag.decode("latin1") for tag, _ in records} | {"tail", "checksum"}, raw
@@ -155,14 +155,22 @@ class Vector:
     def block(self, tag, payload, **damage):
         """`payload` is a list of pairs of bytes and comment; `damage` may set length, sequence or
         checksum."""
+        is_compressed, payload = self.body is not None, payload if self.body is None else self.body
+        self.body = None
         data = b"".join(piece for piece, _ in payload)
         sequence, length = damage.get("sequence", self.sequence), damage.get("length", len(data))
-        head = tag + struct.pack("<II", sequence, length)
-        self.put(head[:4], "block " + printable(tag)).put(head[4:8], "sequence").put(head[8:], "length")
+        head = tag + struct.pack("<II", sequence, length + (is_compressed << 31))
+        self.put(head[:4], "block " + printable(tag)).put(head[4:8], "sequence")
+        self.put(head[8:], "length, compressed" if is_compressed else "length")
         self.put(struct.pack("<I", damage.get("checksum", crc32c(head + data))), "CRC32C of the block")
         for piece, comment in payload:
             self.put(piece, comment)
         self.sequence += 1
+        return self
+
+    def instead(self, *body):
+        """Gives the next block this compressed payload in place of its payload: pairs of bytes and comment."""
+        self.body = list(body)
         return self
 
     def skip(self, tag=b"note", payload=b"", **damage):
@@ -346,6 +354,94 @@ PARTIAL = dict(kind="partial triangle mesh", grid=HALF, elevation=1, region=(0, 
 PARTIAL_SPACE = dict(kind="partial tetrahedral mesh", dims=3, grid=EVEN, region=(0, 0, 0, 8, 8, 8))
 
 
+# --- Compressed payloads -----------------------------------------------------------------------------------
+
+
+def frame(content, blocks=None, head=None):
+    """A zstd frame of raw blocks. `blocks` are triples of type, size and bytes instead; `head` is a header instead
+    of that of one segment."""
+    if head is None:
+        size = len(content)
+        head = bytes([0x20, size]) if size < 256 else struct.pack("<BH", 0x60, size - 256)
+    blocks = blocks or [(0, len(content), content)]
+    data = b"\x28\xb5\x2f\xfd" + head
+    for number, (kind, size, body) in enumerate(blocks):
+        data += (size << 3 | kind << 1 | (number == len(blocks) - 1)).to_bytes(3, "little") + body
+    return data
+
+
+def code(number):
+    """The code of a signed integer of 32 bits."""
+    number = (number + 2**31) % 2**32 - 2**31
+    return 2 * number if number >= 0 else -2 * number - 1
+
+
+def columns(*parts):
+    """Tokens and bits of columns, which are pairs of k and numbers, and of bytes."""
+    tokens, bits, count = b"", 0, 0
+    for part in parts:
+        if isinstance(part, bytes):
+            tokens += part
+            continue
+        k, numbers = part
+        for value in numbers:
+            length = max(value.bit_length() - 1 - k, 0)
+            tokens += bytes([(length << k) + (value >> length)])
+            bits |= (value & (1 << length) - 1) << count
+            count += length
+    return tokens, bits.to_bytes((count + 7) // 8, "little")
+
+
+def framed(tokens, bits):
+    packed = frame(tokens)
+    return [(struct.pack("<I", len(packed)), "bytes of the frame"), (packed, "zstd frame of tokens"), (bits, "bits")]
+
+
+def packed_points(count, axes, *parts):
+    """Method 1: `axes` are triples of predictor, k and first coordinate; `parts` are those of `columns`."""
+    return [(b"\1", "method 1: points"), (struct.pack("<I", count), "points")] + [
+        (struct.pack("<BBi", *axis), "predictor, k, first coordinate") for axis in axes] + framed(*columns(*parts))
+
+
+def packed_patch(first, counts, operations, numbers, marks, edit=lambda tokens, bits: (tokens, bits)):
+    """Method 2: `numbers` are eight pairs of k and a column; `edit` changes tokens and bits."""
+    return [(b"\2", "method 2: triangles"), (struct.pack("<Q", first), "first id"),
+            (struct.pack("<4I", *counts), "counts N M S F"), (bytes(k for k, _ in numbers), "parameters")] + framed(
+        *edit(*columns(bytes(operations), *numbers, bytes(marks))))
+
+
+def packed_records(record, word, length, content, packed=None):
+    """Method 3."""
+    return [(b"\3", "method 3: records"), (struct.pack("<H", record), "bytes of a record"),
+            (bytes([word]), "bytes of a word"), (struct.pack("<I", length), "bytes of the payload"),
+            (frame(content) if packed is None else packed, "zstd frame")]
+
+
+def differences(vertices, parents):
+    """Columns 4 to 6 of a patch: each vertex less its parent."""
+    bases = [(0, 0, 0)] + [vertices[parent] for parent in parents[1:]]
+    return [[code(vertex[axis] - base[axis]) for vertex, base in zip(vertices, bases)] for axis in range(3)]
+
+
+# Six points whose columns are spelled out. The codes of x are 0 200 200 0 599 2000190, of 0 8 8 0 10 21 bits: y
+# has the order 0 3 1 2 4 5. Its codes, after the median, are 0 20 20 20 0 0: z has the order 0 3 4 1 2 5.
+SIX = [(5, 7, 1), (105, 17, 2), (205, 27, 0), (205, 37, 0), (-95, 47, 0), (1000000, 57, -(2**31))]
+SIX_AXES = [(0, 3, 5), (1, 2, 7), (0, 2, 1)]
+SIX_COLUMNS = [(3, [0, 200, 200, 0, 599, 2000190]), (2, [0, 20, 20, 20, 0, 0]), (2, [0, 0, 0, 2, 3, 2**32 - 1])]
+
+# A patch with each way to give a vertex: a fan around vertex 0, triangles around it, and loose ones.
+FAN = [(v * v % 7 - 3, 5 * v % 11, v) for v in range(13)]
+FAN_PARENTS = [0, 0, 1, 2, 3, 2, 1, 6, 5, 8, 9, 10, 11]
+FAN_TRIANGLES = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (1, 0, 4), (1, 5, 2), (3, 2, 5), (1, 6, 7), (1, 4, 5), (8, 9, 5),
+                 (3, 5, 4), (10, 12, 11), (12, 10, 0)]
+FAN_OPERATIONS = [0, 96, 96, 124, 32, 66, 9, 78, 1, 87, 3, 99]
+FAN_NUMBERS = [(2, [2, 2, 2, 2]), (3, [4, 4, 12, 11]), (2, [])] + [
+    (2, column) for column in differences(FAN, FAN_PARENTS)] + [(0, []), (7, [])]
+FAN_COUNTS = (13, 0, 12, 10)
+FAN_MARKS = (0xFF, 0x0C)
+COMPRESSED = dict(grid=HALF, elevation=1, compressed=True)
+
+
 def passing():
     """Name, title and vector of each stream that is well-formed."""
     yield "points-empty", "No points, nothing known but their number", Vector(
@@ -358,6 +454,7 @@ def passing():
         wkt='LOCAL_CS["Gr\u00fcn",\nUNIT["m\\",1]]').points(
         (50, -1, 7), (-2147483648, 2147483647, 0)).points((0, 0, -7)).end(3)
     yield from passing_skipped()
+    yield from passing_compressed()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
@@ -544,6 +641,132 @@ def passing_skipped():
         4, vertices=6, simplices=7, residual=6)
 
 
+def passing_compressed():
+    """Name, title and vector of streams with compressed blocks."""
+    yield "compressed-points", "Points in columns: both predictors, sorted columns, a number of 32 bits", Vector(
+        **COMPRESSED).instead(*packed_points(6, SIX_AXES, *SIX_COLUMNS)).points(*SIX).points((1, 2, 3)).end(7)
+    one = packed_points(1, [(0, 7, -1), (1, 0, 2**31 - 1), (0, 0, -(2**31))], (7, [0]), (0, [1]), (0, [2]))
+    yield "compressed-points-one", "One point: its first coordinates are changed, and wrap around", Vector(
+        **COMPRESSED).instead(*one).points((-1, 2**31 - 2, -(2**31) + 1)).end(1)
+    yield "compressed-patch", "Triangles by operations: loose, attached, by references and by open edges", Vector(
+        "triangle mesh", **COMPRESSED).instead(
+        *packed_patch(0, FAN_COUNTS, FAN_OPERATIONS, FAN_NUMBERS, FAN_MARKS)).patch(
+        0, FAN, (), FAN_TRIANGLES, (0, 1, 2, 3, 4, 5, 6, 7, 10, 11)).instead(*packed_patch(
+            13, (1, 3, 2, 4), [24, 108],
+            [(2, []), (2, []), (2, [code(0), code(1), code(1)]), (2, [code(7)]), (2, [code(-7)]), (2, [code(70)]),
+             (2, [8, 1, 3]), (2, [0, 0, 0])], [0x0F])).patch(
+        13, [(7, -7, 70)], (8, 9, 12), [(1, 2, 0), (2, 1, 3)], (0, 1, 2, 3)).end(14, vertices=14, simplices=14)
+    yield "compressed-patch-empty", "A patch of nothing, and one of vertices without triangles", Vector(
+        "triangle mesh", **COMPRESSED).instead(*packed_patch(0, (0, 0, 0, 0), [], [(0, [])] * 8, [])).patch().instead(
+        *packed_patch(0, (2, 0, 0, 2), [], [(0, [])] * 3 + [(2, [code(3), code(-1)])] * 3 + [(0, [])] * 2, [3])).patch(
+        0, [(3, 3, 3), (2, 2, 2)], (), (), (0, 1)).end(2, vertices=2)
+    doubles = struct.pack("<6d", 1, 2, 3, 4, 5, 6)
+    planes = b"".join(doubles[place::16] for place in range(16))
+    yield "compressed-records", "Records by planes, whole and with bytes left; frames of several blocks", Vector(
+        compressed=True).instead(*packed_records(16, 0, 48, planes)).points(("1", "2"), ("3", "4"), ("5", "6")).instead(
+        *packed_records(30, 0, 48, bytes(doubles[:30]) + doubles[30:])).points(("1", "2"), ("3", "4"), ("5", "6")).instead(
+        *packed_records(65535, 0, 16, b"", frame(b"", [(1, 16, b"\0"), (0, 0, b"")], b"\0\x08"))).points(
+        ("0", "0")).instead(*packed_records(1, 0, 0, b"")).points().end(7)
+    # Cells 17 16 31: the differences 17, -1, 15 have the codes 34, 1, 30.
+    words = bytes([34, 1, 30]) + bytes(21)
+    # (1, 1, -1), (3, 1, 0) less the words before: 1, 1, -1 with the codes 2, 2, 1, and 2, 0, 1 with 4, 0, 2.
+    deltas = bytes([2, 4, 0, 0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0, 0])
+    yield "compressed-words", "Records with differences of words of 4 and of 8 bytes", Vector(
+        tree=QUADTREE, **COMPRESSED).instead(*packed_records(12, 4, 24, deltas)).points((1, 1, -1), (3, 1, 0)).instead(
+        *packed_records(8, 8, 24, words)).cells(17, 16, 31).end(2, 3)
+    yield "compressed-skipped", "A skipped block is not decompressed", Vector(**COMPRESSED).instead(
+        (b"\xff\xfe", "no method")).skip().points((1, 2, 3)).instead().skip().end(1)
+    yield "compressed-none", "Blocks may be compressed, but none is", Vector(**COMPRESSED).points((1, 2, 3)).end(1)
+
+
+def failing_compressed(raw):
+    """Name, words of the error, and vector of streams with a compressed block that is malformed."""
+    points = lambda *body, **fields: Vector(**dict(COMPRESSED, **fields)).instead(*body).block(b"PNTS", []).end(1)
+    axes = [(0, 2, 0)] * 3
+    zeros = [(2, [0])] * 3
+    one = lambda count=1, axes=axes, parts=zeros: points(*packed_points(count, axes, *parts))
+    records = lambda *fields: points(*packed_records(*fields))
+    yield "compressed-no-feature", "a compressed block in a stream without feature bit 0", points(
+        *packed_points(1, axes, *zeros), compressed=False)
+    yield "compressed-skipped-no-feature", "a compressed block in a stream without feature bit 0", Vector(
+        grid=HALF).instead((b"abc", "skipped")).skip().end()
+    yield "compressed-end", "END is compressed: it must not be", Vector(**COMPRESSED).instead(
+        *packed_records(8, 0, 56, bytes(56))).end()
+    yield "compressed-oversize", "the maximum is 1048576", Vector(**COMPRESSED).instead().block(
+        b"PNTS", [], length=2**20 + 1)
+    yield "compressed-checksum", "checksum does not match", Vector(**COMPRESSED).instead(
+        *packed_points(1, axes, *zeros)).points((0, 0, 0), checksum=0).end(1)
+    yield "compressed-empty", "empty, expected a method", points()
+    yield "compressed-method-0", "method 0, expected 1, 2 or 3", points((b"\0", "method"), (bytes(12), "a point"))
+    yield "compressed-method-4", "method 4, expected 1, 2 or 3", points((b"\4", "method"))
+    yield "compressed-cut-off", "cut off", points(*packed_points(1, axes, *zeros)[:3])
+    yield "compressed-frame-long", "cut off", points(*packed_points(1, axes, *zeros)[:5], *raw(struct.pack("<I", 99)))
+    yield "compressed-frame-magic", "not one zstd frame", records(12, 0, 12, b"", b"\x29" + frame(bytes(12))[1:])
+    yield "compressed-frame-cut", "not one zstd frame", records(12, 0, 12, b"", frame(bytes(12))[:-1])
+    yield "compressed-frames", "not one zstd frame", records(12, 0, 24, b"", frame(bytes(12)) * 2)
+    yield "compressed-frame-skippable", "not one zstd frame", records(
+        12, 0, 12, b"", b"\x50\x2a\x4d\x18\0\0\0\0" + frame(bytes(12)))
+    yield "compressed-frame-none", "not one zstd frame", records(12, 0, 12, b"", b"")
+    yield "compressed-frame-size", "the zstd frame is damaged", records(
+        12, 0, 12, b"", frame(bytes(12), head=b"\x20\x0b"))
+    yield "compressed-frame-dictionary", "the zstd frame is damaged", records(
+        12, 0, 12, b"", frame(bytes(12), head=b"\x21\7\x0c"))
+    yield "compressed-records-long", "its content is too long", records(12, 0, 12, bytes(13))
+    yield "compressed-records-bomb", "its content is too long", records(
+        12, 0, 12, b"", frame(b"", [(1, 2**17, b"\0")] * 9, b"\0\x50"))
+    yield "compressed-records-short", "fewer bytes than the payload", records(12, 0, 24, bytes(12))
+    yield "compressed-records-huge", "more bytes than fit a block", records(12, 0, 2**20 + 1, bytes(12))
+    yield "compressed-records-none", "records of 0 bytes", records(0, 0, 12, bytes(12))
+    yield "compressed-records-word", "words of another width than 0, 4 or 8", records(12, 2, 12, bytes(12))
+    yield "compressed-records-words", "of no whole number of words", records(12, 8, 12, bytes(12))
+    yield "compressed-records-content", "whole number of records of 12", records(12, 0, 13, bytes(13))
+    yield "compressed-points-none", "no points, or more than fit a block", one(0, parts=[])
+    yield "compressed-points-many", "no points, or more than fit a block", one(87382)
+    yield "compressed-points-predictor", "a predictor above 1", one(axes=[(0, 2, 0), (2, 2, 0), (0, 2, 0)])
+    yield "compressed-points-k", "a parameter k above 7", one(axes=[(0, 8, 0)] + axes[1:])
+    yield "compressed-points-token", "a token stands for no number of 32 bits", one(
+        axes=[(0, 3, 0)] + axes[1:], parts=[b"\xf0"] + zeros[1:])
+    yield "compressed-points-tokens-few", "too few tokens", one(parts=zeros[1:])
+    yield "compressed-points-tokens-many", "its content is too long", one(parts=zeros + zeros[1:])
+    yield "compressed-points-bits-few", "too few bits", one(parts=[b"\x15"] + zeros[1:])
+    yield "compressed-points-bits-left", "bits are left", points(*packed_points(1, axes, *zeros), *raw(b"\0"))
+    yield "compressed-points-box", "outside of the header's bounding box", Vector(
+        bounds=(0, 0, 0, 1, 1, 1), **COMPRESSED).instead(*packed_points(1, [(0, 2, 2)] * 3, *zeros)).points(
+        (2, 2, 2)).end(1)
+
+    def patch(counts=(3, 0, 1, 3), operations=(0,), numbers=(), marks=(7,), first=0, edit=lambda t, b: (t, b)):
+        new, imported = counts[:2]
+        all = [(2, [])] * 3 + [(2, [0] * min(new, 8))] * 3 + [(2, [0] * min(imported, 8))] * 2
+        for column, values in numbers:
+            all[column] = (2, values)
+        return Vector("triangle mesh", **COMPRESSED).instead(
+            *packed_patch(first, counts, operations, all, marks, edit)).block(b"PTCH", []).end(3, vertices=3, simplices=1)
+
+    attached = lambda operation, *numbers: patch((4, 0, 2, 4), (0, operation), numbers, (15,))
+    yield "compressed-patch-counts", "counts of more than fits a block", patch(
+        (87382, 0, 0, 0), numbers=[(column, []) for column in range(8)])
+    yield "compressed-patch-counts-huge", "counts of more than fits a block", patch(
+        (2**32 - 1,) * 4, numbers=[(column, []) for column in range(8)])
+    yield "compressed-patch-operation", "an operation above 152", attached(153)
+    yield "compressed-patch-first", "a distance to before the first triangle", patch(operations=(90,))
+    yield "compressed-patch-distance", "a distance to before the first triangle", attached(27, (0, [0]))
+    yield "compressed-patch-distance-huge", "a distance to before the first triangle", attached(27, (0, [2**32 - 1]))
+    yield "compressed-patch-edge", "an open edge that does not exist", attached(27 + 63 + 9 * 5)
+    yield "compressed-patch-new", "a new vertex that does not exist", patch((2, 0, 1, 2), marks=(3,))
+    yield "compressed-patch-reference", "a new vertex that does not exist", patch(operations=(1,), numbers=[(1, [3])])
+    yield "compressed-patch-import", "an imported vertex that does not exist", patch(
+        (2, 1, 1, 3), (2,), [(2, [code(1)])])
+    yield "compressed-patch-import-new", "an imported vertex that does not exist", patch(
+        (2, 1, 1, 3), (2,), [(2, [code(-1)])])
+    yield "compressed-patch-twice", "a triangle that uses a vertex twice", patch(operations=(1,), numbers=[(1, [0])])
+    yield "compressed-patch-apex", "a triangle that uses a vertex twice", attached(27 + 63 + 9, (1, [1]))
+    yield "compressed-patch-marks", "another number of finalized vertices", patch(marks=(3,))
+    yield "compressed-patch-mark", "a finalized vertex that does not exist", patch(marks=(0x0B,))
+    yield "compressed-patch-tokens-left", "tokens are left", patch(
+        (3, 0, 1, 3), edit=lambda tokens, bits: (tokens + b"\0", bits))
+    yield "compressed-patch-first-id", "patch starts with vertex 1, expected 0", patch(first=1)
+
+
 def failing_headers():
     """Name, words of the error, and vector, for each broken rule of headers. Bytes override stored fields."""
     f64 = lambda *values: struct.pack("<%dd" % len(values), *values)
@@ -682,6 +905,7 @@ def failing_streams():
     yield "no-end", "truncated", points().points((1, 1, 1))
     yield "cut-in-frame", "truncated", points().points((1, 1, 1)).end(1).cut(60)
     yield "cut-in-payload", "truncated", points().points((1, 1, 1)).end(1).cut(1)
+    yield from failing_compressed(raw)
     yield "block-oversize", "the maximum is 1048576", points().block(b"PNTS", [], length=2**20 + 1)
     yield "block-checksum", "checksum does not match", points().points((1, 1, 1), checksum=0).end(1)
     yield ("sequence-gap", "sequence number 2, expected 1",

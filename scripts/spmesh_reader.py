@@ -7,6 +7,8 @@ A second reader, laid out like formats/spmesh.md and formats/text.md and written
 the standard library. It checks every rule of the text except the orientation of simplices, including the
 rules that need to remember cells and vertices. Exit 0: well-formed. Exit 3: malformed, with a message. Exit
 6: the stream needs what this reader does not know. Exit 1: the input cannot be read.
+
+Compressed streams need Python 3.14, or the package zstandard.
 """
 
 import bisect
@@ -123,7 +125,8 @@ class Header:
         coordinate_type, self.dims, elevation, flags, features, self.points = struct.unpack_from("<BBBBIQ", data, 16)
         if kind not in KINDS:
             needs("kind %d" % kind)
-        for bit in range(32):
+        self.is_compressed = features & 1 == 1
+        for bit in range(1, 32):
             if features >> bit & 1:
                 needs("feature bit %d" % bit)
         if coordinate_type not in (1, 2):
@@ -461,6 +464,323 @@ class Chunks:
         )
 
 
+# --- 4.16 Compressed payloads -------------------------------------------------------------------------------
+
+PAYLOAD_MAX = 2**20
+ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
+DAMAGED_FRAME = "the zstd frame is damaged, or its content is too long"
+
+
+class NoZstd(Exception):
+    """The input needs zstd, and this Python has no module for it."""
+
+
+def decompressed(data):
+    """The payload that a compressed payload stands for."""
+    require(data, "compressed payload: empty, expected a method")
+    require(data[0] in METHODS, "compressed payload: method %d, expected 1, 2 or 3" % data[0])
+    try:
+        return METHODS[data[0]](Fields(data[1:]))
+    except Malformed as error:
+        raise Malformed("compressed payload of method %d: %s" % (data[0], error)) from None
+
+
+class Fields:
+    """Takes fields off the front of bytes."""
+
+    def __init__(self, data):
+        self.data = data
+
+    def take(self, length):
+        require(length <= len(self.data), "cut off")
+        taken, self.data = self.data[:length], self.data[length:]
+        return taken
+
+    def unpack(self, layout):
+        layout = struct.Struct("<" + layout)
+        return layout.unpack(self.take(layout.size))
+
+
+def zigzag(u):
+    return -(u + 1 >> 1) if u & 1 else u >> 1
+
+
+def int32(number):
+    return (number + 2**31) % 2**32 - 2**31
+
+
+def frame_content(frame, limit):
+    """The content of one zstd frame, at most `limit` bytes. Frames of raw and repeated bytes need no module."""
+    fields, content = Fields(frame), bytearray()
+    try:
+        require(fields.take(4) == ZSTD_MAGIC, "no frame")
+        (descriptor,) = fields.take(1)
+        is_single = descriptor >> 5 & 1
+        require(not descriptor & 8, "reserved bit")
+        fields.take(1 - is_single)
+        dictionary = fields.take((0, 1, 2, 4)[descriptor & 3])
+        size = fields.take((is_single, 2, 4, 8)[descriptor >> 6])
+        is_last, is_plain = False, not descriptor & 4
+        while not is_last:
+            head = int.from_bytes(fields.take(3), "little")
+            is_last, kind, length = head & 1, head >> 1 & 3, head >> 3
+            body = fields.take(1 if kind == 1 else length)
+            is_plain = is_plain and kind < 2
+            if is_plain and len(content) <= limit:
+                content += body * length if kind == 1 else body
+        fields.take(descriptor & 4)
+        require(not fields.data, "bytes behind the frame")
+    except Malformed:
+        raise Malformed("not one zstd frame") from None
+    if not is_plain:
+        content = zstd_content(frame, limit)
+    elif size:
+        stated = int.from_bytes(size, "little") + (256 if len(size) == 2 else 0)
+        require(stated == len(content), DAMAGED_FRAME)
+    require(not any(dictionary) and len(content) <= limit, DAMAGED_FRAME)
+    return bytes(content)
+
+
+def zstd_content(frame, limit):
+    """The content of a frame, by the module of Python 3.14 or else by `zstandard`; at most one byte too many."""
+    try:
+        from compression import zstd
+    except ImportError:
+        zstd = None
+    try:
+        if zstd:
+            decompressor = zstd.ZstdDecompressor()
+            content = decompressor.decompress(frame, limit + 1)
+            require(decompressor.eof or len(content) > limit, DAMAGED_FRAME)
+            return content
+        import zstandard as zstd
+
+        return zstd.ZstdDecompressor().stream_reader(frame).read(limit + 1)
+    except ImportError:
+        message = "the stream is compressed: install zstandard (pip install zstandard), or use Python 3.14 or newer"
+        raise NoZstd(message) from None
+    except (zstd.ZstdError, EOFError):
+        raise Malformed(DAMAGED_FRAME) from None
+
+
+class Columns:
+    """Columns of numbers: section 4.16.1."""
+
+    def __init__(self, fields, tokens_max):
+        (length,) = fields.unpack("I")
+        self.tokens = Fields(frame_content(fields.take(length), tokens_max))
+        self.bits, self.next, self.count = int.from_bytes(fields.data, "little"), 0, 8 * len(fields.data)
+
+    def bytes(self, count):
+        require(count <= len(self.tokens.data), "too few tokens")
+        return self.tokens.take(count)
+
+    def column(self, count, k):
+        require(k <= 7, "a parameter k above 7")
+        numbers = []
+        for token in self.bytes(count):
+            if token < 2 << k:
+                numbers.append(token)
+                continue
+            raw = (token >> k) - 1
+            require(raw + k <= 31, "a token stands for no number of 32 bits")
+            numbers.append((token - (raw << k) << raw) + self.take_bits(raw))
+        return numbers
+
+    def take_bits(self, count):
+        require(self.next + count <= self.count, "too few bits")
+        # Shifting the whole integer for each number would take quadratic time.
+        start = self.next & ~0xFFF
+        if start != getattr(self, "start", None):
+            self.start, self.window = start, self.bits >> start & (1 << 0x1020) - 1
+        self.next += count
+        return self.window >> self.next - count - start & (1 << count) - 1
+
+    def end(self):
+        require(not self.tokens.data, "tokens are left")
+        require(self.count - self.next < 8, "bits are left")
+
+
+# --- 4.16.2 Method 1: points
+
+
+def method_points(fields):
+    (count,) = fields.unpack("I")
+    require(1 <= count <= PAYLOAD_MAX // 12, "no points, or more than fit a block")
+    axes = [fields.unpack("BBi") for _ in range(3)]
+    require(all(predictor < 2 for predictor, _, _ in axes), "a predictor above 1")
+    columns = Columns(fields, 3 * count)
+    keys, coordinates = [0] * count, []
+    for axis, (predictor, k, first) in enumerate(axes):
+        column = columns.column(count, k)
+        residuals = [0] * count
+        # sorted() keeps the order of points with the same key.
+        places = sorted(range(count), key=keys.__getitem__) if axis else range(count)
+        for place, residual in zip(places, column):
+            residuals[place] = residual
+        keys = [key + residual.bit_length() for key, residual in zip(keys, residuals)]
+        coordinates.append(walk(predictor, first, residuals))
+    columns.end()
+    return b"".join(struct.pack("<3i", *point) for point in zip(*coordinates))
+
+
+def walk(predictor, at, residuals):
+    """The coordinates of an axis."""
+    differences, coordinates = [0] * 5, []
+    for residual in residuals:
+        difference = zigzag(residual)
+        if predictor:
+            difference = int32(difference + sorted(differences)[2])
+            differences = differences[1:] + [difference]
+        at = int32(at + difference)
+        coordinates.append(at)
+    return coordinates
+
+
+# --- 4.16.3 Method 2: triangles
+
+
+def method_triangles(fields):
+    head = fields.data[:24]
+    _, new, imported, count, finalized = fields.unpack("Q4I")
+    vertices, marks_length = new + imported, (new + imported + 7) // 8
+    length = 24 + 12 * new + 8 * imported + 12 * count + 4 * finalized
+    require(length <= PAYLOAD_MAX, "counts of more than fits a block")
+    ks = fields.take(8)
+    columns = Columns(fields, 4 * count + 3 * new + 2 * imported + marks_length)
+    operations = columns.bytes(count)
+    counts = [0, 0, 0]
+    for operation in operations:
+        require(operation <= 152, "an operation above 152")
+        for number in takes(operation):
+            counts[number] += 1
+    numbers = [iter(columns.column(count, k)) for count, k in zip(counts, ks)]
+    walk = Triangles(new, vertices, numbers)
+    for operation in operations:
+        walk.triangle(operation)
+    residuals = [columns.column(new, k) for k in ks[3:6]]
+    points = []
+    for vertex, parent in enumerate(walk.parents):
+        base = points[parent] if vertex else (0, 0, 0)
+        points.append(tuple(int32(c + zigzag(axis[vertex])) for c, axis in zip(base, residuals)))
+    ids = id_list(columns.column(imported, ks[6]), columns.column(imported, ks[7]))
+    marks = int.from_bytes(columns.bytes(marks_length), "little")
+    marked = [vertex for vertex in range(8 * marks_length) if marks >> vertex & 1]
+    require(len(marked) == finalized, "another number of finalized vertices than the count")
+    require(not marked or marked[-1] < vertices, "a finalized vertex that does not exist")
+    columns.end()
+    parts = [head] + [struct.pack("<3i", *point) for point in points] + [struct.pack("<%dQ" % imported, *ids)]
+    parts += [struct.pack("<3I", *triangle) for triangle in walk.triangles]
+    return b"".join(parts + [struct.pack("<%dI" % finalized, *marked)])
+
+
+def takes(operation):
+    """The columns of which an operation takes a number: 0 distances, 1 references, 2 imports."""
+    if operation < 27:
+        return [way for way in (operation // 9, operation // 3 % 3, operation % 3) if way]
+    operation -= 27
+    way = operation // 9 % 7
+    return ([] if operation // 63 else [0]) + ([way] if way in (1, 2) else [])
+
+
+def id_list(low, high):
+    ids, before = [], 0
+    for pair in zip(low, high):
+        before = (before + pair[0] + (pair[1] << 32)) % 2**64
+        ids.append(before)
+    return ids
+
+
+class Triangles:
+    def __init__(self, new, vertices, numbers):
+        self.new, self.vertices = new, vertices
+        self.distances, self.references, self.imports = numbers
+        self.next, self.last = 0, new
+        self.triangles, self.parents = [], [max(vertex - 1, 0) for vertex in range(new)]
+        self.leave, self.reach = [()] * vertices, [()] * vertices
+
+    def given(self, way):
+        if way == 2:
+            self.last = (self.last + zigzag(next(self.imports))) % 2**32
+            require(self.new <= self.last < self.vertices, "an imported vertex that does not exist")
+            return self.last
+        if way == 1:
+            number = next(self.references)
+            vertex = self.next - 1 - number if number < self.next else number
+        else:
+            vertex = self.next
+            self.next += 1
+        require(vertex < self.new, "a new vertex that does not exist")
+        return vertex
+
+    def triangle(self, operation):
+        first = self.next
+        if operation < 27:
+            entered = triangle = [self.given(way) for way in (operation // 9, operation // 3 % 3, operation % 3)]
+        else:
+            near, way, edge, rotation = (operation - 27) // 63, (operation - 27) // 9 % 7, operation // 3 % 3, operation % 3
+            distance = 1 if near else next(self.distances) + 2
+            require(distance <= len(self.triangles), "a distance to before the first triangle")
+            base = self.triangles[-distance]
+            q, p = base[edge], base[(edge + 1) % 3]
+            x = self.given(way) if way < 3 else self.remembered(p, q, way)
+            entered = [p, q, x]
+            triangle = entered[3 - rotation :] + entered[: 3 - rotation]
+        require(len(set(triangle)) == 3, "a triangle that uses a vertex twice")
+        for a, b in zip(entered, entered[1:] + entered[:1]):
+            self.enter(a, b)
+        for vertex in range(first, self.next):
+            self.parents[vertex] = max([v for v in triangle if v < vertex], default=self.parents[vertex])
+        self.triangles.append(triangle)
+
+    def remembered(self, p, q, way):
+        edges, age = (self.leave[p], self.reach[q])[(way - 3) % 2], (way - 3) // 2
+        require(age < len(edges), "an open edge that does not exist")
+        return edges[age]
+
+    def enter(self, a, b):
+        if b in self.reach[a] or a in self.leave[b]:
+            self.reach[a], self.leave[b] = without(self.reach[a], b), without(self.leave[b], a)
+        else:
+            self.leave[a], self.reach[b] = ((b,) + self.leave[a])[:2], ((a,) + self.reach[b])[:2]
+
+
+def without(edges, vertex):
+    if vertex not in edges:
+        return edges
+    at = edges.index(vertex)
+    return edges[:at] + edges[at + 1 :]
+
+
+# --- 4.16.4 Method 3: records
+
+
+def method_records(fields):
+    record, width, length = fields.unpack("HBI")
+    require(width in (0, 4, 8), "words of another width than 0, 4 or 8")
+    require(
+        record and not (width and record % width), "records of 0 bytes, or of no whole number of words"
+    )
+    require(length <= PAYLOAD_MAX, "more bytes than fit a block")
+    content = frame_content(fields.data, length)
+    require(len(content) == length, "the zstd frame has fewer bytes than the payload")
+    count = length // record
+    payload = bytearray(content)
+    for place in range(record if count else 0):
+        payload[place : count * record : record] = content[place * count : (place + 1) * count]
+    if width:
+        words = list(struct.unpack_from("<%d%s" % (count * record // width, "I" if width == 4 else "Q"), payload))
+        per_record = record // width
+        for at, word in enumerate(words):
+            before = words[at - per_record] if at >= per_record else 0
+            words[at] = (before + zigzag(word)) % 2 ** (8 * width)
+        struct.pack_into("<%d%s" % (len(words), "I" if width == 4 else "Q"), payload, 0, *words)
+    return bytes(payload)
+
+
+METHODS = {1: method_points, 2: method_triangles, 3: method_records}
+
+
 # --- 1, 4 Stream and blocks ---------------------------------------------------------------------------------
 
 
@@ -519,6 +839,11 @@ class Stream:
         self.where = "block %d at byte %d" % (number, self.offset)
         frame = self.take(16)
         tag, sequence, length, checksum = struct.unpack("<4sIII", frame)
+        is_compressed, length = length >> 31, length % 2**31
+        require(
+            self.header.is_compressed or not is_compressed,
+            "a compressed block in a stream without feature bit 0",
+        )
         require(length <= 2**20, "block of %d bytes, the maximum is %d" % (length, 2**20))
         payload = self.take(length)
         require(crc32c(frame[:12] + payload) == checksum, "checksum does not match: the block is damaged")
@@ -548,6 +873,9 @@ class Stream:
                 "no block %r may stand here in a stream of kind %s" % (tag.decode(), self.header.kind),
             )
             self.phase = phase
+        if is_compressed:
+            require(tag != b"END ", "END is compressed: it must not be")
+            payload = decompressed(payload)
         readers[tag](payload)
         return tag
 
@@ -987,6 +1315,9 @@ def main(arguments):
         sys.stdout.flush()
         print("spmesh_reader: %s: %s: %s" % (name, stream.where, error), file=sys.stderr)
         return error.exit_code
+    except NoZstd as error:
+        print("spmesh_reader: %s: %s" % (name, error), file=sys.stderr)
+        return 1
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 141

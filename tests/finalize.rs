@@ -17,7 +17,7 @@ use sets::*;
 
 fn options(leaves: Leaves, order: Order) -> Options {
     let budget = Budget::of_engine(64 << 20).expect("enough");
-    Options { leaves, order, budget, temp_dir: None, spooling: Spooling::Auto }
+    Options { leaves, order, compress: false, budget, temp_dir: None, spooling: Spooling::Auto }
 }
 
 fn collapsed(cell_points: u64) -> Leaves {

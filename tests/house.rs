@@ -24,8 +24,8 @@ const OF_TOOLS: &[&str] = &["io", "geometry", "stream", "model", "core"];
 const OF_TOOL: [(&str, &[&str]); 1] = [("splinefit", &["splines"])];
 
 /// Packages that only one crate may use, so that a library user does not pay for them.
-const PACKAGES: [(&str, &str); 4] =
-    [("clap", "cli"), ("anyhow", "cli"), ("faer", "splines"), ("resvg", "view")];
+const PACKAGES: [(&str, &str); 5] =
+    [("clap", "cli"), ("anyhow", "cli"), ("faer", "splines"), ("resvg", "view"), ("zstd", "stream")];
 
 /// Most lines of a source file.
 const LINES_MAX: usize = 450;

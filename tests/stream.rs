@@ -1,6 +1,8 @@
 //! The reader trusts no input, and the writer loses nothing.
 
 mod attributes;
+mod compressed;
+mod compressed_tools;
 mod configurations;
 mod four;
 mod newer;
@@ -163,6 +165,9 @@ fn every_changed_byte_of_a_tetrahedral_mesh_is_malformed() {
     }
 }
 
+/// The bit of the length of a block that says that its payload is compressed.
+const COMPRESSED: usize = 1 << 31;
+
 /// Ranges of the header and of the blocks, checksums included.
 fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     let u32_at = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;
@@ -171,7 +176,8 @@ fn frames(bytes: &[u8]) -> Vec<std::ops::Range<usize>> {
     while frame.start < bytes.len() {
         let start = frame.end;
         frames.push(frame);
-        frame = start..if start < bytes.len() { start + 16 + u32_at(start + 8) } else { start };
+        frame =
+            start..if start < bytes.len() { start + 16 + (u32_at(start + 8) & !COMPRESSED) } else { start };
     }
     frames
 }
@@ -184,7 +190,7 @@ fn seal(mut frames: Vec<Vec<u8>>) -> Vec<u8> {
     let checksum = crc32c::crc32c(&header[..body_end]);
     header[body_end..].copy_from_slice(&checksum.to_le_bytes());
     for (sequence, block) in (0u32..).zip(&mut frames[1..]) {
-        let len = block.len() as u32 - 16;
+        let len = (block.len() as u32 - 16) | (u32::from(block[11] & 0x80) << 24);
         block[4..8].copy_from_slice(&sequence.to_le_bytes());
         block[8..12].copy_from_slice(&len.to_le_bytes());
         let checksum = crc32c::crc32c_append(crc32c::crc32c(&block[..12]), &block[16..]);

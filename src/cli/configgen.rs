@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
+use super::compression::Compression;
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
 use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use spmesh_configgen::{read_features, read_patches};
@@ -136,6 +137,9 @@ pub struct Flags {
     #[arg(long)]
     centroids: bool,
 
+    #[command(flatten)]
+    compression: Compression,
+
     /// Print what the run did on stderr, with the counts of each degree
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -242,10 +246,12 @@ impl Flags {
     }
 
     fn write(&self, made: &Made, output: &mut Output) -> Result<()> {
+        let compress = self.compression.of_stream();
         if self.centroids {
-            return spmesh_configgen::write_centroids(&made.knots, &made.frame, &made.centroids()?, output);
+            let mesh = made.centroids()?;
+            return spmesh_configgen::write_centroids(&made.knots, &made.frame, &mesh, compress, output);
         }
-        made.write(output)
+        made.write(compress, output)
     }
 
     fn notice(&self, message: &str) {

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
+use super::compression::Compression;
 use super::{Common, StatsFormat, notice, progress::Progress};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
@@ -60,6 +61,9 @@ pub struct Flags {
     /// slower and needs a build with experiments. The result is the same
     #[arg(long, value_enum, default_value_t = RouteFlag::Simplices, value_name = "simplices|direct", hide_possible_values = true)]
     route: RouteFlag,
+
+    #[command(flatten)]
+    compression: Compression,
 
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
@@ -125,6 +129,7 @@ impl Flags {
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, self.product.is_binary(&self.output)?)?;
         let product = self.product.product(&self.output)?;
+        let compress = self.compression.of_output(product.is_stream())?;
         let progress = Progress::waiting(&self.common, "reading");
         let points = self.source.read()?;
         let read = started.elapsed();
@@ -137,7 +142,7 @@ impl Flags {
         let progress = Progress::waiting(&self.common, "triangulating");
         let (diagram, mut report) = spmesh_dd4::make(points, &product, &options)?;
         let write_started = Instant::now();
-        let notices = product.write(&diagram, &mut output)?;
+        let notices = product.write(&diagram, compress, &mut output)?;
         report.output_bytes = output.bytes_written();
         output.commit()?;
         report.write_time = write_started.elapsed();

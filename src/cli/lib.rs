@@ -1,6 +1,7 @@
 //! Command lines: flags to options, errors to exit codes. Only this module and `bin/` know clap and anyhow.
 
 mod cells;
+mod compression;
 pub mod configgen;
 pub mod dd4;
 mod messages;

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use clap::Args;
 
+use super::compression::Compression;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, open_input, parse_size, threads};
 use report::Report;
@@ -58,6 +59,9 @@ pub(super) struct Shared<const D: usize> {
     #[arg(long, value_name = names(CELL, D), conflicts_with = "region", requires = "partial", value_parser = parse_cell::<D>)]
     cell: Option<Part<D>>,
 
+    #[command(flatten)]
+    compression: Compression,
+
     /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -93,7 +97,7 @@ type Ran = Result<(Output, Stats), Error>;
 type Reduce<const D: usize> = fn(Reader, Output, &Options<D>, &mut Done) -> Ran;
 
 /// Merges partial meshes.
-type Merge<const D: usize> = fn(Vec<Reader>, Output, Option<Part<D>>, &mut Done) -> Ran;
+type Merge<const D: usize> = fn(Vec<Reader>, Output, &Options<D>, &mut Done) -> Ran;
 
 /// A program of D dimensions.
 pub(super) struct Tool<const D: usize> {
@@ -146,7 +150,8 @@ impl<const D: usize> Tool<D> {
         let reader = open_stream(input)?;
         let mut progress = Progress::new(&flags.common, self.verb, reader.header().points);
         let threads = threads(flags.threads).get();
-        let options = Options { duplicates, threads, part, memory: flags.memory, ..Options::default() };
+        let (memory, compress) = (flags.memory, flags.compression.of_stream());
+        let options = Options { duplicates, threads, part, memory, compress, ..Options::default() };
         Ok((self.reduce)(reader, output, &options, &mut |points| progress.set(points))?)
     }
 
@@ -158,7 +163,8 @@ impl<const D: usize> Tool<D> {
         let readers = flags.inputs.iter().map(|path| open_stream(path)).collect::<Result<Vec<_>, Error>>()?;
         self.check_cover(flags, &readers, part)?;
         let mut progress = Progress::new(&flags.common, "merging", None);
-        Ok((self.merge)(readers, output, part, &mut |points| progress.set(points))?)
+        let options = Options { part, compress: flags.compression.of_stream(), ..Options::default() };
+        Ok((self.merge)(readers, output, &options, &mut |points| progress.set(points))?)
     }
 
     /// Refuses parts with a gap between them, or tells of it with `--incomplete`.

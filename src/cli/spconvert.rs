@@ -6,6 +6,7 @@ use anyhow::Result;
 use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::compression::Compression;
 use super::{Common, notice, open_input, progress::Progress};
 use spmesh_convert::{Format, Options, convert};
 use spmesh_core::error::{Error, ErrorKind};
@@ -27,6 +28,7 @@ Examples:
   spconvert old.smb -o mesh.spm
   spconvert tile.laz --to text | less
   spconvert protein.spm -o protein.vtu
+  spconvert --compress mesh.spm -o small.spm      without the flag, the stream is expanded
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
 The input may be compressed with gzip. Its format is recognized by its content, or its name; that of the \
@@ -66,6 +68,9 @@ pub struct Flags {
     #[arg(long)]
     ascii: bool,
 
+    #[command(flatten)]
+    compression: Compression,
+
     /// Dimensions of points in formats that do not say: 2 (z is an elevation, the default) or 3
     #[arg(long, value_parser = clap::value_parser!(u8).range(2..=3))]
     dims: Option<u8>,
@@ -92,6 +97,7 @@ pub fn run(flags: Flags) -> Result<()> {
     let to = flags.to.or_else(|| Format::from_path(&flags.output)).ok_or_else(|| {
         Error::usage("the format of the output is not known: give it with --to, or a name like mesh.obj")
     })?;
+    let compress = flags.compression.of_output(to == Format::Spm)?;
     check_apart([flags.input.as_path()], &[("--output", &flags.output)])?;
     let is_binary = to.is_binary() && !(to == Format::Ply && flags.ascii);
     // Fail before the work if the output cannot be created.
@@ -101,6 +107,7 @@ pub fn run(flags: Flags) -> Result<()> {
         from: flags.from,
         dims: flags.dims,
         ascii: flags.ascii,
+        compress,
         path: flags.input.is_file().then(|| flags.input.clone()),
         temp_dir: flags.temp_dir,
     };

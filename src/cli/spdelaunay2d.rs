@@ -66,7 +66,7 @@ const TOOL: Tool<2> = Tool {
     simplices: "triangles",
     reasons: ["fewer than three different points", "all points on a line"],
     reduce: |reader, output, options, done| spmesh_reduce::triangulate(reader, output, options, done),
-    merge: |readers, output, part, done| spmesh_reduce::merge_triangles(readers, output, part, done),
+    merge: |readers, output, options, done| spmesh_reduce::merge_triangles(readers, output, options, done),
 };
 
 /// Runs the tool.

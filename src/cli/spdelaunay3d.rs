@@ -63,7 +63,7 @@ const TOOL: Tool<3> = Tool {
     simplices: "tetrahedra",
     reasons: ["fewer than four different points", "all points in a plane"],
     reduce: |reader, output, options, done| spmesh_reduce::tetrahedralize(reader, output, options, done),
-    merge: |readers, output, part, done| spmesh_reduce::merge_tetrahedra(readers, output, part, done),
+    merge: |readers, output, options, done| spmesh_reduce::merge_tetrahedra(readers, output, options, done),
 };
 
 /// Runs the tool.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
+use super::compression::Compression;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
 use spmesh_core::error::ErrorKind;
@@ -31,6 +32,8 @@ Examples:
       spfinalize --attributes intensity,classification,gps_time tile.laz | spdelaunay2d -o tile.spm
   Points of space from compressed text:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
+  Points for another machine, at a quarter of the bytes:
+      spfinalize --compress tile.laz | ssh host spdelaunay2d -o tile.spm
   Particles as floats without a header, the files of two processes as one input:
       spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
@@ -140,6 +143,9 @@ pub struct Flags {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true, requires = "scale")]
     offset: Option<[f64; 3]>,
 
+    #[command(flatten)]
+    compression: Compression,
+
     /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
     stats: Option<StatsFormat>,
@@ -204,6 +210,7 @@ impl Flags {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
+            compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
             spooling: match self.spool {
                 Spool::Auto => Spooling::Auto,

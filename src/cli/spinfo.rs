@@ -153,6 +153,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         configurations: proof.configurations(),
         failure: failure.as_ref(),
         bytes: reader.bytes_read(),
+        plain_bytes: reader.plain_bytes_read(),
     };
     let report = if flags.json { escaped_json(&summary.json()) } else { summary.text() };
     print(&report, output)?;

@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
 
+use super::compression::Compression;
 use super::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
 use method::MethodFlags;
 use selection::SelectionFlags;
@@ -111,6 +112,9 @@ pub struct Flags {
     /// Stop a sweep at the first file that fails
     #[arg(long, requires = "out_dir")]
     strict: bool,
+
+    #[command(flatten)]
+    compression: Compression,
 
     /// Print statistics on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
@@ -280,9 +284,10 @@ impl Flags {
         };
         Ok(Options {
             selection: self.selection.selection(),
-            product,
             alpha: self.alpha.clone(),
             method: self.method.method()?,
+            compress: self.compression.of_output(product == Product::Mesh)?,
+            product,
         })
     }
 
@@ -293,7 +298,10 @@ impl Flags {
             text += &format!(" --alpha {radius}");
         }
         text += &self.method.to_string();
-        for (flag, name) in [(self.table, " --table"), (self.contacts, " --contacts")] {
+        let compress = self.compression.of_stream();
+        for (flag, name) in
+            [(self.table, " --table"), (self.contacts, " --contacts"), (compress, " --compress")]
+        {
             text += if flag { name } else { "" };
         }
         text

@@ -8,6 +8,9 @@ use spmesh_core::error::{Error, Result};
 /// Length of the frame before the payload, in bytes.
 pub(super) const FRAME_LEN: usize = 16;
 
+/// The bit of the length that marks a compressed payload.
+const COMPRESSED: u32 = 1 << 31;
+
 /// The types of blocks that this version knows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Tag {
@@ -70,7 +73,10 @@ impl Tag {
 pub(super) struct Frame {
     pub(super) tag: TagBytes,
     pub(super) sequence: u32,
+    /// Bytes of the payload in the stream.
     pub(super) len: u32,
+    /// Whether they are compressed.
+    pub(super) is_compressed: bool,
     checksum: u32,
     head: [u8; 12],
 }
@@ -78,12 +84,21 @@ pub(super) struct Frame {
 impl Frame {
     /// The frame of a block whose payload comes in two parts.
     pub(super) fn of(tag: Tag, sequence: u32, payload: [&[u8]; 2]) -> Frame {
+        Frame::new(tag, sequence, payload, false)
+    }
+
+    /// The frame of a block with a compressed payload.
+    pub(super) fn of_compressed(tag: Tag, sequence: u32, payload: &[u8]) -> Frame {
+        Frame::new(tag, sequence, [payload, &[]], true)
+    }
+
+    fn new(tag: Tag, sequence: u32, payload: [&[u8]; 2], is_compressed: bool) -> Frame {
         let len = (payload[0].len() + payload[1].len()) as u32;
         let mut head = [0; 12];
         head[0..4].copy_from_slice(&tag.bytes());
         LE::write_u32(&mut head[4..], sequence);
-        LE::write_u32(&mut head[8..], len);
-        let mut frame = Frame { tag: tag.bytes(), sequence, len, checksum: 0, head };
+        LE::write_u32(&mut head[8..], if is_compressed { len | COMPRESSED } else { len });
+        let mut frame = Frame { tag: tag.bytes(), sequence, len, is_compressed, checksum: 0, head };
         frame.checksum = crc32c::crc32c_append(frame.checksum_with(payload[0]), payload[1]);
         frame
     }
@@ -91,10 +106,12 @@ impl Frame {
     pub(super) fn decode(bytes: &[u8; FRAME_LEN]) -> Frame {
         let mut head = [0; 12];
         head.copy_from_slice(&bytes[..12]);
+        let len = LE::read_u32(&bytes[8..]);
         Frame {
             tag: [bytes[0], bytes[1], bytes[2], bytes[3]],
             sequence: LE::read_u32(&bytes[4..]),
-            len: LE::read_u32(&bytes[8..]),
+            len: len & !COMPRESSED,
+            is_compressed: len & COMPRESSED != 0,
             checksum: LE::read_u32(&bytes[12..]),
             head,
         }

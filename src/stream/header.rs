@@ -54,6 +54,9 @@ pub struct Header {
     pub region: Option<Region<3>>,
     /// Whether the points between two tags lie in one cell of the second.
     pub chunked: bool,
+    /// Whether blocks may be compressed. A writer compresses those that become smaller; readers take both
+    /// alike.
+    pub compressed: bool,
     /// Coordinate reference system.
     pub crs: Crs,
     /// What points carry beside their coordinates. A program that makes a stream from another either passes
@@ -77,6 +80,7 @@ impl Header {
             tree: None,
             region: None,
             chunked: false,
+            compressed: false,
             crs: Crs::Unknown,
             attributes: Attributes::default(),
             producer: concat!("spmesh ", env!("CARGO_PKG_VERSION")).to_string(),

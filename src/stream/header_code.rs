@@ -32,6 +32,8 @@ const RECORD_HEAD_LEN: usize = 8;
 const TYPE_F64: u8 = 1;
 const TYPE_I32: u8 = 2;
 const FLAG_CHUNKED: u8 = 1;
+/// The bit of the features that says that blocks may be compressed.
+const FEATURE_COMPRESSED: u32 = 1;
 
 /// Why a record is malformed.
 pub(super) type Fault = String;
@@ -99,7 +101,7 @@ impl Header {
         body[1] = self.dims;
         body[2] = u8::from(self.has_elevation);
         body[3] = if self.chunked { FLAG_CHUNKED } else { 0 };
-        // No feature is defined, so the four bytes of their bits stay 0.
+        LE::write_u32(&mut body[4..], if self.compressed { FEATURE_COMPRESSED } else { 0 });
         LE::write_u64(&mut body[8..], self.points.unwrap_or(COUNT_UNKNOWN));
     }
 
@@ -176,8 +178,9 @@ pub(super) fn decode_preamble(preamble: &[u8]) -> Result<(u16, usize)> {
 /// A header with the fixed fields. The grid of integers comes with its record.
 fn decode_fixed(kind: Kind, fixed: &[u8; FIXED_BODY_LEN]) -> Result<Header> {
     let features = LE::read_u32(&fixed[4..]);
-    if features != 0 {
-        return Err(needs_newer(format_args!("feature bit {}", features.trailing_zeros())));
+    let unknown = features & !FEATURE_COMPRESSED;
+    if unknown != 0 {
+        return Err(needs_newer(format_args!("feature bit {}", unknown.trailing_zeros())));
     }
     let coordinates = match fixed[0] {
         TYPE_F64 => Coordinates::F64,
@@ -188,6 +191,7 @@ fn decode_fixed(kind: Kind, fixed: &[u8; FIXED_BODY_LEN]) -> Result<Header> {
     Ok(Header {
         points: (points != COUNT_UNKNOWN).then_some(points),
         chunked: fixed[3] & FLAG_CHUNKED != 0,
+        compressed: features & FEATURE_COMPRESSED != 0,
         producer: String::new(),
         ..Header::new(kind, coordinates, fixed[1], fixed[2] == 1)
     })

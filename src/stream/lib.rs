@@ -7,7 +7,7 @@
 //! - [`StreamWriter`] writes blocks; only [`StreamWriter::end`] completes a stream.
 //! - [`StreamReader`] decodes and checks one block at a time, and returns it as an [`Event`]. It verifies
 //!   length and checksum before it decodes, and totals at the end. Its memory is independent of the length of
-//!   the stream.
+//!   the stream. It decompresses blocks where a writer compressed them, which [`Header::compressed`] allows.
 //!   It skips header records and blocks that it does not know if their tags allow that, and refuses others as
 //!   [`spmesh_core::error::ErrorKind::Unsupported`].
 //! - [`LiveVertices`] and [`FinalizedCells`] keep what a consumer needs between events: vertices that later
@@ -55,6 +55,7 @@ mod attribute_code;
 mod block;
 mod cell_words;
 mod chunks;
+mod compression;
 mod configuration_rules;
 mod configuration_set;
 mod configurations;

@@ -1,5 +1,7 @@
 //! Patches that are encoded before their position in the stream is known.
 
+use std::io::Write;
+
 use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
@@ -141,12 +143,11 @@ impl PatchBlocks {
         LE::write_u32(count, ((place.finalized_end - before) / 4) as u32);
     }
 
-    /// Completes patch number `patch` as block `sequence`; `id_of` maps references to ids.
+    /// Completes the payload of patch number `patch`; `id_of` maps references to ids.
     pub(super) fn complete(
         &mut self,
         patch: usize,
         first_id: u64,
-        sequence: u32,
         id_of: impl Fn(u64) -> u64,
     ) -> EncodedPatch<'_> {
         let before = patch.checked_sub(1).map(|before| self.patches[before]);
@@ -158,9 +159,8 @@ impl PatchBlocks {
         let (frame, payload) = self.bytes[start..end].split_at_mut(FRAME_LEN);
         LE::write_u64(payload, first_id);
         let finalized = &self.finalized[finalized_start..finalized_end];
-        frame.copy_from_slice(&Frame::of(Tag::Patch, sequence, [payload, finalized]).encode());
         let rows = &self.rows[rows_start..rows_end];
-        EncodedPatch { block: &self.bytes[start..end], finalized, rows }
+        EncodedPatch { frame, payload: [payload, finalized], rows }
     }
 
     /// Reserves `len` more bytes with unspecified contents.
@@ -176,12 +176,12 @@ impl PatchBlocks {
     }
 }
 
-/// A patch ready to be written, in two parts.
+/// A patch ready to be written.
 pub(super) struct EncodedPatch<'a> {
-    /// Frame and payload up to the simplices.
-    pub(super) block: &'a [u8],
-    /// The finalized vertices.
-    pub(super) finalized: &'a [u8],
+    /// Space for its frame, before the first part of the payload.
+    frame: &'a mut [u8],
+    /// The payload up to the simplices, and the finalized vertices.
+    pub(super) payload: [&'a [u8]; 2],
     /// The attributes of the new vertices.
     pub(super) rows: &'a [u8],
 }
@@ -189,12 +189,19 @@ pub(super) struct EncodedPatch<'a> {
 impl EncodedPatch<'_> {
     /// Length of the payload in bytes.
     pub(super) fn payload_len(&self) -> usize {
-        self.block.len() - FRAME_LEN + self.finalized.len()
+        self.payload[0].len() + self.payload[1].len()
     }
 
     /// Numbers of new vertices, simplices and finalized vertices.
     pub(super) fn counts(&self) -> [u64; 3] {
-        [8, 16, 20].map(|at| u64::from(LE::read_u32(&self.block[FRAME_LEN + at..])))
+        [8, 16, 20].map(|at| u64::from(LE::read_u32(&self.payload[0][at..])))
+    }
+
+    /// Writes the patch as block `sequence`.
+    pub(super) fn write(self, sequence: u32, output: &mut impl Write) -> std::io::Result<()> {
+        self.frame.copy_from_slice(&Frame::of(Tag::Patch, sequence, self.payload).encode());
+        output.write_all(self.frame)?;
+        self.payload.iter().try_for_each(|part| output.write_all(part))
     }
 }
 

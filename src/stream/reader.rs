@@ -7,6 +7,7 @@ use byteorder::{ByteOrder, LittleEndian as LE};
 
 use super::block::{FRAME_LEN, Frame, Tag};
 use super::cell_words::CellWords;
+use super::compression::Decompressor;
 use super::configurations::ConfigurationBlock;
 use super::event::{Event, Totals};
 use super::functions;
@@ -23,7 +24,7 @@ use spmesh_model::bounds::{Bounds, Point};
 ///
 /// Every error is [`ErrorKind::Malformed`], [`ErrorKind::Unsupported`] if the stream needs what this version
 /// does not know, or I/O. It names input, block and byte.
-/// Memory: one block with its decoded event, and the incomplete words of a 4D cell that spans blocks.
+/// Memory: one block, compressed and not, with its decoded event, and the incomplete words of a 4D cell that spans blocks.
 pub struct StreamReader<R: Read> {
     input: R,
     name: String,
@@ -31,6 +32,11 @@ pub struct StreamReader<R: Read> {
     payload: Vec<u8>,
     /// The rows of the points of the last event.
     rows: Vec<u8>,
+    /// The compressed form of the payload, if the block has one.
+    compressed: Vec<u8>,
+    decompressor: Decompressor,
+    /// The byte at which the next block would start if none were compressed.
+    plain_offset: u64,
     /// A buffer of points for reuse.
     spare: Vec<Point>,
     /// Bounding box of the points of the last block of points.
@@ -63,6 +69,9 @@ impl<R: Read> StreamReader<R> {
             header,
             payload: Vec::new(),
             rows: Vec::new(),
+            compressed: Vec::new(),
+            decompressor: Decompressor::default(),
+            plain_offset: offset,
             spare: Vec::new(),
             points_bounds: None,
             block: 0,
@@ -93,6 +102,12 @@ impl<R: Read> StreamReader<R> {
     /// Bytes read so far.
     pub fn bytes_read(&self) -> u64 {
         self.offset
+    }
+
+    /// Bytes that the stream so far would have if no block were compressed. Blocks that are skipped count as
+    /// they are.
+    pub fn plain_bytes_read(&self) -> u64 {
+        self.plain_offset
     }
 
     /// Bounding box of the points of the last [`Event::Points`]; `None` if it held no points.
@@ -156,49 +171,57 @@ impl<R: Read> StreamReader<R> {
     /// other block.
     fn next_block(&mut self, rows: Option<usize>) -> Result<Tag> {
         loop {
-            let found = self
-                .read_block()
-                .and_then(|tag| tag.map(|tag| self.check_order(tag, rows).map(|()| tag)).transpose());
-            let tag = found.map_err(|error| {
-                error.at(format!("block {} at byte {}", self.block, self.offset)).of_input(&self.name)
-            })?;
+            let (tag, is_compressed) = match self.read_block(rows.is_some()) {
+                Ok(read) => read,
+                Err(error) => {
+                    let position = format!("block {} at byte {}", self.block, self.offset);
+                    return Err(error.at(position).of_input(&self.name));
+                }
+            };
             self.event_place = [self.block, self.offset];
             self.block += 1;
             self.offset += (FRAME_LEN + self.payload.len()) as u64;
-            if let Some(tag) = tag {
-                return Ok(tag);
+            self.plain_offset += (FRAME_LEN + self.payload.len()) as u64;
+            let Some(tag) = tag else { continue };
+            if is_compressed {
+                self.decompress(tag).map_err(|error| self.locate(error))?;
             }
+            if let Some(rows) = rows {
+                self.check_rows(rows).map_err(|error| self.locate(error))?;
+            }
+            return Ok(tag);
         }
     }
 
-    /// Checks that a block of this tag may stand here. Where there must be `rows`, checks their number.
-    fn check_order(&mut self, tag: Tag, rows: Option<usize>) -> Result<()> {
+    /// Checks that the payload is as many rows.
+    fn check_rows(&self, rows: usize) -> Result<()> {
+        let (len, row_len) = (self.payload.len(), self.header.attributes.row_len());
+        if len == rows * row_len {
+            return Ok(());
+        }
+        Err(Error::malformed(format!("{len} bytes of attributes, expected {rows} rows of {row_len} bytes")))
+    }
+
+    /// Checks that a block of this tag may stand here: rows where they are expected, and nowhere else.
+    fn check_order(&mut self, tag: Tag, expects_rows: bool) -> Result<()> {
         let name = tag.bytes();
         let name = name.escape_ascii();
-        match (tag, rows) {
-            (Tag::Rows, Some(rows)) => {
-                let (len, row_len) = (self.payload.len(), self.header.attributes.row_len());
-                if len != rows * row_len {
-                    return Err(Error::malformed(format!(
-                        "{len} bytes of attributes, expected {rows} rows of {row_len} bytes"
-                    )));
-                }
-                return Ok(());
-            }
-            (Tag::Rows, None) if self.header.attributes.is_empty() => {
+        match (tag == Tag::Rows, expects_rows) {
+            (true, true) => return Ok(()),
+            (true, false) if self.header.attributes.is_empty() => {
                 return Err(Error::malformed(format!("block \"{name}\" in a stream without attributes")));
             }
-            (Tag::Rows, None) => {
+            (true, false) => {
                 return Err(Error::malformed(format!(
                     "no block \"{name}\" may stand here: no points precede"
                 )));
             }
-            (_, Some(_)) => {
+            (false, true) => {
                 return Err(Error::malformed(format!(
                     "block \"{name}\", expected the attributes of the points before it"
                 )));
             }
-            (_, None) => {}
+            (false, false) => {}
         }
         if !self.header.kind.allows(self.last_tag, tag) {
             return Err(Error::malformed(format!(
@@ -211,8 +234,8 @@ impl<R: Read> StreamReader<R> {
     }
 
     /// Reads frame and payload of a block, and verifies everything that does not depend on its content.
-    /// Returns `None` for a block that this version skips.
-    fn read_block(&mut self) -> Result<Option<Tag>> {
+    /// Returns its tag, `None` for a block that this version skips, and whether it is compressed.
+    fn read_block(&mut self, expects_rows: bool) -> Result<(Option<Tag>, bool)> {
         self.payload.clear();
         let mut bytes = [0; FRAME_LEN];
         let found = read_full(&mut self.input, &mut bytes)?;
@@ -223,6 +246,11 @@ impl<R: Read> StreamReader<R> {
         }
         let frame = Frame::decode(&bytes);
         let len = frame.len as usize;
+        if frame.is_compressed && !self.header.compressed {
+            return Err(Error::malformed(
+                "a compressed block in a stream without feature bit 0: damaged, or not a spmesh stream",
+            ));
+        }
         if len > BLOCK_PAYLOAD_MAX {
             return Err(Error::malformed(format!(
                 "block of {len} bytes, the maximum is {BLOCK_PAYLOAD_MAX}: damaged, or not a spmesh stream"
@@ -242,7 +270,20 @@ impl<R: Read> StreamReader<R> {
                 frame.sequence, self.block as u32
             )));
         }
-        Tag::from_bytes(frame.tag)
+        let Some(tag) = Tag::from_bytes(frame.tag)? else { return Ok((None, frame.is_compressed)) };
+        self.check_order(tag, expects_rows)?;
+        Ok((Some(tag), frame.is_compressed))
+    }
+
+    /// Replaces the compressed payload of a block by the payload.
+    fn decompress(&mut self, tag: Tag) -> Result<()> {
+        if tag == Tag::End {
+            return Err(Error::malformed("END is compressed: it must not be"));
+        }
+        std::mem::swap(&mut self.payload, &mut self.compressed);
+        self.decompressor.decompress(&self.compressed, &mut self.payload)?;
+        self.plain_offset = self.plain_offset - self.compressed.len() as u64 + self.payload.len() as u64;
+        Ok(())
     }
 
     fn decode(&mut self, tag: Tag) -> Result<Event> {

@@ -21,5 +21,6 @@ pub fn ends_with_end(file: &mut (impl Read + Seek)) -> io::Result<bool> {
     file.read_exact(&mut bytes)?;
     let (head, payload) = bytes.split_first_chunk::<FRAME_LEN>().expect("longer than a frame");
     let frame = Frame::decode(head);
-    Ok(frame.tag == Tag::End.bytes() && frame.len as usize == payload.len() && frame.verifies(payload))
+    let is_end = frame.tag == Tag::End.bytes() && !frame.is_compressed;
+    Ok(is_end && frame.len as usize == payload.len() && frame.verifies(payload))
 }

@@ -8,6 +8,7 @@ mod rows;
 use std::io::Write;
 
 use super::block::{Frame, Tag};
+use super::compression::Compressor;
 use super::configuration_rules::ConfigurationRules;
 use super::coordinates::Coordinates;
 use super::event::{Patch, Totals};
@@ -16,7 +17,6 @@ use super::header::Header;
 use super::kind::Kind;
 use super::patch_blocks::PatchBlocks;
 use super::rules4::Rules4;
-use rows::write_rows_of;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
@@ -41,6 +41,8 @@ pub struct StreamWriter<W: Write> {
     rows: Vec<u8>,
     points_tag: Tag,
     payload: Vec<u8>,
+    /// If the header says that blocks may be compressed.
+    compressor: Option<Compressor>,
     totals: Totals,
     labels: u64,
     rules4: Rules4,
@@ -60,6 +62,7 @@ impl<W: Write> StreamWriter<W> {
         let configuration_rules = ConfigurationRules::new(header.kind);
         Ok(StreamWriter {
             output,
+            compressor: header.compressed.then(Compressor::default),
             header,
             sequence: 0,
             last_tag: None,
@@ -200,22 +203,23 @@ impl<W: Write> StreamWriter<W> {
     ) -> Result<()> {
         for number in 0..blocks.count() {
             self.start_block(Tag::Patch);
-            let patch = blocks.complete(number, self.totals.vertices, self.sequence, &id_of);
+            let patch = blocks.complete(number, self.totals.vertices, &id_of);
             check_len(patch.payload_len())?;
             debug_assert!(
-                super::payload::patch(
-                    &self.header,
-                    self.totals.vertices,
-                    &[&patch.block[super::block::FRAME_LEN..], patch.finalized].concat()
-                )
-                .is_ok(),
+                super::payload::patch(&self.header, self.totals.vertices, &patch.payload.concat()).is_ok(),
                 "a patch that no reader accepts"
             );
-            self.sequence = self.sequence.wrapping_add(1);
-            self.output.write_all(patch.block).map_err(write_error)?;
-            self.output.write_all(patch.finalized).map_err(write_error)?;
             let [new, simplices, finalized] = patch.counts();
-            write_rows_of(&self.header, &mut self.sequence, &mut self.output, new as usize, patch.rows)?;
+            let rows = patch.rows;
+            if self.compressor.is_some() {
+                self.payload.clear();
+                patch.payload.iter().for_each(|part| self.payload.extend_from_slice(part));
+                self.write_block(Tag::Patch)?;
+            } else {
+                patch.write(self.sequence, &mut self.output).map_err(write_error)?;
+                self.sequence = self.sequence.wrapping_add(1);
+            }
+            self.write_rows(new as usize, rows)?;
             self.totals.vertices += new;
             self.totals.simplices += simplices;
             count(new, finalized);
@@ -333,7 +337,21 @@ impl<W: Write> StreamWriter<W> {
 
     fn flush_block(&mut self, tag: Tag) -> Result<()> {
         self.start_block(tag);
-        write_block(&mut self.output, &mut self.sequence, tag, &self.payload)
+        check_len(self.payload.len())?;
+        self.write_block(tag)
+    }
+
+    /// Writes the payload as a block, compressed if the stream may be and that makes it smaller.
+    fn write_block(&mut self, tag: Tag) -> Result<()> {
+        let compressor = self.compressor.as_mut();
+        let compressed = compressor.and_then(|to| to.compress(&self.header, tag, &self.payload));
+        let frame = match compressed {
+            Some(compressed) => Frame::of_compressed(tag, self.sequence, compressed),
+            None => Frame::of(tag, self.sequence, [&self.payload, &[]]),
+        };
+        self.sequence = self.sequence.wrapping_add(1);
+        self.output.write_all(&frame.encode()).map_err(write_error)?;
+        self.output.write_all(compressed.unwrap_or(&self.payload)).map_err(write_error)
     }
 
     fn start_block(&mut self, tag: Tag) {
@@ -345,14 +363,6 @@ impl<W: Write> StreamWriter<W> {
         );
         self.last_tag = Some(tag);
     }
-}
-
-fn write_block(output: &mut impl Write, sequence: &mut u32, tag: Tag, payload: &[u8]) -> Result<()> {
-    check_len(payload.len())?;
-    let frame = Frame::of(tag, *sequence, [payload, &[]]);
-    *sequence = sequence.wrapping_add(1);
-    output.write_all(&frame.encode()).map_err(write_error)?;
-    output.write_all(payload).map_err(write_error)
 }
 
 fn check_len(payload_len: usize) -> Result<()> {

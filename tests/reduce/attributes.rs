@@ -174,7 +174,7 @@ fn parts_hand_rows_over() {
         assert!(!rows.is_empty() && rows.iter().all(|&(at, _, of_row)| at == of_row));
     }
     let readers = || parts.iter().map(|part| StreamReader::new(&part[..], "part").unwrap()).collect();
-    let (merged, _) = spmesh_reduce::merge_triangles(readers(), Vec::new(), None, |_| ()).unwrap();
+    let (merged, _) = spmesh_reduce::merge_triangles(readers(), Vec::new(), &Options::default(), |_| ()).unwrap();
     let rows = rows_of(&merged);
     assert_eq!(rows.len(), points.len());
     assert!(rows.iter().all(|&(at, _, of_row)| at == of_row));
@@ -195,7 +195,7 @@ fn parts_of_other_attributes_are_refused() {
     };
     let parts = [part(&plain, f64::NEG_INFINITY, 3.0), part(&with_rows(&plain, 0), 3.0, f64::INFINITY)];
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part").unwrap()).collect();
-    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), None, |_| ()).unwrap_err();
+    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), &Options::default(), |_| ()).unwrap_err();
     assert!(error.to_string().contains("differ in their attributes"), "{error}");
 }
 

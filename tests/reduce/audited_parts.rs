@@ -57,9 +57,9 @@ fn stream(header: &Header, events: &[Event], more: u64) -> Result<Vec<u8>> {
 fn merged(bytes: &[u8], dims: u8) -> Result<Vec<u8>> {
     let readers = vec![StreamReader::new(bytes, "part")?];
     if dims == 2 {
-        Ok(merge_triangles(readers, Vec::new(), None, |_| ())?.0)
+        Ok(merge_triangles(readers, Vec::new(), &Default::default(), |_| ())?.0)
     } else {
-        Ok(merge_tetrahedra(readers, Vec::new(), None, |_| ())?.0)
+        Ok(merge_tetrahedra(readers, Vec::new(), &Default::default(), |_| ())?.0)
     }
 }
 
@@ -87,8 +87,10 @@ fn what_does_not_fit_is_named_by_input_and_block() {
     let east = half_of(2, 1, false);
     let readers = [(&east, "east.spm"), (&damaged, "west.spm")]
         .map(|(part, name)| StreamReader::new(&part[..], name).unwrap());
-    let message =
-        merge_triangles(readers.into(), Vec::new(), None, |_| ()).map(drop).unwrap_err().to_string();
+    let message = merge_triangles(readers.into(), Vec::new(), &Default::default(), |_| ())
+        .map(drop)
+        .unwrap_err()
+        .to_string();
     assert!(message.starts_with(&format!("west.spm: block {} at byte ", number + 1)), "{message}");
 }
 

@@ -110,7 +110,14 @@ fn tiled(points: &[Point], input: &[u8], borders: &[Vec<f64>; 2], in_rows: bool)
     };
     let merge = |parts: &[Vec<u8>], region: Option<Region>| {
         let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
-        spmesh_reduce::merge_triangles(readers, Vec::new(), region.map(Part::Region), |_| ()).unwrap().0
+        spmesh_reduce::merge_triangles(
+            readers,
+            Vec::new(),
+            &Options { part: region.map(Part::Region), ..Options::default() },
+            |_| (),
+        )
+        .unwrap()
+        .0
     };
     let mut parts = Vec::new();
     for y in borders[1].windows(2) {
@@ -168,7 +175,8 @@ fn cells_of_the_tree_are_tiles_too() {
         })
         .collect();
     let readers = parts.iter().map(|bytes| StreamReader::new(&bytes[..], "part").unwrap()).collect();
-    let (bytes, stats) = spmesh_reduce::merge_triangles(readers, Vec::new(), None, |_| ()).unwrap();
+    let (bytes, stats) =
+        spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ()).unwrap();
     assert_eq!(read_mesh(&bytes).triangles, expected(&points));
     assert_eq!(stats.points, points.len() as u64);
 }

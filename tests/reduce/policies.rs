@@ -163,7 +163,7 @@ fn tile(points: &[Point], region: Region) -> Vec<u8> {
 
 fn merge(parts: &[&[u8]]) -> spmesh_core::error::Result<Vec<u8>> {
     let readers = parts.iter().map(|part| StreamReader::new(*part, "part")).collect::<Result<_, _>>()?;
-    spmesh_reduce::merge_triangles(readers, Vec::new(), None, |_| ()).map(|(bytes, _)| bytes)
+    spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ()).map(|(bytes, _)| bytes)
 }
 
 #[test]

@@ -219,7 +219,9 @@ fn parts_that_do_not_go_together_are_refused() {
     let (plane, _) = super::streams::triangulate(&plane, &options).unwrap();
     usage(std::slice::from_ref(&plane), None, "merge it with spdelaunay2d");
     let readers = vec![StreamReader::new(&left[..], "part").unwrap()];
-    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), None, |_| ()).map(drop).unwrap_err();
+    let error = spmesh_reduce::merge_triangles(readers, Vec::new(), &Default::default(), |_| ())
+        .map(drop)
+        .unwrap_err();
     assert!(error.to_string().contains("merge it with spdelaunay3d"), "{error}");
     let again = tetrahedralize(&left, &Options { threads: 1, ..Options::default() }).unwrap_err();
     assert!(again.to_string().contains("use --merge to finish it"), "{again}");

@@ -42,7 +42,12 @@ fn assert_proven(bytes: &[u8], points: Option<&[Point]>) {
 
 pub fn merge(parts: &[Vec<u8>], region: Option<Region<3>>) -> Result<(Vec<u8>, Stats)> {
     let readers = parts.iter().map(|part| StreamReader::new(&part[..], "part")).collect::<Result<_>>()?;
-    spmesh_reduce::merge_tetrahedra(readers, Vec::new(), region.map(Part::Region), |_| ())
+    spmesh_reduce::merge_tetrahedra(
+        readers,
+        Vec::new(),
+        &Options { part: region.map(Part::Region), ..Options::default() },
+        |_| (),
+    )
 }
 
 /// Cuts space into tiles, and merges them in one go or in stages.

@@ -164,7 +164,7 @@ fn products_are_written() {
     let diagram = with_values(sampled(&mut Random::new(36), [3, 3, 3, 3], 0.7), |p| p[0]);
     let product = |product: Product| {
         let mut bytes = Vec::new();
-        let notices = product.write(&diagram, &mut bytes)?;
+        let notices = product.write(&diagram, false, &mut bytes)?;
         Ok((String::from_utf8_lossy(&bytes).into_owned(), notices))
     };
     let text = |product_: Product| product(product_).unwrap_or_else(|e: Error| panic!("{e}"));

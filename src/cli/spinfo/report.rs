@@ -22,6 +22,8 @@ pub(super) struct Summary<'a> {
     pub(super) configurations: Option<&'a Result<configurations::Proof, configurations::Violation>>,
     pub(super) failure: Option<&'a Error>,
     pub(super) bytes: u64,
+    /// The bytes if no block were compressed.
+    pub(super) plain_bytes: u64,
 }
 
 impl Summary<'_> {
@@ -111,6 +113,10 @@ impl Summary<'_> {
             }
         }
         line("bytes", self.bytes.to_string());
+        if self.header.compressed {
+            let ratio = self.plain_bytes as f64 / self.bytes as f64;
+            line("compressed", format!("yes, from {} bytes: {ratio:.1} to 1", self.plain_bytes));
+        }
     }
 
     /// Counts of cells or simplices of four dimensions.
@@ -203,6 +209,8 @@ impl Summary<'_> {
             "configurations": self.configurations_json(),
             "points_per_tag": {"runs": cells.runs, "mean": mean(cells.points, cells.runs), "max": cells.max},
             "bytes": self.bytes,
+            "compressed": header.compressed,
+            "plain_bytes": self.plain_bytes,
             "audit": self.audit_json(),
             "census": self.census.map(census::json),
         });

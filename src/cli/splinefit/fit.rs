@@ -9,6 +9,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, report, say};
+use crate::compression::Compression;
 use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
@@ -125,6 +126,9 @@ pub(super) struct Flags {
     #[command(flatten)]
     threads: Threads,
 
+    #[command(flatten)]
+    compression: Compression,
+
     /// Print what the run did on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -154,7 +158,7 @@ impl Flags {
         let fitted =
             spmesh_splinefit::fit(&points, knots, &options, &|read| progress.borrow_mut().set(read))?;
         drop(progress);
-        fitted.spline.write(&mut output)?;
+        fitted.spline.write(self.compression.of_stream(), &mut output)?;
         let output_bytes = output.bytes_written();
         list(residuals, |list| {
             spmesh_splinefit::write_residuals(&fitted.spline, &points, options.threads, list)

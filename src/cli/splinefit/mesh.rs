@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::compression::Compression;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -26,18 +27,22 @@ pub(super) struct Flags {
     /// Draw the mesh as SVG, independently of the extension
     #[arg(long)]
     svg: bool,
+
+    #[command(flatten)]
+    compression: Compression,
 }
 
 impl Flags {
     pub(super) fn run(&self) -> Result<()> {
         let is_picture = self.svg || self.output.extension().is_some_and(|ending| ending == "svg");
+        let compress = self.compression.of_output(!is_picture)?;
         check_apart([self.spline.as_path()], &[("--output", &self.output)])?;
         let mut output = Output::create(&self.output, !is_picture)?;
         let mesh = ControlMesh::of(&Spline::open(&self.spline)?)?;
         if is_picture {
             self.draw(&mesh, &mut output)?
         } else {
-            mesh.write(&mut output)?
+            mesh.write(compress, &mut output)?
         }
         output.commit()
     }
@@ -45,7 +50,7 @@ impl Flags {
     /// The picture that `spview` makes of the mesh, from one side.
     fn draw(&self, mesh: &ControlMesh, output: &mut Output) -> Result<()> {
         let mut stream = Vec::new();
-        mesh.write(&mut stream)?;
+        mesh.write(false, &mut stream)?;
         let mut reader = StreamReader::new(&stream[..], "the control mesh")?;
         let name = format!("Control mesh of {}", name_of(&self.spline));
         let options = Options { oblique: true, ..Options::new(name) };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::crs;
-use super::grid::{self, Member};
+use super::describe::{File, describe};
 use super::las_header::LasHeader;
 use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
@@ -14,7 +14,7 @@ use super::placement::Placement;
 use super::point_arrays::{self, ArrayPass, PointArray};
 use super::reader::{Description, PointReader};
 use super::records::RecordPass;
-use super::row_plan::{self, RowPlan};
+use super::row_plan::RowPlan;
 use super::text::Columns;
 use super::{raw, spa, spb, stream, text, vtk};
 use crate::detect::{Format, read_head};
@@ -97,7 +97,9 @@ impl Input {
     }
 
     fn of_sources(sources: Vec<Source>, options: &SourceOptions, mut notices: Vec<String>) -> Result<Input> {
-        let (description, plans) = describe(&sources, options, &mut notices)?;
+        let files: Vec<File> =
+            sources.iter().map(|Source { name, stated, .. }| File { name, stated }).collect();
+        let (description, plans) = describe(&files, options, &mut notices)?;
         let (sources, plans) = (sources.into(), plans.into());
         Ok(Input { sources, options: options.clone(), description, plans, notices })
     }
@@ -337,61 +339,6 @@ fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn describe(
-    sources: &[Source],
-    options: &SourceOptions,
-    notices: &mut Vec<String>,
-) -> Result<(Description, Vec<RowPlan>)> {
-    let coordinates = match options.grid {
-        Some((scale, offset)) => Coordinates::I32 { scale, offset },
-        None => {
-            let member = |source: &Source| -> Member {
-                let Stated { coordinates, bounds, .. } = source.stated;
-                Member { name: source.name.clone(), coordinates, bounds }
-            };
-            grid::common(&sources.iter().map(member).collect::<Vec<_>>(), options.dims)?
-        }
-    };
-    let offers: Vec<_> = sources.iter().map(|source| (&source.name[..], &source.stated.offers[..])).collect();
-    let (attributes, plans) = row_plan::choose(&options.attributes, &offers, notices)?;
-    let description = Description {
-        coordinates,
-        dims: options.dims,
-        has_elevation: has_z(sources)? && options.dims == 2,
-        crs: crs::common(sources.iter().map(|source| (&source.name[..], &source.stated.crs)), notices)?,
-        stated_bounds: stated_bounds(sources, &coordinates),
-        stated_points: sources.iter().map(|source| source.stated.points).sum(),
-        attributes,
-    };
-    Ok((description, plans))
-}
-
-fn has_z(sources: &[Source]) -> Result<bool> {
-    let find = |wanted| sources.iter().find(|source| source.stated.has_z == Some(wanted));
-    match (find(true), find(false)) {
-        (Some(with), Some(without)) => Err(Error::usage(format!(
-            "points of {} have an elevation, those of {} have none",
-            with.name, without.name
-        ))),
-        (with, _) => Ok(with.is_some()),
-    }
-}
-
-/// The union of the stated boxes in `coordinates`; `None` if a file states none.
-fn stated_bounds(sources: &[Source], coordinates: &Coordinates) -> Option<Bounds> {
-    let mut corners = Vec::with_capacity(2 * sources.len());
-    for source in sources {
-        if source.stated.points == Some(0) {
-            continue;
-        }
-        let bounds = source.stated.bounds?;
-        let mut placement = Placement::new(&source.stated.coordinates, coordinates, None, false);
-        placement.put(bounds.min, &mut corners).ok()?;
-        placement.put(bounds.max, &mut corners).ok()?;
-    }
-    Bounds::of_points(&corners)
 }
 
 /// One pass over all files.

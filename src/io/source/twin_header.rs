@@ -104,6 +104,7 @@ impl TwinHeader {
             tree: tree.transpose()?,
             region: self.region.map(|sides| region_of(&sides, dims)).transpose()?,
             chunked: self.chunked,
+            compressed: false,
             crs: self.crs,
             attributes: Attributes::new(self.attributes).map_err(Error::malformed)?,
             producer: self.producer,

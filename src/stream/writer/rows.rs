@@ -2,8 +2,7 @@
 
 use std::io::Write;
 
-use super::{POINTS_PAYLOAD, StreamWriter, Tag, encode_points, write_block};
-use crate::Header;
+use super::{POINTS_PAYLOAD, StreamWriter, Tag, check_len, encode_points};
 use spmesh_core::error::Result;
 use spmesh_core::limits::BLOCK_PAYLOAD_MAX;
 use spmesh_model::bounds::Point;
@@ -70,33 +69,26 @@ impl<W: Write> StreamWriter<W> {
         if self.rows.is_empty() {
             return Ok(());
         }
-        write_block(&mut self.output, &mut self.sequence, Tag::Rows, &self.rows)?;
+        std::mem::swap(&mut self.rows, &mut self.payload);
+        self.write_block(Tag::Rows)?;
         self.rows.clear();
         Ok(())
     }
 
-    /// Writes the rows of the `points` of the block before.
+    /// Writes the rows of the `points` of the block before, unless there are none.
     pub(super) fn write_rows(&mut self, points: usize, rows: &[u8]) -> Result<()> {
-        write_rows_of(&self.header, &mut self.sequence, &mut self.output, points, rows)
+        assert_eq!(rows.len(), points * self.header.attributes.row_len(), "a row for each point");
+        if rows.is_empty() {
+            return Ok(());
+        }
+        check_len(rows.len())?;
+        self.payload.clear();
+        self.payload.extend_from_slice(rows);
+        self.write_block(Tag::Rows)
     }
 
     /// Asserts that points need no rows.
     pub(super) fn expect_no_attributes(&self) {
         assert!(self.header.attributes.is_empty(), "points of this stream have rows");
     }
-}
-
-/// Writes the rows of the `points` of the block before, unless there are none.
-pub(super) fn write_rows_of(
-    header: &Header,
-    sequence: &mut u32,
-    output: &mut impl Write,
-    points: usize,
-    rows: &[u8],
-) -> Result<()> {
-    assert_eq!(rows.len(), points * header.attributes.row_len(), "a row for each point");
-    if rows.is_empty() {
-        return Ok(());
-    }
-    write_block(output, sequence, Tag::Rows, rows)
 }

@@ -96,17 +96,17 @@ fn make_unnamed(sites: Sites, options: &Options) -> Result<Made> {
 }
 
 impl Made {
-    /// Writes the configurations of all degrees, with their knots.
+    /// Writes the configurations of all degrees, with their knots; blocks may be compressed.
     ///
     /// # Errors
     /// As [`write_content`].
-    pub fn write(&self, output: impl Write) -> Result<()> {
+    pub fn write(&self, compress: bool, output: impl Write) -> Result<()> {
         let content = Content {
             heights: self.frame.elevations.as_deref(),
             functions: &self.functions,
             ..Content::of(self.knots.points(), &self.degrees)
         };
-        write_content(self.header(), content, output)
+        write_content(Header { compressed: compress, ..self.header() }, content, output)
     }
 
     fn header(&self) -> Header {

@@ -8,17 +8,23 @@ use spmesh_geometry::configurations::{CentroidMesh, Knots};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
-/// Writes a centroid triangulation, with the mean of elevations where knots have some.
+/// Writes a centroid triangulation, whose blocks may be compressed, with the mean of elevations where knots have some.
 ///
 /// Knots on an integer grid have centroids on a grid that is finer by the order, so they are stored exactly
 /// if they fit 32 bits; otherwise they are rounded.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_centroids(knots: &Knots, frame: &Frame, mesh: &CentroidMesh, output: impl Write) -> Result<()> {
+pub fn write_centroids(
+    knots: &Knots,
+    frame: &Frame,
+    mesh: &CentroidMesh,
+    compress: bool,
+    output: impl Write,
+) -> Result<()> {
     let placement = Placement::of(knots, frame, mesh.order());
     let points = Some(mesh.vertices.len() as u64);
-    let header = Header { points, ..placement.header.clone() };
+    let header = Header { points, compressed: compress, ..placement.header.clone() };
     let at = |v: u32| placement.centroid(knots, frame, mesh.set(v));
     write_triangles(header, &mesh.triangles, mesh.vertices.len(), 0, at, output)
 }

@@ -19,7 +19,7 @@ use spmesh_io::source::{
     Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader, TwinSource,
     open_obj, open_ply, open_sma, open_smb,
 };
-use spmesh_stream::{Event, Kind, StreamReader};
+use spmesh_stream::{Event, Header, Kind, StreamReader};
 
 /// What a conversion may choose.
 #[derive(Debug, Clone, Default)]
@@ -30,6 +30,8 @@ pub struct Options {
     pub dims: Option<u8>,
     /// Write PLY as text.
     pub ascii: bool,
+    /// Compress the blocks of a stream.
+    pub compress: bool,
     /// The file of the input, compressed or not, if the input is a file. Points are read from it directly;
     /// without it, they are read from a copy.
     pub path: Option<PathBuf>,
@@ -156,7 +158,10 @@ fn open_sink<'a>(
         }
     }
     Ok(match to {
-        Format::Spm => Box::new(SpmSink::new(output, header)?),
+        Format::Spm => {
+            let header = Header { compressed: options.compress, ..header.clone() };
+            Box::new(SpmSink::new(output, &header)?)
+        }
         Format::Text => Box::new(TwinSink::new(output, header)?),
         Format::Obj => Box::new(ObjSink::new(output, header)?),
         Format::Ply => Box::new(PlySink::new(output, header, encoding, temp_dir)?),

@@ -67,18 +67,25 @@ impl Product {
         }
     }
 
-    /// Makes the product of a diagram and writes it. Returns notices for the user.
+    /// Whether the output is a stream.
+    #[must_use]
+    pub fn is_stream(&self) -> bool {
+        matches!(self, Product::Cells | Product::Simplices(_))
+    }
+
+    /// Makes the product of a diagram and writes it, a stream compressed if `compress` says so. Returns notices
+    /// for the user.
     ///
     /// # Errors
     /// Usage, if values are needed and the points have none, the slice is at a time before or after all
     /// points, or the format cannot hold it; I/O. The output is then incomplete.
-    pub fn write(&self, diagram: &Diagram4, output: &mut impl Write) -> Result<Vec<String>> {
+    pub fn write(&self, diagram: &Diagram4, compress: bool, output: &mut impl Write) -> Result<Vec<String>> {
         match self {
-            Product::Cells => write_diagram(diagram, output).map(|()| Vec::new()),
+            Product::Cells => write_diagram(diagram, compress, output).map(|()| Vec::new()),
             Product::Simplices(rule) => {
                 let (points, values) = (&diagram.points, diagram.values.as_deref());
                 let parts = subdivide(points, values, &diagram.cells, *rule, |_| true)?;
-                write_simplices(&parts, diagram.merged, output)?;
+                write_simplices(&parts, diagram.merged, compress, output)?;
                 Ok(flat_notice(parts.flat).into_iter().collect())
             }
             Product::Values(sites) => {

@@ -7,28 +7,30 @@ use spmesh_geometry::spacetime::Subdivision;
 use spmesh_model::diagram4::Diagram4;
 use spmesh_stream::{Coordinates, Header, Kind, StreamWriter};
 
-/// Writes the diagram as a stream of cells.
+/// Writes the diagram as a stream of cells, whose blocks may be compressed.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_diagram(diagram: &Diagram4, output: impl Write) -> Result<()> {
+pub fn write_diagram(diagram: &Diagram4, compress: bool, output: impl Write) -> Result<()> {
     let Diagram4 { points, values, merged, cells } = diagram;
     let count = points.len() as u64 + merged;
-    let mut writer = StreamWriter::new(output, header(Kind::Cells4, values.is_some(), count))?;
+    let header = Header { compressed: compress, ..header(Kind::Cells4, values.is_some(), count) };
+    let mut writer = StreamWriter::new(output, header)?;
     writer.points4(points, values.as_deref())?;
     cells.iter().try_for_each(|cell| writer.cell4(cell))?;
     writer.end(count, *merged).map(drop)
 }
 
-/// Writes a subdivision as a stream of simplices. Barycentres count as points of the input, after which come
+/// Writes a subdivision as a stream of simplices, whose blocks may be compressed. Barycentres count as points of the input, after which come
 /// `merged`.
 ///
 /// # Errors
 /// If a value is infinite, or writing fails.
-pub fn write_simplices(parts: &Subdivision, merged: u64, output: impl Write) -> Result<()> {
+pub fn write_simplices(parts: &Subdivision, merged: u64, compress: bool, output: impl Write) -> Result<()> {
     let Subdivision { points, values, simplices, .. } = parts;
     let count = points.len() as u64 + merged;
-    let mut writer = StreamWriter::new(output, header(Kind::Simplices4, values.is_some(), count))?;
+    let header = Header { compressed: compress, ..header(Kind::Simplices4, values.is_some(), count) };
+    let mut writer = StreamWriter::new(output, header)?;
     writer.points4(points, values.as_deref())?;
     writer.simplices4(simplices)?;
     writer.end(count, merged).map(drop)

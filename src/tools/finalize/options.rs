@@ -41,6 +41,8 @@ pub struct Options {
     pub leaves: Leaves,
     /// The order of the points in the result.
     pub order: Order,
+    /// Whether the blocks of the result are compressed.
+    pub compress: bool,
     /// Memory for counters, leaves and waiting points.
     pub budget: Budget,
     /// Folder for waiting points that exceed the budget, and for points that are kept for later passes; the

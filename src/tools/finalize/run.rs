@@ -75,6 +75,7 @@ fn header_of(description: &Description, counts: &PointCounts, options: &Options)
         bounds: counts.bounds,
         points: Some(counts.points),
         chunked: counts.cells.is_some() && options.order == Order::Chunked,
+        compressed: options.compress,
         crs: crs.clone(),
         attributes: attributes.clone(),
         ..Header::new(Kind::Points, coordinates, dims, has_elevation)

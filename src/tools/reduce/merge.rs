@@ -9,6 +9,7 @@ use super::origins::Origins;
 use super::partial::Part;
 use super::plane::Plane;
 use super::residual::Residual;
+use super::run::Options;
 use super::schedule::Output;
 use super::sequencer::Sequencer;
 use super::space::Space;
@@ -25,8 +26,8 @@ const MERGED: u64 = 1;
 /// Merges the results of partial runs over regions that do not overlap. `progress` is called with the number
 /// of vertices read so far.
 ///
-/// Without `part`, the regions must cover all points ([`super::missing_region`] finds gaps), and the result is the whole mesh: the same set of
-/// triangles as one run over all points. With `part`, the result is partial again, for the region `part`.
+/// Of the options, `part` and `compress` count. Without a part, the regions must cover all points ([`super::missing_region`] finds gaps), and the result is the whole mesh: the same set of
+/// triangles as one run over all points. With a part, the result is partial again, for that region.
 /// That region must contain the merged ones, and every point in it must lie in one of them.
 ///
 /// Cost: linear in the final triangles, which are copied, and one triangulation of the residuals.
@@ -39,10 +40,10 @@ const MERGED: u64 = 1;
 pub fn merge_triangles<R: Read, W: Write>(
     readers: Vec<StreamReader<R>>,
     output: W,
-    part: Option<Part>,
+    options: &Options,
     progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
-    merge::<Plane, R, W, 2>(readers, output, part, progress)
+    merge::<Plane, R, W, 2>(readers, output, options, progress)
 }
 
 /// Merges the results of partial runs in space, as [`merge_triangles`] does in the plane.
@@ -52,19 +53,20 @@ pub fn merge_triangles<R: Read, W: Write>(
 pub fn merge_tetrahedra<R: Read, W: Write>(
     readers: Vec<StreamReader<R>>,
     output: W,
-    part: Option<Part<3>>,
+    options: &Options<3>,
     progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
-    merge::<Space, R, W, 3>(readers, output, part, progress)
+    merge::<Space, R, W, 3>(readers, output, options, progress)
 }
 
 fn merge<B: Bulk<D>, R: Read, W: Write, const D: usize>(
     mut readers: Vec<StreamReader<R>>,
     output: W,
-    part: Option<Part<D>>,
+    options: &Options<D>,
     mut progress: impl FnMut(u64),
 ) -> Result<(W, Stats)> {
-    let header = merged_header::<B, R, D>(&readers, part)?;
+    let (part, compressed) = (options.part, options.compress);
+    let header = Header { compressed, ..merged_header::<B, R, D>(&readers, part)? };
     let region = region_of(&header);
     let rules = Rules::<D>::new(&header, Duplicates::Error, part.is_some());
     let mut sequencer = Sequencer::new(StreamWriter::new(output, header)?);

@@ -41,6 +41,8 @@ pub struct Options<const D: usize = 2> {
     pub every_node: bool,
     /// Limit of the process's memory, in bytes: the run fails rather than exceed it.
     pub memory: Option<u64>,
+    /// Whether the blocks of the mesh are compressed.
+    pub compress: bool,
 }
 
 /// Triangulates a stream of two-dimensional points and writes the mesh to `output`. `progress` is called with
@@ -113,7 +115,8 @@ where
     check_input::<B, D>(header).map_err(|e| e.of_input(reader.name()))?;
     let part = options.part.map(|part| part.region(header)).transpose()?;
     let outer = part.unwrap_or(Region::EVERYTHING);
-    let stream = StreamWriter::new(output, mesh_header::<B, D>(header, part))?;
+    let mesh = Header { compressed: options.compress, ..mesh_header::<B, D>(header, part) };
+    let stream = StreamWriter::new(output, mesh)?;
     let mut rules = Rules::new(stream.header(), options.duplicates, options.part.is_some());
     rules.every_node = options.every_node;
     // The parts of other runs may reach beyond the box of this input.

@@ -46,13 +46,14 @@ impl ControlMesh {
         })
     }
 
-    /// Writes the control mesh as a triangle mesh stream.
+    /// Writes the control mesh as a triangle mesh stream, whose blocks may be compressed.
     ///
     /// # Errors
     /// If writing fails.
-    pub fn write(&self, output: impl Write) -> Result<()> {
+    pub fn write(&self, compress: bool, output: impl Write) -> Result<()> {
         let header = Header {
             bounds: Bounds::of_points(&self.points),
+            compressed: compress,
             crs: self.crs.clone(),
             producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
             ..Header::new(Kind::TriangleMesh, Coordinates::F64, 2, true)

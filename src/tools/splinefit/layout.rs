@@ -145,14 +145,15 @@ impl Spline {
         Ok(Spline { layout, coefficients })
     }
 
-    /// Writes the spline as a stream.
+    /// Writes the spline as a stream, whose blocks may be compressed.
     ///
     /// # Errors
     /// As [`write_content`].
-    pub fn write(&self, output: impl Write) -> Result<()> {
+    pub fn write(&self, compress: bool, output: impl Write) -> Result<()> {
         let Layout { frame, knots, configurations, functions, .. } = &self.layout;
         let header = Header {
             kind: Kind::Splines,
+            compressed: compress,
             producer: concat!("splinefit ", env!("CARGO_PKG_VERSION")).to_string(),
             ..configurations_header(knots.points(), frame.coordinates, frame.crs.clone())
         };

@@ -174,6 +174,7 @@ impl Job<'_> {
             tree: None,
             region: None,
             chunked: false,
+            compressed: self.options.compress,
             crs: Crs::Unknown,
             attributes: Attributes::default(),
             producer,

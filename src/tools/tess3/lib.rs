@@ -52,6 +52,8 @@ pub struct Options {
     pub alpha: Option<Radius>,
     /// How the kernel works.
     pub method: Method,
+    /// Whether the blocks of meshes are compressed.
+    pub compress: bool,
 }
 
 /// Counts and times of one model.

@@ -10,6 +10,8 @@ use spmesh_stream::{Event, FinalizedCells, Header, Kind, LiveVertices, StreamRea
 const HEAD: usize = 16;
 /// Bytes of a block before its payload.
 const FRAME: usize = 16;
+/// The bit of the length of a block that says that its payload is compressed.
+const COMPRESSED: usize = 1 << 31;
 
 /// Reads the bytes as they are, and again with corrected checksums.
 pub fn stream(bytes: &[u8]) {
@@ -115,7 +117,7 @@ fn seal(bytes: &mut [u8]) -> Option<()> {
     let sum = crc32c::crc32c(bytes.get(..at)?);
     bytes.get_mut(at..at + 4)?.copy_from_slice(&sum.to_le_bytes());
     at += 4;
-    while let Some(payload) = length(bytes, at + 8) {
+    while let Some(payload) = length(bytes, at + 8).map(|field| field & !COMPRESSED) {
         let Some(end) = (at + FRAME).checked_add(payload).filter(|&end| end <= bytes.len()) else { break };
         let sum = crc32c::crc32c_append(crc32c::crc32c(&bytes[at..at + 12]), &bytes[at + FRAME..end]);
         bytes[at + 12..at + FRAME].copy_from_slice(&sum.to_le_bytes());
