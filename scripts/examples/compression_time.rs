@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let ((), plain_read) = fastest(|| skim(&plain))?;
         let ((), small_read) = fastest(|| skim(&small))?;
         assert!(read(&small)?.1 == events, "the compressed stream holds something else");
-        let Some(Event::End(totals)) = events.last() else { return Err("no END".into()) };
+        let Some((Event::End(totals), _)) = events.last() else { return Err("no END".into()) };
         let records = if totals.simplices > 0 { totals.simplices } else { totals.points };
         let rate = |seconds: f64| plain.len() as f64 / 1e6 / seconds;
         println!(
@@ -52,7 +52,10 @@ fn fastest<T>(run: impl Fn() -> Outcome<T>) -> Outcome<(T, f64)> {
     Ok((last.expect("there is a run"), best))
 }
 
-fn read(bytes: &[u8]) -> Outcome<(Header, Vec<(Event, Vec<u8>)>)> {
+/// Events with the attributes of their points.
+type Events = Vec<(Event, Vec<u8>)>;
+
+fn read(bytes: &[u8]) -> Outcome<(Header, Events)> {
     let mut reader = StreamReader::new(bytes, "stream")?;
     let mut events = Vec::new();
     while let Some(event) = reader.next_event()? {

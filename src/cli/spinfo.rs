@@ -1,5 +1,6 @@
 //! `spinfo`: flags.
 
+mod attributes;
 mod census;
 mod configurations;
 mod diagram;

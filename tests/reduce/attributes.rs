@@ -174,7 +174,8 @@ fn parts_hand_rows_over() {
         assert!(!rows.is_empty() && rows.iter().all(|&(at, _, of_row)| at == of_row));
     }
     let readers = || parts.iter().map(|part| StreamReader::new(&part[..], "part").unwrap()).collect();
-    let (merged, _) = spmesh_reduce::merge_triangles(readers(), Vec::new(), &Options::default(), |_| ()).unwrap();
+    let (merged, _) =
+        spmesh_reduce::merge_triangles(readers(), Vec::new(), &Options::default(), |_| ()).unwrap();
     let rows = rows_of(&merged);
     assert_eq!(rows.len(), points.len());
     assert!(rows.iter().all(|&(at, _, of_row)| at == of_row));

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{census, configurations, diagram};
+use super::{attributes, census, configurations, diagram};
 use crate::messages::escaped;
 use spmesh_audit::diagram::{Proof, Violation};
 use spmesh_audit::{Counts, Inventory, Report};
@@ -35,6 +35,9 @@ impl Summary<'_> {
         line("coordinates", self.coordinates_text());
         line("bounds", self.world_bounds().map_or("none".into(), |bounds| self.bounds_text(&bounds)));
         line("CRS", escaped(&crs_text(&self.header.crs)));
+        for attribute in &self.header.attributes {
+            line("attribute", attributes::text(attribute));
+        }
         if let Some(tree) = &self.header.tree {
             let shape = if tree.dims() == 2 { "quadtree" } else { "octree" };
             let origin = words(&tree.origin()[..usize::from(tree.dims())]);
@@ -180,6 +183,7 @@ impl Summary<'_> {
             "coordinates": coordinates_json(&header.coordinates),
             "bounds": self.world_bounds().map(|[min, max]| json!({"min": min, "max": max})),
             "crs": crs_json(&header.crs),
+            "attributes": header.attributes.iter().map(attributes::json).collect::<Vec<_>>(),
             "tree": header.tree.map(|tree| json!({
                 "dims": tree.dims(),
                 "depth": tree.depth(),

@@ -1,0 +1,299 @@
+//! Attributes of points from files through every program, against records that are taken apart by hand.
+
+use serde_json::Value;
+use spmesh_model::attributes::Attributes;
+use spmesh_model::bounds::Point;
+use spmesh_stream::{Event, StreamReader};
+
+use crate::programs::{Folder, assert_outcome, outcome, run, sample};
+
+/// The output of a program that succeeds.
+fn output_of(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
+    let output = run(name, arguments, input);
+    assert!(output.status.success(), "{name}: {:?}", outcome(&output));
+    output.stdout
+}
+
+/// Attributes, and the points of a stream with their rows: stored coordinates of points, or new vertices.
+fn rows_of(stream: &[u8]) -> (Attributes, Vec<(Point, Vec<u8>)>) {
+    let mut reader = StreamReader::new(stream, "stream").unwrap();
+    let attributes = reader.header().attributes.clone();
+    let mut found = Vec::new();
+    while let Some(event) = reader.next_event().unwrap() {
+        let points = match event {
+            Event::Points(points) => points,
+            Event::Patch(patch) => patch.new,
+            _ => continue,
+        };
+        let rows = reader.rows().chunks_exact(attributes.row_len().max(1)).map(<[u8]>::to_vec);
+        found.extend(points.into_iter().zip(rows));
+    }
+    (attributes, found)
+}
+
+/// The same in an order that depends on the points and rows alone.
+fn sorted(mut rows: Vec<(Point, Vec<u8>)>) -> Vec<(Point, Vec<u8>)> {
+    rows.sort_unstable_by(|a, b| a.0.partial_cmp(&b.0).unwrap().then_with(|| a.1.cmp(&b.1)));
+    rows
+}
+
+/// The points of a LAS file, taken apart by the offsets in the specification: a row has intensity, class,
+/// return number, flags and source.
+fn by_hand(file: &[u8]) -> Vec<(Point, Vec<u8>)> {
+    let u32_at = |at: usize| u32::from_le_bytes(file[at..at + 4].try_into().unwrap()) as usize;
+    let (start, format) = (u32_at(96), file[104]);
+    let len = usize::from(u16::from_le_bytes([file[105], file[106]]));
+    let count = if format < 6 { u32_at(107) } else { u32_at(247) };
+    file[start..start + count * len]
+        .chunks_exact(len)
+        .map(|record| {
+            let axis = |at: usize| f64::from(i32::from_le_bytes(record[at..at + 4].try_into().unwrap()));
+            let mut row = record[12..14].to_vec();
+            if format < 6 {
+                row.extend([record[15] & 0x1f, record[14] & 7, record[15] >> 5]);
+                row.extend(&record[18..20]);
+            } else {
+                row.extend([record[16], record[14] & 15, record[15] & 15]);
+                row.extend(&record[20..22]);
+            }
+            ([axis(0), axis(4), axis(8)], row)
+        })
+        .collect()
+}
+
+const FIELDS: &str = "intensity,classification,return_number,class_flags,point_source_id";
+
+#[test]
+fn rows_of_las_and_laz_are_those_of_their_records() {
+    for (las, laz) in [("point10.las", "point10.laz"), ("1_4_w_evlr.las", "1_4_w_evlr.laz")] {
+        let records = by_hand(&std::fs::read(sample(las)).unwrap());
+        assert!(records.len() > 900);
+        for file in [las, laz] {
+            for flags in [&[][..], &["--preserve"], &["--level", "3"], &["--spool", "always"]] {
+                let file = sample(file);
+                let arguments = [&["--attributes", FIELDS, &file], flags].concat();
+                let stream = output_of("spfinalize", &arguments, &[]);
+                let (attributes, rows) = rows_of(&stream);
+                assert_eq!(attributes.names().replace(", ", ","), FIELDS);
+                if las == "point10.las" {
+                    assert!(sorted(rows) == sorted(records.clone()), "{file} {flags:?}");
+                } else {
+                    // Its axes have different scales, so coordinates are no longer those of the records.
+                    let in_order = |rows: &[(Point, Vec<u8>)]| {
+                        let mut rows: Vec<Vec<u8>> = rows.iter().map(|(_, row)| row.clone()).collect();
+                        if flags != ["--preserve"] {
+                            rows.sort_unstable();
+                        }
+                        rows
+                    };
+                    assert!(in_order(&rows) == in_order(&records), "{file} {flags:?}");
+                }
+            }
+        }
+    }
+}
+
+/// All layers of a LAZ file of format 8 are decompressed. The numbers are those that laspy 2 reads.
+#[test]
+fn layers_of_laz_are_decompressed() {
+    let file = sample("crop_duplicate.laz");
+    let stream = output_of("spfinalize", &["--preserve", "--attributes", "all", &file], &[]);
+    let (attributes, rows) = rows_of(&stream);
+    let numbers = |name: &str, point: usize| {
+        let (attribute, place) = attributes.find(name).unwrap();
+        attribute.numbers(&rows[point].1[place]).map(|number| number.to_f64()).collect::<Vec<_>>()
+    };
+    assert_eq!([0, 1, 2].map(|point| numbers("intensity", point)[0]), [22.0, 25.0, 17.0]);
+    assert_eq!([0, 1, 2].map(|point| numbers("scan_angle", point)[0]), [622.0, 582.0, 583.0]);
+    assert_eq!(numbers("gps_time", 1), [348_920_637.665_689_23]);
+    assert_eq!(numbers("rgb", 2), [10_496.0, 13_824.0, 11_520.0]);
+    assert_eq!(numbers("nir", 2), [35_584.0]);
+    assert_eq!(numbers("Deviation", 0), [2560.0]);
+    let (angle, place) = attributes.find("scan_angle").unwrap();
+    assert_eq!(angle.value(&rows[0].1[place]), Some(622.0 * 0.006));
+}
+
+#[test]
+fn filters_drop_rows_with_their_points() {
+    let file = sample("point10.las");
+    let all = by_hand(&std::fs::read(&file).unwrap());
+    let class = all[0].1[2];
+    let expected = sorted(all.into_iter().filter(|(_, row)| row[2] == class).collect());
+    let class = class.to_string();
+    let stream = output_of("spfinalize", &["--attributes", FIELDS, "--keep-class", &class, &file], &[]);
+    assert_eq!(sorted(rows_of(&stream).1), expected);
+}
+
+#[test]
+fn requests_that_cannot_be_met_are_refused() {
+    let folder = Folder::new();
+    let (las, laz) = (sample("point10.las"), sample("crop_duplicate.laz"));
+    let refused = |attributes: &str, files: &[&str], part: &str| {
+        assert_outcome("spfinalize", &[&["--attributes", attributes], files].concat(), &[], 2, part);
+    };
+    refused("nir", &[&las], "point10.las: no attribute \"nir\" (--attributes): the file has intensity, ");
+    refused("intensity,intensity", &[&las], "two attributes \"intensity\"");
+    refused("nir", &[&laz, &las], "point10.las: no attribute");
+    let text = folder.write("a.csv", "x,y,z,t\n0,0,0,1\n1,0,0,2\n0,1,0,3\n");
+    let ply = folder.write(
+        "a.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
+         property int t\nend_header\n5 5 5 -7\n",
+    );
+    refused("t", &[&text, &ply], "another type, scale or unit of the attribute t");
+    // All that every file has, with a notice about the rest.
+    let output = run("spfinalize", &["--attributes", "all", &laz, &las], &[]);
+    assert!(output.status.success());
+    assert!(outcome(&output).1.contains("has no attribute nir, which is left out"), "{:?}", outcome(&output));
+}
+
+#[test]
+fn columns_of_text_are_attributes() {
+    let named = "x;y;z;height above;class\n0;0;1;2.5;7\n4;0;1;;8\n0;4;1;-1e300;9\n";
+    let stream =
+        output_of("spfinalize", &["--preserve", "--attributes", "class,height above", "-"], named.as_bytes());
+    let (attributes, rows) = rows_of(&stream);
+    let heights = attributes.column("height above").unwrap();
+    let values: Vec<f64> = rows.iter().map(|(_, row)| heights.of(row, 0)).collect();
+    assert_eq!((values[0], values[2], values[1].is_nan()), (2.5, -1e300, true));
+    let bare =
+        output_of("spfinalize", &["--preserve", "--attributes", "column5", "-"], b"1 2 3 4 5\n6 7 8 9 10\n");
+    let (attributes, rows) = rows_of(&bare);
+    let column = attributes.column("column5").unwrap();
+    assert_eq!([column.of(&rows[0].1, 0), column.of(&rows[1].1, 0)], [5.0, 10.0]);
+    let wrong = "x,y,z,name,t\n0,0,0,oak,1\n1,0,0,elm,oops\n";
+    assert_outcome(
+        "spfinalize",
+        &["--attributes", "name", "-"],
+        wrong.as_bytes(),
+        3,
+        "line 2: found \"oak\" in column 4",
+    );
+    assert_outcome("spfinalize", &["--attributes", "t", "-"], wrong.as_bytes(), 3, "line 3: found \"oops\"");
+}
+
+#[test]
+fn properties_of_ply_are_attributes_and_come_back() {
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+               property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float quality\n\
+               end_header\n0 0 1 255 0 7 0.5\n4 0 1 1 2 3 nan\n0 4 1 4 5 6 -inf\n";
+    let points = output_of("spfinalize", &["--preserve", "--attributes", "all", "-"], ply.as_bytes());
+    let (attributes, rows) = rows_of(&points);
+    assert_eq!(attributes.names(), "rgb, quality");
+    assert_eq!(rows[1].1, [&[1, 2, 3][..], &f32::NAN.to_le_bytes()].concat());
+    for encoding in [&["--ascii"][..], &[]] {
+        let written = output_of("spconvert", &[&["--to", "ply"], encoding].concat(), &points);
+        assert_eq!(
+            rows_of(&output_of("spfinalize", &["--preserve", "--attributes", "all", "-"], &written)),
+            (attributes.clone(), rows.clone())
+        );
+    }
+    let mesh = output_of("spdelaunay2d", &[], &points);
+    let obj = String::from_utf8(output_of("spconvert", &["--to", "obj"], &mesh)).unwrap();
+    assert!(obj.contains("v 0 0 1 1 0 0.027450980392156862\n"), "{obj}");
+    let vtu = output_of("spconvert", &["--to", "vtu"], &mesh);
+    let text = String::from_utf8_lossy(&vtu);
+    assert!(text.contains(
+        "<DataArray type=\"UInt8\" Name=\"rgb\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/>"
+    ));
+    // Nine bytes of colours, then twelve of qualities, each after their length.
+    let values = vtu.windows(8).position(|bytes| bytes == 9u64.to_le_bytes()).unwrap() + 8;
+    let mut colours: Vec<&[u8]> = vtu[values..values + 9].chunks(3).collect();
+    colours.sort_unstable();
+    assert_eq!(colours, [[1, 2, 3], [4, 5, 6], [255, 0, 7]]);
+}
+
+/// A mesh of a grid of points whose attribute is 10 x + y, and unknown in one corner.
+fn slanted() -> Vec<u8> {
+    let mut text = String::from("x,y,z,value,class\n");
+    for (x, y) in (0..9).flat_map(|x| (0..9).map(move |y| (x, y))) {
+        let value = if (x, y) == (8, 8) { String::new() } else { (10 * x + y).to_string() };
+        text += &format!("{x},{y},0,{value},{}\n", x % 3);
+    }
+    let points = output_of("spfinalize", &["--attributes", "value,class", "-"], text.as_bytes());
+    output_of("spdelaunay2d", &[], &points)
+}
+
+#[test]
+fn attributes_are_drawn_as_rasters() {
+    let mesh = slanted();
+    let cells = ["--bounds", "0,0,8,8", "--step", "1", "--format", "asc"];
+    let raster = |arguments: &[&str]| {
+        let text = String::from_utf8(output_of("spdem", &[&cells, arguments].concat(), &mesh)).unwrap();
+        let rows =
+            text.lines().skip_while(|line| line.starts_with(|first: char| first.is_ascii_alphabetic()));
+        rows.map(|row| row.split_whitespace().map(|value| value.parse().unwrap()).collect())
+            .collect::<Vec<Vec<f64>>>()
+    };
+    let linear = raster(&["--attribute", "value"]);
+    for (row, y) in linear.iter().zip((0..8).rev()) {
+        for (value, x) in row.iter().zip(0..8) {
+            let expected = 10.0 * (f64::from(x) + 0.5) + f64::from(y) + 0.5;
+            // The triangle at the unknown corner is left out.
+            assert!(
+                (value - expected).abs() < 1e-4 || ((x, y) == (7, 7) && *value == -9999.0),
+                "{x} {y}: {value}"
+            );
+        }
+    }
+    let nearest = raster(&["--attribute", "class", "--interpolation", "nearest"]);
+    for row in &nearest {
+        for (value, x) in row.iter().zip(0..8) {
+            assert!([f64::from(x % 3), f64::from((x + 1) % 3)].contains(value));
+        }
+    }
+    assert_outcome(
+        "spdem",
+        &[&cells[..], &["--attribute", "height"]].concat(),
+        &mesh,
+        2,
+        "no attribute \"height\": they have value, class",
+    );
+}
+
+#[test]
+fn attributes_are_shown_in_pictures() {
+    let mesh = slanted();
+    let svg = String::from_utf8(output_of("spview", &["--colour-by", "value"], &mesh)).unwrap();
+    assert!(svg.contains(">value<"), "the legend names the attribute");
+    assert_outcome(
+        "spview",
+        &["--colour-by", "rgb"],
+        &mesh,
+        2,
+        "no attribute \"rgb\": they have value, class",
+    );
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+               property uchar red\nproperty uchar green\nproperty uchar blue\n\
+               end_header\n0 0 1 255 0 0\n4 0 1 255 0 0\n0 4 1 255 0 0\n";
+    let points = output_of("spfinalize", &["--attributes", "rgb", "-"], ply.as_bytes());
+    let mesh = output_of("spdelaunay2d", &[], &points);
+    let svg = String::from_utf8(output_of("spview", &["--colour-by", "rgb"], &mesh)).unwrap();
+    assert!(svg.contains("#ff0000"), "red triangles");
+}
+
+#[test]
+fn spinfo_lists_attributes() {
+    let file = sample("crop_duplicate.laz");
+    let points = output_of("spfinalize", &["--attributes", "scan_angle,rgb", &file], &[]);
+    let report: Value = serde_json::from_slice(&output_of("spinfo", &["--json", "-"], &points)).unwrap();
+    assert_eq!(report["attributes"][0]["scale"], 0.006);
+    assert_eq!(report["attributes"][1]["components"], 3);
+    let text = String::from_utf8(output_of("spinfo", &["-"], &points)).unwrap();
+    assert!(text.contains("scan_angle, i16 * 0.006 + 0, degree"), "{text}");
+}
+
+/// Compressed or not, in text or not: the same attributes.
+#[test]
+fn conversions_keep_attributes() {
+    let file = sample("crop_duplicate.laz");
+    let points = output_of("spfinalize", &["--attributes", "all", &file], &[]);
+    let compressed = output_of("spfinalize", &["--compress", "--attributes", "all", &file], &[]);
+    assert!(compressed.len() < points.len() * 2 / 3, "{} of {} bytes", compressed.len(), points.len());
+    let text = output_of("spconvert", &["--to", "text"], &points);
+    assert!(output_of("spconvert", &["--to", "text"], &compressed) == text);
+    assert!(
+        output_of("spconvert", &["--to", "spm"], &text) == output_of("spconvert", &["--to", "spm"], &points)
+    );
+    assert_eq!(rows_of(&output_of("spconvert", &["--to", "spm"], &text)), rows_of(&points));
+}
