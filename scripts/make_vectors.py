@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the test vectors of the stream format into formats/vectors/{pass,fail}.
+"""Writes the test vectors of the stream format into formats/vectors: commented bytes and the bytes alone, in pass
+and fail, and manifest.json.
 
     python3 make_vectors.py            (--check writes nothing and fails if a file differs)
 
@@ -7,10 +8,14 @@ An independent writer, from the text of formats/spmesh.md alone. Every vector is
 text twin or the words that the error must contain.
 """
 
+import io
+import json
 import os
 import struct
 import sys
 from decimal import Decimal
+
+import spmesh_reader
 
 FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "formats", "vectors")
 UNKNOWN = 2**64 - 1
@@ -28,7 +33,7 @@ NEED_MEMORY = {
 TOO_NEW = {
     "version", "version-1", "version-huge", "kind", "coordinate-type", "feature-bit", "feature-bit-last",
     "record-required", "record-required-and-fault", "tag-unknown", "tag-unknown-after-skipped",
-    "tag-unknown-before-fault",
+    "tag-unknown-before-fault", "rows-unknown-required",
 }
 FUNCTIONS = ("edge", "vertex", "tent", "crease", "face")
 INF, NAN = float("inf"), float("nan")
@@ -68,12 +73,13 @@ class Vector:
         return self
 
     def header(self, kind, grid=None, dims=2, elevation=0, bounds=None, points=None, tree=None, region=None,
-               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, edit=None, raw=None):
+               chunked=False, wkt=None, geokeys=None, producer="vector", compressed=False, attributes=(), edit=None,
+               raw=None):
         """`grid` is scale and offset; `raw` overrides fields, by their names below, and payloads of records,
         by their tags, with bytes, and adds a "tail" behind the records; `edit` changes the list of records, which are pairs of tag and payload."""
         raw = raw or {}
-        self.grid, self.dims, self.axes = grid, dims, dims + elevation
-        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, producer)
+        self.grid, self.dims, self.axes, self.attributes = grid, dims, dims + elevation, attributes
+        records = self.records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, producer)
         records = [(tag, [(raw[tag.decode()], "damaged")] if tag.decode() in raw else payload) for tag, payload in records]
         edit = edit or (lambda records: records)
         records = [(tag, [(payload, "payload")] if isinstance(payload, bytes) else payload) for tag, payload in edit(records)]
@@ -119,10 +125,11 @@ class Vector:
             self.say('wkt "%s"' % wkt.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n"))
         if geokeys is not None:
             self.say("geokeys " + " ".join(r.hex() or "-" for r in geokeys))
+        self.say(*["attribute " + attribute.text() for attribute in attributes])
         self.say('producer "%s"' % producer)
 
     @staticmethod
-    def records(grid, dims, bounds, tree, region, wkt, geokeys, producer):
+    def records(grid, dims, bounds, tree, region, wkt, geokeys, attributes, producer):
         """The records of the header in the order of the text: tags, and payloads as bytes with comments."""
         floats = lambda values: struct.pack("<%dd" % len(values), *map(float, values))
         records = []
@@ -142,6 +149,8 @@ class Vector:
             records.append((b"cWKT", [(wkt.encode(), "well-known text")]))
         if geokeys is not None:
             records.append((b"cGEO", [(struct.pack("<I", len(r)) + r, "GeoTIFF record") for r in geokeys]))
+        if attributes:
+            records.append((b"attr", [piece for attribute in attributes for piece in attribute.pieces()]))
         if producer:
             records.append((b"prod", [(producer.encode(), "producer")]))
         return records
@@ -188,21 +197,37 @@ class Vector:
         world = ["nan" if str(c) in ("nan", "inf") else number(c) for c in world] + ["0"] * (3 - self.axes)
         return data, " ".join(world)
 
-    def points(self, *points, **damage):
+    def with_rows(self, lines, rows):
+        """Lines of points, each with the line of its row behind it."""
+        rows = list(rows) + [None] * (len(lines) - len(rows))
+        for line, row in zip(lines, rows):
+            self.lines.append(line)
+            if row is not None:
+                words = [attribute.word(value) for attribute, values in zip(self.attributes, row) for value in values]
+                self.lines.append("a " + " ".join(words))
+
+    def rows(self, *rows, tag=b"attp", **damage):
+        """A block of rows: for each point a list of the numbers of each attribute. The lines of the twin come with the
+        points."""
+        return self.block(tag, [(attribute.data(values), attribute.name) for row in rows
+                                for attribute, values in zip(self.attributes, row)], **damage)
+
+    def points(self, *points, rows=(), **damage):
         pairs = [self.point(point) for point in points]
-        self.lines += ["v " + text for _, text in pairs]
+        self.with_rows(["v " + text for _, text in pairs], rows)
         return self.block(b"PNTS", [(data, "point " + text) for data, text in pairs], **damage)
 
     def cells(self, *codes):
         self.lines += ["x cell %d" % code for code in codes]
         return self.block(b"CELL", [(struct.pack("<Q", code), "cell %d" % code) for code in codes])
 
-    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None):
+    def patch(self, first=0, new=(), imported=(), simplices=(), finalized=(), counts=None, rows=()):
         pairs = [self.point(point) for point in new]
         counts = counts or [len(new), len(imported), len(simplices), len(finalized)]
         ids = list(range(first, first + len(new))) + list(imported)
         name = lambda local: str(ids[local] + 1 if local < len(ids) else "?")
-        self.lines += ["# patch"] + ["v " + text for _, text in pairs]
+        self.lines.append("# patch")
+        self.with_rows(["v " + text for _, text in pairs], rows)
         letter, simplex = ("c ", "tetrahedron") if self.dims == 3 else ("f ", "triangle")
         self.lines += [letter + " ".join(map(name, t)) for t in simplices] + ["x " + name(local) for local in finalized]
         payload = [(struct.pack("<Q", first), "first id"), (struct.pack("<4I", *counts), "counts N M S F")]
@@ -217,11 +242,11 @@ class Vector:
         self.lines += ["label %d" % label for label in labels]
         return self.block(b"LABL", [(struct.pack("<Q", label), "label %d" % label) for label in labels])
 
-    def residual(self, *points):
+    def residual(self, *points, rows=()):
         payload = []
-        for vertex, *point in points:
+        for number, (vertex, *point) in enumerate(points):
             data, text = self.point(point)
-            self.lines.append("r %s %s" % ("-" if vertex is None else vertex + 1, text))
+            self.with_rows(["r %s %s" % ("-" if vertex is None else vertex + 1, text)], rows[number : number + 1])
             name = "no vertex yet" if vertex is None else "vertex %d" % vertex
             payload += [(struct.pack("<Q", UNKNOWN if vertex is None else vertex), name), (data, "at " + text)]
         return self.block(b"RPNT", payload)
@@ -323,6 +348,49 @@ class Vector:
 
     def text(self):
         return "\n".join(self.lines) + "\n"
+
+
+class Attribute:
+    """An attribute: numbers are integers, or decimals or "0x" and the bits of a NaN in strings."""
+
+    LETTERS = dict(u8="B", i8="b", u16="H", i16="h", u32="I", i32="i", u64="Q", i64="q", f32="f", f64="d")
+
+    def __init__(self, name, type, components=1, unit="", las_name="", scale=None, unknown=None):
+        self.name, self.type, self.components, self.unit, self.las_name = name, type, components, unit, las_name
+        self.scale, self.unknown = scale, unknown
+
+    def number(self, value):
+        letter = self.LETTERS[self.type]
+        if letter not in "fd":
+            return struct.pack("<" + letter, value)
+        if value.startswith("0x"):
+            return bytes.fromhex(value[2:])[::-1]
+        return struct.pack("<" + letter, float(value))
+
+    def word(self, value):
+        return str(value) if self.type[0] != "f" or value[:2] == "0x" or "inf" in value else number(value)
+
+    def data(self, values):
+        return b"".join(map(self.number, values))
+
+    def pieces(self):
+        flags = (self.scale is not None) + 2 * (self.unknown is not None)
+        kind = bytes([list(self.LETTERS).index(self.type) + 1, self.components, flags])
+        pieces = [(kind, "attribute: type, components, flags")]
+        for text, comment in ((self.name, "name"), (self.unit, "unit"), (self.las_name, "LAS name")):
+            pieces.append((bytes([len(text.encode())]) + text.encode(), comment))
+        if self.scale is not None:
+            pieces.append((struct.pack("<2d", *map(float, self.scale)), "scale and offset"))
+        if self.unknown is not None:
+            pieces.append((self.number(self.unknown), "unknown"))
+        return pieces
+
+    def text(self):
+        scale = "- -" if self.scale is None else " ".join(map(number, self.scale))
+        unknown = "-" if self.unknown is None else self.word(self.unknown)
+        quoted = lambda text: json.dumps(text, ensure_ascii=False)
+        texts = (quoted(self.unit), quoted(self.las_name))
+        return "%s %s %d %s %s %s %s" % (quoted(self.name), self.type, self.components, *texts, scale, unknown)
 
 
 CM = (("0.01", "0.01", "0.5"), ("1000", "-2000", "0"))
@@ -442,6 +510,97 @@ FAN_MARKS = (0xFF, 0x0C)
 COMPRESSED = dict(grid=HALF, elevation=1, compressed=True)
 
 
+# Attributes of every type.
+CLASS = Attribute("class", "u8")
+COLOUR = Attribute("rgb", "u16", 3, las_name="Red, Green, Blue")
+ANGLE = Attribute("angle \u00fc\\", "i16", unit="degree", scale=("0.006", "-1.5"), unknown=-32768)
+NUMBERS = [Attribute(name, name) for name in Attribute.LETTERS]
+LEAST = [[0], [-128], [0], [-(2**15)], [0], [-(2**31)], [0], [-(2**63)], ["-3.4028235e38"], ["-1.7976931348623157e308"]]
+MOST = [[255], [127], [2**16 - 1], [2**15 - 1], [2**32 - 1], [2**31 - 1], [2**64 - 1], [2**63 - 1], ["inf"], ["-inf"]]
+ODD = [[7], [-1], [8], [-2], [9], [-3], [10], [-4], ["0x7fc00001"], ["0xfff8000000000001"]]
+TINY = [[1], [1], [1], [1], [1], [1], [1], [1], ["0.1"], ["-5e-324"]]
+RANKED = dict(grid=HALF, elevation=1, attributes=[CLASS, ANGLE])
+ROWS = [([3], [-1]), ([2**8 - 1], [-32768]), ([0], [700])]
+
+
+def passing_attributes():
+    """Attributes of points."""
+    yield "attributes-numbers", "An attribute of each type: least and greatest numbers, infinity, NaN of several bits", Vector(
+        attributes=NUMBERS).points(("0", "0"), ("1", "0"), ("2", "0"), ("3", "0"), rows=[LEAST, MOST, ODD, TINY]).rows(
+        LEAST, MOST, ODD, TINY).end(4)
+    yield "attributes-tree", "Scale, unit and unknown; tags, blocks without points, and a skipped block before the rows", Vector(
+        **RANKED, chunked=True, tree=QUADTREE).points(rows=[]).points((0, 0, 1), (0, 0, 2), rows=ROWS[:2]).skip().rows(
+        *ROWS[:2]).cells(5, 4).points().points((3, 3, 1), rows=ROWS[2:]).rows(*ROWS[2:]).cells(1).end(3, 3)
+    yield "attributes-mesh", "New vertices of patches have rows, patches without new vertices have none", Vector(
+        "triangle mesh", grid=HALF, elevation=1, attributes=[COLOUR]).patch(
+        0, SQUARE[:3], (), [(0, 1, 2)], (0,), rows=[([1, 2, 3],), ([0, 0, 65535],), ([4, 5, 6],)]).rows(
+        ([1, 2, 3],), ([0, 0, 65535],), ([4, 5, 6],)).patch(3, SQUARE[3:], (1, 2), [(0, 2, 1)], (0, 1, 2),
+        rows=[([7, 8, 9],)]).rows(([7, 8, 9],)).patch(4).end(4, vertices=4, simplices=2)
+    yield "attributes-tetrahedra", "Rows stand before labels", Vector(**TETRAHEDRAL, attributes=[CLASS]).patch(
+        0, CORNERS[:4], (), [(0, 1, 2, 3)], (0, 1, 2, 3), rows=[([1],), ([2],), ([3],), ([4],)]).rows(
+        ([1],), ([2],), ([3],), ([4],)).labels(9, 8, 7, 6).end(4, vertices=4, simplices=1)
+    yield "attributes-partial", "Residual points have rows, those that are vertices the same once more", Vector(
+        **PARTIAL, attributes=[CLASS]).patch(0, SQUARE[:3], (), [(0, 1, 2)], rows=[([1],), ([2],), ([3],)]).rows(
+        ([1],), ([2],), ([3],)).residual((0, 0, 0, 0), (None, 7, 7, 0), rows=[([1],), ([9],)]).rows(([1],), ([9],)).residual(
+        (2, 0, 2, 1), (1, 2, 0, 1), rows=[([3],), ([2],)]).rows(([3],), ([2],)).walls((0, 3), (3, 2), (2, 0)).end(
+        4, vertices=3, simplices=1, residual=4, walls=3)
+    yield "attributes-none-written", "A header with attributes, and no points", Vector(attributes=[CLASS]).end()
+    wide = Attribute("wide", "f64", 128)
+    yield "attributes-longest", "The longest row", Vector(attributes=[wide]).points(
+        ("0", "0"), rows=[(["0.5"] * 128,)]).rows((["0.5"] * 128,)).end(1)
+    yield "attributes-compressed", "Compressed rows behind a block that is not", Vector(
+        **COMPRESSED, attributes=[COLOUR]).points((0, 0, 0), (1, 1, 1), rows=[([1, 2, 3],), ([1, 2, 4],)]).instead(
+        *packed_records(6, 0, 12, bytes([1, 1, 0, 0, 2, 2, 0, 0, 3, 4, 0, 0]))).rows().end(2)
+
+
+def failing_attributes():
+    """Attributes that break a rule."""
+    of = lambda payload, **more: Vector(**{**dict(attributes=[CLASS]), **more}, raw=dict(attr=payload)).end()
+    entry = lambda kind=1, components=1, flags=0, texts=(b"a", b"", b""), rest=b"": bytes(
+        [kind, components, flags]) + b"".join(bytes([len(text)]) + text for text in texts) + rest
+    yield "attributes-empty", "no attribute is listed", of(b"")
+    yield "attributes-cut", "ends within an attribute", of(entry()[:-1])
+    yield "attributes-tail", "ends within an attribute", of(entry() + bytes(2))
+    yield "attributes-no-scale", "ends within an attribute", of(entry(flags=1, rest=bytes(8)))
+    yield "attributes-no-unknown", "ends within an attribute", of(entry(kind=7, flags=2, rest=bytes(7)))
+    yield "attributes-type", "type 11 of an attribute", of(entry(11))
+    yield "attributes-type-zero", "type 0 of an attribute", of(entry(0))
+    yield "attributes-flags", "flags 0x04", of(entry(flags=4))
+    yield "attributes-components", "no components", of(entry(components=0))
+    yield "attributes-nameless", "name has 0 bytes", of(entry(texts=(b"", b"", b"")))
+    yield "attributes-control", "control characters", of(entry(texts=(b"a\n", b"", b"")))
+    yield "attributes-control-unit", "control characters", of(entry(texts=(b"a", b"\xc2\x85", b"")))
+    yield "attributes-control-las-name", "control characters", of(entry(texts=(b"a", b"", b"\x7f")))
+    yield "attributes-text", "is not UTF-8", of(entry(texts=(b"\xff", b"", b"")))
+    yield "attributes-names", 'two attributes "a"', of(entry() + entry(2))
+    yield "attributes-scale-zero", "the scale 0 and the offset 1", of(entry(flags=1, rest=struct.pack("<2d", 0, 1)))
+    yield "attributes-scale-infinite", "the scale inf", of(entry(flags=1, rest=struct.pack("<2d", INF, 1)))
+    yield "attributes-offset-nan", "the offset", of(entry(flags=1, rest=struct.pack("<2d", 1, NAN)))
+    yield "attributes-long", "rows of 1025 bytes", of(
+        b"".join(entry(10, 64, texts=(b"%d" % n, b"", b"")) for n in range(2)) + entry(texts=(b"c", b"", b"")))
+    yield "attributes-of-knots", "has no attributes", Vector(**CONFIGURATIONS, attributes=[CLASS]).end()
+    yield "attributes-of-points4", "has no attributes", Vector(**POINTS4, attributes=[CLASS]).end()
+    start = lambda **more: Vector(**{**dict(attributes=[CLASS], tree=QUADTREE), **more}).points(("0", "0"), ("1", "0"))
+    two = [([1],), ([2],)]
+    yield "rows-missing-end", 'block "END ", expected the attributes', start().end(2)
+    yield "rows-missing", 'block "PNTS", expected the attributes', start().points(("1", "1")).rows(*two).end(3)
+    yield "rows-after-cells", 'block "CELL", expected the attributes', start().cells(16).rows(*two).end(2, 1)
+    yield "rows-few", "expected 2 rows of 1 bytes", start().rows(*two[:1]).end(2)
+    yield "rows-many", "expected 2 rows of 1 bytes", start().rows(*two, *two).end(2)
+    yield "rows-twice", "no points precede", start().rows(*two).rows(*two).end(2)
+    yield "rows-first", "no points precede", Vector(attributes=[CLASS]).rows(*two).end()
+    yield "rows-of-no-points", "no points precede", Vector(attributes=[CLASS]).points().rows().end()
+    yield "rows-without-attributes", "without attributes", Vector().points(("0", "0")).block(b"attp", [(b"\1", "row")]).end(1)
+    yield "rows-of-patch", "expected 3 rows of 1 bytes", Vector("triangle mesh", attributes=[CLASS]).patch(
+        0, [("0", "0"), ("1", "0"), ("0", "1")], (), [(0, 1, 2)], (0, 1, 2)).rows(*two).end(3, vertices=3, simplices=1)
+    yield "rows-of-labels", 'block "LABL", expected the attributes', Vector(**TETRAHEDRAL, attributes=[CLASS]).patch(
+        0, CORNERS[:1], (), (), (0,)).labels(1).end(1, vertices=1)
+    yield "rows-of-residual", 'block "WALL", expected the attributes', Vector(**PARTIAL, attributes=[CLASS]).residual(
+        (None, 0, 0, 0), (None, 1, 0, 0)).walls((0, 1)).end(2, residual=2, walls=1)
+    yield "rows-cut", "truncated", start().rows(*two).cut(1)
+    yield "rows-unknown-required", "block tag \"ATTP\"", start().rows(*two, tag=b"ATTP").end(2)
+
+
 def passing():
     """Name, title and vector of each stream that is well-formed."""
     yield "points-empty", "No points, nothing known but their number", Vector(
@@ -455,6 +614,7 @@ def passing():
         (50, -1, 7), (-2147483648, 2147483647, 0)).points((0, 0, -7)).end(3)
     yield from passing_skipped()
     yield from passing_compressed()
+    yield from passing_attributes()
     yield "points-geokeys", "A CRS in GeoTIFF records, one of them empty", Vector(
         grid=HALF, elevation=1,
         geokeys=[bytes.fromhex("01000100000001000004000001000100"), b"", b"WGS 84|\0"]).points((1, 2, 3)).end(1)
@@ -1299,31 +1459,65 @@ def failing_configurations(raw):
     yield "splines-tree", "no finalization tree", Vector(**SPLINES, tree=QUADTREE).end()
 
 
+# Sections of the text about the parts of a stream.
+SECTIONS = {b"PNTS": "4.2", b"CELL": "4.3", b"PTCH": "4.4", b"LABL": "4.5", b"RPNT": "4.6", b"WALL": "4.7",
+            b"PNT4": "4.8", b"CEL4": "4.9", b"SIM4": "4.10", b"CONF": "4.11", b"FUNC": "4.12", b"COEF": "4.13",
+            b"attp": "4.14", b"END ": "4.15"}
+
+
+def place_of(name, data):
+    """Where the Python reader refuses a vector, and the section about that part of the stream."""
+    stream = spmesh_reader.Stream(io.BytesIO(data), spmesh_reader.Text(lambda line: None))
+    try:
+        stream.read()
+    except spmesh_reader.REFUSED:
+        pass
+    words = stream.where.split()
+    at = int(words[-1])
+    if words[0] == "byte":
+        return dict(block=None, byte=at, section="1")
+    if words[0] == "header":
+        return dict(block=None, byte=at, section="7" if name in TOO_NEW else "2")
+    section = "7" if name in TOO_NEW else "6.1" if name in NEED_MEMORY else SECTIONS.get(data[at : at + 4], "4")
+    return dict(block=int(words[1]), byte=at, section=section)
+
+
 def files():
     """Path and content of every file."""
+    manifest = []
     for name, title, vector in passing():
         yield "pass/%s.hex" % name, vector.hex(title)
         yield "pass/%s.txt" % name, vector.text()
-    for source in (failing_headers(), failing_streams()):
+        yield "pass/%s.spm" % name, vector.bytes()
+        entry = dict(name=name, file="pass/%s.spm" % name, twin="pass/%s.txt" % name, what=title)
+        manifest.append(dict(entry, **{"class": "well-formed", "exit_code": 0}))
+    for source in (failing_headers(), failing_streams(), failing_attributes()):
         for name, words, vector in source:
             who = " by a reader with memory of cells and vertices" if name in NEED_MEMORY else ""
             too_new = name in TOO_NEW
             title = "Must be refused%s%s: %s" % (who, " as too new" if too_new else "", words)
             yield "fail/%s.hex" % name, vector.hex(title)
             yield "fail/%s.err" % name, "%s\nexit code %d\n" % (words, 6 if too_new else 3)
+            yield "fail/%s.spm" % name, vector.bytes()
+            kind = {"class": "too new" if too_new else "malformed", "exit_code": 6 if too_new else 3}
+            entry = dict(name=name, file="fail/%s.spm" % name, what=words, **kind)
+            manifest.append(dict(entry, needs_memory=name in NEED_MEMORY, **place_of(name, vector.bytes())))
+    lines = ",\n".join("  " + json.dumps(entry, ensure_ascii=False) for entry in manifest)
+    yield "manifest.json", '{"format": "spmesh", "version": 2, "vectors": [\n%s\n]}\n' % lines
 
 
 def main(arguments):
     different = []
     for path, content in files():
         path = os.path.join(FOLDER, *path.split("/"))
+        content = content.encode() if isinstance(content, str) else content
         if arguments == ["--check"]:
-            with open(path, encoding="utf-8", newline="") as file:
+            with open(path, "rb") as file:
                 if file.read() != content:
                     different.append(path)
         else:
             os.makedirs(os.path.dirname(path), exist_ok=True)
-            with open(path, "w", encoding="utf-8", newline="") as file:
+            with open(path, "wb") as file:
                 file.write(content)
     for path in different:
         print("make_vectors: %s differs" % path, file=sys.stderr)

@@ -152,7 +152,7 @@ class Header:
         self.has_knots = self.kind in ("configurations", "splines")
         self.is_mesh = self.kind not in ("points", "points in 4 dimensions") and not self.has_knots
         self.scale = self.offset = self.tree = self.bounds = self.region = self.wkt = self.geokeys = None
-        self.producer = ""
+        self.producer, self.attributes = "", []
         for tag, payload in records.items():
             RECORDS[tag](self, payload)
         require(self.scale or not self.is_integer, 'no header record "GRID", which i32 coordinates need')
@@ -231,6 +231,17 @@ class Header:
     def read_geokeys(self, payload):
         self.check_crs()
         self.geokeys = geokeys(payload)
+
+    def read_attributes(self, payload):
+        self.attributes = attributes_of(Fields(payload))
+        with_attributes = ("points", "triangle mesh", "tetrahedral mesh")
+        require(
+            self.kind in with_attributes or self.kind.startswith("partial "),
+            "a stream of kind %s has no attributes" % self.kind,
+        )
+
+    def row_length(self):
+        return sum(attribute.row.size for attribute in self.attributes)
 
     def read_producer(self, payload):
         require(
@@ -315,6 +326,7 @@ RECORDS = {
     b"REGN": Header.read_region,
     b"cWKT": Header.read_wkt,
     b"cGEO": Header.read_geokeys,
+    b"attr": Header.read_attributes,
     b"prod": Header.read_producer,
 }
 
@@ -336,6 +348,93 @@ def geokeys(data):
         data = data[4 + length :]
     require(not data, "GeoKey records do not fit the CRS")
     return records
+
+
+# --- 2.7 Attributes -----------------------------------------------------------------------------------------
+
+# Types by their codes, which start at 1: name, and code of struct.
+NUMBERS = (
+    ("u8", "B"),
+    ("i8", "b"),
+    ("u16", "H"),
+    ("i16", "h"),
+    ("u32", "I"),
+    ("i32", "i"),
+    ("u64", "Q"),
+    ("i64", "q"),
+    ("f32", "f"),
+    ("f64", "d"),
+)
+
+
+class Attribute:
+    def __init__(self, fields):
+        code, self.components, flags = fields.unpack("BBB")
+        require(1 <= code <= len(NUMBERS), "type %d of an attribute, expected 1 to 10" % code)
+        require(flags < 4, "flags 0x%02x of an attribute, of which all bits but 0 and 1 must be 0" % flags)
+        self.type, letter = NUMBERS[code - 1]
+        self.name, self.unit, self.las_name = [self.text(fields) for _ in range(3)]
+        self.scale = fields.unpack("2d") if flags & 1 else None
+        self.number, self.row = struct.Struct("<" + letter), struct.Struct("<%d%s" % (self.components, letter))
+        self.unknown = fields.take(self.number.size) if flags & 2 else None
+        require(self.name, "an attribute whose name has 0 bytes, expected 1 to 255")
+        for text in (self.name, self.unit, self.las_name):
+            is_plain = all(ord(c) >= 32 and not 127 <= ord(c) < 160 for c in text)
+            require(is_plain, "name, unit or LAS name of attribute %r is too long or has control characters" % self.name)
+        require(self.components, 'attribute "%s" has no components' % self.name)
+        if self.scale:
+            scale, offset = self.scale
+            is_valid = math.isfinite(scale) and math.isfinite(offset) and scale != 0
+            require(is_valid, 'attribute "%s" has the scale %g and the offset %g' % (self.name, scale, offset))
+
+    @staticmethod
+    def text(fields):
+        (length,) = fields.unpack("B")
+        return utf8(fields.take(length), "a text")
+
+    def words(self, data):
+        """The stored numbers in some bytes, as in a text twin."""
+        size = self.number.size
+        return [number_word(self.type, self.number, data[at : at + size]) for at in range(0, len(data), size)]
+
+
+def attributes_of(fields):
+    require(fields.data, "no attribute is listed")
+    attributes = []
+    try:
+        while fields.data:
+            attributes.append(Attribute(fields))
+    except Malformed as error:
+        raise Malformed('header record "attr": %s' % str(error).replace("cut off", "it ends within an attribute")) from None
+    names = sorted(attribute.name for attribute in attributes)
+    for a, b in zip(names, names[1:]):
+        require(a != b, 'two attributes "%s"' % a)
+    length = sum(attribute.row.size for attribute in attributes)
+    require(length <= 1024, "rows of %d bytes, the maximum is 1024" % length)
+    return attributes
+
+
+def number_word(kind, layout, data):
+    (number,) = layout.unpack(data)
+    if kind[0] != "f":
+        return str(number)
+    if math.isnan(number):
+        return "0x" + data[::-1].hex()
+    if math.isinf(number):
+        return "inf" if number > 0 else "-inf"
+    return decimal(number) if kind == "f64" else shortest32(number)
+
+
+def shortest32(number):
+    """The shortest decimal that reads back as the same binary32 value; of several, the closest one."""
+    for digits in range(9):
+        text = "%.*e" % (digits, number)
+        try:
+            if struct.pack("<f", float(text)) == struct.pack("<f", number):
+                break
+        except OverflowError:
+            pass  # Rounded up beyond the greatest number.
+    return decimal(float(text))
 
 
 # --- 2.3 Finalization tree ----------------------------------------------------------------------------------
@@ -792,6 +891,7 @@ class Stream:
         self.where, self.offset = "header at byte 0", 0
         self.total = dict.fromkeys("points cells vertices simplices merged residual walls".split(), 0)
         self.live = {}
+        self.waiting, self.rows = None, b""
         self.last, self.words, self.neighbour = None, [], -1
         self.degree = self.group = self.boundary = self.function = None
         self.has_pairs = False
@@ -864,8 +964,10 @@ class Stream:
             b"END ": self.end,
         }
         check_tag(tag, "block")
-        if not require_known(tag, readers, "block tag"):
+        if not require_known(tag, [*readers, b"attp"], "block tag"):
             return tag
+        if tag == b"attp" or self.waiting:
+            return self.attributes(tag, payload, is_compressed, readers)
         if tag != b"END ":
             phase = next((i for i, tags in enumerate(self.header.phases) if tag in tags), -1)
             require(
@@ -876,7 +978,39 @@ class Stream:
         if is_compressed:
             require(tag != b"END ", "END is compressed: it must not be")
             payload = decompressed(payload)
-        readers[tag](payload)
+        count = self.points_in(tag, payload) if self.header.attributes else 0
+        if count:
+            self.waiting = tag, payload, count, self.where
+        else:
+            readers[tag](payload)
+        return tag
+
+    # --- 4.14 attp
+
+    def points_in(self, tag, payload):
+        """The number of points of a block that rows follow."""
+        if tag == b"PTCH":
+            return int.from_bytes(payload[8:12], "little")
+        size = {b"PNTS": self.header.record.size, b"RPNT": 8 + self.header.record.size}.get(tag, len(payload) + 1)
+        return len(payload) // size
+
+    def attributes(self, tag, payload, is_compressed, readers):
+        """Reads the block behind points."""
+        require(self.header.attributes, 'block "attp" in a stream without attributes')
+        require(self.waiting, 'no block "attp" may stand here: no points precede')
+        require(
+            tag == b"attp", 'block "%s", expected the attributes of the points before it' % escaped(tag)
+        )
+        rows = decompressed(payload) if is_compressed else payload
+        waiting, payload, count, where = self.waiting
+        length = self.header.row_length()
+        require(
+            len(rows) == count * length,
+            "%d bytes of attributes, expected %d rows of %d bytes" % (len(rows), count, length),
+        )
+        self.waiting, self.where = None, where
+        self.text.take_rows(rows)
+        readers[waiting](payload)
         return tag
 
     def points(self, payload):
@@ -1200,6 +1334,7 @@ class Stream:
         require(self.neighbour < cells, "END: a cell has the neighbour %d of %d cells" % (self.neighbour, cells))
         if self.chunks:
             self.chunks.end()
+        self.where = "byte %d" % self.offset
         require(not self.source.read(1), "the input goes on after END")
         self.text.line("# end " + " ".join("%s %d" % total for total in stated.items()))
 
@@ -1261,6 +1396,13 @@ class Text:
             lines.append("wkt " + json.dumps(header.wkt, ensure_ascii=False))
         if header.geokeys:
             lines.append("geokeys " + " ".join(record.hex() or "-" for record in header.geokeys))
+        for attribute in header.attributes:
+            words = [attribute.type, str(attribute.components)]
+            words += [json.dumps(text, ensure_ascii=False) for text in (attribute.unit, attribute.las_name)]
+            words.append(decimals(attribute.scale) if attribute.scale else "- -")
+            words += attribute.words(attribute.unknown) if attribute.unknown else ["-"]
+            lines.append("attribute %s %s" % (json.dumps(attribute.name, ensure_ascii=False), " ".join(words)))
+        self.attributes = header.attributes
         lines.append("producer " + json.dumps(header.producer, ensure_ascii=False))
         for line in lines:
             self.line("#spmesh " + line)
@@ -1274,9 +1416,20 @@ class Text:
 
         return world
 
+    def take_rows(self, rows):
+        """Takes the rows of the next points."""
+        self.rows = Fields(rows)
+
+    def row(self):
+        """The line of the row of the next point, if there are attributes."""
+        if not self.attributes:
+            return ""
+        words = [word for attribute in self.attributes for word in attribute.words(self.rows.take(attribute.row.size))]
+        return "a %s\n" % " ".join(words)
+
     def vertices(self, points):
         world = self.world
-        self.write("".join(["v %s\n" % world(point) for point in points]))
+        self.write("".join(["v %s\n%s" % (world(point), self.row()) for point in points]))
 
     def patch(self, new, simplices, finalized):
         self.line("# patch")
@@ -1292,7 +1445,7 @@ class Text:
             self.line((word if at == 0 else "+4") + "".join([" %d" % (n + 1) for n in numbers[at : at + 4096]]))
 
     def residual(self, vertex, point):
-        self.line("r %s %s" % ("-" if vertex is None else vertex + 1, self.world(point)))
+        self.write("r %s %s\n%s" % ("-" if vertex is None else vertex + 1, self.world(point), self.row()))
 
 
 def main(arguments):

@@ -7,6 +7,8 @@ use std::process::{Command, Output, Stdio};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_stream::{Event, Header, MemoryRules, StreamReader};
 
+use crate::programs::run;
+
 /// One vector: its name, its bytes, and the expected text twin, or words and exit code of the error.
 pub struct Vector {
     pub name: String,
@@ -136,4 +138,65 @@ fn the_python_reader_gives_the_same_twins_and_the_same_errors() {
 fn the_vectors_are_those_that_their_writer_spells_out() {
     let Some(output) = run_python("scripts/make_vectors.py", &["--check"], &[]) else { return };
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The manifest names every vector; its bytes are those of the `.hex` file, and faults are where it says.
+#[test]
+fn the_manifest_tells_of_every_vector() {
+    let text = std::fs::read(repository("formats/vectors/manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let entries = manifest["vectors"].as_array().unwrap();
+    let mut names = Vec::new();
+    for (folder, extension) in [("pass", "txt"), ("fail", "err")] {
+        for vector in load(folder, extension) {
+            let file = format!("{folder}/{}.spm", vector.name);
+            let entry = entries.iter().find(|entry| entry["file"] == file.as_str());
+            let entry = entry.unwrap_or_else(|| panic!("{file} is not in the manifest"));
+            let bytes = std::fs::read(repository("formats/vectors").join(&file)).unwrap();
+            assert!(bytes == vector.bytes, "{file} differs from its .hex");
+            assert_eq!(entry["exit_code"], vector.exit_code, "{file}");
+            if let Err(error) = verify(&bytes) {
+                let place = match entry["block"].as_u64() {
+                    Some(block) => format!("block {block} at byte {}", entry["byte"]),
+                    None if entry["byte"] == 0 => "header at byte 0".to_string(),
+                    None => format!("byte {}: ", entry["byte"]),
+                };
+                assert!(error.to_string().contains(&place), "{file}: {error}, expected at {place}");
+            }
+            names.push(file);
+        }
+    }
+    assert_eq!(names.len(), entries.len());
+}
+
+/// The small reader and writer beside the text work together with the programs.
+#[test]
+fn the_small_reader_and_writer_do_what_they_say() {
+    for (file, lines) in [("formats/reader.py", 60), ("formats/writer.py", 40)] {
+        let text = std::fs::read_to_string(repository(file)).unwrap();
+        assert!(text.lines().count() <= lines, "{file} has more than {lines} lines");
+    }
+    let points = "0 0 1\n4 0 2\n0 4.5 3\n4 4 5\n";
+    let Some(written) = run_python("formats/writer.py", &[], points.as_bytes()) else { return };
+    assert!(written.status.success());
+    assert_eq!(verify(&written.stdout).unwrap().1.len(), 2);
+    let finalized = run("spfinalize", &["--preserve", "-"], &written.stdout);
+    let mesh = run("spdelaunay2d", &[], &finalized.stdout);
+    let read = |stream: &[u8]| run_python("formats/reader.py", &[], stream).unwrap();
+    let obj = String::from_utf8(read(&finalized.stdout).stdout).unwrap();
+    assert_eq!(obj, "v 0.0 0.0 1.0\nv 4.0 0.0 2.0\nv 0.0 4.5 3.0\nv 4.0 4.0 5.0\n");
+    let triangles = read(&mesh.stdout);
+    assert!(triangles.status.success(), "{}", String::from_utf8_lossy(&triangles.stderr));
+    let lines = String::from_utf8(triangles.stdout).unwrap();
+    assert_eq!(lines.lines().filter(|line| line.starts_with("f ")).count(), 2);
+    // Grids of integers, and damage.
+    let vector = std::fs::read(repository("formats/vectors/pass/mesh-two-patches.spm")).unwrap();
+    let obj = String::from_utf8(read(&vector).stdout).unwrap();
+    assert!(obj.contains("v 1.0 1.0 1.0\n") && obj.ends_with("f 4 3 2\n"), "{obj}");
+    for at in (0..vector.len()).step_by(7) {
+        let mut damaged = vector.clone();
+        damaged[at] ^= 4;
+        assert!(!read(&damaged).status.success(), "byte {at}");
+    }
+    assert!(!read(&vector[..vector.len() - 1]).status.success());
 }

@@ -6,9 +6,10 @@ use spmesh_stream::{Coordinates, Event, Header, Kind, write_triangles};
 
 use super::{
     COMPRESSED, Random, assert_malformed, frames, joined, mutate, random_stream, read_all, seal, write,
+    write_rows,
 };
 use crate::allocation::largest_during;
-use crate::vectors::{is_refused, kind_of_damage, run_python, verify};
+use crate::vectors::{is_refused, kind_of_damage, run_python, verify, verify_rows};
 
 const GRID: Coordinates = Coordinates::I32 { scale: [0.01; 3], offset: [0.0; 3] };
 
@@ -55,12 +56,14 @@ fn random_streams_come_back_and_are_not_longer() {
     let mut compressed = 0;
     for seed in 0..2_000 {
         let (header, _, plain) = random_stream(seed);
-        let (_, events) = verify(&plain).unwrap();
+        let (_, events, rows) = verify_rows(&plain).unwrap();
         let header = Header { compressed: true, ..header };
-        let bytes = write(&header, &events).unwrap();
+        let bytes = write_rows(&header, &events, &rows).unwrap();
         assert!(bytes.len() <= plain.len(), "seed {seed}");
-        let (header_again, events_again) = verify(&bytes).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        let (header_again, events_again, rows_again) =
+            verify_rows(&bytes).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         assert_eq!(header_again, header, "seed {seed}");
+        assert_eq!(rows_again.concat(), rows.concat(), "seed {seed}");
         assert_eq!(joined(events_again), joined(events), "seed {seed}");
         compressed += compressed_blocks(&bytes);
     }
