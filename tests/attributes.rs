@@ -191,6 +191,15 @@ fn properties_of_ply_are_attributes_and_come_back() {
     let mesh = output_of("spdelaunay2d", &[], &points);
     let obj = String::from_utf8(output_of("spconvert", &["--to", "obj"], &mesh)).unwrap();
     assert!(obj.contains("v 0 0 1 1 0 0.027450980392156862\n"), "{obj}");
+    let written = output_of("spconvert", &["--to", "ply", "--ascii"], &mesh);
+    let back = run("spconvert", &["--to", "spm"], &written);
+    assert!(outcome(&back).1.contains("attributes of a mesh in PLY are not read: rgb, quality dropped"));
+    let colours = ["--attributes", "rgb", "--to", "ply", "--ascii", &sample("crop_duplicate.laz")];
+    let written = String::from_utf8(output_of("spconvert", &colours, &[])).unwrap();
+    assert!(
+        written.contains("property ushort red\n") && written.contains(" 15360 19712 16896\n"),
+        "{written}"
+    );
     let vtu = output_of("spconvert", &["--to", "vtu"], &mesh);
     let text = String::from_utf8_lossy(&vtu);
     assert!(text.contains(

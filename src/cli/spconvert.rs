@@ -13,6 +13,7 @@ use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
+use spmesh_io::source::AttributeChoice;
 
 const EXAMPLES: &str = "\
 Formats:
@@ -64,6 +65,11 @@ pub struct Flags {
     #[arg(long, value_name = "FORMAT", value_parser = formats(Format::names_read()))]
     from: Option<Format>,
 
+    /// Take attributes of points of LAS, LAZ, COPC or text along: their names, or all. Points of other formats keep
+    /// theirs
+    #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
+    attributes: Vec<String>,
+
     /// Write PLY as text
     #[arg(long)]
     ascii: bool,
@@ -106,6 +112,7 @@ pub fn run(flags: Flags) -> Result<()> {
     let options = Options {
         from: flags.from,
         dims: flags.dims,
+        attributes: AttributeChoice::of_names(&flags.attributes),
         ascii: flags.ascii,
         compress,
         path: flags.input.is_file().then(|| flags.input.clone()),

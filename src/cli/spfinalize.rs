@@ -224,18 +224,10 @@ impl Flags {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
-    fn attribute_choice(&self) -> AttributeChoice {
-        match &self.attributes[..] {
-            [] => AttributeChoice::None,
-            [all] if all == "all" => AttributeChoice::All,
-            names => AttributeChoice::Named(names.to_vec()),
-        }
-    }
-
     fn source_options(&self) -> SourceOptions {
         SourceOptions {
             reader: &SPFINALIZE,
-            attributes: self.attribute_choice(),
+            attributes: AttributeChoice::of_names(&self.attributes),
             keep_class: self.keep_class.clone(),
             drop_class: self.drop_class.clone(),
             first_only: self.first_only,

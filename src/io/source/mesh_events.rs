@@ -29,6 +29,11 @@ pub(super) trait Elements {
 
     /// Adds input and position to an error about the element that was read last.
     fn locate(&self, error: Error) -> Error;
+
+    /// A notice about content that is not read.
+    fn lost(&self) -> Option<String> {
+        None
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,7 +144,7 @@ impl<E: Elements> EventSource for MeshEvents<E> {
             Order::AtEnd => self.builder.triangles() > 0,
         };
         let notice = "the input does not say when vertices are final: all are at the end";
-        says_nothing.then(|| notice.to_string()).into_iter().collect()
+        says_nothing.then(|| notice.to_string()).into_iter().chain(self.elements.lost()).collect()
     }
 }
 

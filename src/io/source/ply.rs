@@ -117,6 +117,12 @@ impl<R: Read> Elements for PlyElements<R> {
         Ok(false)
     }
 
+    fn lost(&self) -> Option<String> {
+        let attributes = self.rows.header.attributes().unwrap_or_default();
+        let names = attributes.names();
+        (!attributes.is_empty()).then(|| format!("attributes of a mesh in PLY are not read: {names} dropped"))
+    }
+
     fn locate(&self, error: Error) -> Error {
         self.rows.locate(error)
     }

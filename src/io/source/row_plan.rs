@@ -67,6 +67,18 @@ pub enum AttributeChoice {
     Named(Vec<String>),
 }
 
+impl AttributeChoice {
+    /// The choice that a list on the command line stands for: nothing, `all`, or names.
+    #[must_use]
+    pub fn of_names(names: &[String]) -> Self {
+        match names {
+            [] => AttributeChoice::None,
+            [all] if all == "all" => AttributeChoice::All,
+            names => AttributeChoice::Named(names.to_vec()),
+        }
+    }
+}
+
 /// The attributes that the points of all files have, and a plan for each file. A notice names what `All` leaves
 /// out.
 ///

@@ -16,8 +16,8 @@ use spmesh_io::sink::{
     SpmSink, TwinSink, VtuSink, surface_header,
 };
 use spmesh_io::source::{
-    Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader, TwinSource,
-    open_obj, open_ply, open_sma, open_smb,
+    AttributeChoice, Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader,
+    TwinSource, open_obj, open_ply, open_sma, open_smb,
 };
 use spmesh_stream::{Event, Header, Kind, StreamReader};
 
@@ -28,6 +28,8 @@ pub struct Options {
     pub from: Option<Format>,
     /// Dimensions of points in formats that do not say: 3, or else 2 with an elevation.
     pub dims: Option<u8>,
+    /// What points of formats that `spfinalize` reads carry along.
+    pub attributes: AttributeChoice,
     /// Write PLY as text.
     pub ascii: bool,
     /// Compress the blocks of a stream.
@@ -125,6 +127,7 @@ fn open_points(input: impl Read, name: &str, options: &Options) -> Result<Box<dy
     let source = SourceOptions {
         reader: &SPCONVERT,
         dims: options.dims.unwrap_or(2),
+        attributes: options.attributes.clone(),
         temp_dir: options.temp_dir.clone(),
         ..SourceOptions::default()
     };

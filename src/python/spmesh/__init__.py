@@ -1,0 +1,38 @@
+"""Reads and writes spmesh streams as numpy arrays.
+
+    import spmesh
+
+    mesh = spmesh.read("terrain.spm")           # everything: mesh.xyz, mesh.simplices, mesh.attribute("intensity")
+    for block in spmesh.open("terrain.spm"):    # block by block, in bounded memory
+        ...
+    spmesh.write_points("points.spm", xyz, attributes={"intensity": intensity}, scale=0.001)
+
+The format is described in formats/spmesh.md of the project.
+"""
+
+from .blocks import (
+    FARAWAY,
+    NOT_A_VERTEX,
+    Cells,
+    Cells4,
+    Coefficients,
+    Configurations,
+    End,
+    Function,
+    Functions,
+    Labels,
+    Patch,
+    Points,
+    Points4,
+    ResidualPoints,
+    Simplices4,
+    Walls,
+)
+from .errors import MalformedError, SpmeshError, TooNewError
+from .header import Attribute, Header, Tree
+from .reader import Reader
+from .reader import Reader as open  # noqa: A004
+from .whole import Stream, attributes_of, read, write_points, write_triangles
+from .writer import Writer
+
+__version__ = "0.1.0"

@@ -1,0 +1,133 @@
+"""What the blocks of a stream hold, as numpy arrays. Coordinates are stored ones (see `Header.world`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+NOT_A_VERTEX = 2**64 - 1
+FARAWAY = 2**32 - 1
+TOTALS = ("points", "cells", "vertices", "simplices", "merged", "residual", "walls")
+
+
+@dataclass
+class Points:
+    """`xyz` (n, axes); `rows` (n,) structured, or None without attributes."""
+
+    xyz: np.ndarray
+    rows: np.ndarray | None = None
+
+
+@dataclass
+class Cells:
+    """Location codes (n,) uint64 of cells that are final."""
+
+    codes: np.ndarray
+
+
+@dataclass
+class Patch:
+    """A piece of a mesh. Local indices count `new` vertices first, then `imported` ones."""
+
+    first_id: int
+    new: np.ndarray
+    imported: np.ndarray
+    simplices: np.ndarray
+    finalized: np.ndarray
+    rows: np.ndarray | None = None
+
+    @property
+    def ids(self) -> np.ndarray:
+        """Ids (n,) uint64 of the local vertices."""
+        own = np.arange(self.first_id, self.first_id + len(self.new), dtype=np.uint64)
+        return np.concatenate([own, self.imported])
+
+    @property
+    def simplices_by_id(self) -> np.ndarray:
+        """Simplices (m, corners) as ids of vertices of the whole stream."""
+        return self.ids[self.simplices]
+
+
+@dataclass
+class Labels:
+    """Labels (n,) uint64 of the next vertices without one."""
+
+    labels: np.ndarray
+
+
+@dataclass
+class ResidualPoints:
+    """`ids` (n,) uint64, 2^64 - 1 for points that are no vertices yet; `xyz` (n, axes)."""
+
+    ids: np.ndarray
+    xyz: np.ndarray
+    rows: np.ndarray | None = None
+
+
+@dataclass
+class Walls:
+    """Numbers (n, dims) uint32 of residual points."""
+
+    corners: np.ndarray
+
+
+@dataclass
+class Points4:
+    """`xyzt` (n, 4) and `values` (n,), NaN if unknown, or None."""
+
+    xyzt: np.ndarray
+    values: np.ndarray | None = None
+
+
+@dataclass
+class Cells4:
+    """Cells that a block completes: `infinite` (n,) bool, lists of vertices and of neighbours."""
+
+    infinite: np.ndarray
+    vertices: list[np.ndarray]
+    neighbours: list[np.ndarray]
+
+
+@dataclass
+class Simplices4:
+    """Numbers (n, 5) uint32 of points."""
+
+    corners: np.ndarray
+
+
+@dataclass
+class Configurations:
+    """Groups of one degree: `interiors` (g, degree), `counts` (g,), `boundaries` (n, 3), FARAWAY for the faraway point."""
+
+    degree: int
+    standing: int
+    interiors: np.ndarray
+    counts: np.ndarray
+    boundaries: np.ndarray
+
+
+@dataclass
+class Function:
+    """A function of splines: its kind, its knots, and terms of two knots and a factor."""
+
+    kind: str
+    knots: tuple[int, ...]
+    terms: list[tuple[int, int, float]]
+
+
+@dataclass
+class Functions:
+    functions: list[Function]
+
+
+@dataclass
+class Coefficients:
+    values: np.ndarray
+
+
+@dataclass
+class End:
+    """Totals by name: points, cells, vertices, simplices, merged, residual, walls."""
+
+    totals: dict[str, int] = field(default_factory=dict)

@@ -1,0 +1,394 @@
+"""The header of a stream: kind, coordinates, and what is known before the first block (format, section 2)."""
+
+from __future__ import annotations
+
+import math
+import struct
+from dataclasses import dataclass, field
+
+import numpy as np
+from crc32c import crc32c
+
+from .errors import MalformedError, TooNewError, needs, require
+
+MAGIC = b"\x89SPM\r\n\x1a\n"
+UNKNOWN = 2**64 - 1
+
+# Name, dimensions, and tags of blocks in their order.
+KINDS = {
+    1: ("points", (2, 3), ((b"PNTS", b"CELL"),)),
+    2: ("triangle mesh", (2,), ((b"PTCH",),)),
+    3: ("partial triangle mesh", (2,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+    4: ("tetrahedral mesh", (3,), ((b"PTCH", b"LABL"),)),
+    5: ("points in 4 dimensions", (4,), ((b"PNT4",),)),
+    6: ("cells in 4 dimensions", (4,), ((b"PNT4",), (b"CEL4",))),
+    7: ("simplices in 4 dimensions", (4,), ((b"PNT4",), (b"SIM4",))),
+    8: ("configurations", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",))),
+    9: ("splines", (2,), ((b"PNTS",), (b"CONF",), (b"FUNC",), (b"COEF",))),
+    10: ("partial tetrahedral mesh", (3,), ((b"PTCH",), (b"RPNT",), (b"WALL",))),
+}
+CODES = {name: code for code, (name, _, _) in KINDS.items()}
+TYPES = ("u1", "i1", "<u2", "<i2", "<u4", "<i4", "<u8", "<i8", "<f4", "<f8")
+
+
+@dataclass
+class Attribute:
+    """What each point carries beside its coordinates.
+
+    `dtype` is that of the stored numbers; `scale` is a pair (scale, offset): value = stored * scale + offset;
+    `unknown` holds the bytes of the stored number that stands for an unknown value.
+    """
+
+    name: str
+    dtype: np.dtype
+    components: int = 1
+    unit: str = ""
+    las_name: str = ""
+    scale: tuple[float, float] | None = None
+    unknown: bytes | None = None
+
+    def __post_init__(self):
+        self.dtype = np.dtype(self.dtype).newbyteorder("<")
+
+    @property
+    def field(self) -> tuple:
+        """Its field in the structured dtype of a row."""
+        shape = () if self.components == 1 else (self.components,)
+        return (self.name, self.dtype, *([shape] if shape else []))
+
+    def check(self) -> None:
+        require(1 <= len(self.name.encode()) <= 255, "an attribute without a name, or with one above 255 bytes")
+        for text in (self.name, self.unit, self.las_name):
+            plain = len(text.encode()) <= 255 and all(ord(c) >= 32 and not 127 <= ord(c) < 160 for c in text)
+            require(plain, f"name, unit or LAS name of attribute {self.name!r} is too long or has control characters")
+        require(1 <= self.components <= 255, f"attribute {self.name!r} has {self.components} components")
+        if self.scale is not None:
+            scale, offset = self.scale
+            valid = math.isfinite(scale) and math.isfinite(offset) and scale != 0
+            require(valid, f"attribute {self.name!r} has the scale {scale} and the offset {offset}")
+
+    def encode(self) -> bytes:
+        code = [np.dtype(t) for t in TYPES].index(self.dtype) + 1
+        flags = (self.scale is not None) | (self.unknown is not None) << 1
+        texts = [text.encode() for text in (self.name, self.unit, self.las_name)]
+        data = bytes([code, self.components, flags]) + b"".join(bytes([len(t)]) + t for t in texts)
+        return data + (struct.pack("<2d", *self.scale) if self.scale is not None else b"") + (self.unknown or b"")
+
+    def values(self, stored: np.ndarray) -> np.ma.MaskedArray:
+        """The values of stored numbers as masked float64; unknown ones are masked."""
+        stored = np.asarray(stored)
+        mask = np.zeros(stored.shape, bool)
+        if self.unknown is not None:
+            plain = np.ascontiguousarray(stored, self.dtype)
+            raw = plain.view(f"V{self.dtype.itemsize}")
+            mask = (raw == np.frombuffer(self.unknown, raw.dtype)[0]).reshape(stored.shape)
+        scale, offset = self.scale or (1.0, 0.0)
+        return np.ma.MaskedArray(stored.astype(float) * scale + offset, mask)
+
+
+def _attributes(data: bytes) -> list[Attribute]:
+    require(data, 'header record "attr": no attribute is listed')
+    at, found = 0, []
+
+    def take(size):
+        nonlocal at
+        require(at + size <= len(data), 'header record "attr": it ends within an attribute')
+        at += size
+        return data[at - size : at]
+
+    while at < len(data):
+        code, components, flags = take(3)
+        require(1 <= code <= 10, f"type {code} of an attribute, expected 1 to 10")
+        require(flags < 4, f"flags {flags} of an attribute, of which all bits but 0 and 1 must be 0")
+        require(components, "an attribute without components")
+        texts = [_text(take(take(1)[0]), "a text") for _ in range(3)]
+        scale = struct.unpack("<2d", take(16)) if flags & 1 else None
+        dtype = np.dtype(TYPES[code - 1])
+        unknown = take(dtype.itemsize) if flags & 2 else None
+        found.append(Attribute(texts[0], dtype, components, texts[1], texts[2], scale, unknown))
+    return found
+
+
+def _text(data: bytes, what: str) -> str:
+    try:
+        return data.decode()
+    except UnicodeDecodeError:
+        raise MalformedError(f"{what} is not UTF-8") from None
+
+
+@dataclass
+class Tree:
+    """The finalization tree: `depth` levels over the cube from `origin` with this `side`, in stored coordinates."""
+
+    depth: int
+    origin: tuple[float, ...]
+    side: float
+
+    def check(self) -> None:
+        wrong = "the finalization tree is out of range or not exact"
+        require(self.depth <= (31 if len(self.origin) == 2 else 20), wrong)
+        require(2.0**-1022 <= self.side < math.inf and math.frexp(self.side)[0] == 0.5, wrong)
+        unit = self.side / 2.0**31
+        for origin in self.origin:
+            steps = origin / unit
+            require(math.isfinite(steps) and steps.is_integer() and steps * unit == origin, wrong)
+            require(abs(steps) + 2.0**31 < 2.0**53 and origin + self.side < math.inf, wrong)
+
+    def contains(self, low, high) -> bool:
+        return all(o <= a and b < o + self.side for o, a, b in zip(self.origin, low, high))
+
+
+@dataclass
+class Header:
+    """What a stream states about itself. Coordinates of boxes, tree and region are stored ones.
+
+    Without `scale` and `offset` (three numbers each), stored coordinates are float64 of the world; with them they
+    are int32 and world = stored * scale + offset.
+    """
+
+    kind: str = "points"
+    dims: int = 2
+    has_elevation: bool = False
+    scale: tuple[float, ...] | None = None
+    offset: tuple[float, ...] | None = None
+    bounds: tuple[float, ...] | None = None
+    points: int | None = None
+    tree: Tree | None = None
+    region: tuple[float, ...] | None = None
+    chunked: bool = False
+    compressed: bool = False
+    wkt: str | None = None
+    geokeys: tuple[bytes, bytes, bytes] | None = None
+    attributes: list[Attribute] = field(default_factory=list)
+    producer: str = "spmesh (Python)"
+
+    @property
+    def axes(self) -> int:
+        """Numbers stored per point."""
+        return self.dims + self.has_elevation
+
+    @property
+    def dtype(self) -> np.dtype:
+        """The type of stored coordinates."""
+        return np.dtype("<f8" if self.scale is None else "<i4")
+
+    @property
+    def row_dtype(self) -> np.dtype:
+        """The structured type of a row of attributes."""
+        return np.dtype([attribute.field for attribute in self.attributes])
+
+    @property
+    def corners(self) -> int:
+        """Vertices of a simplex of a patch."""
+        return self.dims + 1
+
+    def world(self, stored: np.ndarray) -> np.ndarray:
+        """World coordinates (n, axes) of stored points (n, axes)."""
+        if self.scale is None:
+            return np.asarray(stored, float)
+        axes = np.shape(stored)[-1]
+        return np.asarray(stored, float) * self.scale[:axes] + self.offset[:axes]
+
+    def stored(self, world: np.ndarray) -> np.ndarray:
+        """Stored coordinates of world points (n, axes): on a grid, the nearest grid points.
+
+        Raises ValueError if one does not fit the grid.
+        """
+        world = np.asarray(world, float)
+        if self.scale is None:
+            return np.ascontiguousarray(world, "<f8")
+        axes = world.shape[-1]
+        steps = world - self.offset[:axes]
+        steps /= self.scale[:axes]
+        np.rint(steps, out=steps)
+        if len(steps) and not (steps.min() >= -(2.0**31) and steps.max() < 2.0**31):
+            raise ValueError("a coordinate does not fit the grid of 32 bits: choose another scale or offset")
+        return steps.astype("<i4")
+
+    # --- Rules between fields
+
+    def check(self) -> None:
+        _, dims, _ = KINDS[CODES[self.kind]]
+        four = dims == (4,)
+        require(self.dims in (2, 3, 4) and not (self.dims == 3 and self.has_elevation), "these dimensions with an elevation")
+        require(self.dims in dims, f"a {self.kind} in {self.dims} dimensions")
+        require(not four or self.scale is None, f"integer coordinates in a stream of kind {self.kind}")
+        rest = self.bounds or self.region or self.chunked or self.tree
+        require(not four or not rest, f"a stream of kind {self.kind} has no box, tree or region, and is not chunked")
+        require(len(self.producer.encode()) < 2**16, "the producer is longer than 2^16 - 1 bytes")
+        if self.scale is not None:
+            for scale, offset in zip(self.scale, self.offset):
+                fits = scale > 0 and abs(offset) <= scale * 2.0**51 and scale * 2.0**51 < math.inf
+                require(fits, "scale is not positive, or scale and offset are too far apart")
+            free = self.kind == "points" and not self.tree
+            require(free or len(set(self.scale[: self.dims])) == 1, "the axes of the geometry have several scales")
+        if self.tree:
+            without = self.kind in ("configurations", "splines", "partial tetrahedral mesh")
+            require(not without, f"a stream of kind {self.kind} has no finalization tree")
+            self.tree.check()
+        self._check_bounds()
+        partial = self.kind.startswith("partial ")
+        require((self.region is not None) == partial, "a region goes with a partial mesh, and only with one")
+        if self.region is not None:
+            ordered = all(a < b for a, b in zip(self.region[: self.dims], self.region[self.dims :]))
+            require(ordered, "the region is empty or not a number")
+        require(not self.chunked or (self.kind == "points" and self.tree), "only points with a tree can be chunked")
+        self._check_attributes()
+
+    def _check_bounds(self) -> None:
+        if self.bounds is None:
+            return
+        low, high = self.bounds[:3], self.bounds[3:]
+        require(all(a <= b for a, b in zip(low, high)), "the bounding box is not ordered")
+        require(all(map(math.isfinite, self.bounds)), "the bounding box is not storable")
+        whole = all(v == int(v) and -(2**31) <= v < 2**31 for v in self.bounds)
+        require(self.scale is None or whole, "the bounding box is not storable")
+        require(self.axes == 3 or low[2] == high[2] == 0, "the bounding box has a height, but the points have no z")
+        inside = self.tree is None or self.tree.contains(low, high)
+        require(inside, "the bounding box does not lie in the finalization tree")
+
+    def _check_attributes(self) -> None:
+        if not self.attributes:
+            return
+        meshes = self.kind in ("points", "triangle mesh", "tetrahedral mesh") or self.kind.startswith("partial ")
+        require(meshes, f"a stream of kind {self.kind} has no attributes")
+        for attribute in self.attributes:
+            attribute.check()
+        names = [attribute.name for attribute in self.attributes]
+        require(len(set(names)) == len(names), "two attributes of one name")
+        length = sum(attribute.dtype.itemsize * attribute.components for attribute in self.attributes)
+        require(length <= 1024, f"rows of {length} bytes, the maximum is 1024")
+
+    # --- Bytes
+
+    @classmethod
+    def read(cls, take) -> "Header":
+        """Reads a header; `take(n)` gives the next n bytes, fewer at the end of the input."""
+        start = take(16)
+        require(start, "the input is empty, expected a spmesh stream")
+        require(MAGIC.startswith(start[:8]), "the first bytes are not those of a spmesh stream")
+        require(len(start) == 16, f"truncated: found {len(start)} of the first 16 bytes")
+        version, kind, length = struct.unpack("<HHI", start[8:])
+        if version != 2:
+            age = "a newer" if version > 2 else "an older"
+            raise TooNewError(f"version {version}; this package reads version 2: {age} spmesh made it")
+        require(16 <= length <= 2**20, f"header body of {length} bytes")
+        body = take(length + 4)
+        require(len(body) == length + 4, "truncated: the input ends in the header")
+        stated = int.from_bytes(body[length:], "little")
+        require(crc32c(body[:length], crc32c(start)) == stated, "checksum does not match: the header is damaged")
+        return cls._parse(kind, body[:length])
+
+    @classmethod
+    def _parse(cls, kind: int, body: bytes) -> "Header":
+        coordinates, dims, elevation, flags, features, points = struct.unpack_from("<BBBBIQ", body)
+        if kind not in KINDS:
+            needs(f"kind {kind}")
+        if features > 1:
+            needs(f"feature bit {(features & ~1).bit_length() - 1}")
+        if coordinates not in (1, 2):
+            needs(f"coordinate type {coordinates}")
+        records = _records(body[16:])
+        require(elevation < 2 and flags < 2, "elevation or flags other than 0 and 1")
+        header = cls(KINDS[kind][0], dims, elevation == 1, producer="")
+        require(dims in (2, 3, 4), f"{dims} dimensions")
+        header.points = None if points == UNKNOWN else points
+        header.chunked, header.compressed = flags == 1, features == 1
+        require((b"GRID" in records) == (coordinates == 2), "i32 coordinates need a GRID, and f64 have none")
+        require(not (b"cWKT" in records and b"cGEO" in records), "the header has the CRS in two records")
+        for tag, payload in records.items():
+            _RECORDS[tag](header, payload)
+        header.check()
+        return header
+
+    def encode(self) -> bytes:
+        """The bytes of the header. Raises MalformedError if it breaks a rule."""
+        self.check()
+        code = CODES[self.kind]
+        body = struct.pack(
+            "<BBBBIQ", 1 if self.scale is None else 2, self.dims, self.has_elevation, self.chunked, 0,
+            UNKNOWN if self.points is None else self.points,
+        )
+        floats = lambda values: struct.pack(f"<{len(values)}d", *values)
+        tree = self.tree and floats((*self.tree.origin, self.tree.side)) + struct.pack("<I", self.tree.depth)
+        crs = self.geokeys and b"".join(struct.pack("<I", len(part)) + part for part in self.geokeys)
+        records = [
+            (b"GRID", self.scale is not None and floats((*self.scale, *self.offset))),
+            (b"BBOX", self.bounds is not None and floats(self.bounds)),
+            (b"TREE", tree),
+            (b"REGN", self.region is not None and floats(self.region)),
+            (b"cWKT", self.wkt is not None and self.wkt.encode()),
+            (b"cGEO", crs),
+            (b"attr", b"".join(attribute.encode() for attribute in self.attributes)),
+            (b"prod", self.producer.encode()),
+        ]
+        for tag, payload in records:
+            if payload or (tag == b"cWKT" and payload == b""):
+                body += tag + struct.pack("<I", len(payload)) + payload
+        require(len(body) <= 2**20, f"header body of {len(body)} bytes, the maximum is 2^20")
+        head = MAGIC + struct.pack("<HHI", 2, code, len(body)) + body
+        return head + struct.pack("<I", crc32c(head))
+
+
+def check_tag(tag: bytes, part: str) -> None:
+    letters = tag[:1].isalpha() and all(b < 128 and (chr(b).isalnum() or b == 32) for b in tag)
+    require(letters, f"{part} tag {tag!r}, expected a letter, then letters, digits or spaces")
+
+
+def _records(data: bytes) -> dict[bytes, bytes]:
+    records, at = {}, 0
+    while at < len(data):
+        require(at + 8 <= len(data), "bytes after the last header record")
+        tag, length = data[at : at + 4], int.from_bytes(data[at + 4 : at + 8], "little")
+        require(at + 8 + length <= len(data), f"header record {tag!r} is longer than the header")
+        check_tag(tag, "header record")
+        require(tag not in records, f"two header records {tag!r}")
+        records[tag] = data[at + 8 : at + 8 + length]
+        at += 8 + length
+    for tag in records:
+        if tag not in _RECORDS and not tag[0] & 0x20:
+            needs(f"header record {tag!r}")
+    return {tag: payload for tag, payload in records.items() if tag in _RECORDS}
+
+
+def _floats(payload: bytes, count: int, extra: int = 0) -> tuple[float, ...]:
+    require(len(payload) == 8 * count + extra, f"a header record of {len(payload)} bytes, expected {8 * count + extra}")
+    return struct.unpack_from(f"<{count}d", payload)
+
+
+def _grid(header, payload):
+    numbers = _floats(payload, 6)
+    header.scale, header.offset = numbers[:3], numbers[3:]
+
+
+def _tree(header, payload):
+    require(header.dims < 4, "no finalization tree in 4 dimensions")
+    numbers = _floats(payload, header.dims + 1, 4)
+    header.tree = Tree(int.from_bytes(payload[-4:], "little"), numbers[:-1], numbers[-1])
+
+
+def _geokeys(header, payload):
+    parts = []
+    for _ in range(3):
+        size = int.from_bytes(payload[:4], "little")
+        require(4 <= len(payload) and 4 + size <= len(payload), "GeoKey records do not fit the CRS")
+        parts.append(payload[4 : 4 + size])
+        payload = payload[4 + size :]
+    require(not payload, "GeoKey records do not fit the CRS")
+    header.geokeys = tuple(parts)
+
+
+def _producer(header, payload):
+    header.producer = _text(payload, "producer")
+
+
+_RECORDS = {
+    b"GRID": _grid,
+    b"BBOX": lambda header, payload: setattr(header, "bounds", _floats(payload, 6)),
+    b"TREE": _tree,
+    b"REGN": lambda header, payload: setattr(header, "region", _floats(payload, 2 * header.dims)),
+    b"cWKT": lambda header, payload: setattr(header, "wkt", _text(payload, "CRS")),
+    b"cGEO": _geokeys,
+    b"attr": lambda header, payload: setattr(header, "attributes", _attributes(payload)),
+    b"prod": _producer,
+}

@@ -1,0 +1,438 @@
+"""Reads a stream block by block, and checks every rule that the format demands of readers."""
+
+from __future__ import annotations
+
+import os
+import struct
+from typing import BinaryIO, Iterator
+
+import numpy as np
+from crc32c import crc32c
+
+from . import blocks as b
+from .compression import decompress
+from .errors import SpmeshError, needs, require
+from .header import CODES, KINDS, UNKNOWN, Header, check_tag
+from .rules import Chunks, FinalCells, LiveVertices
+
+KNOTS_OF = (("edge", 2), ("vertex", 1), ("tent", 2), ("crease", 3), ("face", 4))
+UNKNOWN_VALUE = np.uint64(0x7FF8000000000000)
+
+
+class Reader:
+    """Iterates over the blocks of a stream as the classes of `spmesh.blocks`; the last one is `End`.
+
+    Every fault raises MalformedError or TooNewError with the block and its first byte. A stream that is cut off raises
+    before the iteration ends. With `memory=False`, the rules that need memory (format, section 6.1) are not checked.
+    Memory: one block, and with `memory` live vertices and final cells.
+    """
+
+    def __init__(self, file: BinaryIO | str | os.PathLike, memory: bool = True):
+        self._own = isinstance(file, (str, os.PathLike))
+        self._file = open(file, "rb") if self._own else file
+        self.place, self._offset, self._number = "header at byte 0", 0, 0
+        try:
+            self.header = Header.read(self._read)
+        except SpmeshError as error:
+            self.close()
+            raise type(error)(error.message, self.place) from None
+        header = self.header
+        self._phases, self._phase, self._ended = KINDS[CODES[header.kind]][2], 0, False
+        self.totals = dict.fromkeys(b.TOTALS, 0)
+        self._finalized = self._named = self._labels = 0
+        self._cells = FinalCells(header.tree) if header.tree and memory else None
+        self._chunks = Chunks(header.tree) if header.chunked else None
+        self._live = LiveVertices(header) if memory and header.kind.endswith("mesh") else None
+        self._words, self._neighbour, self._last = np.empty(0, "<u4"), -1, None
+        self._degree = self._group = self._boundary = self._function = None
+        self._has_pairs = False
+        self._point_size = header.axes * header.dtype.itemsize
+        self._row = header.row_dtype if header.attributes else None
+
+    def close(self) -> None:
+        """Closes the file if the reader opened it."""
+        if self._own:
+            self._file.close()
+
+    def __enter__(self) -> "Reader":
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.close()
+
+    def __iter__(self) -> Iterator:
+        while (block := self.next_block()) is not None:
+            yield block
+
+    def _read(self, size: int) -> bytes:
+        data = self._file.read(size)
+        while len(data) < size and (more := self._file.read(size - len(data))):
+            data += more
+        self._offset += len(data)
+        return data
+
+    def _take(self, size: int) -> bytes:
+        data = self._read(size)
+        require(len(data) == size, f"truncated: found {len(data)} of {size} bytes, without END")
+        return data
+
+    def next_block(self):
+        """The next block; None after End."""
+        if self._ended:
+            return None
+        try:
+            tag, payload = self._known_block()
+            place = self.place
+            block = self._decode(tag, payload)
+            points = self._points_of(block)
+            if self._row is not None and points:
+                tag, payload = self._known_block(True)
+                size = points * self._row.itemsize
+                require(len(payload) == size, f"{len(payload)} bytes of attributes, expected {size}")
+                block.rows = np.frombuffer(payload, self._row)
+                self.place = place
+            return block
+        except SpmeshError as error:
+            self._ended = True
+            raise type(error)(error.message, self.place) from None
+
+    @staticmethod
+    def _points_of(block) -> int:
+        if isinstance(block, (b.Points, b.ResidualPoints)):
+            return len(block.xyz)
+        return len(block.new) if isinstance(block, b.Patch) else 0
+
+    def _known_block(self, expects_rows: bool = False) -> tuple[bytes, bytes]:
+        while True:
+            self.place = f"block {self._number} at byte {self._offset}"
+            frame = self._take(16)
+            tag, sequence, length, checksum = struct.unpack("<4sIII", frame)
+            compressed, length = length >> 31, length & 0x7FFFFFFF
+            require(self.header.compressed or not compressed, "a compressed block in a stream without feature bit 0")
+            require(length <= 2**20, f"block of {length} bytes, the maximum is 2^20")
+            payload = self._take(length)
+            require(crc32c(payload, crc32c(frame[:12])) == checksum, "checksum does not match: the block is damaged")
+            require(sequence == self._number % 2**32, "a block is missing or repeated")
+            self._number += 1
+            check_tag(tag, "block")
+            if tag in _DECODERS or tag == b"attp":
+                break
+            if not tag[0] & 0x20:
+                needs(f"block tag {tag!r}")
+        if tag == b"attp" or expects_rows:
+            require(self._row is not None, "attributes in a stream without them")
+            require(expects_rows, "attributes behind no points")
+            require(tag == b"attp", f"block {tag!r}, expected the attributes of the points before it")
+        elif tag != b"END ":
+            phase = next((i for i, tags in enumerate(self._phases) if tag in tags), -1)
+            require(phase >= self._phase, f"no block {tag!r} may stand here in a stream of kind {self.header.kind}")
+            self._phase = phase
+        if compressed:
+            require(tag != b"END ", "END is compressed")
+            payload = decompress(payload)
+        return tag, payload
+
+    def _decode(self, tag: bytes, payload: bytes):
+        return _DECODERS[tag](self, payload)
+
+    # --- Points and cells
+
+    def _xyz(self, payload) -> np.ndarray:
+        header = self.header
+        require(len(payload) % self._point_size == 0, "not a whole number of points")
+        xyz = np.frombuffer(payload, header.dtype).reshape(-1, header.axes)
+        self._box = None
+        if not len(xyz):
+            return xyz
+        low, high = [list(map(float, side)) for side in (xyz.min(axis=0), xyz.max(axis=0))]
+        # The least and the greatest are NaN if any coordinate is.
+        require(np.isfinite(low + high).all(), "a coordinate is not finite")
+        self._box = low, high
+        box = [*low, *[0.0] * (3 - header.axes)], [*high, *[0.0] * (3 - header.axes)]
+        if header.bounds is not None:
+            inside = all(a <= c and d <= e for a, c, d, e in zip(header.bounds, *box, header.bounds[3:]))
+            require(inside, "a point lies outside of the header's bounding box")
+        if header.tree:
+            require(header.tree.contains(low, high), "a point lies outside of the finalization tree")
+        if header.region is not None:
+            dims = header.dims
+            inside = all(a <= c and d < e for a, c, d, e in zip(header.region, *box, header.region[dims:]))
+            require(inside, "a point lies outside of the region")
+        return xyz
+
+    def _points(self, payload):
+        xyz = self._xyz(payload)
+        if self._cells:
+            self._cells.check(xyz, *(self._box or ((), ())))
+        if self._chunks and self._box:
+            self._chunks.points(*self._box)
+        self.totals["points"] += len(xyz)
+        return b.Points(xyz)
+
+    def _tags(self, payload):
+        require(self.header.tree, "cell tag in a stream without a finalization tree")
+        codes = _records(payload, "<u8")
+        levels = FinalCells(self.header.tree)
+        for code in codes.tolist():
+            if self._cells:
+                self._cells.tag(code)
+            else:
+                require(levels.level(code) is not None, f"location code {code} is not a cell of the tree")
+            if self._chunks:
+                self._chunks.tag(code)
+        self.totals["cells"] += len(codes)
+        return b.Cells(codes)
+
+    # --- Meshes
+
+    def _patch(self, payload):
+        require(len(payload) >= 24, f"patch of {len(payload)} bytes, expected at least 24")
+        first, n, m, s, f = struct.unpack_from("<QIIII", payload)
+        corners = self.header.corners
+        ends = np.cumsum([24, n * self._point_size, 8 * m, 4 * corners * s, 4 * f]).tolist()
+        require(ends[-1] == len(payload), "the counts of the patch do not add up to its length")
+        require(first == self.totals["vertices"], f"patch starts with vertex {first}, expected {self.totals['vertices']}")
+        data = memoryview(payload)
+        new = self._xyz(data[ends[0] : ends[1]])
+        imported = np.frombuffer(data[ends[1] : ends[2]], "<u8")
+        simplices = np.frombuffer(data[ends[2] : ends[3]], "<u4").reshape(-1, corners)
+        finalized = np.frombuffer(data[ends[3] : ends[4]], "<u4")
+        require(_increases(imported) and (not m or imported[-1] < first), "imported vertices are not increasing ids")
+        require(_increases(finalized) and (not f or finalized[-1] < n + m), "finalized vertices are not increasing")
+        require(not s or simplices.max() < n + m, "simplex uses a vertex that its patch does not have")
+        for one in range(corners):
+            for other in range(one):
+                require((simplices[:, one] != simplices[:, other]).all(), "simplex uses a vertex twice")
+        patch = b.Patch(first, new, imported, simplices, finalized)
+        if self._live:
+            self._live.patch(patch)
+        self.totals["vertices"] += n
+        self.totals["simplices"] += s
+        self._finalized += f
+        return patch
+
+    def _label(self, payload):
+        labels = _records(payload, "<u8")
+        self._labels += len(labels)
+        require(self._labels <= self.totals["vertices"], f"{self._labels} labels after {self.totals['vertices']} vertices")
+        return b.Labels(labels)
+
+    def _residual(self, payload):
+        header = self.header
+        records = _records(payload, np.dtype([("id", "<u8"), ("xyz", header.dtype, (header.axes,))]))
+        ids = np.ascontiguousarray(records["id"])
+        xyz = self._xyz(np.ascontiguousarray(records["xyz"]).tobytes())
+        named = ids[ids != np.uint64(b.NOT_A_VERTEX)]
+        require(not len(named) or named.max() < self.totals["vertices"], "residual point has the id of no vertex")
+        points = b.ResidualPoints(ids, xyz)
+        if self._live:
+            self._live.residual(points)
+        self._named += len(named)
+        self.totals["residual"] += len(ids)
+        return points
+
+    def _walls(self, payload):
+        dims = self.header.dims
+        walls = _records(payload, np.dtype(("<u4", (dims,)))).reshape(-1, dims)
+        require(not len(walls) or walls.max() < self.totals["residual"], "wall between no residual points")
+        ordered = np.sort(walls, axis=1)
+        require((ordered[:, 1:] != ordered[:, :-1]).all(), "wall with a corner twice")
+        self.totals["walls"] += len(walls)
+        return b.Walls(walls)
+
+    # --- Four dimensions
+
+    def _points4(self, payload):
+        header = self.header
+        records = _records(payload, np.dtype(("<f8", (header.axes,)))).reshape(-1, header.axes)
+        xyzt, values = records[:, :4], records[:, 4] if header.has_elevation else None
+        require(np.isfinite(xyzt).all(), "coordinate is not finite")
+        if values is not None:
+            known = np.isfinite(values) | (np.ascontiguousarray(values).view("<u8") == UNKNOWN_VALUE)
+            require(known.all(), "value is neither finite nor the NaN of what is not known")
+        if header.kind == "cells in 4 dimensions" and len(xyzt):
+            before = xyzt[:-1] if self._last is None else np.vstack([self._last, xyzt[:-1]])
+            after = xyzt[1:] if self._last is None else xyzt
+            less, equal = np.zeros(len(after), bool), np.ones(len(after), bool)
+            for axis in range(4):
+                less |= equal & (before[:, axis] < after[:, axis])
+                equal &= before[:, axis] == after[:, axis]
+            require(less.all(), "a point does not follow the one before it")
+            self._last = xyzt[-1:]
+        self.totals["points" if header.kind == "points in 4 dimensions" else "vertices"] += len(xyzt)
+        return b.Points4(xyzt, values)
+
+    def _cells4(self, payload):
+        words = np.concatenate([self._words, _records(payload, "<u4")])
+        points, at, found = self.totals["vertices"], 0, ([], [], [])
+        while at < len(words):
+            infinite, vertices = int(words[at]) >> 31, int(words[at]) & 0x7FFFFFFF
+            require(vertices >= 5 - infinite, f"a cell of {vertices} vertices, expected at least {5 - infinite}")
+            require(vertices <= points, f"a cell of {vertices} vertices, but {points} points")
+            if at + 1 == len(words):
+                break
+            neighbours, corners = int(words[at + 1]), vertices + infinite
+            require(neighbours <= corners * (corners - 3) // 2, "a cell of more neighbours than facets")
+            require(2 + vertices + neighbours <= 2**31, "a cell of more than 2^31 words")
+            middle, end = at + 2 + vertices, at + 2 + vertices + neighbours
+            if end > len(words):
+                break
+            of, beside = words[at + 2 : middle], words[middle:end]
+            require(_increases(of) and of[-1] < points, "the vertices of a cell are not increasing numbers of points")
+            require(_increases(beside), "the neighbours of a cell are not increasing")
+            self._neighbour = max(self._neighbour, int(beside[-1]) if len(beside) else -1)
+            for list_, item in zip(found, (bool(infinite), of, beside)):
+                list_.append(item)
+            at = end
+        self._words = words[at:].copy()
+        self.totals["simplices"] += len(found[0])
+        return b.Cells4(np.array(found[0], bool), found[1], found[2])
+
+    def _simplices4(self, payload):
+        corners = _records(payload, np.dtype(("<u4", (5,)))).reshape(-1, 5)
+        require(not len(corners) or corners.max() < self.totals["vertices"], "simplex of no points")
+        ordered = np.sort(corners, axis=1)
+        require((ordered[:, 1:] != ordered[:, :-1]).all(), "simplex uses a vertex twice")
+        self.totals["simplices"] += len(corners)
+        return b.Simplices4(corners)
+
+    # --- Configurations and splines
+
+    def _configurations(self, payload):
+        require(len(payload) >= 12, f"configurations in {len(payload)} bytes")
+        degree, standing, groups = struct.unpack_from("<3I", payload)
+        require(degree <= 4096 and standing < 3, f"configurations of degree {degree} and standing {standing}")
+        start = 12 + groups * (degree + 1) * 4
+        require(start <= len(payload), "the counts of the configurations do not add up")
+        interiors = np.frombuffer(payload, "<u4", groups * degree, 12).reshape(groups, degree)
+        counts = np.frombuffer(payload, "<u4", groups, 12 + groups * degree * 4)
+        require(start + int(counts.sum(dtype=np.uint64)) * 12 == len(payload), "the counts of the configurations do not add up")
+        boundaries = np.frombuffer(payload, "<u4", -1, start).reshape(-1, 3)
+        self._start_degree(degree, standing)
+        at = 0
+        for number, (interior, count) in enumerate(zip(interiors.tolist(), counts.tolist())):
+            self._start_group(tuple(interior), number == 0)
+            require(count > 0, "an interior set has no configuration")
+            for boundary in boundaries[at : at + count].tolist():
+                self._configuration(interior, tuple(boundary))
+            at += count
+        self.totals["simplices"] += len(boundaries)
+        return b.Configurations(degree, standing, interiors, counts, boundaries)
+
+    def _start_degree(self, degree, standing):
+        if self._degree:
+            last, known = self._degree
+            require(degree >= last, f"configurations of degree {degree} after those of {last}")
+            require(degree == last or self.header.kind != "splines", "splines have one degree")
+            require(degree > last or standing == known, f"the configurations of degree {degree} change their standing")
+        self._has_pairs |= degree == 1
+        if self._degree != (degree, standing):
+            self._degree, self._group = (degree, standing), None
+
+    def _start_group(self, interior, is_first):
+        if is_first and interior == self._group:
+            return
+        require(self._group is None or interior > self._group, "interior sets do not follow each other")
+        increasing = all(x < y for x, y in zip(interior, interior[1:]))
+        knots = self.totals["points"]
+        require(increasing and all(knot < knots for knot in interior), "an interior set is not of increasing knots")
+        self._group, self._boundary = interior, None
+
+    def _configuration(self, interior, boundary):
+        knots, infinite = self.totals["points"], boundary[2] == b.FARAWAY
+        ends = boundary[:2] if infinite else boundary
+        require(all(knot < knots and knot != b.FARAWAY for knot in ends), "a boundary is not of numbers of knots")
+        require(len(set(boundary)) == 3, "a boundary repeats a knot")
+        require(infinite or boundary[0] == min(boundary), "a boundary does not have its least knot first")
+        require(not set(ends) & set(interior), "a boundary has a knot of its interior set")
+        if self._boundary:
+            was = self._boundary[2] == b.FARAWAY
+            follows = infinite > was or infinite == was and (not interior or self._boundary < boundary)
+            require(follows, "a boundary does not follow the one before it in its group")
+        self._boundary = boundary
+
+    def _functions(self, payload):
+        require(self._has_pairs or not payload, "functions in a stream without configurations of degree 1")
+        at, found, knots = 0, [], self.totals["points"]
+        while at < len(payload):
+            require(at + 8 <= len(payload), "a function is cut off")
+            code, count = struct.unpack_from("<2I", payload, at)
+            require(code < len(KNOTS_OF), f"a function of kind {code}")
+            name, corners = KNOTS_OF[code]
+            end = at + 8 + 4 * corners + 16 * count
+            require(end <= len(payload), "a function is cut off")
+            kind = struct.unpack_from(f"<{corners}I", payload, at + 8)
+            terms = list(struct.iter_unpack("<2Id", payload[at + 8 + 4 * corners : end]))
+            require(max(kind) < knots and len(set(kind)) == corners, "a function of unknown or repeated knots")
+            require(self._function is None or self._function < (code, kind), "functions do not follow each other")
+            require(terms, "a function has no term")
+            pairs = [term[:2] for term in terms]
+            require(all(p < q < knots for p, q in pairs), "a term of no increasing numbers of knots")
+            require(all(np.isfinite(x) and x != 0 for _, _, x in terms), "a factor is not finite, or zero")
+            require(all(x < y for x, y in zip(pairs, pairs[1:])), "terms do not follow each other")
+            self._function, at = (code, kind), end
+            found.append(b.Function(name, kind, terms))
+        self.totals["vertices"] += len(found)
+        return b.Functions(found)
+
+    def _coefficients(self, payload):
+        values = _records(payload, "<f8")
+        require(np.isfinite(values).all(), "a coefficient is not finite")
+        self.totals["residual"] += len(values)
+        return b.Coefficients(values)
+
+    # --- END
+
+    def _end(self, payload):
+        require(len(payload) == 56, f"END of {len(payload)} bytes, expected 56")
+        stated = dict(zip(b.TOTALS, struct.unpack("<7Q", payload)))
+        require(max(stated.values()) < UNKNOWN, "END: a total is beyond counting")
+        header, counted = self.header, dict(self.totals)
+        if header.kind.endswith("mesh") or header.kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
+            counted["merged"] = stated["merged"]
+            counted["points"] = counted["vertices"] + counted["merged"] + counted["residual"] - self._named
+        if header.kind.endswith("mesh"):
+            require(self._finalized + self._named == counted["vertices"], "END: vertices were not finalized")
+            require(self._live is None or not self._live.live, "END: vertices are neither final nor in the residual")
+        require(self._labels in (0, counted["vertices"]), "END: labels of some vertices only")
+        if header.kind == "splines":
+            functions, coefficients = counted["vertices"], counted["residual"]
+            require(coefficients > 0 and functions in (0, coefficients), "END: one coefficient per function is needed")
+            require(self._degree is not None, "END: a spline without configurations")
+        require(not len(self._words), "END: the last cell is cut off")
+        for name in b.TOTALS:
+            require(stated[name] == counted[name], f"END states {stated[name]} {name}, but the stream holds {counted[name]}")
+        require(header.points in (None, stated["points"]), "END: the header states another number of points")
+        require(self._neighbour < max(counted["simplices"], 0) or self._neighbour < 0, "END: a neighbour that does not exist")
+        if self._chunks:
+            self._chunks.end()
+        require(not self._file.read(1), "the input goes on after END")
+        self._ended = True
+        return b.End(stated)
+
+
+def _increases(values: np.ndarray) -> bool:
+    return bool((values[1:] > values[:-1]).all())
+
+
+def _records(payload: bytes, dtype) -> np.ndarray:
+    dtype = np.dtype(dtype)
+    require(len(payload) % dtype.itemsize == 0, f"{len(payload)} bytes are not a whole number of records")
+    return np.frombuffer(payload, dtype)
+
+
+_DECODERS = {
+    b"PNTS": Reader._points,
+    b"CELL": Reader._tags,
+    b"PTCH": Reader._patch,
+    b"LABL": Reader._label,
+    b"RPNT": Reader._residual,
+    b"WALL": Reader._walls,
+    b"PNT4": Reader._points4,
+    b"CEL4": Reader._cells4,
+    b"SIM4": Reader._simplices4,
+    b"CONF": Reader._configurations,
+    b"FUNC": Reader._functions,
+    b"COEF": Reader._coefficients,
+    b"END ": Reader._end,
+}

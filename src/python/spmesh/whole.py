@@ -1,0 +1,183 @@
+"""Whole streams as arrays in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from . import blocks as b
+from .header import Attribute, Header
+from .reader import Reader
+from .writer import Writer
+
+
+@dataclass
+class Stream:
+    """All that a stream holds. Arrays that its kind does not have are None.
+
+    `stored` (n, axes): points, vertices or knots in stored coordinates, `xyz` the same in the world. `simplices` (m,
+    corners): triangles or tetrahedra as indices of vertices. `rows` (n,): structured array of attributes.
+    """
+
+    header: Header
+    stored: np.ndarray
+    simplices: np.ndarray | None = None
+    rows: np.ndarray | None = None
+    labels: np.ndarray | None = None
+    residual: b.ResidualPoints | None = None
+    walls: np.ndarray | None = None
+    values: np.ndarray | None = None
+    cells4: b.Cells4 | None = None
+    configurations: list[b.Configurations] = field(default_factory=list)
+    functions: list[b.Function] = field(default_factory=list)
+    coefficients: np.ndarray | None = None
+    totals: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def xyz(self) -> np.ndarray:
+        """World coordinates (n, axes)."""
+        return self.header.world(self.stored)
+
+    def attribute(self, name: str) -> np.ma.MaskedArray:
+        """The values of an attribute, with scale and offset applied and unknown values masked."""
+        attribute = next((a for a in self.header.attributes if a.name == name), None)
+        if attribute is None:
+            names = ", ".join(a.name for a in self.header.attributes) or "none"
+            raise KeyError(f"no attribute {name!r}: there are {names}")
+        return attribute.values(self.rows[name])
+
+
+def read(file, memory: bool = True) -> Stream:
+    """Reads a whole stream from a path or a binary file, with all checks (see `Reader`)."""
+    with Reader(file, memory) as reader:
+        header, parts = reader.header, {}
+        configurations, functions, totals = [], [], {}
+        put = lambda name, part: parts.setdefault(name, []).append(part)
+        for block in reader:
+            if isinstance(block, b.Points):
+                put("stored", block.xyz)
+                put("rows", block.rows)
+            elif isinstance(block, b.Patch):
+                put("stored", block.new)
+                put("rows", block.rows)
+                put("simplices", block.simplices_by_id)
+            elif isinstance(block, b.ResidualPoints):
+                put("residual", block)
+            elif isinstance(block, b.Points4):
+                put("stored", block.xyzt)
+                put("values", block.values)
+            elif isinstance(block, b.Cells4):
+                put("cells4", block)
+            elif isinstance(block, b.Configurations):
+                configurations.append(block)
+            elif isinstance(block, b.Functions):
+                functions += block.functions
+            elif isinstance(block, b.End):
+                totals = block.totals
+            else:
+                put(*_ARRAYS[type(block)](block))
+    arrays = {name: _joined(parts.get(name, [])) for name in ("rows", "simplices", "labels", "walls", "values", "coefficients")}
+    axes = 4 if header.dims == 4 else header.axes
+    stored = _joined(parts.get("stored", []))
+    stored = np.empty((0, axes), header.dtype) if stored is None else stored
+    if header.attributes and arrays["rows"] is None:
+        arrays["rows"] = np.empty(0, header.row_dtype)
+    if arrays["simplices"] is None and header.kind.endswith("mesh"):
+        arrays["simplices"] = np.empty((0, header.corners), np.uint64)
+    residual, cells4 = parts.get("residual"), parts.get("cells4")
+    return Stream(
+        header, stored, **arrays, totals=totals, configurations=configurations, functions=functions,
+        residual=residual and b.ResidualPoints(*(_joined([getattr(p, n) for p in residual]) for n in ("ids", "xyz", "rows"))),
+        cells4=cells4 and b.Cells4(
+            np.concatenate([c.infinite for c in cells4]),
+            [v for c in cells4 for v in c.vertices], [n for c in cells4 for n in c.neighbours],
+        ),
+    )
+
+
+_ARRAYS = {
+    b.Cells: lambda block: ("codes", block.codes),
+    b.Labels: lambda block: ("labels", block.labels),
+    b.Walls: lambda block: ("walls", block.corners),
+    b.Simplices4: lambda block: ("simplices", block.corners),
+    b.Coefficients: lambda block: ("coefficients", block.values),
+}
+
+
+def _joined(parts: list) -> np.ndarray | None:
+    parts = [part for part in parts if part is not None]
+    return np.concatenate(parts) if parts else None
+
+
+def attributes_of(columns: dict[str, np.ndarray]) -> list[Attribute]:
+    """A list of attributes for columns: arrays (n,) or (n, components) by name."""
+    found = []
+    for name, column in columns.items():
+        column = np.asarray(column)
+        components = 1 if column.ndim == 1 else column.shape[1]
+        dtype = np.dtype("u1") if column.dtype == bool else column.dtype
+        found.append(Attribute(name, dtype, components))
+    return found
+
+
+def write_points(file, xyz, attributes=None, scale=None, offset=(0.0, 0.0, 0.0), dims: int = 2, wkt=None) -> None:
+    """Writes points (n, 2) or (n, 3) of the world as a stream that `spfinalize` reads.
+
+    With `scale` (one number, or one per axis) they are rounded to a grid of 32-bit integers. `dims` is 2 if z is an
+    elevation, 3 if it is geometry. `attributes` are columns by name: arrays (n,) or (n, components).
+    """
+    xyz = np.asarray(xyz)
+    if scale is not None:
+        scale = tuple(np.broadcast_to(np.asarray(scale, float), 3).tolist())
+    header = Header(
+        "points", dims, xyz.shape[1] > dims, scale, tuple(map(float, offset)) if scale else None,
+        points=len(xyz), wkt=wkt, attributes=attributes_of(attributes or {}),
+    )
+    with Writer(file, header) as writer:
+        writer.points(xyz, attributes)
+
+
+def write_triangles(file, xyz, triangles, attributes=None, scale=None, offset=(0.0, 0.0, 0.0), wkt=None) -> None:
+    """Writes a triangle mesh: vertices (n, 2) or (n, 3) of the world, triangles (m, 3) counterclockwise as indices.
+
+    Vertices are written with their first triangle and finalized with their last, so triangles that are in a spatial
+    order make a stream that needs little memory.
+    """
+    xyz, triangles = np.asarray(xyz), np.asarray(triangles, np.int64).reshape(-1, 3)
+    if triangles.size and not (0 <= triangles.min() and triangles.max() < len(xyz)):
+        raise ValueError(f"a triangle uses a vertex beyond the {len(xyz)} given")
+    if scale is not None:
+        scale = tuple(np.broadcast_to(np.asarray(scale, float), 3).tolist())
+    header = Header(
+        "triangle mesh", 2, xyz.shape[1] > 2, scale, tuple(map(float, offset)) if scale else None,
+        wkt=wkt, attributes=attributes_of(attributes or {}),
+    )
+    step = 4096
+    corners, places = triangles.ravel(), np.arange(triangles.size)
+    # Of several assignments to one element the last one counts.
+    first, last = np.full(len(xyz), triangles.size), np.full(len(xyz), -1)
+    first[corners[::-1]] = places[::-1]
+    last[corners] = places // (3 * step)
+    # Vertices get ids in the order of their first use; unused ones come at the end.
+    order = np.argsort(first, kind="stable")
+    unused = int((first == triangles.size).sum())
+    ids = np.empty(len(xyz), np.int64)
+    ids[order] = np.arange(len(xyz))
+    pick = lambda chosen: {name: np.asarray(column)[chosen] for name, column in attributes.items()} if attributes else None
+    with Writer(file, header) as writer:
+        written = 0
+        for number, at in enumerate(range(0, len(triangles), step)):
+            part = ids[triangles[at : at + step]]
+            found = np.unique(part)
+            new, imported = found[found >= written], found[found < written]
+            local = np.concatenate([new, imported])
+            indices = np.empty(len(xyz), np.int64) if number == 0 else indices
+            indices[local] = np.arange(len(local))
+            final = np.flatnonzero(last[order[local]] == number)
+            writer.patch(xyz[order[new]], imported, indices[part], final, pick(order[new]))
+            written += len(new)
+        assert written + unused == len(xyz)
+        for at in range(written, len(xyz), step):
+            alone = order[at : at + step]
+            writer.patch(xyz[alone], (), (), np.arange(len(alone)), pick(alone))

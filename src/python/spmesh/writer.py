@@ -1,0 +1,220 @@
+"""Writes streams. END is written only when everything before it was."""
+
+from __future__ import annotations
+
+import os
+import struct
+from typing import BinaryIO
+
+import numpy as np
+from crc32c import crc32c
+
+from .blocks import NOT_A_VERTEX, TOTALS
+from .header import KINDS, CODES, Header
+from .reader import KNOTS_OF
+
+PAYLOAD_MAX = 2**20
+POINTS_PAYLOAD = 2**16
+
+
+class Writer:
+    """Writes one stream; a context manager.
+
+        with spmesh.Writer(path, header) as writer:
+            writer.points(xyz)
+
+    Leaving the block normally writes END; leaving it by an exception does not, so that what was written is never taken
+    for a whole stream. Values that break a rule raise ValueError; whole meshes are not checked (`spinfo --audit` is).
+    """
+
+    def __init__(self, file: BinaryIO | str | os.PathLike, header: Header):
+        self._data = header.encode()
+        self.header = header
+        self._own = isinstance(file, (str, os.PathLike))
+        self._file = open(file, "wb") if self._own else file
+        self._sequence, self._phase = 0, 0
+        self.totals = dict.fromkeys(TOTALS, 0)
+        self._finalized = 0
+        self._file.write(self._data)
+
+    def __enter__(self) -> "Writer":
+        return self
+
+    def __exit__(self, failure, *_) -> None:
+        try:
+            if failure is None:
+                self.end()
+        finally:
+            if self._own:
+                self._file.close()
+
+    def _block(self, tag: bytes, payload: bytes) -> None:
+        if len(payload) > PAYLOAD_MAX:
+            raise ValueError(f"a block of {len(payload)} bytes, the maximum is 2^20")
+        if tag not in (b"attp", b"END "):
+            phases = KINDS[CODES[self.header.kind]][2]
+            phase = next((i for i, tags in enumerate(phases) if tag in tags), -1)
+            if phase < self._phase:
+                raise ValueError(f"no block {tag!r} may stand here in a stream of kind {self.header.kind}")
+            self._phase = phase
+        frame = struct.pack("<4sII", tag, self._sequence, len(payload))
+        self._sequence = (self._sequence + 1) % 2**32
+        self._file.write(frame + struct.pack("<I", crc32c(payload, crc32c(frame))) + payload)
+
+    def _stored(self, xyz, is_stored: bool) -> np.ndarray:
+        xyz = np.asarray(xyz)
+        if xyz.ndim != 2 or xyz.shape[1] != self.header.axes:
+            raise ValueError(f"points of shape {xyz.shape}, expected (n, {self.header.axes})")
+        stored = np.ascontiguousarray(xyz, self.header.dtype) if is_stored else self.header.stored(xyz)
+        if stored.dtype.kind == "f" and not np.isfinite(stored).all():
+            raise ValueError("a coordinate is not finite")
+        return stored
+
+    def _rows(self, attributes, count: int) -> bytes:
+        """The rows of `count` points from a structured array, or from columns by name."""
+        if not self.header.attributes:
+            if attributes is not None:
+                raise ValueError("the header lists no attributes")
+            return b""
+        if count == 0:
+            return b""
+        dtype = self.header.row_dtype
+        if isinstance(attributes, dict):
+            rows = np.empty(count, dtype)
+            for name in dtype.names:
+                rows[name] = attributes[name]
+        elif attributes is None:
+            raise ValueError("points of this stream have attributes: " + ", ".join(dtype.names))
+        else:
+            rows = np.ascontiguousarray(attributes, dtype)
+        if rows.shape != (count,):
+            raise ValueError(f"attributes of {rows.shape} points, expected {count}")
+        return rows.tobytes()
+
+    def points(self, xyz, attributes=None, stored: bool = False) -> None:
+        """Points (n, axes), of the world unless `stored`; `attributes` as columns by name or a structured array (n,)."""
+        xyz = np.asarray(xyz)
+        rows = self._rows(attributes, len(xyz))
+        size = self.header.dtype.itemsize * self.header.axes
+        row = len(rows) // len(xyz) if len(xyz) else 0
+        step = min(POINTS_PAYLOAD // size, PAYLOAD_MAX // row if row else POINTS_PAYLOAD)
+        for at in range(0, len(xyz), step):
+            # Block by block, so that coordinates are converted in the cache.
+            chunk = self._stored(xyz[at : at + step], stored)
+            self._block(b"PNTS", chunk.tobytes())
+            if row:
+                self._block(b"attp", rows[at * row : (at + len(chunk)) * row])
+        self.totals["points"] += len(xyz)
+
+    def cells(self, codes) -> None:
+        """Location codes (n,) of cells that are final."""
+        codes = np.ascontiguousarray(codes, "<u8")
+        self._block(b"CELL", codes.tobytes())
+        self.totals["cells"] += len(codes)
+
+    def patch(self, new, imported, simplices, finalized, attributes=None, stored: bool = False) -> None:
+        """New vertices (n, axes), ids (m,) of imported ones, simplices (s, corners) and finalized vertices as local
+        indices, which count the new vertices first."""
+        points = self._stored(np.asarray(new).reshape(-1, self.header.axes), stored)
+        imported = np.ascontiguousarray(imported, "<u8")
+        simplices = np.ascontiguousarray(simplices, "<u4").reshape(-1, self.header.corners)
+        finalized = np.ascontiguousarray(finalized, "<u4")
+        if simplices.size and simplices.max() >= len(points) + len(imported):
+            raise ValueError("a simplex uses a vertex that its patch does not have")
+        rows = self._rows(attributes, len(points))
+        counts = (len(points), len(imported), len(simplices), len(finalized))
+        head = struct.pack("<Q4I", self.totals["vertices"], *counts)
+        parts = (points, imported, simplices, finalized)
+        self._block(b"PTCH", head + b"".join(part.tobytes() for part in parts))
+        if rows:
+            self._block(b"attp", rows)
+        self.totals["vertices"] += len(points)
+        self.totals["simplices"] += len(simplices)
+        self._finalized += len(finalized)
+
+    def labels(self, labels) -> None:
+        """Labels (n,) of the next vertices without one."""
+        self._block(b"LABL", np.ascontiguousarray(labels, "<u8").tobytes())
+
+    def residual_points(self, ids, xyz, attributes=None, stored: bool = False) -> None:
+        """Residual points (n, axes) with their ids (n,), 2^64 - 1 for those that are no vertices yet."""
+        points = self._stored(xyz, stored)
+        records = np.empty(len(points), [("id", "<u8"), ("xyz", points.dtype, (self.header.axes,))])
+        records["id"], records["xyz"] = ids, points
+        rows = self._rows(attributes, len(points))
+        self._block(b"RPNT", records.tobytes())
+        if rows:
+            self._block(b"attp", rows)
+        self.totals["residual"] += len(points)
+        self._named = getattr(self, "_named", 0) + int((records["id"] != np.uint64(NOT_A_VERTEX)).sum())
+
+    def walls(self, corners) -> None:
+        """Walls (n, dims) as numbers of residual points."""
+        corners = np.ascontiguousarray(corners, "<u4").reshape(-1, self.header.dims)
+        self._block(b"WALL", corners.tobytes())
+        self.totals["walls"] += len(corners)
+
+    def points4(self, xyzt, values=None) -> None:
+        """Points (n, 4), with values (n,) if the header says so; any NaN stands for an unknown value."""
+        columns = np.asarray(xyzt, "<f8")
+        if self.header.has_elevation:
+            values = np.where(np.isnan(values), np.nan, values)
+            columns = np.column_stack([columns, values])
+        for at in range(0, len(columns), 16384):
+            data = np.array(columns[at : at + 16384])
+            # The one NaN that the format has.
+            data.view("<u8")[np.isnan(data)] = 0x7FF8000000000000
+            self._block(b"PNT4", data.tobytes())
+        self.totals["points" if self.header.kind == "points in 4 dimensions" else "vertices"] += len(columns)
+
+    def cells4(self, infinite, vertices, neighbours) -> None:
+        """Cells as a flag, increasing vertices and increasing neighbours each."""
+        words = []
+        for mark, of, beside in zip(infinite, vertices, neighbours):
+            words += [len(of) | bool(mark) << 31, len(beside), *map(int, of), *map(int, beside)]
+            self.totals["simplices"] += 1
+        data = np.array(words, "<u4")
+        for at in range(0, len(data), PAYLOAD_MAX // 4):
+            self._block(b"CEL4", data[at : at + PAYLOAD_MAX // 4].tobytes())
+
+    def simplices4(self, corners) -> None:
+        """Simplices (n, 5) as numbers of points."""
+        corners = np.ascontiguousarray(corners, "<u4").reshape(-1, 5)
+        for at in range(0, len(corners), 50000):
+            self._block(b"SIM4", corners[at : at + 50000].tobytes())
+        self.totals["simplices"] += len(corners)
+
+    def configurations(self, degree, standing, interiors, counts, boundaries) -> None:
+        """Groups of a degree, as in `blocks.Configurations`, in one block."""
+        parts = [np.ascontiguousarray(part, "<u4") for part in (interiors, counts, boundaries)]
+        head = struct.pack("<3I", degree, standing, len(parts[1]))
+        self._block(b"CONF", head + b"".join(part.tobytes() for part in parts))
+        self.totals["simplices"] += len(parts[2].reshape(-1, 3))
+
+    def functions(self, functions) -> None:
+        """Functions of splines, as in `blocks.Function`."""
+        names = [name for name, _ in KNOTS_OF]
+        data = b""
+        for function in functions:
+            data += struct.pack(f"<{2 + len(function.knots)}I", names.index(function.kind), len(function.terms), *function.knots)
+            data += b"".join(struct.pack("<2Id", *term) for term in function.terms)
+        self._block(b"FUNC", data)
+        self.totals["vertices"] += len(functions)
+
+    def coefficients(self, values) -> None:
+        """Coefficients (n,) of all functions."""
+        values = np.ascontiguousarray(values, "<f8")
+        for at in range(0, len(values), PAYLOAD_MAX // 8):
+            self._block(b"COEF", values[at : at + PAYLOAD_MAX // 8].tobytes())
+        self.totals["residual"] += len(values)
+
+    def end(self, merged: int = 0) -> None:
+        """Writes END. `merged` points of the input of a mesh coincide with others."""
+        totals, kind = dict(self.totals), self.header.kind
+        if kind.endswith("mesh") or kind in ("cells in 4 dimensions", "simplices in 4 dimensions"):
+            totals["merged"] = merged
+            totals["points"] = totals["vertices"] + merged + totals["residual"] - getattr(self, "_named", 0)
+        if kind.endswith("mesh") and self._finalized + getattr(self, "_named", 0) != totals["vertices"]:
+            raise ValueError(f"{self._finalized} of {totals['vertices']} vertices are finalized")
+        self._block(b"END ", struct.pack("<7Q", *totals.values()))
+        self._file.flush()
