@@ -212,6 +212,43 @@ fn properties_of_ply_are_attributes_and_come_back() {
     assert_eq!(colours, [[1, 2, 3], [4, 5, 6], [255, 0, 7]]);
 }
 
+/// Arrays of VTK in raw, base64 and compressed form; the numbers that come back are those that went in.
+#[test]
+fn arrays_of_vtk_are_attributes() {
+    let points = output_of("spfinalize", &["--attributes", "all", &sample("crop_duplicate.laz")], &[]);
+    let (attributes, rows) = rows_of(&points);
+    let vtu = output_of("spconvert", &["--to", "vtu"], &points);
+    let back = output_of("spfinalize", &["--preserve", "--attributes", "all", "-"], &vtu);
+    let (names, again) = rows_of(&back);
+    assert_eq!(names.names(), attributes.names());
+    let rows_only = |rows: Vec<(Point, Vec<u8>)>| rows.into_iter().map(|(_, row)| row).collect::<Vec<_>>();
+    assert!(rows_only(rows) == rows_only(again));
+    let (attributes, rows) = rows_of(&output_of(
+        "spfinalize",
+        &["--preserve", "--attributes", "all", &sample("vtk_zlib.vtu")],
+        &[],
+    ));
+    assert_eq!(attributes.names(), "t, v");
+    let numbers = attributes.column("t").unwrap();
+    let times: Vec<f64> = rows.iter().map(|(_, row)| numbers.of(row, 0)).collect();
+    assert_eq!(times, (0..40).map(f64::from).collect::<Vec<_>>());
+    let text = "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"3\"><PointData>\
+                <DataArray type=\"Int64\" Name=\"a&lt;b\">9007199254740993 -1 5</DataArray>\
+                <DataArray type=\"String\" Name=\"s\">0 0 0</DataArray>\
+                <DataArray type=\"Float32\" Name=\"v\" NumberOfComponents=\"2\">1 2 3 4 nan 6</DataArray></PointData>\
+                <Points><DataArray type=\"Float64\" NumberOfComponents=\"3\">0 0 1 4 0 1 0 4 1</DataArray></Points>\
+                </Piece></PolyData></VTKFile>";
+    let (attributes, rows) =
+        rows_of(&output_of("spfinalize", &["--preserve", "--attributes", "all", "-"], text.as_bytes()));
+    assert_eq!(attributes.names(), "a<b, v");
+    let first =
+        [&9_007_199_254_740_993i64.to_le_bytes()[..], &1f32.to_le_bytes(), &2f32.to_le_bytes()].concat();
+    assert_eq!(rows[0].1, first);
+    let short = text.replace("9007199254740993 -1 5", "9007199254740993 -1");
+    assert_outcome("spfinalize", &["--attributes", "v", "-"], short.as_bytes(), 0, "");
+    assert_outcome("spfinalize", &["--attributes", "a<b", "-"], short.as_bytes(), 3, "array a<b");
+}
+
 /// A mesh of a grid of points whose attribute is 10 x + y, and unknown in one corner.
 fn slanted() -> Vec<u8> {
     let mut text = String::from("x,y,z,value,class\n");

@@ -222,7 +222,7 @@ impl Source {
             Content::Spb => Box::new(spb::pass(origin.plain()?)?),
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
-            Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays))),
+            Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
             Content::Text(columns) => Box::new(text::TextPass::new(origin.plain()?, columns.clone(), plan)),
         })
     }

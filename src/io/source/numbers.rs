@@ -33,6 +33,11 @@ impl<R: BufRead> NumberReader<R> {
         NumberReader { input, sample, writing, total, done: 0, bytes: Vec::new() }
     }
 
+    /// Bytes of a number that is stored.
+    pub(super) fn number_len(&self) -> usize {
+        self.sample.len()
+    }
+
     /// Numbers read so far.
     pub(super) fn done(&self) -> u64 {
         self.done
@@ -49,6 +54,38 @@ impl<R: BufRead> NumberReader<R> {
             Writing::Text => (0..wanted).try_for_each(|_| self.read_text(numbers))?,
         }
         Ok(wanted > 0)
+    }
+
+    /// Appends the next `wanted` numbers as they are stored, little-endian.
+    ///
+    /// # Errors
+    /// As [`NumberReader::read`], and if fewer are left.
+    pub(super) fn read_stored(&mut self, wanted: u64, stored: &mut Vec<u8>) -> Result<()> {
+        if wanted > self.total - self.done {
+            return Err(self.truncated());
+        }
+        match self.writing {
+            Writing::Binary(order) => {
+                let start = stored.len();
+                let len = self.sample.len();
+                let mut input = (&mut self.input).take(wanted * len as u64);
+                input.read_to_end(stored).map_err(|e| Error::io("reading", e))?;
+                if ((stored.len() - start) as u64) < wanted * len as u64 {
+                    return Err(self.truncated());
+                }
+                if order == ByteOrder::Big {
+                    stored[start..].chunks_exact_mut(len).for_each(<[u8]>::reverse);
+                }
+            }
+            Writing::Text => {
+                for _ in 0..wanted {
+                    next_number(&mut self.input, &mut self.bytes)?;
+                    self.sample.parse_stored(&self.bytes, stored)?;
+                }
+            }
+        }
+        self.done += wanted;
+        Ok(())
     }
 
     fn read_bytes(&mut self, wanted: u64, order: ByteOrder, numbers: &mut Vec<f64>) -> Result<()> {

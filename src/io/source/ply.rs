@@ -11,10 +11,9 @@ use super::patches::Order;
 use super::ply_header::{Encoding, PlyHeader, Property, Role, Sort};
 use super::polygon::fan;
 use super::sample_type::SampleType;
-use super::statements::{expect_no_field, fields, next_field, parse_decimal, unexpected};
+use super::statements::{expect_no_field, fields, next_field, parse_decimal};
 use super::vertices::{VertexPoints, Vertices};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::NumberType;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Header, Kind};
 
@@ -265,7 +264,7 @@ fn read_text_row<R: Read>(
         values.property(property, |role, scalar| match (role, &mut attributes) {
             (Role::Attribute, Some(attributes)) => {
                 let field = next_field(&mut fields)?;
-                parse_attribute(field, scalar, attributes).map(|()| 0.0)
+                scalar.parse_stored(field, attributes).map(|()| 0.0)
             }
             // A skipped value need not be a finite number.
             (Role::Attribute | Role::Other, _) => next_field(&mut fields).map(|_| 0.0),
@@ -302,21 +301,6 @@ fn read_binary_row(
         })?;
     }
     Ok((values.point, values.corners))
-}
-
-/// Appends the number of an attribute. Any NaN becomes the usual one.
-fn parse_attribute(field: &[u8], scalar: SampleType, attributes: &mut Vec<u8>) -> Result<()> {
-    let number = scalar.number_type();
-    let text = std::str::from_utf8(field).unwrap_or_default();
-    let is_nan = text.trim_start_matches(['+', '-']).eq_ignore_ascii_case("nan");
-    match number {
-        NumberType::F32 if is_nan => attributes.extend(f32::NAN.to_le_bytes()),
-        NumberType::F64 if is_nan => attributes.extend(f64::NAN.to_le_bytes()),
-        _ => number
-            .parse(text, attributes)
-            .ok_or_else(|| unexpected(field, &format!("a number of type {}", number.name())))?,
-    }
-    Ok(())
 }
 
 fn truncated() -> Error {

@@ -1,32 +1,39 @@
 //! Points that a file stores as one or several arrays of coordinates, three per point.
 
 use std::io::{BufRead, BufReader};
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::numbers::{NumberReader, Writing};
 use super::origin::FileView;
 use super::pass::{BATCH_POINTS, Pass, Stated};
 use super::placement::Placement;
+use super::row_plan::{RowPlan, offers_of};
 use super::sample_type::SampleType;
 use super::vtk::Framed;
 use spmesh_core::error::{Error, Result};
+use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs};
 
 /// Bytes that are read at once.
 const BUFFER_LEN: usize = 1 << 18;
 
-/// An array of coordinates: x, y and z of one point after the other.
+/// An array of numbers of points: x, y and z of one point after the other, or those of an attribute.
 #[derive(Debug, Clone)]
 pub(super) struct PointArray {
     /// Number of the array's piece of the file, if the format has pieces.
     pub(super) piece: Option<u64>,
     pub(super) points: u64,
+    /// Numbers per point.
+    pub(super) components: u8,
     pub(super) sample: SampleType,
     pub(super) writing: Writing,
     pub(super) place: Place,
     /// Whether the place must end with the last coordinate.
     pub(super) is_exact: bool,
+    /// Attributes of the same points, with their names.
+    pub(super) data: Vec<(String, PointArray)>,
 }
 
 /// Where the numbers of an array are.
@@ -46,10 +53,13 @@ impl PointArray {
     ///
     /// # Errors
     /// If the length is beyond that of any file.
-    pub(super) fn len_of(points: u64, sample: SampleType) -> Result<u64> {
+    pub(super) fn len_of(points: u64, components: u8, sample: SampleType) -> Result<u64> {
         let too_many = || Error::malformed(format!("{points} points are stated: no file holds as many"));
         // The limit serves text too: a number of text takes at least two bytes, with its separator.
-        points.checked_mul(3 * sample.len() as u64).filter(|&len| len < 1 << 62).ok_or_else(too_many)
+        points
+            .checked_mul(u64::from(components) * sample.len() as u64)
+            .filter(|&len| len < 1 << 62)
+            .ok_or_else(too_many)
     }
 
     /// Whether reading takes more than copying bytes.
@@ -64,7 +74,7 @@ impl PointArray {
             }
             Place::Framed(framed) => framed.open(view)?,
         };
-        Ok(NumberReader::new(input, self.sample, self.writing, 3 * self.points))
+        Ok(NumberReader::new(input, self.sample, self.writing, u64::from(self.components) * self.points))
     }
 
     /// Position of the point with this index, for messages.
@@ -93,8 +103,31 @@ pub(super) fn state(arrays: &[PointArray]) -> Stated {
         crs: Crs::Unknown,
         bounds: None,
         points: arrays.iter().try_fold(0u64, |sum, array| sum.checked_add(array.points)),
-        offers: Vec::new(),
+        offers: offers_of(&attributes_of(arrays)),
     }
+}
+
+/// The attributes that all arrays with points have, in the order of the first.
+fn attributes_of(arrays: &[PointArray]) -> Attributes {
+    let mut pieces = arrays.iter().filter(|array| array.points > 0).map(|array| &array.data);
+    let Some(first) = pieces.next() else { return Attributes::default() };
+    let of = |(name, array): &(String, PointArray)| Attribute {
+        components: array.components,
+        ..Attribute::new(name, array.sample.number_type())
+    };
+    let mut attributes: Vec<Attribute> = first.iter().map(of).collect();
+    attributes.retain(|attribute| attribute.check().is_ok());
+    for data in pieces {
+        attributes.retain(|attribute| data.iter().any(|other| of(other) == *attribute));
+    }
+    // Several of one name, or too many, cannot be told apart or held: then there are none.
+    Attributes::new(attributes).unwrap_or_default()
+}
+
+/// A number, or several, in a record of attributes.
+struct RecordField {
+    name: String,
+    place: Range<usize>,
 }
 
 /// One pass over the arrays of a file. Memory: one batch.
@@ -105,11 +138,47 @@ pub(super) struct ArrayPass {
     at: usize,
     reader: Option<NumberReader<Numbers>>,
     values: Vec<f64>,
+    plan: RowPlan,
+    /// The fields of a record that are needed, and their readers in the current array.
+    fields: Vec<RecordField>,
+    record_len: usize,
+    field_readers: Vec<NumberReader<Numbers>>,
 }
 
 impl ArrayPass {
-    pub(super) fn new(view: FileView, arrays: Arc<[PointArray]>) -> Self {
-        ArrayPass { view, arrays, at: 0, reader: None, values: Vec::new() }
+    pub(super) fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
+        let attributes = if plan.is_empty() { Attributes::default() } else { attributes_of(&arrays) };
+        let field = |(attribute, place): (&Attribute, Range<usize>)| {
+            let name = attribute.name.clone();
+            plan.uses(place.start).then_some(RecordField { name, place })
+        };
+        let (fields, record_len) = (attributes.places().filter_map(field).collect(), attributes.row_len());
+        let (values, field_readers) = (Vec::new(), Vec::new());
+        ArrayPass { view, arrays, at: 0, reader: None, values, plan, fields, record_len, field_readers }
+    }
+
+    /// Reads the records of the next `count` points of the current array.
+    fn read_records(&mut self, count: usize) -> Result<Vec<u8>> {
+        let array = &self.arrays[self.at];
+        if self.field_readers.is_empty() {
+            for RecordField { name, .. } in &self.fields {
+                let data = array.data.iter().find(|(of, _)| of == name).map(|(_, data)| data);
+                let data = data.ok_or_else(|| Error::malformed(format!("found no array {name}")))?;
+                self.field_readers.push(data.open(&self.view)?);
+            }
+        }
+        let (mut records, mut column) = (vec![0; count * self.record_len], Vec::new());
+        for (RecordField { name, place }, reader) in self.fields.iter().zip(&mut self.field_readers) {
+            column.clear();
+            let numbers = count * place.len() / reader.number_len();
+            reader.read_stored(numbers as u64, &mut column).map_err(|e| e.at(format!("array {name}")))?;
+            for (record, field) in
+                records.chunks_exact_mut(self.record_len).zip(column.chunks_exact(place.len()))
+            {
+                record[place.clone()].copy_from_slice(field);
+            }
+        }
+        Ok(records)
     }
 
     /// Replaces the values by the coordinates of the next points of the current array; false at its end.
@@ -135,19 +204,29 @@ impl Pass for ArrayPass {
         &mut self,
         placement: &mut Placement,
         batch: &mut Vec<Point>,
-        _rows: &mut Vec<u8>,
+        rows: &mut Vec<u8>,
     ) -> Result<bool> {
         while self.at < self.arrays.len() {
             if self.read()? {
                 let array = &self.arrays[self.at];
                 let done = self.reader.as_ref().map_or(0, NumberReader::done);
                 let first = (done - self.values.len() as u64) / 3;
+                let mut is_put = Vec::new();
                 for (point, number) in self.values.as_chunks::<3>().0.iter().zip(first..) {
-                    placement.put(*point, batch).map_err(|e| e.at(array.position(number)))?;
+                    is_put.push(placement.put(*point, batch).map_err(|e| e.at(array.position(number)))?);
+                }
+                if !self.plan.is_empty() {
+                    let records = self.read_records(is_put.len())?;
+                    for (record, _) in
+                        records.chunks_exact(self.record_len).zip(is_put).filter(|(_, is_put)| *is_put)
+                    {
+                        self.plan.append(record, rows);
+                    }
                 }
                 return Ok(true);
             }
             self.reader = None;
+            self.field_readers.clear();
             self.at += 1;
         }
         Ok(false)

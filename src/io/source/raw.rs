@@ -34,9 +34,11 @@ pub(super) fn open(view: &FileView, kind: RawType) -> Result<PointArray> {
     Ok(PointArray {
         piece: None,
         points,
+        components: 3,
         sample: kind.sample,
         writing: Writing::Binary(kind.order),
         place: Place::Plain { start: 0, end: len },
         is_exact: true,
+        data: Vec::new(),
     })
 }

@@ -116,6 +116,24 @@ impl SampleType {
         last.0
     }
 
+    /// Appends the number that `text` denotes, as an attribute stores it. Any NaN becomes the usual one.
+    ///
+    /// # Errors
+    /// If `text` is not a number of this type.
+    pub(super) fn parse_stored(self, text: &[u8], stored: &mut Vec<u8>) -> Result<()> {
+        let number = self.number_type();
+        let words = std::str::from_utf8(text).unwrap_or_default();
+        let is_nan = words.trim_start_matches(['+', '-']).eq_ignore_ascii_case("nan");
+        match number {
+            NumberType::F32 if is_nan => stored.extend(f32::NAN.to_le_bytes()),
+            NumberType::F64 if is_nan => stored.extend(f64::NAN.to_le_bytes()),
+            _ => number.parse(words, stored).ok_or_else(|| {
+                Error::malformed(format!("found {words:?}, expected a number of type {}", number.name()))
+            })?,
+        }
+        Ok(())
+    }
+
     /// The number that `text` denotes.
     ///
     /// # Errors

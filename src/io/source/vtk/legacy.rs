@@ -30,7 +30,7 @@ pub(in crate::source) fn read(file: &FileView, name: &str) -> Result<PointArray>
     let mut lines = Lines::new(file.clone(), name);
     let (points, sample, writing) = read_statements(&mut lines).map_err(|e| lines.locate(e))?;
     let start = lines.byte();
-    let len = PointArray::len_of(points, sample).map_err(|e| lines.locate(e))?;
+    let len = PointArray::len_of(points, 3, sample).map_err(|e| lines.locate(e))?;
     let is_text = writing == Writing::Text;
     let end = if is_text { file.len() } else { start.saturating_add(len) };
     if end > file.len() {
@@ -41,10 +41,12 @@ pub(in crate::source) fn read(file: &FileView, name: &str) -> Result<PointArray>
     Ok(PointArray {
         piece: None,
         points,
+        components: 3,
         sample,
         writing,
         place: Place::Plain { start, end },
         is_exact: false,
+        data: Vec::new(),
     })
 }
 

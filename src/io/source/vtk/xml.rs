@@ -34,14 +34,17 @@ struct FileHeader {
     compressor: Option<String>,
 }
 
-/// An array of points, as described by its element.
+/// An array of points or of an attribute, as described by its element.
 struct Described {
     piece: u64,
     points: u64,
+    components: u8,
     sample: SampleType,
     format: Format,
     /// Offset in the file after the tag, for messages.
     byte: u64,
+    /// Attributes of the points, by their names.
+    data: Vec<(String, Described)>,
 }
 
 /// Place of an array's values.
@@ -113,20 +116,53 @@ fn read_piece(elements: &mut Elements, tag: &Tag, piece: u64, described: &mut Ve
     };
     let points = points.ok_or_else(|| tag.error("found no number of points"))?;
     let before = described.len();
+    let mut data = Vec::new();
     while let Some(child) = elements.child()? {
+        if child.name == "PointData" && points > 0 {
+            data.extend(read_data(elements, piece, points)?);
+            continue;
+        }
         if child.name != "Points" || points == 0 {
             elements.skip()?;
             continue;
         }
         while let Some(array) = elements.child()? {
-            described.push(Described::of(elements, &array, piece, points)?);
+            if array.get("NumberOfComponents") != Some("3") {
+                return Err(array.error("points need NumberOfComponents=\"3\""));
+            }
+            described.push(Described::of(elements, &array, piece, points, 3)?);
         }
+    }
+    if let Some(points) = described[before..].last_mut() {
+        points.data = data;
     }
     match described.len() - before {
         0 if points > 0 => Err(tag.error(&format!("{points} points, and no array of them"))),
         0 | 1 => Ok(()),
         arrays => Err(tag.error(&format!("{arrays} arrays of points, expected one: write one time step"))),
     }
+}
+
+/// Reads the arrays of attributes; those that are no numbers are skipped.
+fn read_data(elements: &mut Elements, piece: u64, points: u64) -> Result<Vec<(String, Described)>> {
+    let mut data = Vec::new();
+    while let Some(array) = elements.child()? {
+        let components = array.get("NumberOfComponents").map_or(Some(1), |count| count.parse().ok());
+        let name = array.get("Name").map(unescaped);
+        let is_number = array.get("type").is_some_and(|name| type_of(name).is_some());
+        match (array.name.as_str(), name, components) {
+            ("DataArray", Some(name), Some(components @ 1..)) if is_number => {
+                data.push((name, Described::of(elements, &array, piece, points, components)?));
+            }
+            _ => elements.skip()?,
+        }
+    }
+    Ok(data)
+}
+
+/// Text of an attribute of XML; as it is if it cannot be resolved.
+fn unescaped(text: &str) -> String {
+    quick_xml::escape::unescape(text).map_or_else(|_| text.to_string(), std::borrow::Cow::into_owned)
 }
 
 /// The number of points in an extent, which gives the first and last index along each axis.
@@ -204,12 +240,9 @@ impl FileHeader {
 }
 
 impl Described {
-    fn of(elements: &mut Elements, tag: &Tag, piece: u64, points: u64) -> Result<Described> {
+    fn of(elements: &mut Elements, tag: &Tag, piece: u64, points: u64, components: u8) -> Result<Described> {
         if tag.name != "DataArray" {
             return Err(tag.error("expected DataArray"));
-        }
-        if tag.get("NumberOfComponents") != Some("3") {
-            return Err(tag.error("points need NumberOfComponents=\"3\""));
         }
         let name = tag.get("type").unwrap_or_default();
         let sample = type_of(name).ok_or_else(|| tag.error(&format!("type {name:?} is none of numbers")))?;
@@ -221,17 +254,21 @@ impl Described {
             Some("appended") => Format::Appended(offset().ok_or_else(|| tag.error("found no offset"))?),
             Some(other) => return Err(tag.error(&format!("format {other:?}"))),
         };
-        Ok(Described { piece, points, sample, format, byte: tag.end })
+        Ok(Described { piece, points, components, sample, format, byte: tag.end, data: Vec::new() })
     }
 
     /// Finds the bytes of the array in the file.
     fn place(self, file: &FileView, header: &FileHeader, appended: Option<&Appended>) -> Result<PointArray> {
-        let len = PointArray::len_of(self.points, self.sample)?;
+        let len = PointArray::len_of(self.points, self.components, self.sample)?;
         let lengths = header.lengths;
         let framed = |Range { start, end }: Range<u64>, is_base64| -> Result<Framed> {
             Ok(Framed { start, end, is_base64, lengths, compressor: header.compressor()?, len })
         };
         let is_appended = matches!(self.format, Format::Appended(_));
+        // Points are read even if attributes that nobody asks for are damaged.
+        let place_data =
+            |(name, data): (String, Described)| Some((name, data.place(file, header, appended).ok()?));
+        let data = self.data.into_iter().filter_map(place_data).collect();
         let mut writing = Writing::Binary(lengths.order);
         let place = match self.format {
             Format::Ascii(Range { start, end }) => {
@@ -255,10 +292,12 @@ impl Described {
         Ok(PointArray {
             piece: Some(self.piece),
             points: self.points,
+            components: self.components,
             sample: self.sample,
             writing,
             place,
             is_exact: !is_appended,
+            data,
         })
     }
 }
