@@ -608,6 +608,8 @@ def passing():
     yield "points-f64-2d", "Two dimensions without elevation, coordinates of every size", Vector(
         bounds=("-1e22", "-0.1", 0, "1.5", "5e-324", 0)).points(
         ("-1e22", "0"), ("-0.0", "5e-324"), ("1.5", "-0.1")).end(3)
+    yield "points-f64-ties", "Numbers halfway between two decimals of 16 and of 17 digits: the last digit is even", Vector().points(
+        ("900000000000000.2", "900000000000000.8"), ("3.0000076293945312", "-3.0000076293945312")).end(2)
     yield "points-i32-elevation", "Integers with a scale per axis, and well-known text with a line break", Vector(
         grid=CM, elevation=1, bounds=(-2147483648, -1, -7, 50, 2147483647, 7), points=3,
         wkt='LOCAL_CS["Gr\u00fcn",\nUNIT["m\\",1]]').points(
@@ -871,6 +873,10 @@ def failing_compressed(raw):
         12, 0, 12, b"", frame(bytes(12), head=b"\x20\x0b"))
     yield "compressed-frame-dictionary", "the zstd frame is damaged", records(
         12, 0, 12, b"", frame(bytes(12), head=b"\x21\7\x0c"))
+    yield "compressed-frame-window", "a window above 2^23 bytes", records(
+        12, 0, 12, b"", frame(bytes(12), head=b"\0\x69"))
+    yield "compressed-frame-size-many", "the zstd frame is damaged", records(
+        12, 0, 12, b"", frame(bytes(12), head=b"\x20\x0d"))
     yield "compressed-records-long", "its content is too long", records(12, 0, 12, bytes(13))
     yield "compressed-records-bomb", "its content is too long", records(
         12, 0, 12, b"", frame(b"", [(1, 2**17, b"\0")] * 9, b"\0\x50"))
@@ -1109,6 +1115,7 @@ def failing_streams():
     yield "point-outside-tree", "outside of the finalization tree", points(tree=QUADTREE).points((4, 0, 0)).end(1)
     yield "point-outside-region", "outside of the region", partial().residual((None, 8, 0, 0)).end(1, residual=1)
     yield "cell-without-tree", "without a finalization tree", points().cells(1).end(cells=1)
+    yield "cells-empty-without-tree", "without a finalization tree", points().block(b"CELL", []).end()
     yield "cell-zero", "location code 0", points(tree=QUADTREE).cells(0).end(cells=1)
     yield "cell-between-levels", "location code 9", points(tree=QUADTREE).cells(9).end(cells=1)
     yield "cell-too-deep", "location code 64", points(tree=QUADTREE).cells(64).end(cells=1)
@@ -1142,6 +1149,7 @@ def failing_streams():
     yield "end-length", "END of 48 bytes", points().block(b"END ", raw(bytes(48)))
 
     yield "patch-short", "expected at least 24", mesh().block(b"PTCH", raw(bytes(23))).end()
+    yield "patch-empty", "expected at least 24", mesh().block(b"PTCH", []).end()
     yield "patch-counts", "do not add up", mesh().patch(0, SQUARE, counts=(5, 0, 0, 0)).end()
     yield "patch-counts-huge", "do not add up", mesh().patch(0, SQUARE, counts=(2**32 - 1,) * 4).end()
     yield "patch-first-id", "patch starts with vertex 1, expected 0", mesh().patch(1).end()
@@ -1361,6 +1369,7 @@ def failing_configurations(raw):
         4, simplices=sum(len(boundaries) for _, boundaries in groups))
     boundary = lambda k, interior, *boundaries: degree(k, (interior, boundaries))
 
+    yield "configurations-empty", "expected at least 12", block()
     yield "configurations-short", "expected at least 12", block(0, 0)
     yield "configurations-degree", "the maximum is 4096", block(4097, 0, 0)
     yield "configurations-standing", "standing 3", block(0, 3, 0)

@@ -616,7 +616,7 @@ def frame_content(frame, limit):
         (descriptor,) = fields.take(1)
         is_single = descriptor >> 5 & 1
         require(not descriptor & 8, "reserved bit")
-        fields.take(1 - is_single)
+        window = (fields.take(1 - is_single) or b"\0")[0]
         dictionary = fields.take((0, 1, 2, 4)[descriptor & 3])
         size = fields.take((is_single, 2, 4, 8)[descriptor >> 6])
         is_last, is_plain = False, not descriptor & 4
@@ -631,6 +631,7 @@ def frame_content(frame, limit):
         require(not fields.data, "bytes behind the frame")
     except Malformed:
         raise Malformed("not one zstd frame") from None
+    require((8 + (window & 7)) << (window >> 3) <= 2**16, "a zstd frame with a window above 2^23 bytes")
     if not is_plain:
         content = zstd_content(frame, limit)
     elif size:

@@ -173,6 +173,18 @@ fn columns_of_text_are_attributes() {
 }
 
 #[test]
+fn names_of_columns_without_points_offer_attributes() {
+    let folder = Folder::new();
+    let (none, some) =
+        (folder.write("none.csv", "x,y,z,t\n"), folder.write("some.csv", "x,y,z,t\n0,0,0,7\n"));
+    for files in [&[&none[..]][..], &[&none, &some]] {
+        let stream = output_of("spfinalize", &[&["--attributes", "t"], files].concat(), &[]);
+        let (attributes, rows) = rows_of(&stream);
+        assert_eq!((attributes.names(), rows.len()), ("t".to_string(), files.len() - 1));
+    }
+}
+
+#[test]
 fn properties_of_ply_are_attributes_and_come_back() {
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
                property uchar red\nproperty uchar green\nproperty uchar blue\nproperty float quality\n\

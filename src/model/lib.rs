@@ -9,6 +9,7 @@
 //! | [`cells`] | the finalization tree: a quadtree or octree whose cell borders are exact |
 //! | [`cells4`] | cells of 4D diagrams in flat arrays |
 //! | [`configurations`] | configurations of one degree, and links of k-sets |
+//! | [`decimal`] | numbers as canonical decimals |
 //! | [`functions`] | functions of quadratic splines, as sums of B-splines |
 //!
 //! `spmesh_stream` reads and writes these types, and `spmesh_geometry` computes them.
@@ -32,6 +33,7 @@ pub mod bounds;
 pub mod cells;
 pub mod cells4;
 pub mod configurations;
+pub mod decimal;
 pub mod diagram4;
 pub mod functions;
 pub mod points;

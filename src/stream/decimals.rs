@@ -9,6 +9,9 @@ const POWERS: [f64; 23] = [
 /// 2^53: all integers below are f64.
 const INTEGER_MAX: f64 = 9_007_199_254_740_992.0;
 
+/// Decimals that most scales and offsets do with.
+const USUAL_DECIMALS: usize = 3;
+
 /// Digits with which any f64 reads back.
 const DIGITS_MAX: usize = 17;
 
@@ -36,13 +39,12 @@ impl Axis {
     pub(super) fn decimal(self, stored: f64) -> f64 {
         let world = self.world(stored);
         let tolerance = self.tolerance(stored);
-        for power in POWERS {
-            let digits = (world * power).round();
-            // Below a quarter of a unit, the tolerance admits one integer at most, and `digits` is it.
-            if digits.abs() >= INTEGER_MAX || tolerance * power >= 0.25 {
-                break;
-            }
-            let number = digits / power;
+        let admits_one = |power: f64| (world * power).abs() < INTEGER_MAX && tolerance * power < 0.25;
+        // Where the tolerance admits one multiple of 1/power at most, a coarser one is the same number. So what
+        // fails for millimetres need not be tried for metres.
+        let first = if admits_one(POWERS[USUAL_DECIMALS]) { USUAL_DECIMALS } else { 0 };
+        for &power in POWERS[first..].iter().take_while(|&&power| admits_one(power)) {
+            let number = nearest_integer(world * power) / power;
             if self.stands_for(number, stored, world, tolerance) {
                 // Zero has no sign here.
                 return number + 0.0;
@@ -82,6 +84,12 @@ impl Axis {
     fn stands_for(self, number: f64, stored: f64, world: f64, tolerance: f64) -> bool {
         (number - world).abs() <= tolerance && ((number - self.offset) / self.scale - stored).abs() < 0.5
     }
+}
+
+/// An integer next to a number below 2^53; of two, either. (The library function is a call on many machines.)
+#[inline]
+fn nearest_integer(number: f64) -> f64 {
+    (number + 0.5f64.copysign(number)) as i64 as f64
 }
 
 #[cfg(test)]

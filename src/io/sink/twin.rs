@@ -9,6 +9,7 @@ use super::{EventSink, twin_functions, twin4, write_error};
 use spmesh_core::error::Result;
 use spmesh_model::attributes::{Attribute, Attributes};
 use spmesh_model::bounds::Point;
+use spmesh_model::decimal::Decimal;
 use spmesh_stream::{Coordinates, Crs, Event, Header, Patch, Totals, VERSION};
 
 /// Writes the text twin.
@@ -136,7 +137,7 @@ fn write_header(output: &mut impl Write, header: &Header) -> Result<()> {
         line(format_args!("points {points}"))?;
     }
     if let Some(tree) = &header.tree {
-        line(format_args!("tree {} {} {}", tree.depth(), numbers(&tree.origin()), tree.side()))?;
+        line(format_args!("tree {} {} {}", tree.depth(), numbers(&tree.origin()), Decimal(tree.side())))?;
     }
     if let Some(region) = &header.region {
         let dims = usize::from(header.dims);
@@ -180,7 +181,7 @@ fn write_row(output: &mut impl Write, attributes: &Attributes, row: &[u8]) -> Re
 }
 
 fn numbers(numbers: &[f64]) -> String {
-    let texts: Vec<String> = numbers.iter().map(f64::to_string).collect();
+    let texts: Vec<String> = numbers.iter().map(|&number| Decimal(number).to_string()).collect();
     texts.join(" ")
 }
 

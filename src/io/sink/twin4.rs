@@ -6,15 +6,17 @@ use super::write_error;
 use spmesh_core::error::Result;
 use spmesh_core::limits::TEXT_NUMBERS_MAX;
 use spmesh_model::cells4::Cells4;
+use spmesh_model::decimal::Decimal;
 use spmesh_stream::Points4;
 
 /// Lines `v4`.
 pub(super) fn points(output: &mut impl Write, points: &Points4) -> Result<()> {
     for (number, [x, y, z, t]) in points.points.iter().enumerate() {
+        let [x, y, z, t] = [x, y, z, t].map(|&coordinate| Decimal(coordinate));
         let written = match points.values.as_ref().map(|values| values[number]) {
             None => writeln!(output, "v4 {x} {y} {z} {t}"),
             Some(value) if value.is_nan() => writeln!(output, "v4 {x} {y} {z} {t} nan"),
-            Some(value) => writeln!(output, "v4 {x} {y} {z} {t} {value}"),
+            Some(value) => writeln!(output, "v4 {x} {y} {z} {t} {}", Decimal(value)),
         };
         written.map_err(write_error)?;
     }

@@ -5,6 +5,7 @@ use std::io::Write;
 use super::twin_configurations::numbers;
 use super::write_error;
 use spmesh_core::error::Result;
+use spmesh_model::decimal::Decimal;
 use spmesh_model::functions::Function;
 use spmesh_stream::function_kind_parts;
 
@@ -15,7 +16,7 @@ pub(super) fn functions(output: &mut impl Write, functions: &[Function]) -> Resu
         numbers(output, &format!("function {name}"), knots)?;
         for ([p, q], factor) in &function.terms {
             let [p, q] = [*p, *q].map(|knot| u64::from(knot) + 1);
-            writeln!(output, "term {p} {q} {factor}").map_err(write_error)?;
+            writeln!(output, "term {p} {q} {}", Decimal(*factor)).map_err(write_error)?;
         }
     }
     Ok(())
@@ -23,5 +24,6 @@ pub(super) fn functions(output: &mut impl Write, functions: &[Function]) -> Resu
 
 /// A line `coefficient` for each.
 pub(super) fn coefficients(output: &mut impl Write, coefficients: &[f64]) -> Result<()> {
-    coefficients.iter().try_for_each(|number| writeln!(output, "coefficient {number}")).map_err(write_error)
+    let mut line = |&number: &f64| writeln!(output, "coefficient {}", Decimal(number)).map_err(write_error);
+    coefficients.iter().try_for_each(&mut line)
 }

@@ -5,6 +5,7 @@ use std::io::Write;
 use super::write_error;
 use spmesh_core::error::Result;
 use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::decimal::Decimal;
 use spmesh_stream::Header;
 
 /// World coordinates of a stored point, as the numbers with the shortest decimals that stand for it; z is 0
@@ -26,7 +27,7 @@ pub(super) fn world_bounds(header: &Header, bounds: &Bounds) -> Bounds {
 pub(super) fn write_numbers(output: &mut impl Write, start: &str, numbers: &[f64]) -> Result<()> {
     output.write_all(start.as_bytes()).map_err(write_error)?;
     for number in numbers {
-        write!(output, " {number}").map_err(write_error)?;
+        write!(output, " {}", Decimal(*number)).map_err(write_error)?;
     }
     output.write_all(b"\n").map_err(write_error)
 }

@@ -71,7 +71,13 @@ pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
         (None, Some(names)) if named_axes(&names.fields).is_none() => {
             return Err(no_text_of_points(names.line));
         }
-        (None, _) => Columns {
+        // Names without points below them offer their columns all the same.
+        (None, Some(names)) => {
+            let found = columns_of(names.delimiter, &[], Some(&names))?;
+            named = attributes_of(&found, Some(&names)).ok();
+            found
+        }
+        (None, None) => Columns {
             delimiter: Delimiter::WhiteSpace,
             axes: vec![0, 1],
             others: Vec::new(),

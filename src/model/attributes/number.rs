@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::decimal::Decimal;
+
 /// The type of a stored number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NumberType {
@@ -161,8 +163,8 @@ impl fmt::Display for Number {
             Number::Signed(value) => value.fmt(f),
             Number::F32(value) if value.is_nan() => write!(f, "{:#010x}", value.to_bits()),
             Number::F64(value) if value.is_nan() => write!(f, "{:#018x}", value.to_bits()),
-            Number::F32(value) => value.fmt(f),
-            Number::F64(value) => value.fmt(f),
+            Number::F32(value) => Decimal(*value).fmt(f),
+            Number::F64(value) => Decimal(*value).fmt(f),
         }
     }
 }

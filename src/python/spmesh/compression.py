@@ -59,9 +59,11 @@ def _content(frame: bytes, limit: int) -> bytes:
         content = reader.read(limit + 1)
         while len(content) <= limit and (more := reader.read(limit + 1 - len(content))):
             content += more
+        stated = zstandard.get_frame_parameters(frame).content_size
     except zstandard.ZstdError:
         raise MalformedError("a damaged zstd frame") from None
     require(len(content) <= limit, "a zstd frame of too many bytes")
+    require(stated in (zstandard.CONTENTSIZE_UNKNOWN, len(content)), "a zstd frame of another length than it states")
     return content
 
 

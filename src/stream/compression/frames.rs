@@ -12,6 +12,8 @@ use super::Fault;
 
 /// First bytes of a zstd frame.
 const MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
+/// The largest window of a frame that is well-formed.
+const WINDOW_MAX: u64 = 1 << 23;
 /// The level for tokens: they have hardly any repetitions to look for.
 const TOKENS_LEVEL: i32 = -5;
 /// The level for records.
@@ -102,6 +104,9 @@ impl Unpacker {
         if !is_one {
             return Err("not one zstd frame");
         }
+        if window(frame) > WINDOW_MAX {
+            return Err("a zstd frame with a window above 2^23 bytes");
+        }
         self.content.clear();
         self.content.reserve_exact(len_max);
         let create = || DCtx::try_create().unwrap_or_else(|| out_of_memory());
@@ -111,6 +116,19 @@ impl Unpacker {
             Ok(len) if len <= len_max => Ok(&self.content),
             _ => Err("the zstd frame is damaged, or its content is too long"),
         }
+    }
+}
+
+/// The window that a frame states (RFC 8878, section 3.1.1.1.2). A frame of one segment states none: its window is
+/// its content.
+fn window(frame: &[u8]) -> u64 {
+    const SINGLE_SEGMENT: u8 = 1 << 5;
+    match frame[MAGIC.len()..] {
+        [descriptor, window, ..] if descriptor & SINGLE_SEGMENT == 0 => {
+            let base = 1 << (10 + (window >> 3));
+            base + base / 8 * u64::from(window & 7)
+        }
+        _ => 0,
     }
 }
 
