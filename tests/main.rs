@@ -8,6 +8,7 @@ mod cli;
 mod configgen;
 mod contours;
 mod convert;
+mod crs;
 mod dd4;
 mod dem;
 mod endless;

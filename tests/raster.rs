@@ -1,11 +1,13 @@
 //! Other programs can read the rasters.
 
 use std::io::Cursor;
+use std::sync::LazyLock;
 
+use spmesh_crs::requested;
 use spmesh_io::raster::{
-    Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, TILE, write_rows, write_tiles,
+    Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, Reference, TILE, write_rows,
+    write_tiles,
 };
-use spmesh_stream::Crs;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
 
@@ -42,8 +44,9 @@ fn file(grid: &Grid, format: RasterFormat) -> Vec<u8> {
 }
 
 fn of<'a>(grid: &Grid, options: &'a RasterOptions) -> RasterFile<'a> {
-    let (grid, crs, reduction) = (*grid, &Crs::Unknown, Reduction::Mean);
-    RasterFile { options, grid, crs, are_elevations: true, reduction, is_staged: false }
+    static KEYS: LazyLock<Reference> =
+        LazyLock::new(|| Reference::of_crs(&requested("EPSG:32610").unwrap(), true, RasterFormat::GeoTiff));
+    RasterFile { options, grid: *grid, reference: &KEYS, reduction: Reduction::Mean, is_staged: false }
 }
 
 fn decoded(bytes: &[u8]) -> (Decoder<Cursor<&[u8]>>, Vec<f32>) {

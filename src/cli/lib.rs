@@ -3,6 +3,7 @@
 mod cells;
 mod compression;
 pub mod configgen;
+mod crs;
 pub mod dd4;
 mod messages;
 pub mod progress;

@@ -7,6 +7,7 @@ use clap::Parser;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::compression::Compression;
+use super::crs::CrsFlag;
 use super::{Common, notice, open_input, progress::Progress};
 use spmesh_convert::{Format, Options, convert};
 use spmesh_core::error::{Error, ErrorKind};
@@ -70,6 +71,9 @@ pub struct Flags {
     #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
     attributes: Vec<String>,
 
+    #[command(flatten)]
+    crs: CrsFlag,
+
     /// Write PLY as text
     #[arg(long)]
     ascii: bool,
@@ -115,6 +119,7 @@ pub fn run(flags: Flags) -> Result<()> {
         attributes: AttributeChoice::of_names(&flags.attributes),
         ascii: flags.ascii,
         compress,
+        crs: flags.crs.system()?,
         path: flags.input.is_file().then(|| flags.input.clone()),
         temp_dir: flags.temp_dir,
     };

@@ -9,6 +9,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 
 use super::cells::{self, CellFlags, RasterFlags};
+use super::crs::CrsFlag;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
@@ -62,10 +63,11 @@ the triangle. With linear interpolation, triangles with a corner whose value is 
 one band of 32-bit numbers; for a picture in colour, join those of red, green and blue (gdalbuildvrt -separate).
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
-level triangles have none. Elevations and coordinates must have the same unit.
+level triangles have none. Where the coordinate reference system states the unit of elevations, slopes take it \
+into account; otherwise it must be that of x and y.
 
 --contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
-GeoJSON features with the properties elevation and is_closed. Higher ground is on the left of a line; a \
+GeoJSON features with the properties elevation, unit (if it is known) and is_closed. Higher ground is on the left of a line; a \
 vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
 --contour-points bounds that: a line with that many points is cut and continued from its last point. \
 Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
@@ -139,6 +141,9 @@ pub struct Flags {
     #[command(flatten)]
     raster: RasterFlags,
 
+    #[command(flatten)]
+    crs: CrsFlag,
+
     /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, default_missing_value = "text", require_equals = true)]
     stats: Option<StatsFormat>,
@@ -181,7 +186,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
     let inputs = iter::once(&flags.input).chain(flags.cells.like());
     check_apart(inputs.map(PathBuf::as_path), &[("--output", &flags.output)])?;
-    if let Some(options) = flags.contours.options(flags.kill()?)? {
+    if let Some(options) = flags.contours.options(flags.kill()?, flags.crs.system()?)? {
         system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let job = Job {
             input: &flags.input,
@@ -204,6 +209,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
+    stats.notices.iter().for_each(|message| notice(TOOL, &flags.common, message));
     notice(TOOL, &flags.common, &cells::summary(&grid, stats.cells - stats.known));
     if let Some(format) = flags.stats {
         rows::print(format, started.elapsed(), counts(&stats, output_bytes));
@@ -242,7 +248,7 @@ impl Flags {
             (None, KindFlag::Hillshade) => Quantity::Hillshade(Light::from(azimuth, altitude)),
         };
         let raster = self.raster.options(self.format()?)?;
-        Ok(Options { quantity, kill, fill: self.fill, memory: self.memory, raster })
+        Ok(Options { quantity, kill, fill: self.fill, memory: self.memory, raster, crs: self.crs.system()? })
     }
 
     fn line_format(&self) -> Result<LineFormat, Error> {

@@ -6,9 +6,11 @@ use std::path::PathBuf;
 use clap::Parser;
 
 use super::compression::Compression;
+use super::crs::CrsFlag;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
 use spmesh_core::error::ErrorKind;
+use spmesh_core::error::Result;
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
@@ -30,6 +32,8 @@ Examples:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Intensities, classes and times of the points along with them:
       spfinalize --attributes intensity,classification,gps_time tile.laz | spdelaunay2d -o tile.spm
+  A coordinate reference system that the files state wrongly or not at all, with one for heights:
+      spfinalize --crs EPSG:25832+7837 tiles/*.laz | spdelaunay2d -o ground.spm
   Points of space from compressed text:
       spfinalize --octree scan.xyz.gz | spdelaunay3d -o scan.spm
   Points for another machine, at a quarter of the bytes:
@@ -146,6 +150,9 @@ pub struct Flags {
     #[command(flatten)]
     compression: Compression,
 
+    #[command(flatten)]
+    crs: CrsFlag,
+
     /// Print the counts of the run on stderr
     #[arg(long, value_enum, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "text")]
     stats: Option<StatsFormat>,
@@ -174,7 +181,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let paths = flags.paths()?;
     let inputs = paths.iter().chain(&flags.lof).map(PathBuf::as_path);
     check_apart(inputs, &[("--output", &flags.output)])?;
-    let input = Input::open(&paths, &flags.source_options())?;
+    let input = Input::open(&paths, &flags.source_options()?)?;
     for message in input.notices() {
         notice(TOOL, &flags.common, message);
     }
@@ -224,8 +231,9 @@ impl Flags {
         self.threads.map_or_else(|| available_threads().get(), usize::from)
     }
 
-    fn source_options(&self) -> SourceOptions {
-        SourceOptions {
+    fn source_options(&self) -> Result<SourceOptions> {
+        Ok(SourceOptions {
+            crs: self.crs.system()?,
             reader: &SPFINALIZE,
             attributes: AttributeChoice::of_names(&self.attributes),
             keep_class: self.keep_class.clone(),
@@ -239,7 +247,7 @@ impl Flags {
             raw: self.raw,
             temp_dir: self.temp_dir.clone(),
             threads: NonZeroUsize::new(self.threads()),
-        }
+        })
     }
 
     fn paths(&self) -> anyhow::Result<Vec<PathBuf>> {

@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::{Parser, ValueEnum};
 
 use super::cells::window_of;
+use super::crs::CrsFlag;
 use super::progress::Progress;
 use super::{Common, notice, open_input, parse_numbers};
 use moment::{Every, Moment};
@@ -117,6 +118,9 @@ pub struct Flags {
     /// Use a diverging colour map with its middle at this elevation
     #[arg(long, value_name = "Z", allow_negative_numbers = true)]
     middle: Option<f64>,
+
+    #[command(flatten)]
+    crs: CrsFlag,
 
     /// Width of the picture in pixels
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(320..=8192))]
@@ -245,6 +249,7 @@ impl Flags {
             light: Light::from(azimuth, altitude),
             range: self.range,
             middle: self.middle,
+            crs: self.crs.system()?,
             order: self.order.map(usize::from),
             set: self.set.clone(),
             ..defaults

@@ -2,7 +2,6 @@
 
 mod cell_index;
 pub mod detect;
-mod geo_keys;
 pub mod raster;
 pub mod sink;
 pub mod source;

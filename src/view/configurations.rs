@@ -9,10 +9,11 @@ use super::scene::Scene;
 use super::sheet::{Furniture, Mark, Shape};
 use super::svg::{self, Anchor};
 use super::ticks;
+use super::units::Units;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
 use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::{ConfigurationSet, Coordinates};
+use spmesh_stream::{ConfigurationSet, Coordinates, Header};
 
 /// Triangles of the lower degree, the link, its inside, the chosen set, the knots, and triangles of the upper
 /// degree.
@@ -38,6 +39,7 @@ struct Diagram<'a> {
     knots: &'a Knots,
     coordinates: Coordinates,
     scene: Scene,
+    units: Units,
     options: &'a Options,
 }
 
@@ -49,14 +51,16 @@ struct Diagram<'a> {
 pub(super) fn picture(
     knots: &Knots,
     set: &ConfigurationSet,
-    coordinates: Coordinates,
+    header: &Header,
     options: &Options,
 ) -> Result<Picture> {
+    let coordinates = header.coordinates;
+    let units = Units::of(options.crs.as_ref().unwrap_or(&header.crs));
     let places = knots.points().iter().map(|&[x, y]| coordinates.to_world([x, y, 0.0]));
     let places: Vec<Point> = places.collect();
     let bounds = Bounds::of_points(&places).unwrap_or(Bounds::of_point([0.0; 3]));
     let scene = Scene::plan(&bounds, options.bounds, PAD, options.width)?;
-    let diagram = Diagram { set, knots, coordinates, scene, options };
+    let diagram = Diagram { set, knots, coordinates, scene, units, options };
     match &options.set {
         Some(chosen) => diagram.link(chosen, &places),
         None => diagram.centroids(&places),
@@ -177,6 +181,7 @@ impl Diagram<'_> {
         let unit = frame.map(|frame| frame.unit).filter(|_| !knots.is_empty());
         let knot = Mark { shape: Shape::Dot, colour: KNOT, words: "knots" };
         let marks: Vec<&Mark> = std::iter::once(&knot).chain(marks).collect();
+        let unit = unit.map(|unit| (unit, &self.units.plan[..]));
         let furniture = Furniture { title: &title, legend: None, marks: &marks, unit };
         Picture { svg: self.scene.sheet.svg(&map, &furniture), title, frame }
     }

@@ -16,6 +16,7 @@ use super::sheet::{Furniture, Legend, Mark, Shape};
 use super::shown::Shown;
 use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
+use super::units::Units;
 use super::{configurations, svg, ticks};
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::Knots;
@@ -63,7 +64,7 @@ pub fn draw<R: Read>(
     if header.kind.has_knots() {
         let mut set = ConfigurationSet::read(reader)?;
         let knots = Knots::new(std::mem::take(&mut set.points)).map_err(|e| e.of_input(reader.name()))?;
-        let picture = configurations::picture(&knots, &set, header.coordinates, options);
+        let picture = configurations::picture(&knots, &set, &header, options);
         return take(&picture?);
     }
     let mut drawing =
@@ -89,6 +90,7 @@ struct Drawing<'a> {
     options: &'a Options,
     moments: Moments,
     kind: Kind,
+    units: Units,
     coordinates: Coordinates,
     shown: Shown,
     style: Style,
@@ -125,6 +127,7 @@ impl<'a> Drawing<'a> {
             .then(|| scene_of(&stated.unwrap_or(anywhere), options))
             .transpose()?;
         let shown = Shown::of(&header.attributes, options)?;
+        let units = Units::of(options.crs.as_ref().unwrap_or(&header.crs));
         let has_elevation = has_elevation && matches!(shown, Shown::Elevation);
         let has_cells = matches!(shown, Shown::Elevation)
             && options.cells
@@ -133,11 +136,18 @@ impl<'a> Drawing<'a> {
         let tree = header.tree.filter(|tree| has_cells && tree.dims() == 2);
         let cells = tree.zip(scene.as_ref()).map(|(tree, scene)| Cells::new(tree, coordinates, scene));
         Ok(Drawing {
-            style: Style::of(options, &shown, has_elevation, if is_mesh { "triangles" } else { "points" }),
+            style: Style::of(
+                options,
+                &shown,
+                &units,
+                has_elevation,
+                if is_mesh { "triangles" } else { "points" },
+            ),
             front: Front::new(moments.at.is_some() || moments.every.is_some()),
             options,
             moments,
             kind: header.kind,
+            units,
             coordinates,
             shown,
             scene,
@@ -253,6 +263,7 @@ impl<'a> Drawing<'a> {
         // An empty picture has no scale.
         let unit = frame.map(|frame| frame.unit).filter(|_| self.done > 0 || self.scene.is_some());
         let marks: Vec<&Mark> = marks.iter().collect();
+        let unit = unit.map(|unit| (unit, &self.units.plan[..]));
         let furniture = Furniture { title: &title, legend, marks: &marks, unit };
         Ok(Picture { svg: scene.sheet.svg(&map, &furniture), title, frame })
     }

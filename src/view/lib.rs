@@ -37,6 +37,7 @@ mod style;
 mod svg;
 mod ticks;
 mod triangles;
+mod units;
 
 pub use drawing::{Take, draw};
 pub use extent::Extent;

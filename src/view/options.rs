@@ -2,6 +2,7 @@
 
 use spmesh_io::raster::{Light, Window};
 use spmesh_model::bounds::Bounds;
+use spmesh_stream::Crs;
 
 /// What triangles and points show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,6 +76,8 @@ pub struct Options {
     pub range: Option<[f64; 2]>,
     /// The elevation at which the two halves of a diverging colour map meet.
     pub middle: Option<f64>,
+    /// The coordinate reference system, if not that of the stream; it names the units.
+    pub crs: Option<Crs>,
     /// The order of the centroid triangulation of configurations; the greatest if `None`.
     pub order: Option<usize>,
     /// The set of knots of configurations whose link is drawn.
@@ -99,6 +102,7 @@ impl Options {
             light: Light::from(315.0, 45.0),
             range: None,
             middle: None,
+            crs: None,
             order: None,
             set: None,
         }

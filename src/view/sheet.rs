@@ -64,8 +64,8 @@ pub(super) struct Furniture<'a> {
     pub(super) title: &'a str,
     pub(super) legend: Option<Legend>,
     pub(super) marks: &'a [&'a Mark],
-    /// World units for one length of the picture, in a view from above.
-    pub(super) unit: Option<f64>,
+    /// World units for one length of the picture, in a view from above, and their name.
+    pub(super) unit: Option<(f64, &'a str)>,
 }
 
 impl Sheet {
@@ -190,10 +190,10 @@ impl Sheet {
     }
 
     /// A scale bar of round length.
-    fn scale(&self, below: f64, unit: f64) -> String {
+    fn scale(&self, below: f64, (unit, name): (f64, &str)) -> String {
         let length = ticks::round_below(0.25 * (self.width - 2.0 * MARGIN) * unit);
         let (drawn, right, y) = (length / unit, self.width - MARGIN, below + 30.0);
-        let words = format!("{} units", ticks::number(length, length));
+        let words = format!("{} {name}", ticks::number(length, length));
         format!(
             "<g id=\"scale\">\n<path d=\"M{} {}v8h{}v-8\" fill=\"none\" stroke=\"{DARK}\" stroke-width=\"1.5\"/>\n{}</g>\n",
             svg::length(right - drawn),

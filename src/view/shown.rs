@@ -1,6 +1,7 @@
 //! What the z of a drawn point stands for: its elevation, or the value or colour of an attribute.
 
 use super::options::{Fill, Options};
+use super::units::Units;
 use spmesh_core::error::{Error, Result};
 use spmesh_model::attributes::{Attributes, Column};
 use spmesh_model::bounds::Point;
@@ -47,10 +48,10 @@ impl Shown {
     }
 
     /// The label of the legend.
-    pub(super) fn label(&self) -> String {
+    pub(super) fn label(&self, units: &Units) -> String {
         match self {
             Shown::Value(column) => column.label(),
-            _ => "Elevation".to_string(),
+            _ => units.elevation(),
         }
     }
 

@@ -5,6 +5,7 @@ use super::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
 use super::options::{Fill, Options, When};
 use super::sheet::Legend;
 use super::shown::{self, Shown};
+use super::units::Units;
 use spmesh_io::raster::Light;
 use spmesh_model::bounds::Point;
 
@@ -21,6 +22,8 @@ pub(super) struct Style {
     middle: Option<f64>,
     /// Whether vertices have elevations.
     has_elevation: bool,
+    /// Units of x and y that one unit of elevation is.
+    unit_of_z: f64,
     /// The plural of the counted items.
     unit: &'static str,
     /// What values are called, if they are not times.
@@ -41,10 +44,17 @@ pub(super) struct Colours {
 }
 
 impl Style {
-    pub(super) fn of(options: &Options, shown: &Shown, has_elevation: bool, unit: &'static str) -> Style {
+    pub(super) fn of(
+        options: &Options,
+        shown: &Shown,
+        units: &Units,
+        has_elevation: bool,
+        unit: &'static str,
+    ) -> Style {
         let Options { fill, edges, light, range, middle, .. } = *options;
-        let (fill, label) = (shown.fill().or(fill), shown.label());
-        Style { fill, edges, light, range, middle, has_elevation, unit, label }
+        let (fill, label) = (shown.fill().or(fill), shown.label(units));
+        let unit_of_z = units.of_heights;
+        Style { fill, edges, light, range, middle, has_elevation, unit_of_z, unit, label }
     }
 
     /// What triangles show. By default, the relief if they have elevations; otherwise nothing but edges, or
@@ -78,7 +88,11 @@ impl Style {
             Fill::Hillshade | Fill::None => [0.0; 3],
         };
         let is_lit = matches!(fill, Fill::Hillshade | Fill::Relief);
-        let shade = if is_lit { colour_map::shade(&self.light, gradient(corners)) } else { 1.0 };
+        let shade = if is_lit {
+            colour_map::shade(&self.light, gradient(corners).map(|part| part * self.unit_of_z))
+        } else {
+            1.0
+        };
         Paint { values, shade: shade as f32 }
     }
 

@@ -64,7 +64,7 @@ fn parse(text: &[u8], format: LineFormat) -> Vec<Line> {
 }
 
 fn options(interval: f64, base: f64) -> Options {
-    Options { levels: Levels::new(interval, base).unwrap(), kill: None, points: None }
+    Options { levels: Levels::new(interval, base).unwrap(), kill: None, points: None, crs: None }
 }
 
 fn try_lines(stream: &[u8], options: &Options) -> Result<(Vec<Line>, Stats)> {

@@ -51,7 +51,7 @@ impl Mesh {
 }
 
 fn options(quantity: Quantity) -> Options {
-    Options { quantity, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default() }
+    Options { quantity, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default(), crs: None }
 }
 
 /// The bytes of a raster file.

@@ -3,7 +3,8 @@
 use rustix::fs::Mode;
 use spmesh_core::error::ErrorKind;
 use spmesh_core::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
-use spmesh_io::source::{Input, SourceOptions, crs_name};
+use spmesh_crs::name as crs_name;
+use spmesh_io::source::{Input, SourceOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -30,7 +31,11 @@ fn samples_have_the_points_and_the_box_that_their_headers_state() {
         assert_eq!(found.len(), count, "{name}");
         assert_eq!(input.description().stated_points, Some(count as u64), "{name}");
         assert_eq!(input.description().stated_bounds, Bounds::of_points(&found), "{name}");
-        assert!(input.notices().is_empty(), "{name}: {:?}", input.notices());
+        // The text of this file calls a unit of one metre a foot.
+        let is_strange = name.starts_with("1_4_w_evlr");
+        let notices: Vec<_> =
+            input.notices().iter().filter(|text| !(is_strange && text.contains("foot"))).collect();
+        assert!(notices.is_empty(), "{name}: {notices:?}");
     }
 }
 
@@ -102,10 +107,7 @@ fn classes_of_text_are_a_usage_error() {
 fn systems_are_named_compared_and_shared() {
     let name = |file| crs_name(&Input::open(&[sample(file)], &flat()).unwrap().description().crs);
     assert_eq!(name("autzen.laz").as_deref(), Some("EPSG:2994"));
-    assert_eq!(
-        name("autzen.copc.laz").as_deref(),
-        Some("NAD83 / Oregon GIC Lambert (ft) + NAVD88 height (ftUS)")
-    );
+    assert_eq!(name("autzen.copc.laz").as_deref(), Some("EPSG:2992+6360"));
     assert_eq!(name("hextest.las"), None);
     let wkt =
         r#"PROJCS["UTM (zone 10)",GEOGCS["WGS 84",AUTHORITY["EPSG","4326"]],AUTHORITY["EPSG","32610"]]"#;
@@ -152,7 +154,9 @@ fn systems_too_long_for_a_stream_are_left_out_and_the_notice_says_so() {
         (input.description().crs.clone(), input.notices().to_vec())
     };
     for len in [70_000, CRS_LEN_MAX] {
-        assert_eq!(open(len), (Crs::Wkt("x".repeat(len)), Vec::new()));
+        let (crs, notices) = open(len);
+        assert_eq!(crs, Crs::Wkt("x".repeat(len)));
+        assert!(notices.len() == 1 && notices[0].contains("cannot be read"), "{notices:?}");
     }
     for len in [CRS_LEN_MAX + 1, HEADER_BODY_MAX, HEADER_BODY_MAX + 1] {
         let (crs, notices) = open(len);

@@ -55,10 +55,11 @@ impl ContourFlags {
     ///
     /// # Errors
     /// As [`Levels::new`].
-    pub(super) fn options(&self, kill: Option<f64>) -> Result<Option<Options>> {
+    pub(super) fn options(&self, kill: Option<f64>, crs: Option<Crs>) -> Result<Option<Options>> {
         let Some(interval) = self.contours else { return Ok(None) };
         let levels = Levels::new(interval, self.contour_base)?;
-        Ok(Some(Options { levels, kill, points: self.contour_points.map(|points| points as usize) }))
+        let points = self.contour_points.map(|points| points as usize);
+        Ok(Some(Options { levels, kill, points, crs }))
     }
 }
 
@@ -98,7 +99,9 @@ pub(super) fn run(
     drop(progress);
     let output_bytes = output.bytes_written();
     output.commit()?;
-    for message in [summary(&stats), about_crs(job.format, &reader.header().crs)] {
+    for message in
+        [summary(&stats), about_crs(job.format, options.crs.as_ref().unwrap_or(&reader.header().crs))]
+    {
         notice(&message);
     }
     if let Some(format) = job.stats {

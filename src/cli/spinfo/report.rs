@@ -7,7 +7,6 @@ use crate::messages::escaped;
 use spmesh_audit::diagram::{Proof, Violation};
 use spmesh_audit::{Counts, Inventory, Report};
 use spmesh_core::error::Error;
-use spmesh_io::source::crs_name;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs, Header, Kind};
 
@@ -346,7 +345,7 @@ fn coordinates_json(coordinates: &Coordinates) -> Value {
 }
 
 fn crs_text(crs: &Crs) -> String {
-    let name = crs_name(crs).unwrap_or_else(|| "unnamed".to_string());
+    let name = spmesh_crs::name(crs).unwrap_or_else(|| "unnamed".to_string());
     match crs {
         Crs::Unknown => "unknown".into(),
         Crs::Wkt(text) => format!("{name} (WKT, {} bytes)", text.len()),
@@ -357,8 +356,8 @@ fn crs_text(crs: &Crs) -> String {
 fn crs_json(crs: &Crs) -> Value {
     match crs {
         Crs::Unknown => Value::Null,
-        Crs::Wkt(text) => json!({"encoding": "wkt", "name": crs_name(crs), "wkt": text}),
-        Crs::GeoKeys { .. } => json!({"encoding": "geokeys", "name": crs_name(crs)}),
+        Crs::Wkt(text) => json!({"encoding": "wkt", "name": spmesh_crs::name(crs), "wkt": text}),
+        Crs::GeoKeys { .. } => json!({"encoding": "geokeys", "name": spmesh_crs::name(crs)}),
     }
 }
 

@@ -118,8 +118,9 @@ impl Flags {
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);
         let threads = self.threads.get();
-        let outside = match format {
-            None => spmesh_splinefit::write_table(&spline, attribute, &grid, &mut output, done),
+        let (outside, notices) = match format {
+            None => spmesh_splinefit::write_table(&spline, attribute, &grid, &mut output, done)
+                .map(|outside| (outside, Vec::new())),
             Some(format) => {
                 let options = self.raster.options(format)?;
                 spmesh_splinefit::write_raster(
@@ -135,6 +136,7 @@ impl Flags {
         }?;
         output.commit()?;
         drop(progress);
+        notices.iter().for_each(|text| say(common, text));
         say(common, &cells::summary(&grid, outside));
         Ok(())
     }

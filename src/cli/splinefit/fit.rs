@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, report, say};
 use crate::compression::Compression;
+use crate::crs::CrsFlag;
 use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
@@ -105,6 +106,9 @@ pub(super) struct Flags {
     /// List the points that --robust rejects, in the same way
     #[arg(long, value_name = "FILE", requires = "robust")]
     rejected: Option<PathBuf>,
+
+    #[command(flatten)]
+    crs: CrsFlag,
 
     /// Keep only points of these classes
     #[arg(long, value_name = "CLASS", value_delimiter = ',')]
@@ -226,6 +230,7 @@ impl Flags {
             drop_class: self.drop_class.clone(),
             bounds: self.bounds,
             threads: Some(self.threads.get()),
+            crs: self.crs.system()?,
             ..SourceOptions::default()
         };
         let weights = self.weights.as_ref().map(|path| read_weights(path)).transpose()?;

@@ -15,7 +15,7 @@ use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_io::raster::Window;
-use spmesh_io::source::{SourceOptions, crs_name};
+use spmesh_io::source::SourceOptions;
 use spmesh_splinefit::{Candidate, Condition, Layout, Points, Smoothness, Spline, Statistics, Summary};
 
 /// Segments that the text output lists.
@@ -86,7 +86,7 @@ fn text(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> S
     line("degree", summary.degree.to_string());
     line("knots", format!("{} at {} places", summary.knots, summary.places));
     line("functions", summary.functions.to_string());
-    line("crs", crs_name(&layout.frame.crs).map_or("unknown".into(), |name| escaped(&name)));
+    line("crs", spmesh_crs::name(&layout.frame.crs).map_or("unknown".into(), |name| escaped(&name)));
     line("bounds", summary.bounds.map_or("none".into(), box_text));
     line(
         "domain",
@@ -170,7 +170,7 @@ fn json(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> V
         "knots": summary.knots,
         "places": summary.places,
         "functions": summary.functions,
-        "crs": crs_name(&layout.frame.crs),
+        "crs": spmesh_crs::name(&layout.frame.crs),
         "bounds": area(summary.bounds),
         "domain": area(summary.domain),
         "condition": condition,

@@ -7,9 +7,10 @@ use tiff::decoder::Decoder;
 use tiff::tags::Tag;
 
 use super::Grid;
-use super::geotiff::{KEY_DIRECTORY, PIXEL_SCALE, TIEPOINT, is_of_points};
+use super::geotiff::{KEY_DIRECTORY, PIXEL_SCALE, TIEPOINT};
 use crate::source::open_file;
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::GeoKeys;
 
 impl Grid {
     /// The cells of a GeoTIFF.
@@ -37,9 +38,10 @@ fn read(path: &Path) -> Result<Grid> {
     if !(width > 0.0 && width.is_finite() && [column, row, x, y].iter().all(|number| number.is_finite())) {
         return Err(Error::malformed(format!("cells of size {width} at {x}, {y} cannot be")));
     }
-    let keys = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
+    let directory = decoder.get_tag_u16_vec(Tag::Unknown(KEY_DIRECTORY)).unwrap_or_default();
+    let keys = GeoKeys { directory, ..GeoKeys::default() };
     // The tie point may be the centre of a cell instead of its corner.
-    let half = if is_of_points(&keys) { 0.5 * width } else { 0.0 };
+    let half = if keys.is_of_points() { 0.5 * width } else { 0.0 };
     if width != height {
         return Err(Error::usage(format!("its cells are {width} by {height}, ours are square")));
     }

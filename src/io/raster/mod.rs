@@ -1,13 +1,14 @@
 //! Rasters: values in cells of a grid, row by row from the top, and files of them.
 //!
 //! `grid` places cells, and `like` takes a grid from a file; `geotiff` and `ascii` write files, with
-//! `no_data` for cells without data; `relief` derives slope, aspect and shading from gradients.
+//! `no_data` for cells without data and `reference` for the coordinate reference system; `relief` derives slope, aspect and shading from gradients.
 
 mod ascii;
 mod geotiff;
 mod grid;
 mod like;
 mod no_data;
+mod reference;
 mod relief;
 
 use std::io::{Seek, Write};
@@ -16,10 +17,10 @@ use std::path::PathBuf;
 pub use geotiff::{Reduction, TILE, Tiles, write_tiles};
 pub use grid::{Cells, Grid, Window};
 pub use no_data::NoData;
+pub use reference::Reference;
 pub use relief::{Light, aspect, slope};
 
 use spmesh_core::error::Result;
-use spmesh_stream::Crs;
 
 /// Formats of files.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -53,9 +54,7 @@ pub struct RasterFile<'a> {
     /// Its cells.
     pub grid: Grid,
     /// Its coordinate reference system.
-    pub crs: &'a Crs,
-    /// Whether cells hold elevations, whose unit the coordinate reference system may state.
-    pub are_elevations: bool,
+    pub reference: &'a Reference,
     /// How overviews are made.
     pub reduction: Reduction,
     /// Whether tiles are staged in a temporary file until all have come, so that they can be read back. Files

@@ -1,26 +1,9 @@
-//! Coordinate reference systems: short names, and the system that files share.
+//! The coordinate reference system of a LAS file, and that of several files.
 
-use crate::geo_keys::{self, CITATION, GEOGRAPHIC_TYPE, PROJECTED_TYPE};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::CRS_LEN_MAX;
+use spmesh_crs::{System, differences};
 use spmesh_stream::Crs;
-
-/// Keys of citations, in the order of preference.
-const CITATIONS: [u16; 3] = [3073, CITATION, 2049];
-
-/// GeoTIFF's "defined by other keys".
-const USER_DEFINED: u16 = 32767;
-
-/// A short name of `crs`: its EPSG code ("EPSG:26910") where it states one, else the name it gives itself.
-#[must_use]
-pub fn crs_name(crs: &Crs) -> Option<String> {
-    match crs {
-        Crs::Unknown => None,
-        Crs::Wkt(text) => wkt_code(text).or_else(|| quoted(text).map(str::to_string)),
-        Crs::GeoKeys { directory, ascii, .. } => geo_keys_code(directory)
-            .or_else(|| CITATIONS.iter().find_map(|&citation| geo_keys_text(directory, ascii, citation))),
-    }
-}
 
 /// `crs`, or [`Crs::Unknown`] with a notice if it is too long for the header of a stream.
 pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
@@ -38,86 +21,132 @@ pub(super) fn fitting(crs: Crs, notices: &mut Vec<String>) -> Crs {
     Crs::Unknown
 }
 
-/// The system that all `files`, given as (name, system), share. A file that states none takes the system of
-/// the others.
+/// The system of a LAS file: that of the well-known text if the header promises text, else that of the GeoTIFF
+/// keys; the other one if that is missing or defines no system of x and y.
+pub(super) fn of_records(
+    wkt: Option<Vec<u8>>,
+    keys: [Option<Vec<u8>>; 3],
+    promises_wkt: bool,
+    notices: &mut Vec<String>,
+) -> Crs {
+    let wkt = wkt.map_or(Crs::Unknown, |bytes| {
+        let text = String::from_utf8_lossy(&bytes);
+        let text = text.trim_end_matches('\0');
+        if text.trim().is_empty() { Crs::Unknown } else { Crs::Wkt(text.to_string()) }
+    });
+    let [directory, doubles, ascii] = keys.map(Option::unwrap_or_default);
+    // A directory no longer than its own header of four numbers is empty.
+    let has_keys = directory.len() > 8;
+    let keys = if has_keys { Crs::GeoKeys { directory, doubles, ascii } } else { Crs::Unknown };
+    match (promises_wkt, wkt, keys) {
+        (true, Crs::Unknown, keys @ Crs::GeoKeys { .. }) => {
+            notices.push("the header promises a CRS as text, found GeoTIFF keys only".to_string());
+            keys
+        }
+        (_, Crs::Unknown, only) | (_, only, Crs::Unknown) => only,
+        (true, wkt, keys) => preferred([("text", wkt), ("GeoTIFF keys", keys)], notices),
+        (false, wkt, keys) => preferred([("GeoTIFF keys", keys), ("text", wkt)], notices),
+    }
+}
+
+/// The first of two systems of a file, unless only the second one says what x and y are.
+fn preferred([(first, crs), (second, other)]: [(&str, Crs); 2], notices: &mut Vec<String>) -> Crs {
+    let (of_first, of_second) = (System::of(&crs), System::of(&other));
+    if of_first.horizontal.is_none() && of_second.horizontal.is_some() {
+        notices.push(format!("the CRS in its {first} says nothing of x and y: taking that of its {second}"));
+        return other;
+    }
+    let found = differences(&of_first, &of_second).join("; ");
+    if !found.is_empty() {
+        let what = format!("the CRS in its {first} and that in its {second} differ ({found})");
+        notices.push(format!("{what}: taking that in its {first}"));
+    }
+    crs
+}
+
+/// The system that all `files`, given as (name, system), share: the first that states most. A file that
+/// states none, or none of heights, takes that of the others.
 ///
 /// # Errors
-/// Usage, if two systems differ.
+/// Usage, if two systems do not mean the same.
 pub(super) fn common<'s>(
-    files: impl Iterator<Item = (&'s str, &'s Crs)> + Clone,
+    files: impl Iterator<Item = (&'s str, &'s Crs)>,
     notices: &mut Vec<String>,
 ) -> Result<Crs> {
-    let mut known = files.clone().filter(|(_, crs)| **crs != Crs::Unknown);
-    let Some((first, crs)) = known.next() else { return Ok(Crs::Unknown) };
-    if let Some((other, other_crs)) = known.find(|(_, other)| !is_same(crs, other)) {
-        let name = |crs: &Crs| crs_name(crs).unwrap_or_else(|| "unnamed".to_string());
-        return Err(Error::usage(format!(
-            "the coordinate reference systems differ: {} in {first}, {} in {other}",
-            name(crs),
-            name(other_crs)
-        )));
+    let mut found: Option<Member> = None;
+    let (mut silent, mut without_heights): (Option<Member>, Option<&str>) = (None, None);
+    for (name, crs) in files {
+        if found.as_ref().is_some_and(|first| first.crs == crs) {
+            continue;
+        }
+        let member = Member { name, crs, system: System::of(crs) };
+        if !member.is_stated() {
+            silent = silent.or(Some(member));
+            continue;
+        }
+        let Some(first) = &found else {
+            found = Some(member);
+            continue;
+        };
+        first.check(&member)?;
+        if first.has_heights() == member.has_heights() {
+            continue;
+        }
+        let (with, without) = if member.has_heights() { (&member, first) } else { (first, &member) };
+        without_heights = without_heights.or(Some(without.name));
+        found = Some(with.clone());
     }
-    if let Some((unknown, _)) = files.clone().find(|(_, crs)| **crs == Crs::Unknown) {
-        notices.push(format!("{unknown}: states no coordinate reference system, taking that of {first}"));
+    let Some(member) = found.as_ref().or(silent.as_ref()) else { return Ok(Crs::Unknown) };
+    if let (Some(first), Some(silent)) = (&found, &silent) {
+        notices.push(taken(silent.name, "", first.name));
     }
-    Ok(crs.clone())
+    notices.extend(without_heights.map(|without| taken(without, " for heights", member.name)));
+    let remark = |remark: &String| format!("{}: coordinate reference system: {remark}", member.name);
+    notices.extend(member.system.remarks.iter().map(remark));
+    Ok(member.crs.clone())
 }
 
-fn is_same(a: &Crs, b: &Crs) -> bool {
-    let code = |crs: &Crs| match crs {
-        Crs::Unknown => None,
-        Crs::Wkt(text) => wkt_code(text),
-        Crs::GeoKeys { directory, .. } => geo_keys_code(directory),
-    };
-    a == b || code(a).is_some_and(|of_a| code(b) == Some(of_a))
+fn taken(name: &str, what: &str, from: &str) -> String {
+    format!("{name}: states no coordinate reference system{what}, taking that of {from}")
 }
 
-/// The text between the first two quotation marks.
-fn quoted(text: &str) -> Option<&str> {
-    text.split('"').nth(1).filter(|name| !name.is_empty())
+/// A file with its system.
+#[derive(Debug, Clone)]
+struct Member<'s> {
+    name: &'s str,
+    crs: &'s Crs,
+    system: System,
 }
 
-/// The code of the outermost AUTHORITY (WKT 1) or ID (WKT 2).
-fn wkt_code(text: &str) -> Option<String> {
-    let (mut depth, mut in_quotes) = (0, false);
-    for (at, symbol) in text.char_indices() {
-        match symbol {
-            '"' => in_quotes = !in_quotes,
-            _ if in_quotes => {}
-            '[' | '(' => depth += 1,
-            ']' | ')' => depth -= 1,
-            'A' | 'I' | 'a' | 'i' if depth == 1 && text[..at].trim_end().ends_with(',') => {
-                let inside = ["AUTHORITY", "ID"].iter().find_map(|word| arguments(&text[at..], word));
-                if let Some(inside) = inside {
-                    let mut parts = inside.split(',').map(|part| part.trim().trim_matches('"'));
-                    return Some(format!("{}:{}", parts.next()?, parts.next()?));
-                }
-            }
-            _ => {}
+impl Member<'_> {
+    /// Whether it is a system: some files have keys that define nothing but units.
+    fn is_stated(&self) -> bool {
+        match self.crs {
+            Crs::Unknown => false,
+            Crs::Wkt(_) => true,
+            Crs::GeoKeys { .. } => self.system.horizontal.is_some(),
         }
     }
-    None
-}
 
-/// The text in the brackets after `word`, if `text` starts with `word`.
-fn arguments<'t>(text: &'t str, word: &str) -> Option<&'t str> {
-    let found = text.get(..word.len())?;
-    let rest = text[found.len()..].trim_start().strip_prefix(['[', '('])?;
-    if found.eq_ignore_ascii_case(word) { rest.split([']', ')']).next() } else { None }
-}
+    fn has_heights(&self) -> bool {
+        self.system.vertical.is_some()
+    }
 
-fn geo_keys_code(directory: &[u8]) -> Option<String> {
-    let numbers = geo_keys::numbers(directory);
-    let code =
-        |wanted| geo_keys::short(&numbers, wanted).filter(|&value| value != 0 && value != USER_DEFINED);
-    // A projected system defined by other keys has no EPSG code, even if its geographic base has one.
-    let is_projected = geo_keys::keys(&numbers).any(|[key, ..]| key == PROJECTED_TYPE);
-    let code = if is_projected { code(PROJECTED_TYPE) } else { code(GEOGRAPHIC_TYPE) };
-    code.map(|code| format!("EPSG:{code}"))
-}
-
-fn geo_keys_text(directory: &[u8], ascii: &[u8], wanted: u16) -> Option<String> {
-    let text = String::from_utf8_lossy(geo_keys::text(&geo_keys::numbers(directory), ascii, wanted)?);
-    let text = text.trim_end_matches(['|', '\0']).trim();
-    (!text.is_empty()).then(|| text.to_string())
+    fn check(&self, other: &Member) -> Result<()> {
+        let is_known = self.system.horizontal.is_some() && other.system.horizontal.is_some();
+        let found = differences(&self.system, &other.system);
+        if self.crs == other.crs || is_known && found.is_empty() {
+            return Ok(());
+        }
+        let name = |member: &Member| member.system.name().unwrap_or_else(|| "unnamed".to_string());
+        let what = if found.is_empty() { String::new() } else { format!(" ({})", found.join("; ")) };
+        Err(Error::usage(format!(
+            "the coordinate reference systems differ: {} in {}, {} in {}{what}: transform one of them, or state the \
+             system of all with --crs",
+            name(self),
+            self.name,
+            name(other),
+            other.name
+        )))
+    }
 }

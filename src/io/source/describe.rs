@@ -43,7 +43,10 @@ pub(super) fn describe(
         coordinates,
         dims: options.dims,
         has_elevation: has_z(files)? && options.dims == 2,
-        crs: crs::common(files.iter().map(|file| (file.name, &file.stated.crs)), notices)?,
+        crs: match &options.crs {
+            Some(crs) => crs.clone(),
+            None => crs::common(files.iter().map(|file| (file.name, &file.stated.crs)), notices)?,
+        },
         stated_bounds: stated_bounds(files, &coordinates),
         stated_points: files.iter().map(|file| file.stated.points).sum(),
         attributes,

@@ -5,6 +5,7 @@ use std::io::BufReader;
 use las::raw;
 use laz::LazVlr;
 
+use super::crs;
 use super::las_fields;
 use super::laz_table;
 use super::origin::FileView;
@@ -100,7 +101,12 @@ impl LasHeader {
             coordinates,
             bounds: stored_bounds(&raw, &coordinates),
             offers: las_fields::offers(format, record_len, least, records.extra_bytes.as_deref()),
-            crs: records.crs(raw.global_encoding & GLOBAL_ENCODING_WKT != 0, notices),
+            crs: crs::of_records(
+                records.wkt,
+                records.geo_keys,
+                raw.global_encoding & GLOBAL_ENCODING_WKT != 0,
+                notices,
+            ),
         };
         header.check_len(file, notices)?;
         Ok(header)
@@ -329,26 +335,6 @@ impl Records {
             [1, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: false })),
             [2 | 3, 0, ..] => Ok(Some(Laszip { vlr, is_chunked: true })),
             _ => Err(Error::malformed(format!("laszip record: compressor {}, expected 1, 2 or 3", bytes[0]))),
-        }
-    }
-
-    /// Well-known text if the header promises it or there is nothing else, otherwise the GeoTIFF keys.
-    fn crs(self, promises_wkt: bool, notices: &mut Vec<String>) -> Crs {
-        let [directory, doubles, ascii] = self.geo_keys.map(Option::unwrap_or_default);
-        let wkt = self.wkt.and_then(|bytes| {
-            let text = String::from_utf8_lossy(&bytes);
-            let text = text.trim_end_matches('\0');
-            (!text.trim().is_empty()).then(|| text.to_string())
-        });
-        // A directory no longer than its own header of four numbers is empty.
-        let has_keys = directory.len() > 8;
-        if promises_wkt && wkt.is_none() && has_keys {
-            notices.push("the header promises a CRS as text, found GeoTIFF keys only".to_string());
-        }
-        match wkt {
-            Some(wkt) => Crs::Wkt(wkt),
-            None if has_keys => Crs::GeoKeys { directory, doubles, ascii },
-            None => Crs::Unknown,
         }
     }
 }

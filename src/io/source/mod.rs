@@ -65,7 +65,6 @@ mod vtk;
 mod words;
 
 pub use checked::Checked;
-pub use crs::crs_name;
 pub use events::EventSource;
 pub use gzip::Plain;
 pub use input::Input;

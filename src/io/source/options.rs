@@ -9,6 +9,7 @@ use super::row_plan::AttributeChoice;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::Bounds;
+use spmesh_stream::Crs;
 
 /// What to read of the files, and how.
 #[derive(Debug, Clone, Default)]
@@ -36,6 +37,8 @@ pub struct SourceOptions {
     /// Type of the numbers if the files hold only x, y and z of one point after the other, without a header.
     /// Such files cannot be recognized by content.
     pub raw: Option<RawType>,
+    /// The coordinate reference system, whatever the files state.
+    pub crs: Option<Crs>,
     /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
     /// Threads that decompress points; one per core if `None`.

@@ -19,7 +19,7 @@ use spmesh_io::source::{
     AttributeChoice, Checked, EventSource, Input, PointEvents, SourceOptions, SpEvents, SpaReader, SpbReader,
     TwinSource, open_obj, open_ply, open_sma, open_smb,
 };
-use spmesh_stream::{Event, Header, Kind, StreamReader};
+use spmesh_stream::{Crs, Event, Header, Kind, StreamReader};
 
 /// What a conversion may choose.
 #[derive(Debug, Clone, Default)]
@@ -32,6 +32,8 @@ pub struct Options {
     pub attributes: AttributeChoice,
     /// Write PLY as text.
     pub ascii: bool,
+    /// The coordinate reference system, if not that of the input.
+    pub crs: Option<Crs>,
     /// Compress the blocks of a stream.
     pub compress: bool,
     /// The file of the input, compressed or not, if the input is a file. Points are read from it directly;
@@ -144,7 +146,10 @@ fn open_sink<'a>(
     source: &dyn EventSource,
     options: &Options,
 ) -> Result<Box<dyn EventSink + 'a>> {
-    let header = source.header();
+    let header = &Header {
+        crs: options.crs.clone().unwrap_or(source.header().crs.clone()),
+        ..source.header().clone()
+    };
     let temp_dir = options.temp_dir.as_deref();
     let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
     if header.kind == Kind::TetrahedralMesh {

@@ -16,6 +16,7 @@ use super::space::Space;
 use super::stats::Stats;
 use super::tile::Tile;
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::{System, differences};
 use spmesh_model::bounds::{Bounds, Region};
 use spmesh_stream::{Event, Header, Kind, PatchBlocks, StreamReader, StreamWriter, Totals};
 
@@ -166,8 +167,11 @@ fn check_pair<R: Read>(first: &StreamReader<R>, reader: &StreamReader<R>) -> Res
     if a.attributes != b.attributes {
         return differs("their attributes", ": finalize both with the same --attributes");
     }
-    if a.crs != b.crs {
-        return differs("their coordinate reference system", "");
+    let found =
+        if a.crs == b.crs { Vec::new() } else { differences(&System::of(&a.crs), &System::of(&b.crs)) };
+    if !found.is_empty() {
+        let what = format!("their coordinate reference system ({})", found.join("; "));
+        return differs(&what, ": finalize both with --crs");
     }
     Ok(())
 }

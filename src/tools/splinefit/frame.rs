@@ -1,8 +1,8 @@
 //! The coordinate frame of knots: stored coordinates and world coordinates.
 
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::{System, differences};
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::source::crs_name;
 use spmesh_splines::bases::Jet;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -14,13 +14,20 @@ pub struct Frame {
     pub coordinates: Coordinates,
     /// Coordinate reference system.
     pub crs: Crs,
+    /// Units of x and y that one unit of values is.
+    unit_of_z: f64,
 }
 
 impl Frame {
+    fn new(coordinates: Coordinates, crs: Crs) -> Frame {
+        let unit_of_z = System::of(&crs).vertical_ratio().unwrap_or(1.0);
+        Frame { coordinates, crs, unit_of_z }
+    }
+
     /// The frame of world coordinates.
     #[must_use]
     pub fn world(crs: Crs) -> Frame {
-        Frame { coordinates: Coordinates::F64, crs }
+        Frame::new(Coordinates::F64, crs)
     }
 
     /// The frame of stored coordinates if their steps are equal, and of world coordinates otherwise; and the
@@ -30,7 +37,7 @@ impl Frame {
             Coordinates::F64 => true,
             Coordinates::I32 { scale, .. } => scale[0] == scale[1],
         };
-        let frame = if is_even { Frame { coordinates, crs } } else { Frame::world(crs) };
+        let frame = if is_even { Frame::new(coordinates, crs) } else { Frame::world(crs) };
         let place = move |stored: Point2| if is_even { stored } else { to_world(&coordinates, stored) };
         (frame, place)
     }
@@ -80,6 +87,16 @@ impl Frame {
         }
     }
 
+    /// A jet in world coordinates, with values in the unit of x and y.
+    pub(super) fn jet_in_one_unit(&self, jet: Jet) -> Jet {
+        let jet = self.jet_to_world(jet);
+        Jet {
+            gradient: jet.gradient.map(|slope| slope * self.unit_of_z),
+            hessian: jet.hessian.map(|bend| bend * self.unit_of_z),
+            ..jet
+        }
+    }
+
     /// Adopts the reference system of the points if the reference system of the knots is unknown.
     ///
     /// # Errors
@@ -88,16 +105,22 @@ impl Frame {
         match (&self.crs, crs) {
             (_, Crs::Unknown) => Ok(()),
             (Crs::Unknown, known) => {
-                self.crs = known.clone();
+                *self = Frame::new(self.coordinates, known.clone());
                 Ok(())
             }
-            (own, other) if own == other || crs_name(own) == crs_name(other) => Ok(()),
+            (own, other) if own == other => Ok(()),
             (own, other) => {
-                let name = |crs| crs_name(crs).unwrap_or_else(|| "another system".into());
+                let (own, other) = (System::of(own), System::of(other));
+                let found = differences(&own, &other);
+                if found.is_empty() {
+                    return Ok(());
+                }
+                let name = |system: &System| system.name().unwrap_or_else(|| "another system".into());
                 Err(Error::usage(format!(
-                    "knots are in {} and points in {}: bring them into one system first",
-                    name(own),
-                    name(other)
+                    "knots are in {} and points in {} ({}): bring them into one system first, or state it with --crs",
+                    name(&own),
+                    name(&other),
+                    found.join("; ")
                 )))
             }
         }

@@ -9,7 +9,7 @@ use super::values::{line, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Window};
+use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Reference, Window};
 use spmesh_splines::bases::{Raster, Scratch};
 
 /// Rows that a thread evaluates at a time: enough to outweigh the start of a sweep, which looks at all
@@ -27,7 +27,7 @@ impl Spline {
 }
 
 /// Writes a raster of one number per cell, at the centres of cells; cells outside of the domain have no data.
-/// Returns the number of cells without data.
+/// Returns the number of cells without data, and what the user should know of the coordinate reference system.
 ///
 /// # Errors
 /// Usage, for an attribute of several numbers; if writing fails.
@@ -39,7 +39,7 @@ pub fn write_raster<W: Write + Seek>(
     threads: NonZeroUsize,
     output: &mut W,
     mut done: impl FnMut(u64),
-) -> Result<u64> {
+) -> Result<(u64, Vec<String>)> {
     if !attribute.is_single() {
         return Err(Error::usage("a raster has one number in a cell: take --format text for gradients"));
     }
@@ -47,8 +47,8 @@ pub fn write_raster<W: Write + Seek>(
     let mut unknown = 0;
     let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
     let crs = &spline.layout.frame.crs;
-    let are_elevations = attribute == Attribute::Value;
-    let file = RasterFile { options, grid: *grid, crs, are_elevations, reduction, is_staged: false };
+    let reference = Reference::of_crs(crs, attribute == Attribute::Value, options.format);
+    let file = RasterFile { options, grid: *grid, reference: &reference, reduction, is_staged: false };
     raster::write_rows(output, &file, |row, values| {
         for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
             *value = found as f32;
@@ -62,7 +62,7 @@ pub fn write_raster<W: Write + Seek>(
         done(u64::from(row) + 1);
         Ok(())
     })?;
-    Ok(unknown)
+    Ok((unknown, reference.notices))
 }
 
 /// Writes a line for each cell in the domain, row by row from the top: its centre and the attribute.

@@ -74,7 +74,8 @@ impl Spline {
         }
         Some(match attribute {
             Attribute::Value => Jet::constant(basis.value(&self.coefficients, at, scratch)),
-            _ => frame.jet_to_world(basis.jet(&self.coefficients, at, scratch)),
+            Attribute::Gradient => frame.jet_to_world(basis.jet(&self.coefficients, at, scratch)),
+            _ => frame.jet_in_one_unit(basis.jet(&self.coefficients, at, scratch)),
         })
     }
 }

@@ -2,11 +2,10 @@
 //!
 //! Tiles arrive in any order. `compressor` encodes them by `tile_code` on a separate thread, `overviews`
 //! reduces them, and `store` holds the encoded bytes until all tiles have come. `directory` writes the bytes
-//! before the tiles; `geo_keys` supplies its georeferencing part.
+//! before the tiles.
 
 mod compressor;
 mod directory;
-mod geo_keys;
 mod overviews;
 mod store;
 mod tile_code;
@@ -15,14 +14,13 @@ use std::io::{Seek, Write};
 
 use compressor::{Compressed, Compressor};
 use directory::{Directory, Size, Values};
-use geo_keys::GeoKeys;
-pub(super) use geo_keys::is_of_points;
 pub use overviews::Reduction;
 use overviews::{Overviews, TileName, level_sizes, tiles_of};
 use store::{Extent, Store};
 
 use super::{Grid, NoData, RasterFile, RasterOptions};
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::GeoKeys;
 
 /// Side of a tile in cells.
 pub const TILE: usize = 256;
@@ -230,7 +228,7 @@ impl Tiles<'_> {
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
     let mut directories: Vec<Directory> =
         levels.iter().map(|level| describe(level, file.options.no_data)).collect();
-    directories[0].extend(refer(&file.grid, &GeoKeys::of(file.crs, file.are_elevations)));
+    directories[0].extend(refer(&file.grid, &file.reference.keys));
     let overviews = directories.iter_mut().skip(1);
     overviews.for_each(|directory| directory.push((NEW_SUBFILE_TYPE, Values::Longs(vec![REDUCED_IMAGE]))));
     directories
@@ -263,8 +261,10 @@ fn refer(grid: &Grid, keys: &GeoKeys) -> Directory {
     let mut tags = vec![
         (PIXEL_SCALE, Values::Doubles(vec![grid.step, grid.step, 0.0])),
         (TIEPOINT, Values::Doubles(vec![0.0, 0.0, 0.0, grid.left, grid.top, 0.0])),
-        (KEY_DIRECTORY, Values::Shorts(keys.directory.clone())),
     ];
+    if !keys.directory.is_empty() {
+        tags.push((KEY_DIRECTORY, Values::Shorts(keys.directory.clone())));
+    }
     if !keys.doubles.is_empty() {
         tags.push((KEY_DOUBLES, Values::Doubles(keys.doubles.clone())));
     }

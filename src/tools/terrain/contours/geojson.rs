@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::System;
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::source::crs_name;
 use spmesh_stream::Crs;
 
 /// The format of lines.
@@ -26,6 +26,8 @@ pub(super) struct LineWriter<W> {
     output: W,
     format: LineFormat,
     text: Vec<u8>,
+    /// The property for the unit of elevations, as JSON behind a comma; empty if the unit is unknown.
+    unit: String,
     /// Number of features written.
     features: u64,
 }
@@ -43,7 +45,10 @@ impl<W: Write> LineWriter<W> {
             }
             text.extend_from_slice(b"\"features\":[");
         }
-        LineWriter { output, format, text, features: 0 }
+        let unit = System::of(crs).vertical.map_or(String::new(), |vertical| {
+            format!(",\"unit\":{}", serde_json::Value::from(vertical.unit.symbol))
+        });
+        LineWriter { output, format, text, unit, features: 0 }
     }
 
     /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end.
@@ -62,6 +67,7 @@ impl<W: Write> LineWriter<W> {
         self.features += 1;
         self.text.extend_from_slice(br#"{"type":"Feature","properties":{"elevation":"#);
         self.number(elevation)?;
+        self.text.extend_from_slice(self.unit.as_bytes());
         self.text.extend_from_slice(br#","is_closed":"#);
         self.text.extend_from_slice(if is_closed { b"true" } else { b"false" });
         self.text.extend_from_slice(br#"},"geometry":{"type":"LineString","coordinates":["#);
@@ -112,10 +118,10 @@ impl<W: Write> LineWriter<W> {
     }
 }
 
-/// The EPSG code of a coordinate reference system, if it states one.
+/// The EPSG code of the system of x and y, if it has one.
 #[must_use]
 pub fn epsg_code(crs: &Crs) -> Option<u32> {
-    crs_name(crs)?.strip_prefix("EPSG:")?.parse().ok()
+    System::of(crs).horizontal?.code
 }
 
 fn write_error(cause: std::io::Error) -> Error {

@@ -27,10 +27,10 @@ use places::{Elevations, Plane, Vertex};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{CONTOURS_PER_TRIANGLE_MAX, CONTOURS_PER_TRIANGLE_MEAN_MAX};
 use spmesh_geometry::predicates::FiniteFloatPredicates;
-use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
+use spmesh_stream::{Crs, Event, Header, LiveVertices, Patch, StreamReader};
 
 /// The lines to make.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// The elevations that have lines.
     pub levels: Levels,
@@ -39,6 +39,8 @@ pub struct Options {
     /// An incomplete line with this many points, at least two, is cut: it is written, and a new line starts
     /// at its ends. Lines are not cut if `None`.
     pub points: Option<usize>,
+    /// The coordinate reference system, if not that of the mesh.
+    pub crs: Option<Crs>,
 }
 
 /// Counts of a run.
@@ -100,7 +102,8 @@ pub fn contour<R: Read, W: Write>(
     let header = reader.header().clone();
     check_input(&header, true).map_err(|e| e.of_input(reader.name()))?;
     let mut tracer = Tracer::new(&header, options);
-    let mut drain = Drain::new(&header, LineWriter::new(output, format, &header.crs), options.levels);
+    let crs = options.crs.as_ref().unwrap_or(&header.crs);
+    let mut drain = Drain::new(&header, LineWriter::new(output, format, crs), options.levels);
     let mut live = LiveVertices::new();
     while let Some(event) = reader.next_event()? {
         if let Event::Patch(patch) = event {

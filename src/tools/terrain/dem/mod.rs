@@ -27,6 +27,7 @@ use fill::Filler;
 use flush::Flush;
 use rasterizer::{Rasterizer, TileSink};
 use spmesh_core::error::{Error, Result};
+use spmesh_crs::System;
 use spmesh_geometry::predicates::{PredicateCounts, Predicates2};
 use spmesh_io::raster::{self, Grid, RasterFormat, TILE, Tiles, Window};
 use spmesh_model::attributes::Column;
@@ -61,6 +62,8 @@ pub struct Stats {
     pub input_bytes: u64,
     /// Orientation tests of centres against edges.
     pub predicates: PredicateCounts,
+    /// What the user should know of the coordinate reference system.
+    pub notices: Vec<String>,
 }
 
 /// The window that a mesh covers, in world coordinates.
@@ -98,8 +101,10 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     let header = reader.header().clone();
     let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
     let filler = options.fill.map(Filler::new).transpose()?;
-    let mut rasterizer = Rasterizer::new(*grid, &header.coordinates, options)?;
-    let file = options.file(*grid, &header.crs);
+    let system = System::of(options.crs.as_ref().unwrap_or(&header.crs));
+    let mut rasterizer = Rasterizer::new(*grid, &header.coordinates, options, &system)?;
+    let reference = options.reference(&system);
+    let file = options.file(*grid, &reference);
     let (mut width, mut known, mut filled) = (0, 0, 0);
     match options.raster.format {
         RasterFormat::Ascii => {
@@ -145,6 +150,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         spilled_bytes: rasterizer.cache.spill_len(),
         input_bytes: reader.bytes_read(),
         predicates: *rasterizer.predicates.counts(),
+        notices: reference.notices,
     })
 }
 

@@ -2,8 +2,9 @@
 
 use super::facet::out_of_range;
 use spmesh_core::error::Result;
+use spmesh_crs::{Horizontal, System};
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction};
+use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction, Reference};
 use spmesh_stream::Crs;
 
 /// How values between vertices follow from those of the vertices.
@@ -43,24 +44,43 @@ pub struct Options {
     pub memory: u64,
     /// How the raster is written.
     pub raster: RasterOptions,
+    /// The coordinate reference system, if not that of the mesh.
+    pub crs: Option<Crs>,
 }
 
 impl Options {
+    /// What the raster says of its coordinates.
+    pub(super) fn reference(&self, system: &System) -> Reference {
+        let are_elevations = self.quantity == Quantity::Elevation;
+        let mut reference = Reference::of(system, are_elevations, self.raster.format);
+        let is_angular = system.horizontal.as_ref().is_some_and(Horizontal::is_angular);
+        if self.quantity.is_relief() && is_angular {
+            reference.notices.push(
+                "x and y are angles, so slopes are too steep by far: project the points first".to_string(),
+            );
+        }
+        reference
+    }
+
     /// The raster file.
-    pub(super) fn file<'a>(&'a self, grid: Grid, crs: &'a Crs) -> RasterFile<'a> {
+    pub(super) fn file<'a>(&'a self, grid: Grid, reference: &'a Reference) -> RasterFile<'a> {
         // Directions have no mean: that of north-east and north-west would be south. Nor have classes.
         let reduction = match self.quantity {
             Quantity::Aspect | Quantity::Attribute(_, Interpolation::Nearest) => Reduction::First,
             _ => Reduction::Mean,
         };
-        let are_elevations = self.quantity == Quantity::Elevation;
         // Holes are filled from tiles that are already written, so these must be readable.
         let is_staged = self.fill.is_some();
-        RasterFile { options: &self.raster, grid, crs, are_elevations, reduction, is_staged }
+        RasterFile { options: &self.raster, grid, reference, reduction, is_staged }
     }
 }
 
 impl Quantity {
+    /// Whether values follow from slopes.
+    fn is_relief(&self) -> bool {
+        matches!(self, Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_))
+    }
+
     /// How values vary in a triangle.
     pub(super) fn interpolation(&self) -> Interpolation {
         match self {
@@ -69,7 +89,7 @@ impl Quantity {
         }
     }
 
-    /// The value of a whole plane, from its gradient in world coordinates; `None` if it varies.
+    /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.
     ///
     /// # Errors
     /// Usage, if the gradient overflows.

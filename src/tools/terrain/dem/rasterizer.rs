@@ -10,6 +10,7 @@ use super::tile::overlap;
 use super::tile_cache::{TileCache, TilePlace};
 use crate::surface::{LongEdges, is_counterclockwise};
 use spmesh_core::error::Result;
+use spmesh_crs::System;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
@@ -23,6 +24,8 @@ pub(super) type TileSink<'a> = dyn FnMut(TilePlace, &[f32]) -> Result<()> + 'a;
 pub(super) struct Rasterizer {
     centers: Centers,
     quantity: Quantity,
+    /// Units of x and y that one unit of z is.
+    unit_of_z: f64,
     long_edges: LongEdges,
     pub(super) cache: TileCache,
     pub(super) predicates: FiniteFloatPredicates,
@@ -39,10 +42,16 @@ impl Rasterizer {
     ///
     /// # Errors
     /// As [`TileCache::new`].
-    pub(super) fn new(grid: Grid, coordinates: &Coordinates, options: &Options) -> Result<Rasterizer> {
+    pub(super) fn new(
+        grid: Grid,
+        coordinates: &Coordinates,
+        options: &Options,
+        system: &System,
+    ) -> Result<Rasterizer> {
         Ok(Rasterizer {
             centers: Centers::new(grid, coordinates),
             quantity: options.quantity.clone(),
+            unit_of_z: system.vertical_ratio().unwrap_or(1.0),
             long_edges: LongEdges::new(options.kill, coordinates),
             cache: TileCache::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
             predicates: FiniteFloatPredicates::default(),
@@ -139,7 +148,8 @@ impl Rasterizer {
             return Ok(());
         }
         let interpolation = self.quantity.interpolation();
-        let flat = self.quantity.of_plane(self.centers.gradient_to_world(facet.gradient))?;
+        let gradient = self.centers.gradient_to_world(facet.gradient).map(|part| part * self.unit_of_z);
+        let flat = self.quantity.of_plane(gradient)?;
         let Some(tile) = self.cache.tile(at)? else {
             // All cells of a written tile belong to other triangles, so this one may only touch them.
             let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
