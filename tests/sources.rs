@@ -1,6 +1,7 @@
 //! Point files of other programs: every point exactly, or an error that says what is wrong and where.
 
 mod damage;
+mod filters;
 mod grids;
 mod las;
 pub mod las_file;

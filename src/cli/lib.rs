@@ -5,6 +5,7 @@ mod compression;
 pub mod configgen;
 pub mod dd4;
 mod messages;
+mod point_filters;
 pub mod progress;
 mod reduction;
 mod rows;
@@ -176,7 +177,8 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
     Ok((plain(file).map_err(reading)?, name))
 }
 
-/// The files that `--lof` lists, one per line; empty lines do not count. `-` is stdin.
+/// The files that `--lof` lists, one per line; empty lines and lines that start with `#` do not
+/// count. `-` is stdin.
 ///
 /// # Errors
 /// If the list cannot be read, or is no list of at most [`LIST_FILES_MAX`] files; usage, if it lists no file.
@@ -206,7 +208,7 @@ fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
         if files.len() == LIST_FILES_MAX {
             return Err(at(format!("more than {LIST_FILES_MAX} files: divide the list")));
         }
-        if !path.is_empty() {
+        if !path.is_empty() && !path.starts_with(b"#") {
             files.push(OsStr::from_bytes(path).into());
         }
     }

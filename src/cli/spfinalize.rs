@@ -1,22 +1,22 @@
 //! `spfinalize`: flags.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
 use super::compression::Compression;
+use super::point_filters::PointFilters;
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
-use spmesh_core::error::ErrorKind;
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, read_list};
+use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
+use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats, Thin};
 use spmesh_io::detect::SPFINALIZE;
-use spmesh_io::source::{AttributeChoice, Input, RawType, SourceOptions};
-use spmesh_model::bounds::Bounds;
+use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, RawType, SourceOptions};
 
 const TOOL: &str = "spfinalize";
 
@@ -58,7 +58,8 @@ pub struct Flags {
     #[arg(value_name = "INPUT")]
     inputs: Vec<PathBuf>,
 
-    /// Read the files listed in this file, one per line
+    /// Read the files listed in this file, one per line; - is stdin. Empty lines and lines that start with #
+    /// do not count
     #[arg(long, value_name = "FILE")]
     lof: Option<PathBuf>,
 
@@ -110,31 +111,6 @@ pub struct Flags {
     #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
     attributes: Vec<String>,
 
-    /// Keep only points of these classes
-    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
-    keep_class: Vec<u8>,
-
-    /// Drop points of these classes
-    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
-    drop_class: Vec<u8>,
-
-    /// Keep only first returns
-    #[arg(long)]
-    first_only: bool,
-
-    /// Keep only last returns
-    #[arg(long)]
-    last_only: bool,
-
-    /// Keep only points that lie in this closed box: MINX,MINY,MINZ,MAXX,MAXY,MAXZ or, whatever their z,
-    /// MINX,MINY,MAXX,MAXY
-    #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
-    bounds: Option<Bounds>,
-
-    /// Drop and count points with a coordinate that is not finite, instead of failing
-    #[arg(long)]
-    skip_invalid: bool,
-
     /// Round coordinates to a grid of these steps
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>)]
     scale: Option<[f64; 3]>,
@@ -142,6 +118,15 @@ pub struct Flags {
     /// World coordinates of the origin of that grid [default: 0,0,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true, requires = "scale")]
     offset: Option<[f64; 3]>,
+
+    #[command(flatten)]
+    points: PointFilters,
+
+    /// Of the points that the filters keep, keep one per square cell of side CELL (with --octree, per cube), by
+    /// RULE: lowest, highest, first or nearest-centre; the first in input order of equal ones. Corners of cells
+    /// are at multiples of CELL, in world units [default rule: lowest]
+    #[arg(long, value_name = "CELL[:RULE]", help_heading = "Which points")]
+    thin: Option<Thin>,
 
     #[command(flatten)]
     compression: Compression,
@@ -182,6 +167,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let stats = spmesh_finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
+    let dropped = input.dropped();
+    if let Some(message) = withheld_notice(&dropped) {
+        notice(TOOL, &flags.common, &message);
+    }
     if stats.points == 0 {
         notice(TOOL, &flags.common, "no points: the input has none, or the filters keep none");
     }
@@ -191,8 +180,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     match flags.stats {
-        Some(StatsFormat::Text) => super::say(&stats_text(&stats)),
-        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats))),
+        Some(StatsFormat::Text) => super::say(&stats_text(&stats, &dropped)),
+        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats, &dropped))),
         None => {}
     }
     Ok(())
@@ -210,6 +199,7 @@ impl Flags {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
+            thin: self.thin,
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
             spooling: match self.spool {
@@ -228,12 +218,9 @@ impl Flags {
         SourceOptions {
             reader: &SPFINALIZE,
             attributes: AttributeChoice::of_names(&self.attributes),
-            keep_class: self.keep_class.clone(),
-            drop_class: self.drop_class.clone(),
-            first_only: self.first_only,
-            last_only: self.last_only,
-            bounds: self.bounds,
-            skip_invalid: self.skip_invalid,
+            filters: self.points.filters(),
+            bounds: self.points.bounds,
+            skip_invalid: self.points.skip_invalid,
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             raw: self.raw,
@@ -246,6 +233,12 @@ impl Flags {
         let mut paths = self.inputs.clone();
         if let Some(list) = &self.lof {
             paths.extend(read_list(list)?);
+            let stdin = Path::new("-");
+            if list == stdin && paths.iter().any(|path| path == stdin) {
+                anyhow::bail!(Error::usage(
+                    "the list of files and one of the files cannot both be stdin (-)"
+                ));
+            }
         } else if paths.is_empty() {
             paths.push(PathBuf::from("-"));
         }
@@ -276,11 +269,26 @@ impl Observer for Watch<'_> {
     }
 }
 
-fn stats_text(stats: &Stats) -> String {
+fn withheld_notice(dropped: &Dropped) -> Option<String> {
+    let count = dropped.of(DropReason::Withheld);
+    let points = if count == 1 { "point" } else { "points" };
+    (count > 0).then(|| format!("{count} withheld {points} dropped; --keep-withheld keeps them"))
+}
+
+/// Numbers of dropped points by reason, in the order in which filters are applied.
+fn drops<'a>(stats: &Stats, dropped: &'a Dropped) -> impl Iterator<Item = (&'static str, u64)> + use<'a> {
+    let filters = DropReason::ALL.into_iter().map(|reason| (reason.name(), dropped.of(reason)));
+    filters.chain([("thin", stats.thinned)])
+}
+
+fn stats_text(stats: &Stats, dropped: &Dropped) -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.into(), value));
     row("points", stats.points.to_string());
     row("invalid points skipped", stats.invalid.to_string());
+    for (reason, count) in drops(stats, dropped).filter(|(_, count)| *count > 0) {
+        row(&format!("points dropped: {reason}"), count.to_string());
+    }
     for (pass, time) in &stats.passes {
         row(&format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
     }
@@ -299,14 +307,17 @@ fn stats_text(stats: &Stats) -> String {
     rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
 }
 
-fn stats_json(stats: &Stats) -> serde_json::Value {
+fn stats_json(stats: &Stats, dropped: &Dropped) -> serde_json::Value {
     let passes: Vec<_> = stats
         .passes
         .iter()
         .map(|(name, time)| serde_json::json!({"pass": name, "seconds": time.as_secs_f64()}))
         .collect();
+    let dropped: serde_json::Map<_, _> =
+        drops(stats, dropped).map(|(reason, count)| (reason.into(), count.into())).collect();
     serde_json::json!({
         "points": stats.points,
+        "dropped": dropped,
         "invalid_skipped": stats.invalid,
         "passes": passes,
         "peak_memory_bytes": peak_memory(),

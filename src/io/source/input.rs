@@ -2,10 +2,11 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::crs;
 use super::describe::{File, describe};
+use super::filters::{DropReason, Dropped};
 use super::las_header::LasHeader;
 use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
@@ -56,6 +57,8 @@ pub struct Input {
     /// How the rows of each file are made.
     plans: Arc<[RowPlan]>,
     notices: Vec<String>,
+    /// What the first whole pass dropped.
+    passed: Arc<OnceLock<Dropped>>,
 }
 
 impl Input {
@@ -101,7 +104,7 @@ impl Input {
             sources.iter().map(|Source { name, stated, .. }| File { name, stated }).collect();
         let (description, plans) = describe(&files, options, &mut notices)?;
         let (sources, plans) = (sources.into(), plans.into());
-        Ok(Input { sources, options: options.clone(), description, plans, notices })
+        Ok(Input { sources, options: options.clone(), description, plans, notices, passed: Arc::default() })
     }
 
     /// What is known before the points are read.
@@ -114,6 +117,25 @@ impl Input {
     #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
+    }
+
+    /// How many points the filters dropped; none before the end of the first pass.
+    #[must_use]
+    pub fn dropped(&self) -> Dropped {
+        self.passed.get().copied().unwrap_or_default()
+    }
+
+    /// After a pass: a notice if withheld points were dropped.
+    #[must_use]
+    pub fn withheld_notice(&self) -> Option<String> {
+        let count = self.dropped().of(DropReason::Withheld);
+        let points = if count == 1 { "point" } else { "points" };
+        (count > 0).then(|| {
+            format!(
+                "{}: {count} withheld {points} dropped (spfinalize --keep-withheld keeps them)",
+                self.name()
+            )
+        })
     }
 
     /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
@@ -157,6 +179,8 @@ impl Input {
             next: 0,
             current: None,
             invalid: 0,
+            dropped: Dropped::default(),
+            passed: Arc::clone(&self.passed),
         };
         reader.open_next()?;
         Ok(Box::new(reader))
@@ -194,12 +218,19 @@ impl Source {
     /// Rejects options that the file's format cannot serve.
     fn check(&self, options: &SourceOptions) -> Result<()> {
         if !matches!(self.content, Content::Las(_)) {
-            if !options.keep_class.is_empty() || !options.drop_class.is_empty() {
-                return Err(Error::usage("classes are unknown here: only LAS and LAZ files have them"));
+            if let Some(what) = options.filters.needs() {
+                let message = format!("{what} unknown here: only LAS and LAZ files state them");
+                return Err(Error::usage(message));
             }
-            if options.first_only || options.last_only {
-                return Err(Error::usage("returns are unknown here: only LAS and LAZ files have them"));
-            }
+        }
+        if let Content::Las(header) = &self.content
+            && matches!(header.format, 0 | 2)
+            && options.filters.gps_time.is_some()
+        {
+            return Err(Error::usage(format!("points of format {} have no GPS time", header.format)));
+        }
+        if options.filters.z.is_some() && self.stated.has_z == Some(false) {
+            return Err(Error::usage("points have no third coordinate, the filter of z needs it"));
         }
         if options.dims == 3 && self.stated.has_z == Some(false) {
             return Err(Error::usage(
@@ -352,8 +383,11 @@ struct InputReader {
     /// Number of the file after the current one.
     next: usize,
     current: Option<(Box<dyn Pass>, Placement)>,
-    /// Points dropped in files before the current one.
+    /// Points dropped in files before the current one: not finite, and by filters.
     invalid: u64,
+    dropped: Dropped,
+    /// Gets the number of dropped points at the end.
+    passed: Arc<OnceLock<Dropped>>,
 }
 
 impl InputReader {
@@ -361,15 +395,19 @@ impl InputReader {
     fn open_next(&mut self) -> Result<()> {
         if let Some((_, placement)) = self.current.take() {
             self.invalid += placement.invalid;
+            self.dropped.add(&placement.dropped);
         }
         if let Some(source) = self.sources.get(self.next) {
             let plan = self.plans[self.next].clone();
             let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
             let Stated { coordinates, .. } = source.stated;
-            let SourceOptions { bounds, skip_invalid, .. } = self.options;
+            let (windows, skip_invalid) = (self.options.windows(), self.options.skip_invalid);
             self.current =
-                Some((pass, Placement::new(&coordinates, &self.coordinates, bounds, skip_invalid)));
+                Some((pass, Placement::new(&coordinates, &self.coordinates, &windows, skip_invalid)));
             self.next += 1;
+        } else {
+            // Later passes drop the same points.
+            let _ = self.passed.set(self.dropped);
         }
         Ok(())
     }

@@ -3,6 +3,8 @@
 
 use std::io::{BufReader, Seek};
 
+use laz::DecompressionSelection;
+
 use super::las_header::{LasHeader, Laszip};
 use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
 use super::laz_codec::{Codec, Decompressor, decompression};
@@ -74,15 +76,15 @@ pub(super) struct LazRecords {
 }
 
 impl LazRecords {
-    /// Records of which all fields are decompressed if `is_whole`, else coordinates, class and return numbers.
+    /// Records of which the fields of `selection` are decompressed.
     pub(super) fn new(
         file: FileView,
         header: &LasHeader,
         laszip: &Laszip,
         threads: usize,
-        is_whole: bool,
+        selection: DecompressionSelection,
     ) -> Result<LazRecords> {
-        let codec = Codec::new(laszip.vlr.clone(), header, is_whole)?;
+        let codec = Codec::new(laszip.vlr.clone(), header, selection)?;
         let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
             Chunks::Table(chunks) => (chunks, None),
             Chunks::Unknown { start, points_per_chunk } => {

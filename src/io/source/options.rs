@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use super::filters::{DropReason, Filters};
 use super::origin::Admitted;
 use super::raw_type::RawType;
 use super::row_plan::AttributeChoice;
@@ -17,14 +18,8 @@ pub struct SourceOptions {
     pub reader: &'static Reader,
     /// What points carry beside their coordinates.
     pub attributes: AttributeChoice,
-    /// Keep only points of these classes, if any are given.
-    pub keep_class: Vec<u8>,
-    /// Drop points of these classes.
-    pub drop_class: Vec<u8>,
-    /// Keep only first returns.
-    pub first_only: bool,
-    /// Keep only last returns.
-    pub last_only: bool,
+    /// Keep only points that pass these filters.
+    pub filters: Filters,
     /// Keep only points that lie in this closed box of the world; sides may be infinite.
     pub bounds: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
@@ -43,6 +38,13 @@ pub struct SourceOptions {
 }
 
 impl SourceOptions {
+    /// The parts of the world that points must lie in, with the reason for which others are dropped.
+    pub(super) fn windows(&self) -> Vec<(DropReason, Bounds)> {
+        let bounds = self.bounds.map(|bounds| (DropReason::Bounds, bounds));
+        let z = self.filters.z.map(|z| (DropReason::Z, z.of_z()));
+        bounds.into_iter().chain(z).collect()
+    }
+
     /// The folder of spools.
     pub(super) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)

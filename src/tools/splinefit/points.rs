@@ -94,8 +94,8 @@ impl Points {
 
     /// Notices about the files for the user.
     #[must_use]
-    pub fn notices(&self) -> &[String] {
-        self.input.notices()
+    pub fn notices(&self) -> Vec<String> {
+        self.input.notices().iter().cloned().chain(self.input.withheld_notice()).collect()
     }
 
     /// The coordinate reference system.
