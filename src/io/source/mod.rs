@@ -5,6 +5,7 @@ mod base64;
 mod byte_order;
 mod checked;
 mod crs;
+mod decimal_grid;
 mod describe;
 mod events;
 mod filters;
