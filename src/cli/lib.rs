@@ -20,6 +20,7 @@ pub mod splinefit;
 #[cfg(feature = "view")]
 pub mod spview;
 pub mod tess3;
+mod text_flags;
 
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, IsTerminal, Read};

@@ -3,6 +3,7 @@
 use clap::Args;
 
 use super::parse_box;
+use spmesh_finalize::Thin;
 use spmesh_io::source::{Filters, Interval};
 use spmesh_model::bounds::Bounds;
 
@@ -75,6 +76,12 @@ pub(super) struct PointFilters {
     /// Drop and count points with a coordinate that is not finite, instead of failing
     #[arg(long)]
     pub(super) skip_invalid: bool,
+
+    /// Of the points that the filters keep, keep one per square cell of side CELL (with --octree, per cube), by
+    /// RULE: lowest, highest, first or nearest-centre; the first in input order of equal ones. Corners of cells
+    /// are at multiples of CELL, in world units [default rule: lowest]
+    #[arg(long, value_name = "CELL[:RULE]")]
+    pub(super) thin: Option<Thin>,
 }
 
 impl PointFilters {

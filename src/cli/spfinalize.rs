@@ -8,13 +8,14 @@ use clap::Parser;
 use super::compression::Compression;
 use super::point_filters::PointFilters;
 use super::progress::Progress;
+use super::text_flags::TextFlags;
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, read_list};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats, Thin};
+use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
 use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, RawType, SourceOptions};
 
@@ -26,6 +27,16 @@ Examples:
       spfinalize tile.laz | spdelaunay2d -o tile.spm
   Ground and water of many files as one input, keeping within 256 MB:
       spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
+  The lowest first return of each square of half a metre, without synthetic points:
+      spfinalize --first-only --drop-synthetic --thin 0.5:lowest tile.laz -o ground.spm
+  One flight line, from its start to a GPS time, and how many points were dropped for which reason:
+      spfinalize --keep-point-source 12,12 --keep-gps-time ,278300 --stats tile.laz -o line.spm
+  A table whose comment names its columns, and the times along with the points:
+      spfinalize --columns GLON,GLAT,ZG --attributes TIME ILVIS2.TXT -o lvis.spm
+  What is left of a file whose transfer broke off:
+      spfinalize --salvage tile.laz -o part.spm
+  Files that another program lists:
+      find tiles -name '*.laz' | spfinalize --lof - -o tiles.spm
   A grid of 2^6 x 2^6 cells, points in their own order, with the counts of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Intensities, classes and times of the points along with them:
@@ -38,7 +49,7 @@ Examples:
       spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
-6 input of another version of spmesh, 141 output closed by its reader.";
+6 input of another version of spmesh, 7 complete but for points of inputs that were cut off (--salvage), 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";
@@ -67,6 +78,11 @@ pub struct Flags {
     /// u64, f32 or f64 with its byte order, as in f32le or f64be
     #[arg(long, value_name = "TYPE")]
     raw: Option<RawType>,
+
+    /// Of LAS, LAZ, text or raw files that were cut off, take the whole points before the cut (of LAZ, whole
+    /// chunks), and exit with 7. A last line of text without a line end counts as cut
+    #[arg(long)]
+    salvage: bool,
 
     /// File for the stream; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
@@ -120,15 +136,6 @@ pub struct Flags {
     offset: Option<[f64; 3]>,
 
     #[command(flatten)]
-    points: PointFilters,
-
-    /// Of the points that the filters keep, keep one per square cell of side CELL (with --octree, per cube), by
-    /// RULE: lowest, highest, first or nearest-centre; the first in input order of equal ones. Corners of cells
-    /// are at multiples of CELL, in world units [default rule: lowest]
-    #[arg(long, value_name = "CELL[:RULE]", help_heading = "Which points")]
-    thin: Option<Thin>,
-
-    #[command(flatten)]
     compression: Compression,
 
     /// Print the counts of the run on stderr
@@ -137,6 +144,12 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    points: PointFilters,
+
+    #[command(flatten)]
+    text: TextFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -184,6 +197,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats, &dropped))),
         None => {}
     }
+    let salvaged = input.salvaged();
+    if !salvaged.is_empty() {
+        anyhow::bail!(Error::new(ErrorKind::Salvaged, salvaged.join("; ")));
+    }
     Ok(())
 }
 
@@ -199,7 +216,7 @@ impl Flags {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
-            thin: self.thin,
+            thin: self.points.thin,
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
             spooling: match self.spool {
@@ -224,6 +241,8 @@ impl Flags {
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             raw: self.raw,
+            text: self.text.options(),
+            salvage: self.salvage,
             temp_dir: self.temp_dir.clone(),
             threads: NonZeroUsize::new(self.threads()),
         }

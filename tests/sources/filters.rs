@@ -16,7 +16,7 @@ fn records(count: i32) -> Vec<Record> {
         state ^= state >> 27;
         (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) % below
     };
-    let mut record = |x: i32| Record {
+    let record = |x: i32| Record {
         position: [x, x % 97, random(1000) as i32 - 500],
         class: [1, 2, 9, 12][random(4) as usize],
         number: random(4) as u8,
@@ -27,15 +27,17 @@ fn records(count: i32) -> Vec<Record> {
         point_source: random(20) as u16,
         gps_time: 1000.0 + f64::from(x) / 64.0,
     };
-    (0..count).map(|x| record(x)).collect()
+    (0..count).map(record).collect()
 }
 
+type Test = fn(&Record) -> bool;
+
 /// Each filter with its reason, and which records it keeps by itself.
-type Case = (Filters, DropReason, fn(&Record) -> bool);
+type Case = (Filters, DropReason, Test);
 
 fn cases(is_extended: bool) -> Vec<Case> {
     let default = || Filters { keep_withheld: true, ..Filters::default() };
-    let overlap: fn(&Record) -> bool =
+    let overlap: Test =
         if is_extended { |record| record.flags & 8 == 0 } else { |record| record.class != 12 };
     let interval = |text: &str| Some(text.parse().expect("an interval"));
     vec![
@@ -108,7 +110,7 @@ fn a_point_counts_under_the_first_filter_that_drops_it() {
         let (code, message) = outcome(&output);
         assert_eq!(code, Some(0), "{message}");
         let stats: serde_json::Value = serde_json::from_str(&message).expect("JSON");
-        let tests: [(&str, fn(&Record) -> bool); 7] = [
+        let tests: [(&str, Test); 7] = [
             ("withheld", |record| record.flags & 4 != 0),
             ("synthetic", |record| record.flags & 1 != 0),
             ("class", |record| record.class % 7 != 2),

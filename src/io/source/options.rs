@@ -7,6 +7,7 @@ use super::filters::{DropReason, Filters};
 use super::origin::Admitted;
 use super::raw_type::RawType;
 use super::row_plan::AttributeChoice;
+use super::text_options::TextOptions;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::Bounds;
@@ -24,6 +25,8 @@ pub struct SourceOptions {
     pub bounds: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
     pub skip_invalid: bool,
+    /// Take the whole points before the cut of LAS, LAZ, text and raw files that were cut off.
+    pub salvage: bool,
     /// Dimensions of the geometry: 2 (z is an elevation) or 3.
     pub dims: u8,
     /// Grid for integer coordinates: scale and offset per axis, instead of the files' own.
@@ -31,6 +34,8 @@ pub struct SourceOptions {
     /// Type of the numbers if the files hold only x, y and z of one point after the other, without a header.
     /// Such files cannot be recognized by content.
     pub raw: Option<RawType>,
+    /// How lines of text are laid out.
+    pub text: TextOptions,
     /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
     /// Threads that decompress points; one per core if `None`.
