@@ -4,6 +4,7 @@ mod memory;
 mod promises;
 mod sets;
 mod spool;
+mod thin;
 
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_finalize::{Budget, Leaves, Options, Order, Spooling, Stats, run};
@@ -17,7 +18,7 @@ use sets::*;
 
 fn options(leaves: Leaves, order: Order) -> Options {
     let budget = Budget::of_engine(64 << 20).expect("enough");
-    Options { leaves, order, compress: false, budget, temp_dir: None, spooling: Spooling::Auto }
+    Options { leaves, order, compress: false, thin: None, budget, temp_dir: None, spooling: Spooling::Auto }
 }
 
 fn collapsed(cell_points: u64) -> Leaves {

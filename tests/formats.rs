@@ -155,7 +155,7 @@ fn damaged_gzip_data_is_named_with_its_place() {
 fn lists_of_files_are_read_from_files_and_pipes() {
     let folder = Folder::new();
     let paths = ["a.xyz", "b.xyz"].map(|name| folder.write(name, cloud(30)));
-    let text = format!("\u{feff}{}\r\n\n{}", paths[0], paths[1]);
+    let text = format!("\u{feff}{}\r\n\n# the other\n{}", paths[0], paths[1]);
     let lists = [folder.write("list", &text), folder.write("list.gz", gzip(text.as_bytes()))];
     let finalized = |arguments: &[&str]| output("spfinalize", arguments, text.as_bytes());
     let expected = finalized(&[&paths[0], &paths[1]]);
@@ -165,7 +165,8 @@ fn lists_of_files_are_read_from_files_and_pipes() {
         output("tess3", &["--lof", list, "--out-dir", &out], text.as_bytes());
         assert_eq!(std::fs::read_dir(&out).expect("the sweep").count(), 3, "{list}");
     }
-    assert_outcome("spfinalize", &["--lof", &folder.write("none", "\n\n")], &[], 2, "lists no files");
+    assert_outcome("spfinalize", &["--lof", &folder.write("none", "\n#\n")], &[], 2, "lists no files");
+    assert_outcome("spfinalize", &["--lof", "-", "-"], text.as_bytes(), 2, "cannot both be stdin");
     assert_outcome("spdelaunay2d", &[&folder.path("")], &[], 2, "is a folder, expected a file");
 }
 

@@ -1,10 +1,13 @@
 //! Point files of other programs: every point exactly, or an error that says what is wrong and where.
 
+mod columns;
 mod damage;
+mod filters;
 mod grids;
 mod las;
 pub mod las_file;
 mod raw;
+mod salvage;
 mod sp;
 mod structure;
 mod structure_cif;

@@ -6,6 +6,7 @@ pub mod configgen;
 mod crs;
 pub mod dd4;
 mod messages;
+mod point_filters;
 pub mod progress;
 mod reduction;
 mod rows;
@@ -20,6 +21,7 @@ pub mod splinefit;
 #[cfg(feature = "view")]
 pub mod spview;
 pub mod tess3;
+mod text_flags;
 
 use std::ffi::{OsStr, OsString};
 use std::io::{BufRead, BufReader, IsTerminal, Read};
@@ -177,7 +179,8 @@ pub fn open_input(path: &Path) -> spmesh_core::error::Result<(Box<dyn Read + Sen
     Ok((plain(file).map_err(reading)?, name))
 }
 
-/// The files that `--lof` lists, one per line; empty lines do not count. `-` is stdin.
+/// The files that `--lof` lists, one per line; empty lines and lines that start with `#` do not
+/// count. `-` is stdin.
 ///
 /// # Errors
 /// If the list cannot be read, or is no list of at most [`LIST_FILES_MAX`] files; usage, if it lists no file.
@@ -207,7 +210,7 @@ fn listed(mut input: impl BufRead) -> spmesh_core::error::Result<Vec<PathBuf>> {
         if files.len() == LIST_FILES_MAX {
             return Err(at(format!("more than {LIST_FILES_MAX} files: divide the list")));
         }
-        if !path.is_empty() {
+        if !path.is_empty() && !path.starts_with(b"#") {
             files.push(OsStr::from_bytes(path).into());
         }
     }

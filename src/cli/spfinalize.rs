@@ -1,24 +1,24 @@
 //! `spfinalize`: flags.
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Parser;
 
 use super::compression::Compression;
 use super::crs::CrsFlag;
+use super::point_filters::PointFilters;
 use super::progress::Progress;
-use super::{Common, StatsFormat, notice, parse_box, parse_numbers, parse_size, peak_memory, read_list};
-use spmesh_core::error::ErrorKind;
-use spmesh_core::error::Result;
+use super::text_flags::TextFlags;
+use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, read_list};
+use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
-use spmesh_io::source::{AttributeChoice, Input, RawType, SourceOptions};
-use spmesh_model::bounds::Bounds;
+use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, RawType, SourceOptions};
 
 const TOOL: &str = "spfinalize";
 
@@ -28,6 +28,16 @@ Examples:
       spfinalize tile.laz | spdelaunay2d -o tile.spm
   Ground and water of many files as one input, keeping within 256 MB:
       spfinalize --lof tiles.txt --keep-class 2,9 --memory 256M -o ground.spm
+  The lowest first return of each square of half a metre, without synthetic points:
+      spfinalize --first-only --drop-synthetic --thin 0.5:lowest tile.laz -o ground.spm
+  One flight line, from its start to a GPS time, and how many points were dropped for which reason:
+      spfinalize --keep-point-source 12,12 --keep-gps-time ,278300 --stats tile.laz -o line.spm
+  A table whose comment names its columns, and the times along with the points:
+      spfinalize --columns GLON,GLAT,ZG --attributes TIME ILVIS2.TXT -o lvis.spm
+  What is left of a file whose transfer broke off:
+      spfinalize --salvage tile.laz -o part.spm
+  Files that another program lists:
+      find tiles -name '*.laz' | spfinalize --lof - -o tiles.spm
   A grid of 2^6 x 2^6 cells, points in their own order, with the counts of the run:
       spfinalize --level 6 --preserve --stats text tile.laz -o tile.spm
   Intensities, classes and times of the points along with them:
@@ -42,7 +52,7 @@ Examples:
       spfinalize --octree --raw f32le rank0.bin rank1.bin -o particles.spm
 
 Exit codes: 0 success, 1 I/O failure, 2 usage, 3 malformed input, 5 memory budget cannot be kept,
-6 input of another version of spmesh, 141 output closed by its reader.";
+6 input of another version of spmesh, 7 complete but for points of inputs that were cut off (--salvage), 141 output closed by its reader.";
 
 /// The message after a failed allocation.
 const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, or fewer --threads\n";
@@ -62,7 +72,8 @@ pub struct Flags {
     #[arg(value_name = "INPUT")]
     inputs: Vec<PathBuf>,
 
-    /// Read the files listed in this file, one per line
+    /// Read the files listed in this file, one per line; - is stdin. Empty lines and lines that start with #
+    /// do not count
     #[arg(long, value_name = "FILE")]
     lof: Option<PathBuf>,
 
@@ -70,6 +81,11 @@ pub struct Flags {
     /// u64, f32 or f64 with its byte order, as in f32le or f64be
     #[arg(long, value_name = "TYPE")]
     raw: Option<RawType>,
+
+    /// Of LAS, LAZ, text or raw files that were cut off, take the whole points before the cut (of LAZ, whole
+    /// chunks), and exit with 7. A last line of text without a line end counts as cut
+    #[arg(long)]
+    salvage: bool,
 
     /// File for the stream; - is stdout
     #[arg(short, long, value_name = "FILE", default_value = "-")]
@@ -114,31 +130,6 @@ pub struct Flags {
     #[arg(long, value_name = "NAMES|all", value_delimiter = ',')]
     attributes: Vec<String>,
 
-    /// Keep only points of these classes
-    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
-    keep_class: Vec<u8>,
-
-    /// Drop points of these classes
-    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
-    drop_class: Vec<u8>,
-
-    /// Keep only first returns
-    #[arg(long)]
-    first_only: bool,
-
-    /// Keep only last returns
-    #[arg(long)]
-    last_only: bool,
-
-    /// Keep only points that lie in this closed box: MINX,MINY,MINZ,MAXX,MAXY,MAXZ or, whatever their z,
-    /// MINX,MINY,MAXX,MAXY
-    #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
-    bounds: Option<Bounds>,
-
-    /// Drop and count points with a coordinate that is not finite, instead of failing
-    #[arg(long)]
-    skip_invalid: bool,
-
     /// Round coordinates to a grid of these steps
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>)]
     scale: Option<[f64; 3]>,
@@ -159,6 +150,12 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
+
+    #[command(flatten)]
+    points: PointFilters,
+
+    #[command(flatten)]
+    text: TextFlags,
 }
 
 /// When decoded points are kept for later passes.
@@ -189,6 +186,10 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let stats = spmesh_finalize::run(&input, &options, &mut watch, &mut output)?;
     drop(watch);
     output.commit()?;
+    let dropped = input.dropped();
+    if let Some(message) = withheld_notice(&dropped) {
+        notice(TOOL, &flags.common, &message);
+    }
     if stats.points == 0 {
         notice(TOOL, &flags.common, "no points: the input has none, or the filters keep none");
     }
@@ -198,9 +199,13 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         notice(TOOL, &flags.common, &message);
     }
     match flags.stats {
-        Some(StatsFormat::Text) => super::say(&stats_text(&stats)),
-        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats))),
+        Some(StatsFormat::Text) => super::say(&stats_text(&stats, &dropped)),
+        Some(StatsFormat::Json) => super::say(&format!("{}\n", stats_json(&stats, &dropped))),
         None => {}
+    }
+    let salvaged = input.salvaged();
+    if !salvaged.is_empty() {
+        anyhow::bail!(Error::new(ErrorKind::Salvaged, salvaged.join("; ")));
     }
     Ok(())
 }
@@ -217,6 +222,7 @@ impl Flags {
             leaves,
             order: if self.preserve { Order::Preserved } else { Order::Chunked },
             budget: Budget::of_process(self.memory, self.threads())?,
+            thin: self.points.thin,
             compress: self.compression.of_stream(),
             temp_dir: self.temp_dir.clone(),
             spooling: match self.spool {
@@ -236,15 +242,14 @@ impl Flags {
             crs: self.crs.system()?,
             reader: &SPFINALIZE,
             attributes: AttributeChoice::of_names(&self.attributes),
-            keep_class: self.keep_class.clone(),
-            drop_class: self.drop_class.clone(),
-            first_only: self.first_only,
-            last_only: self.last_only,
-            bounds: self.bounds,
-            skip_invalid: self.skip_invalid,
+            filters: self.points.filters(),
+            bounds: self.points.bounds,
+            skip_invalid: self.points.skip_invalid,
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             raw: self.raw,
+            text: self.text.options(),
+            salvage: self.salvage,
             temp_dir: self.temp_dir.clone(),
             threads: NonZeroUsize::new(self.threads()),
         })
@@ -254,6 +259,12 @@ impl Flags {
         let mut paths = self.inputs.clone();
         if let Some(list) = &self.lof {
             paths.extend(read_list(list)?);
+            let stdin = Path::new("-");
+            if list == stdin && paths.iter().any(|path| path == stdin) {
+                anyhow::bail!(Error::usage(
+                    "the list of files and one of the files cannot both be stdin (-)"
+                ));
+            }
         } else if paths.is_empty() {
             paths.push(PathBuf::from("-"));
         }
@@ -284,11 +295,26 @@ impl Observer for Watch<'_> {
     }
 }
 
-fn stats_text(stats: &Stats) -> String {
+fn withheld_notice(dropped: &Dropped) -> Option<String> {
+    let count = dropped.of(DropReason::Withheld);
+    let points = if count == 1 { "point" } else { "points" };
+    (count > 0).then(|| format!("{count} withheld {points} dropped; --keep-withheld keeps them"))
+}
+
+/// Numbers of dropped points by reason, in the order in which filters are applied.
+fn drops<'a>(stats: &Stats, dropped: &'a Dropped) -> impl Iterator<Item = (&'static str, u64)> + use<'a> {
+    let filters = DropReason::ALL.into_iter().map(|reason| (reason.name(), dropped.of(reason)));
+    filters.chain([("thin", stats.thinned)])
+}
+
+fn stats_text(stats: &Stats, dropped: &Dropped) -> String {
     let mut rows: Vec<(String, String)> = Vec::new();
     let mut row = |name: &str, value: String| rows.push((name.into(), value));
     row("points", stats.points.to_string());
     row("invalid points skipped", stats.invalid.to_string());
+    for (reason, count) in drops(stats, dropped).filter(|(_, count)| *count > 0) {
+        row(&format!("points dropped: {reason}"), count.to_string());
+    }
     for (pass, time) in &stats.passes {
         row(&format!("time of pass {pass}"), format!("{:.2} s", time.as_secs_f64()));
     }
@@ -307,14 +333,17 @@ fn stats_text(stats: &Stats) -> String {
     rows.iter().map(|(name, value)| format!("{name:<32}{value}\n")).collect()
 }
 
-fn stats_json(stats: &Stats) -> serde_json::Value {
+fn stats_json(stats: &Stats, dropped: &Dropped) -> serde_json::Value {
     let passes: Vec<_> = stats
         .passes
         .iter()
         .map(|(name, time)| serde_json::json!({"pass": name, "seconds": time.as_secs_f64()}))
         .collect();
+    let dropped: serde_json::Map<_, _> =
+        drops(stats, dropped).map(|(reason, count)| (reason.into(), count.into())).collect();
     serde_json::json!({
         "points": stats.points,
+        "dropped": dropped,
         "invalid_skipped": stats.invalid,
         "passes": passes,
         "peak_memory_bytes": peak_memory(),

@@ -273,6 +273,7 @@ fn given_points(flags: &Flags, mesh: &Header) -> Result<Option<PointSet>> {
     loop {
         reader.next_batch(&mut batch)?;
         if batch.is_empty() {
+            input.withheld_notice().iter().for_each(|text| notice("spinfo", &flags.common, text));
             return points.finish(&mesh.coordinates).map(Some);
         }
         points.extend(&batch);

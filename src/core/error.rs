@@ -23,6 +23,8 @@ pub enum ErrorKind {
     /// The input needs what this program does not know, because another version of
     /// spmesh made it (exit 6).
     Unsupported,
+    /// The result is complete but for points of inputs that were cut off (exit 7).
+    Salvaged,
     /// The reader of the output closed the pipe (exit 141, without a message).
     ClosedPipe,
 }
@@ -38,6 +40,7 @@ impl ErrorKind {
             ErrorKind::Audit => 4,
             ErrorKind::Memory => 5,
             ErrorKind::Unsupported => 6,
+            ErrorKind::Salvaged => 7,
             ErrorKind::ClosedPipe => 141,
         }
     }

@@ -84,14 +84,43 @@ fn an_offset_that_does_not_fit_is_moved_by_whole_steps() {
 
 #[test]
 fn files_without_a_common_grid_are_named() {
-    let offsets = [([0.01; 3], [0.0; 3]), ([0.01; 3], [0.005, 0.0, 0.0])];
     let expected = ["0.las", "1.las", "--scale", "--offset"];
+    let offsets = [([0.01; 3], [0.0; 3]), ([0.01; 3], [0.00512345678, 0.0, 0.0])];
     assert_fails(open(&offsets, &[[1, 1, 1]], &flat()), ErrorKind::Usage, &expected);
-    let scales = [([0.01; 3], [0.0; 3]), ([0.0100001; 3], [0.0; 3])];
+    let scales = [([0.01; 3], [0.0; 3]), ([0.01000000001; 3], [0.0; 3])];
     assert_fails(open(&scales, &[[1, 1, 1]], &flat()), ErrorKind::Usage, &expected);
     let options = SourceOptions { grid: Some(([0.001; 3], [0.0; 3])), ..flat() };
     let (_, found) = open(&offsets, &[[1, 1, 1]], &options).unwrap();
     assert_eq!(found, [[10.0, 10.0, 10.0], [15.0, 10.0, 10.0]]);
+}
+
+#[test]
+fn offsets_between_grid_points_make_a_finer_grid() {
+    let grids = [([0.01; 3], [0.0; 3]), ([0.01; 3], [0.005, 0.0, 0.0]), ([0.01; 3], [1e6, 4e6, 0.002])];
+    let (coordinates, found) = open(&grids, &[[1, 1, 1]], &flat()).unwrap();
+    assert_eq!(coordinates, Coordinates::I32 { scale: [0.005, 0.005, 0.002], offset: [0.0; 3] });
+    assert_eq!(found, [[2.0, 2.0, 5.0], [3.0, 2.0, 5.0], [200_000_002.0, 800_000_002.0, 6.0]]);
+    let solid = SourceOptions { dims: 3, ..SourceOptions::default() };
+    let (coordinates, _) = open(&grids, &[[1, 1, 1]], &solid).unwrap();
+    // 4,000,000 metres are too many millimetres for 32 bits: the grid has its origin in the middle.
+    assert_eq!(
+        coordinates,
+        Coordinates::I32 { scale: [0.001; 3], offset: [500_000.01, 2_000_000.01, 0.011] }
+    );
+}
+
+#[test]
+fn of_many_files_those_that_conflict_are_named() {
+    let far = [[2_000_000_000, 0, 0]];
+    // The third and the fourth lie too far apart for a common grid; the others go with each of them.
+    let near = ([0.01; 3], [0.0; 3]);
+    let grids = [near, near, ([0.01; 3], [-4e7, 0.0, 0.0]), ([0.01; 3], [4e7, 0.0, 0.0]), near];
+    let error = open(&grids, &far, &flat());
+    assert_fails(error, ErrorKind::Usage, &["2.las and ", "3.las have no common grid", "--scale"]);
+    // Each two of these have a common grid, the third with the first in steps of 0.0001.
+    let wide = [[2_000_000_000, 0, 0], [-2_000_000_000, 0, 0]];
+    let offsets = [0.0, 0.01, 0.02].map(|x| ([0.01; 3], [x, 0.0, 0.0]));
+    assert!(open(&offsets, &wide, &flat()).is_ok());
 }
 
 #[test]

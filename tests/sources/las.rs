@@ -4,7 +4,7 @@ use rustix::fs::Mode;
 use spmesh_core::error::ErrorKind;
 use spmesh_core::limits::{CRS_LEN_MAX, HEADER_BODY_MAX};
 use spmesh_crs::name as crs_name;
-use spmesh_io::source::{Input, SourceOptions};
+use spmesh_io::source::{Filters, Input, SourceOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -60,23 +60,24 @@ fn integers_stay_what_they_are_in_the_file() {
 
 #[test]
 fn filters_keep_classes_and_returns() {
-    let record = |x, class, number, of| Record { position: [x, 0, 0], class, number, of };
+    let record =
+        |x, class, number, of| Record { position: [x, 0, 0], class, number, of, ..Record::default() };
     // A return number of 0 means unknown, so neither first_only nor last_only may drop the point.
     let records = vec![record(0, 2, 1, 2), record(1, 2, 2, 2), record(2, 5, 1, 1), record(3, 9, 0, 0)];
     for format in [1, 6] {
         let las = LasFile { format, records: records.clone(), ..LasFile::of(&[]) };
         let folder = Folder::new();
         let path = folder.file("a.las", las.bytes());
-        let kept = |options: SourceOptions| -> Vec<i32> {
-            let found = points(std::slice::from_ref(&path), &SourceOptions { dims: 2, ..options }).unwrap();
+        let kept = |filters: Filters| -> Vec<i32> {
+            let found = points(std::slice::from_ref(&path), &SourceOptions { filters, ..flat() }).unwrap();
             found.iter().map(|point| point[0] as i32).collect()
         };
-        let default = SourceOptions::default;
+        let default = Filters::default;
         assert_eq!(kept(default()), [0, 1, 2, 3]);
-        assert_eq!(kept(SourceOptions { keep_class: vec![2, 9], ..default() }), [0, 1, 3]);
-        assert_eq!(kept(SourceOptions { drop_class: vec![2], ..default() }), [2, 3]);
-        assert_eq!(kept(SourceOptions { first_only: true, ..default() }), [0, 2, 3]);
-        assert_eq!(kept(SourceOptions { last_only: true, ..default() }), [1, 2, 3]);
+        assert_eq!(kept(Filters { keep_class: vec![2, 9], ..default() }), [0, 1, 3]);
+        assert_eq!(kept(Filters { drop_class: vec![2], ..default() }), [2, 3]);
+        assert_eq!(kept(Filters { first_only: true, ..default() }), [0, 2, 3]);
+        assert_eq!(kept(Filters { last_only: true, ..default() }), [1, 2, 3]);
     }
 }
 
@@ -99,7 +100,8 @@ fn bounds_are_closed_and_not_fooled_by_rounding() {
 fn classes_of_text_are_a_usage_error() {
     let folder = Folder::new();
     let path = folder.file("a.xyz", "1 2 3\n");
-    let options = SourceOptions { keep_class: vec![2], ..flat() };
+    let filters = Filters { keep_class: vec![2], ..Filters::default() };
+    let options = SourceOptions { filters, ..flat() };
     assert_fails(Input::open(&[path], &options), ErrorKind::Usage, &["a.xyz", "classes are unknown"]);
 }
 

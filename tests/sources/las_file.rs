@@ -1,5 +1,7 @@
 //! Writes small LAS files according to the standard, independently of the reader.
 
+use std::io::Cursor;
+
 /// The parts of a file that tests vary.
 #[derive(Clone)]
 pub struct LasFile {
@@ -18,12 +20,19 @@ pub struct Record {
     pub class: u8,
     pub number: u8,
     pub of: u8,
+    /// The bits of the class flags: synthetic, key point, withheld, overlap.
+    pub flags: u8,
+    pub intensity: u16,
+    pub user_data: u8,
+    pub point_source: u16,
+    pub gps_time: f64,
 }
 
 impl LasFile {
     /// Format 1 with a scale of 0.01; all points are single returns of class 2.
     pub fn of(positions: &[[i32; 3]]) -> LasFile {
-        let record = |&position: &[i32; 3]| Record { position, class: 2, number: 1, of: 1 };
+        let record =
+            |&position: &[i32; 3]| Record { position, class: 2, number: 1, of: 1, ..Record::default() };
         LasFile {
             scale: [0.01; 3],
             offset: [0.0; 3],
@@ -66,6 +75,38 @@ impl LasFile {
         bytes
     }
 
+    /// The same as LAZ, with a chunk table, in chunks of `chunk` points.
+    pub fn compressed(&self, chunk: u32) -> Vec<u8> {
+        let mut bytes = self.bytes();
+        let vlr = laz::LazVlrBuilder::default()
+            .with_point_format(self.format, 0)
+            .expect("a format")
+            .with_fixed_chunk_size(chunk)
+            .build();
+        let mut content = Cursor::new(Vec::new());
+        vlr.write_to(&mut content).expect("written to memory");
+        let content = content.into_inner();
+        let start = u32::from_le_bytes(bytes[96..100].try_into().expect("four bytes")) as usize;
+        let records = bytes.split_off(start);
+        bytes.extend([0, 0]);
+        bytes.extend(b"laszip encoded\0\0");
+        bytes.extend(22204u16.to_le_bytes());
+        bytes.extend((content.len() as u16).to_le_bytes());
+        bytes.extend([0; 32]);
+        bytes.extend(content);
+        let start = bytes.len() as u32;
+        bytes[96..100].copy_from_slice(&start.to_le_bytes());
+        bytes[100..104].copy_from_slice(&(self.projection.len() as u32 + 1).to_le_bytes());
+        bytes[104] |= 0x80;
+        let mut file = Cursor::new(bytes);
+        file.set_position(start.into());
+        let mut compressor = laz::LasZipCompressor::new(&mut file, vlr).expect("a compressor");
+        compressor.compress_many(&records).expect("compressed");
+        compressor.done().expect("the chunk table is written");
+        drop(compressor);
+        file.into_inner()
+    }
+
     fn vlrs(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         for (number, content) in &self.projection {
@@ -93,12 +134,14 @@ impl LasFile {
 impl Record {
     fn bytes(&self, is_extended: bool, record_len: usize) -> Vec<u8> {
         let mut bytes: Vec<u8> = self.position.iter().flat_map(|value| value.to_le_bytes()).collect();
-        bytes.extend([0, 0]);
+        bytes.extend(self.intensity.to_le_bytes());
         if is_extended {
-            bytes.extend([self.number | self.of << 4, 0, self.class]);
+            bytes.extend([self.number | self.of << 4, self.flags, self.class, self.user_data, 0, 0]);
         } else {
-            bytes.extend([self.number | self.of << 3, self.class]);
+            bytes.extend([self.number | self.of << 3, self.class | self.flags << 5, 0, self.user_data]);
         }
+        bytes.extend(self.point_source.to_le_bytes());
+        bytes.extend(self.gps_time.to_le_bytes());
         bytes.resize(record_len, 0);
         bytes
     }

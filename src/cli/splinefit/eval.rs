@@ -104,6 +104,7 @@ impl Flags {
         let [count, outside] = counts?;
         output.commit()?;
         drop(progress);
+        sites.withheld_notice().iter().for_each(|text| say(common, text));
         if outside > 0 {
             say(common, &format!("{outside} of {count} sites are outside of the domain"));
         }

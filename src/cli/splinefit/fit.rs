@@ -17,7 +17,7 @@ use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{
-    Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
+    Filters, Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
 };
 use spmesh_model::bounds::Bounds;
 use spmesh_splinefit::{Fitted, Options, Points, Smoothing};
@@ -226,8 +226,11 @@ impl Flags {
     fn points(&self, common: &Common) -> Result<Points> {
         let source = SourceOptions {
             reader: &SPLINEFIT,
-            keep_class: self.keep_class.clone(),
-            drop_class: self.drop_class.clone(),
+            filters: Filters {
+                keep_class: self.keep_class.clone(),
+                drop_class: self.drop_class.clone(),
+                ..Filters::default()
+            },
             bounds: self.bounds,
             threads: Some(self.threads.get()),
             crs: self.crs.system()?,

@@ -4,6 +4,7 @@
 //! exact predicates can work on the integers themselves. Files are brought to a common grid only where
 //! nothing is rounded.
 
+use super::decimal_grid::common_scales;
 use super::placement::{RATIO_TOLERANCE, whole_steps};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
@@ -13,6 +14,7 @@ use spmesh_stream::Coordinates;
 const MULTIPLIER_MAX: f64 = 10_000.0;
 
 /// A file that the common grid must serve.
+#[derive(Debug, Clone)]
 pub(super) struct Member {
     pub(super) name: String,
     pub(super) coordinates: Coordinates,
@@ -26,66 +28,76 @@ pub(super) struct Member {
 /// # Errors
 /// [`spmesh_core::error::ErrorKind::Usage`] if each member has a grid, but together they have none.
 pub(super) fn common(members: &[Member], dims: u8) -> Result<Coordinates> {
-    let mut grids = Vec::with_capacity(members.len());
-    for member in members {
-        match one_quantum(&member.coordinates, dims) {
-            Some(grid) => grids.push(grid),
-            None => return Ok(Coordinates::F64),
-        }
+    if members.is_empty() || members.iter().any(|member| one_quantum(&member.coordinates, dims).is_none()) {
+        return Ok(Coordinates::F64);
     }
-    let Some(&first) = grids.first() else { return Ok(Coordinates::F64) };
-    let mut scale = first.0;
-    for (member, grid) in members.iter().zip(&grids) {
-        // Geometric axes keep one scale, because all of them go through the same steps.
-        for (scale, other) in scale.iter_mut().zip(grid.0) {
-            *scale = common_measure(*scale, other).ok_or_else(|| conflict(&members[0], member))?;
-        }
-    }
-    let grid = Coordinates::I32 { scale, offset: first.1 };
-    for member in members {
-        if whole_steps(&member.coordinates, &grid).is_none() {
-            return Err(conflict(&members[0], member));
-        }
-    }
-    fit(members, scale, first.1)
+    joint(members, dims).ok_or_else(|| conflict(members, dims))
 }
 
-/// The grid with an offset for which the stated boxes fit 32 bits: the first file's offset where possible.
-fn fit(members: &[Member], scale: Point, offset: Point) -> Result<Coordinates> {
-    let grid = Coordinates::I32 { scale, offset };
-    if members.iter().all(|member| member.coordinates == grid) {
-        return Ok(grid);
+/// The common grid of members that each have a grid; `None` if there is none of 32 bits.
+fn joint(members: &[Member], dims: u8) -> Option<Coordinates> {
+    let candidates = [of_multiples(members, dims), of_decimals(members, dims)];
+    let grid = candidates
+        .into_iter()
+        .flatten()
+        .find(|grid| members.iter().all(|member| whole_steps(&member.coordinates, grid).is_some()));
+    fit(members, grid?)
+}
+
+/// A grid whose steps divide those of all members, with the first member's offset.
+fn of_multiples(members: &[Member], dims: u8) -> Option<Coordinates> {
+    let mut quanta = members.iter().map(|member| one_quantum(&member.coordinates, dims));
+    let (mut scale, offset) = quanta.next()??;
+    for quantum in quanta {
+        // Geometric axes keep one scale, because all of them go through the same steps.
+        for (scale, other) in scale.iter_mut().zip(quantum?.0) {
+            *scale = common_measure(*scale, other)?;
+        }
     }
-    let Some((union, widest)) = union(members, &grid) else { return Ok(grid) };
+    Some(Coordinates::I32 { scale, offset })
+}
+
+/// The coarsest grid that holds scales and offsets of all members, taken as decimals.
+fn of_decimals(members: &[Member], dims: u8) -> Option<Coordinates> {
+    let grid_of = |member: &Member| match member.coordinates {
+        Coordinates::I32 { scale, offset } => Some((scale, offset)),
+        Coordinates::F64 => None,
+    };
+    let grids: Vec<(Point, Point)> = members.iter().map(grid_of).collect::<Option<_>>()?;
+    let offset = grids.first()?.1;
+    common_scales(&grids, dims).map(|scale| Coordinates::I32 { scale, offset })
+}
+
+/// The grid with an offset for which the stated boxes fit 32 bits: its own where possible.
+fn fit(members: &[Member], grid: Coordinates) -> Option<Coordinates> {
+    let Coordinates::I32 { scale, .. } = grid else { return Some(grid) };
+    if members.iter().all(|member| member.coordinates == grid) {
+        return Some(grid);
+    }
+    let Some(union) = union(members, &grid) else { return Some(grid) };
     if fits(&union) {
-        return Ok(grid);
+        return Some(grid);
     }
     let centre: Point = std::array::from_fn(|axis| ((union.min[axis] + union.max[axis]) / 2.0).round());
     let moved = |corner: Point| std::array::from_fn(|axis| corner[axis] - centre[axis]);
     if fits(&Bounds { min: moved(union.min), max: moved(union.max) }) {
-        let offset = std::array::from_fn(|axis| offset[axis] + centre[axis] * scale[axis]);
-        return Ok(Coordinates::I32 { scale, offset });
+        return Some(Coordinates::I32 { scale, offset: grid.to_decimal(centre) });
     }
-    if members.len() == 1 { Ok(Coordinates::F64) } else { Err(conflict(&members[0], widest)) }
+    if members.len() == 1 { Some(Coordinates::F64) } else { None }
 }
 
-/// The union of the stated boxes in steps of `grid`, and the member that reaches farthest from the first.
-fn union<'m>(members: &'m [Member], grid: &Coordinates) -> Option<(Bounds, &'m Member)> {
-    let mut found: Option<(Bounds, &Member)> = None;
+/// The union of the stated boxes in steps of `grid`.
+fn union(members: &[Member], grid: &Coordinates) -> Option<Bounds> {
+    let mut corners = Vec::with_capacity(2 * members.len());
     for member in members {
         let (Some(bounds), Some((factor, shift))) = (member.bounds, whole_steps(&member.coordinates, grid))
         else {
             continue;
         };
         let place = |corner: Point| std::array::from_fn(|axis| corner[axis] * factor[axis] + shift[axis]);
-        let placed = Bounds { min: place(bounds.min), max: place(bounds.max) };
-        found = Some(match found {
-            None => (placed, member),
-            Some((union, _)) if !fits(&placed) => (union.union(placed), member),
-            Some((union, widest)) => (union.union(placed), widest),
-        });
+        corners.extend([place(bounds.min), place(bounds.max)]);
     }
-    found
+    Bounds::of_points(&corners)
 }
 
 fn fits(bounds: &Bounds) -> bool {
@@ -117,14 +129,30 @@ fn common_measure(a: f64, b: f64) -> Option<f64> {
     })
 }
 
-fn conflict(first: &Member, other: &Member) -> Error {
-    Error::usage(format!(
-        "{} and {} have no common grid of 32 bits ({}; {}): choose one with --scale and --offset",
-        first.name,
-        other.name,
-        describe(&first.coordinates),
-        describe(&other.coordinates)
-    ))
+/// The error of members without a common grid. It names the first member that does not fit those before it, and
+/// one of these with which it has no grid.
+fn conflict(members: &[Member], dims: u8) -> Error {
+    // If some members have no grid, more have none either.
+    let lens: Vec<usize> = (1..members.len()).collect();
+    let last = lens.partition_point(|&len| joint(&members[..len], dims).is_some());
+    let last = last.min(members.len() - 1);
+    let other = &members[last];
+    let pair = |first: &Member| [first.clone(), other.clone()];
+    let remedy = "choose one with --scale and --offset";
+    match members[..last].iter().find(|first| joint(&pair(first), dims).is_none()) {
+        Some(first) => Error::usage(format!(
+            "{} and {} have no common grid of 32 bits ({}; {}): {remedy}",
+            first.name,
+            other.name,
+            describe(&first.coordinates),
+            describe(&other.coordinates)
+        )),
+        None => Error::usage(format!(
+            "{} and the {last} files before it have no common grid of 32 bits, although it has one with each \
+             of them: {remedy}",
+            other.name
+        )),
+    }
 }
 
 fn describe(coordinates: &Coordinates) -> String {

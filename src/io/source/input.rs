@@ -2,34 +2,37 @@
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::crs;
+use super::cut::Cut;
 use super::describe::{File, describe};
+use super::filters::{DropReason, Dropped};
+use super::input_reader::InputReader;
 use super::las_header::LasHeader;
 use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
 use super::pass::{Pass, Stated};
-use super::placement::Placement;
 use super::point_arrays::{self, ArrayPass, PointArray};
 use super::reader::{Description, PointReader};
 use super::records::RecordPass;
 use super::row_plan::RowPlan;
-use super::text::Columns;
+use super::text_columns::{self, Columns};
 use super::{raw, spa, spb, stream, text, vtk};
 use crate::detect::{Format, read_head};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::bounds::{Bounds, Point};
-use spmesh_stream::Coordinates;
+use spmesh_model::bounds::Bounds;
 
 /// One file of an input.
 #[derive(Debug)]
-struct Source {
-    name: String,
-    stated: Stated,
+pub(super) struct Source {
+    pub(super) name: String,
+    pub(super) stated: Stated,
     origin: Origin,
     is_compressed: bool,
     content: Content,
+    /// What is left of the file, if it was cut off; of a text, that is known after a pass.
+    pub(super) cut: OnceLock<Cut>,
 }
 
 /// The format of a file, with the parts of its header that a pass needs.
@@ -56,6 +59,8 @@ pub struct Input {
     /// How the rows of each file are made.
     plans: Arc<[RowPlan]>,
     notices: Vec<String>,
+    /// What the first whole pass dropped.
+    passed: Arc<OnceLock<Dropped>>,
 }
 
 impl Input {
@@ -101,7 +106,7 @@ impl Input {
             sources.iter().map(|Source { name, stated, .. }| File { name, stated }).collect();
         let (description, plans) = describe(&files, options, &mut notices)?;
         let (sources, plans) = (sources.into(), plans.into());
-        Ok(Input { sources, options: options.clone(), description, plans, notices })
+        Ok(Input { sources, options: options.clone(), description, plans, notices, passed: Arc::default() })
     }
 
     /// What is known before the points are read.
@@ -114,6 +119,31 @@ impl Input {
     #[must_use]
     pub fn notices(&self) -> &[String] {
         &self.notices
+    }
+
+    /// How many points the filters dropped; none before the end of the first pass.
+    #[must_use]
+    pub fn dropped(&self) -> Dropped {
+        self.passed.get().copied().unwrap_or_default()
+    }
+
+    /// After a pass: for each file that was cut off, what is left of it.
+    #[must_use]
+    pub fn salvaged(&self) -> Vec<String> {
+        self.sources.iter().filter_map(|source| Some(source.cut.get()?.describe(&source.name))).collect()
+    }
+
+    /// After a pass: a notice if withheld points were dropped.
+    #[must_use]
+    pub fn withheld_notice(&self) -> Option<String> {
+        let count = self.dropped().of(DropReason::Withheld);
+        let points = if count == 1 { "point" } else { "points" };
+        (count > 0).then(|| {
+            format!(
+                "{}: {count} withheld {points} dropped (spfinalize --keep-withheld keeps them)",
+                self.name()
+            )
+        })
     }
 
     /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
@@ -148,17 +178,10 @@ impl Input {
     /// # Errors
     /// If the first file cannot be opened.
     pub fn read(&self) -> Result<Box<dyn PointReader>> {
-        let mut reader = InputReader {
-            sources: Arc::clone(&self.sources),
-            plans: Arc::clone(&self.plans),
-            rows: Vec::new(),
-            options: self.options.clone(),
-            coordinates: self.description.coordinates,
-            next: 0,
-            current: None,
-            invalid: 0,
-        };
-        reader.open_next()?;
+        let (sources, plans) = (Arc::clone(&self.sources), Arc::clone(&self.plans));
+        let coordinates = self.description.coordinates;
+        let passed = Arc::clone(&self.passed);
+        let reader = InputReader::new(sources, plans, self.options.clone(), coordinates, passed)?;
         Ok(Box::new(reader))
     }
 }
@@ -180,26 +203,40 @@ impl Source {
         let found = find_format(origin, &name, options, notices).map_err(|e| e.of_input(&name))?;
         let Found { origin, format, is_compressed } = found;
         let read = match format {
-            Some(format) => Content::read(&origin, &name, format, &mut own_notices),
+            Some(format) => {
+                Content::read(&origin, &name, format, options, &mut own_notices).map(|read| (read, None))
+            }
             None => Content::read_raw(&origin, options),
         };
-        let (content, mut stated) = read.map_err(|e| e.of_input(&name))?;
+        let ((content, mut stated), mut cut) = read.map_err(|e| e.of_input(&name))?;
+        if let Content::Las(header) = &content
+            && header.lost > 0
+        {
+            cut = Some(Cut { read: header.points, lost: Some(header.lost) });
+        }
         stated.crs = crs::fitting(stated.crs, &mut own_notices);
         notices.extend(own_notices.into_iter().map(|notice| format!("{name}: {notice}")));
-        let source = Source { name, origin, is_compressed, content, stated };
+        let cut = cut.map_or_else(OnceLock::new, OnceLock::from);
+        let source = Source { name, origin, is_compressed, content, stated, cut };
         source.check(options).map_err(|e| e.of_input(&source.name))?;
         Ok(source)
     }
 
     /// Rejects options that the file's format cannot serve.
     fn check(&self, options: &SourceOptions) -> Result<()> {
-        if !matches!(self.content, Content::Las(_)) {
-            if !options.keep_class.is_empty() || !options.drop_class.is_empty() {
-                return Err(Error::usage("classes are unknown here: only LAS and LAZ files have them"));
-            }
-            if options.first_only || options.last_only {
-                return Err(Error::usage("returns are unknown here: only LAS and LAZ files have them"));
-            }
+        if !matches!(self.content, Content::Las(_))
+            && let Some(what) = options.filters.needs()
+        {
+            return Err(Error::usage(format!("{what} unknown here: only LAS and LAZ files state them")));
+        }
+        if let Content::Las(header) = &self.content
+            && matches!(header.format, 0 | 2)
+            && options.filters.gps_time.is_some()
+        {
+            return Err(Error::usage(format!("points of format {} have no GPS time", header.format)));
+        }
+        if options.filters.z.is_some() && self.stated.has_z == Some(false) {
+            return Err(Error::usage("points have no third coordinate, the filter of z needs it"));
         }
         if options.dims == 3 && self.stated.has_z == Some(false) {
             return Err(Error::usage(
@@ -212,7 +249,7 @@ impl Source {
     }
 
     /// Starts a pass, with the rows of `plan`.
-    fn pass(&self, options: &SourceOptions, plan: RowPlan) -> Result<Box<dyn Pass>> {
+    pub(super) fn pass(&self, options: &SourceOptions, plan: RowPlan) -> Result<Box<dyn Pass>> {
         let origin = &self.origin;
         Ok(match &self.content {
             Content::Las(header) => Box::new(RecordPass::new(origin.view()?, header, options, plan)?),
@@ -223,7 +260,10 @@ impl Source {
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
-            Content::Text(columns) => Box::new(text::TextPass::new(origin.plain()?, columns.clone(), plan)),
+            Content::Text(columns) => {
+                let (file, columns) = (origin.plain()?, columns.clone());
+                Box::new(text::TextPass::new(file, columns, plan, options.salvage))
+            }
         })
     }
 }
@@ -264,11 +304,17 @@ impl Content {
         origin: &Origin,
         name: &str,
         format: Format,
+        options: &SourceOptions,
         notices: &mut Vec<String>,
     ) -> Result<(Content, Stated)> {
+        let layout = &options.text;
+        if layout.is_given() && !matches!(format, Format::Text | Format::OtherText) {
+            let what = "options of columns, separators and comments";
+            return Err(Error::usage(format!("{what} are for points as text: this is {}", format.name())));
+        }
         Ok(match format {
             Format::Las => {
-                let header = LasHeader::read(&origin.view()?, notices)?;
+                let header = LasHeader::read(&origin.view()?, options.salvage, notices)?;
                 let stated = Stated {
                     coordinates: header.coordinates,
                     has_z: Some(true),
@@ -291,7 +337,7 @@ impl Content {
             Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&origin.view()?, name)?]),
             Format::VtkXml => Content::of_arrays(vtk::read_xml(&origin.view()?)?),
             Format::Text | Format::OtherText => {
-                let (columns, stated) = text::state(origin.plain()?)?;
+                let (columns, stated) = text_columns::state(origin.plain()?, layout, notices)?;
                 (Content::Text(columns), stated)
             }
             other => return Err(Error::usage(format!("{} holds no points of space", other.name()))),
@@ -299,9 +345,10 @@ impl Content {
     }
 
     /// Numbers without a header.
-    fn read_raw(origin: &Origin, options: &SourceOptions) -> Result<(Content, Stated)> {
+    fn read_raw(origin: &Origin, options: &SourceOptions) -> Result<((Content, Stated), Option<Cut>)> {
         let kind = options.raw.ok_or_else(|| Error::usage("the type of raw numbers is not given"))?;
-        Ok(Content::of_arrays(vec![raw::open(&origin.view()?, kind)?]))
+        let (array, cut) = raw::open(&origin.view()?, kind, options.salvage)?;
+        Ok((Content::of_arrays(vec![array]), cut))
     }
 
     fn of_arrays(arrays: Vec<PointArray>) -> (Content, Stated) {
@@ -339,65 +386,4 @@ fn check_options(paths: &[PathBuf], options: &SourceOptions) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// One pass over all files.
-struct InputReader {
-    sources: Arc<[Source]>,
-    plans: Arc<[RowPlan]>,
-    /// Rows of the last batch.
-    rows: Vec<u8>,
-    options: SourceOptions,
-    coordinates: Coordinates,
-    /// Number of the file after the current one.
-    next: usize,
-    current: Option<(Box<dyn Pass>, Placement)>,
-    /// Points dropped in files before the current one.
-    invalid: u64,
-}
-
-impl InputReader {
-    /// Opens the next file, if there is one.
-    fn open_next(&mut self) -> Result<()> {
-        if let Some((_, placement)) = self.current.take() {
-            self.invalid += placement.invalid;
-        }
-        if let Some(source) = self.sources.get(self.next) {
-            let plan = self.plans[self.next].clone();
-            let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
-            let Stated { coordinates, .. } = source.stated;
-            let SourceOptions { bounds, skip_invalid, .. } = self.options;
-            self.current =
-                Some((pass, Placement::new(&coordinates, &self.coordinates, bounds, skip_invalid)));
-            self.next += 1;
-        }
-        Ok(())
-    }
-}
-
-impl PointReader for InputReader {
-    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
-        batch.clear();
-        self.rows.clear();
-        while let Some((pass, placement)) = &mut self.current {
-            let source = &self.sources[self.next - 1];
-            let goes_on = pass.next_batch(placement, batch, &mut self.rows);
-            let goes_on = goes_on.map_err(|e| e.of_input(&source.name))?;
-            if !batch.is_empty() {
-                return Ok(());
-            }
-            if !goes_on {
-                self.open_next()?;
-            }
-        }
-        Ok(())
-    }
-
-    fn rows(&self) -> &[u8] {
-        &self.rows
-    }
-
-    fn invalid(&self) -> u64 {
-        self.invalid + self.current.as_ref().map_or(0, |(_, placement)| placement.invalid)
-    }
 }

@@ -7,6 +7,7 @@ use laz::LazVlr;
 
 use super::crs;
 use super::las_fields;
+use super::laz_salvage;
 use super::laz_table;
 use super::origin::FileView;
 use super::row_plan::Offer;
@@ -46,6 +47,9 @@ pub(super) struct LasHeader {
     pub(super) bounds: Option<Bounds>,
     /// Coordinate reference system.
     pub(super) crs: Crs,
+    /// Whether the points before a cut are wanted, and how many are behind it.
+    pub(super) is_salvaged: bool,
+    pub(super) lost: u64,
     /// Fields of the records beside the coordinates.
     pub(super) offers: Vec<Offer>,
 }
@@ -60,11 +64,12 @@ pub(super) struct Laszip {
 }
 
 impl LasHeader {
-    /// Reads the header of `file`. Adds harmless oddities to `notices`.
+    /// Reads the header of `file`. Adds harmless oddities to `notices`. Of a file that was cut off, takes the
+    /// points before the cut if `is_salvaged`; the number of points is that of these.
     ///
     /// # Errors
     /// If the header is damaged, of another version, or states more points than the file can hold.
-    pub(super) fn read(file: &FileView, notices: &mut Vec<String>) -> Result<LasHeader> {
+    pub(super) fn read(file: &FileView, is_salvaged: bool, notices: &mut Vec<String>) -> Result<LasHeader> {
         let mut input = BufReader::new(file.range(0, file.len()));
         let raw = raw::Header::read_from(&mut input).map_err(|e| malformed("header at byte 0", &e))?;
         let version = (raw.version.major, raw.version.minor);
@@ -91,7 +96,7 @@ impl LasHeader {
         }
         let records = Records::read(file, &raw, notices)?;
         let coordinates = coordinates(&raw)?;
-        let header = LasHeader {
+        let mut header = LasHeader {
             format,
             record_len,
             points: count(&raw, format, notices),
@@ -100,6 +105,8 @@ impl LasHeader {
             laz: records.laz(is_compressed)?,
             coordinates,
             bounds: stored_bounds(&raw, &coordinates),
+            is_salvaged,
+            lost: 0,
             offers: las_fields::offers(format, record_len, least, records.extra_bytes.as_deref()),
             crs: crs::of_records(
                 records.wkt,
@@ -109,6 +116,12 @@ impl LasHeader {
             ),
         };
         header.check_len(file, notices)?;
+        if let Some(laszip) = header.laz.as_ref().filter(|_| is_salvaged) {
+            let whole = laz_salvage::whole_points(file, &header, laszip)?;
+            if whole < header.points {
+                header.keep_first(whole, header.truncated(file))?;
+            }
+        }
         Ok(header)
     }
 
@@ -116,7 +129,7 @@ impl LasHeader {
     /// room for more points than the header states.
     ///
     /// If the check passes, `points * record_len` fits u64.
-    fn check_len(&self, file: &FileView, notices: &mut Vec<String>) -> Result<()> {
+    fn check_len(&mut self, file: &FileView, notices: &mut Vec<String>) -> Result<()> {
         let record_len = self.record_len as u64;
         if self.points.checked_mul(record_len).is_none() {
             return Err(Error::malformed(format!(
@@ -142,7 +155,7 @@ impl LasHeader {
         let whole = room / record_len;
         if whole < self.points {
             let position = format!("record {whole} at byte {}", self.points_start + whole * record_len);
-            return Err(self.truncated(file).at(position));
+            return self.keep_first(whole, self.truncated(file).at(position));
         }
         if whole > self.points {
             notices.push(format!(
@@ -152,6 +165,19 @@ impl LasHeader {
                 whole - self.points
             ));
         }
+        Ok(())
+    }
+
+    /// Keeps the first points, if there are any and they are wanted.
+    ///
+    /// # Errors
+    /// `truncated`, if not.
+    fn keep_first(&mut self, points: u64, truncated: Error) -> Result<()> {
+        if !self.is_salvaged || points == 0 {
+            return Err(truncated);
+        }
+        self.lost = self.points - points;
+        self.points = points;
         Ok(())
     }
 

@@ -3,6 +3,8 @@
 
 use std::io::{BufReader, Seek};
 
+use laz::DecompressionSelection;
+
 use super::las_header::{LasHeader, Laszip};
 use super::laz_chunks::{Chunk, Chunks, PointsPerChunk};
 use super::laz_codec::{Codec, Decompressor, decompression};
@@ -74,15 +76,15 @@ pub(super) struct LazRecords {
 }
 
 impl LazRecords {
-    /// Records of which all fields are decompressed if `is_whole`, else coordinates, class and return numbers.
+    /// Records of which the fields of `selection` are decompressed.
     pub(super) fn new(
         file: FileView,
         header: &LasHeader,
         laszip: &Laszip,
         threads: usize,
-        is_whole: bool,
+        selection: DecompressionSelection,
     ) -> Result<LazRecords> {
-        let codec = Codec::new(laszip.vlr.clone(), header, is_whole)?;
+        let codec = Codec::new(laszip.vlr.clone(), header, selection)?;
         let (chunks, streamed) = match Chunks::find(&file, header, laszip)? {
             Chunks::Table(chunks) => (chunks, None),
             Chunks::Unknown { start, points_per_chunk } => {
@@ -174,7 +176,7 @@ impl RecordReader for LazRecords {
 
 /// Records that are decompressed as they are read: from one chunk, or from consecutive chunks without a
 /// table.
-struct Streamed {
+pub(super) struct Streamed {
     decompressor: Decompressor<BufReader<FileView>>,
     /// Records left to return, and records left in the current chunk.
     left: u64,
@@ -186,7 +188,12 @@ struct Streamed {
 
 impl Streamed {
     /// Without `per_chunk`, the records are one chunk.
-    fn new(file: &FileView, codec: &Codec, chunk: &Chunk, per_chunk: Option<PointsPerChunk>) -> Result<Self> {
+    pub(super) fn new(
+        file: &FileView,
+        codec: &Codec,
+        chunk: &Chunk,
+        per_chunk: Option<PointsPerChunk>,
+    ) -> Result<Self> {
         let input = BufReader::new(file.range(chunk.start, chunk.start + chunk.len));
         Ok(Streamed {
             decompressor: codec.decompressor(input)?,
@@ -197,8 +204,18 @@ impl Streamed {
         })
     }
 
+    /// Whether a chunk ends with the last records returned.
+    pub(super) fn is_between_chunks(&self) -> bool {
+        self.left_in_chunk == 0
+    }
+
     /// Replaces `records` with the next ones and returns their number.
-    fn next_records(&mut self, file: &FileView, codec: &Codec, records: &mut Vec<u8>) -> Result<u64> {
+    pub(super) fn next_records(
+        &mut self,
+        file: &FileView,
+        codec: &Codec,
+        records: &mut Vec<u8>,
+    ) -> Result<u64> {
         records.clear();
         if self.left == 0 {
             return Ok(0);

@@ -62,7 +62,12 @@ impl Chunks {
             return Ok(Chunks::Unknown { start: header.points_start, points_per_chunk });
         }
         let start = header.points_start + TABLE_POSITION_LEN;
-        let Some(table) = table_position(file, header.points_start)? else {
+        let table = table_position(file, header.points_start)?;
+        let found = table.map(|table| {
+            read_table(file, header, laszip, table).map_err(|e| e.at(format!("chunk table at byte {table}")))
+        });
+        // A table that was cut off tells nothing.
+        let Some(chunks) = found.filter(|found| found.is_ok() || !header.is_salvaged) else {
             let points_per_chunk = match laszip.vlr.uses_variable_size_chunks() {
                 false => PointsPerChunk::Fixed(u64::from(laszip.vlr.chunk_size())),
                 true if header.format >= 6 => PointsPerChunk::Stated,
@@ -75,9 +80,7 @@ impl Chunks {
             };
             return Ok(Chunks::Unknown { start, points_per_chunk });
         };
-        read_table(file, header, laszip, table)
-            .map(Chunks::Table)
-            .map_err(|e| e.at(format!("chunk table at byte {table}")))
+        chunks.map(Chunks::Table)
     }
 }
 

@@ -25,13 +25,13 @@ pub(super) struct Codec {
     pub(super) record_len: usize,
     /// Number of layers in a chunk, each with its length in the chunk's head; 0 if records are not layered.
     pub(super) layers: usize,
-    /// Whether all fields are decompressed.
-    is_whole: bool,
+    /// The fields to decompress.
+    selection: DecompressionSelection,
 }
 
 impl Codec {
-    /// Decompresses all fields if `is_whole`, else coordinates, class and return numbers.
-    pub(super) fn new(vlr: LazVlr, header: &LasHeader, is_whole: bool) -> Result<Codec> {
+    /// Decompresses the fields of `selection`. Records without layers are always decompressed as a whole.
+    pub(super) fn new(vlr: LazVlr, header: &LasHeader, selection: DecompressionSelection) -> Result<Codec> {
         let items = vlr.items();
         let len: usize = items.iter().map(|item| usize::from(item.size())).sum();
         let first = items.first().map(|item| item.item_type());
@@ -52,7 +52,7 @@ impl Codec {
         });
         let is_layered = matches!(items[0].version(), 3 | 4);
         let layers = if is_layered { layers.sum() } else { 0 };
-        let codec = Codec { vlr, record_len: header.record_len, layers, is_whole };
+        let codec = Codec { vlr, record_len: header.record_len, layers, selection };
         let decompressor = codec.decompressor(Cursor::new(&[][..]))?;
         if decompressor.record_size() != header.record_len {
             return Err(Error::malformed(format!(
@@ -77,16 +77,13 @@ impl Codec {
         Ok(decompressor)
     }
 
-    /// Prepares a decompressor for the start of a chunk. Unless attributes are asked for, it decompresses only
-    /// the layers with coordinates, class and return numbers (which share a layer with x and y): the other
-    /// layers are most of the work.
+    /// Prepares a decompressor for the start of a chunk. It decompresses only the layers of the selected fields:
+    /// mostly, the other layers are most of the work.
     pub(super) fn prepare<R>(&self, decompressor: &mut dyn RecordDecompressor<R>) -> Result<()> {
         decompressor
             .set_fields_from(self.vlr.items())
             .map_err(|e| Error::malformed(format!("laszip record: {e}")))?;
-        let places =
-            || DecompressionSelection::xy_returns_channel().decompress_z().decompress_classification();
-        decompressor.set_selection(if self.is_whole { DecompressionSelection::all() } else { places() });
+        decompressor.set_selection(self.selection);
         Ok(())
     }
 

@@ -3,9 +3,11 @@
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+use super::filters::{DropReason, Filters};
 use super::origin::Admitted;
 use super::raw_type::RawType;
 use super::row_plan::AttributeChoice;
+use super::text_options::TextOptions;
 use crate::detect::Reader;
 use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::Bounds;
@@ -18,18 +20,14 @@ pub struct SourceOptions {
     pub reader: &'static Reader,
     /// What points carry beside their coordinates.
     pub attributes: AttributeChoice,
-    /// Keep only points of these classes, if any are given.
-    pub keep_class: Vec<u8>,
-    /// Drop points of these classes.
-    pub drop_class: Vec<u8>,
-    /// Keep only first returns.
-    pub first_only: bool,
-    /// Keep only last returns.
-    pub last_only: bool,
+    /// Keep only points that pass these filters.
+    pub filters: Filters,
     /// Keep only points that lie in this closed box of the world; sides may be infinite.
     pub bounds: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
     pub skip_invalid: bool,
+    /// Take the whole points before the cut of LAS, LAZ, text and raw files that were cut off.
+    pub salvage: bool,
     /// Dimensions of the geometry: 2 (z is an elevation) or 3.
     pub dims: u8,
     /// Grid for integer coordinates: scale and offset per axis, instead of the files' own.
@@ -39,6 +37,8 @@ pub struct SourceOptions {
     pub raw: Option<RawType>,
     /// The coordinate reference system, whatever the files state.
     pub crs: Option<Crs>,
+    /// How lines of text are laid out.
+    pub text: TextOptions,
     /// Folder of spools; the system's folder for temporary files if `None`.
     pub temp_dir: Option<PathBuf>,
     /// Threads that decompress points; one per core if `None`.
@@ -46,6 +46,13 @@ pub struct SourceOptions {
 }
 
 impl SourceOptions {
+    /// The parts of the world that points must lie in, with the reason for which others are dropped.
+    pub(super) fn windows(&self) -> Vec<(DropReason, Bounds)> {
+        let bounds = self.bounds.map(|bounds| (DropReason::Bounds, bounds));
+        let z = self.filters.z.map(|z| (DropReason::Z, z.of_z()));
+        bounds.into_iter().chain(z).collect()
+    }
+
     /// The folder of spools.
     pub(super) fn temp_dir(&self) -> PathBuf {
         self.temp_dir.clone().unwrap_or_else(std::env::temp_dir)

@@ -1,5 +1,6 @@
 //! The interface of all formats of an input: what a file states, and a pass over its points.
 
+use super::cut::Cut;
 use super::placement::Placement;
 use super::row_plan::Offer;
 use spmesh_core::error::Result;
@@ -19,6 +20,11 @@ pub(super) trait Pass: Send {
         batch: &mut Vec<Point>,
         rows: &mut Vec<u8>,
     ) -> Result<bool>;
+
+    /// At the end: what is left of the file, if the pass found that it was cut off.
+    fn cut(&self) -> Option<Cut> {
+        None
+    }
 }
 
 /// What a file states about itself.

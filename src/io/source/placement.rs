@@ -1,5 +1,6 @@
 //! Moves points from the coordinates of their file to those of the whole input, and drops points by filters.
 
+use super::filters::{DropReason, Dropped};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Coordinates;
@@ -12,17 +13,19 @@ pub(super) const RATIO_TOLERANCE: f64 = 1.0 / (1u64 << 40) as f64;
 /// Greatest factor between steps: a stored integer times the factor, plus a shift, is exact in f64.
 const FACTOR_MAX: f64 = (1u64 << 21) as f64;
 
-/// Greatest deviation of an offset from a multiple of the quantum, and of a coordinate from a side of the
-/// bounds filter, in quanta.
+/// Greatest deviation of an offset from a multiple of the quantum, and of a coordinate from a side of a
+/// window, in quanta.
 const QUANTA_TOLERANCE: f64 = 1e-6;
 
 /// How the points of one file become points of the input.
 #[derive(Debug)]
 pub(super) struct Placement {
     step: Step,
-    /// The bounds filter in the file's stored coordinates.
-    bounds: Option<Bounds>,
+    /// Boxes that keep points, in the file's stored coordinates, and why they drop others.
+    windows: Vec<(DropReason, Bounds)>,
     skip_invalid: bool,
+    /// Points that filters dropped so far.
+    pub(super) dropped: Dropped,
     /// Points dropped so far because a coordinate is not finite.
     pub(super) invalid: u64,
 }
@@ -49,7 +52,7 @@ impl Placement {
     pub(super) fn new(
         from: &Coordinates,
         to: &Coordinates,
-        bounds: Option<Bounds>,
+        windows: &[(DropReason, Bounds)],
         skip_invalid: bool,
     ) -> Self {
         let step = if from == to {
@@ -61,13 +64,14 @@ impl Placement {
         } else {
             Step::ToGrid { from: *from, to: *to }
         };
-        let bounds = bounds.map(|bounds| stored_bounds(from, bounds));
-        Placement { step, bounds, skip_invalid, invalid: 0 }
+        let stored = |&(reason, bounds): &(_, Bounds)| (reason, stored_bounds(from, bounds));
+        let windows = windows.iter().map(stored).collect();
+        Placement { step, windows, skip_invalid, dropped: Dropped::default(), invalid: 0 }
     }
 
     /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
     pub(super) fn keeps_integers(&self) -> bool {
-        matches!(self.step, Step::Same) && self.bounds.is_none()
+        matches!(self.step, Step::Same) && self.windows.is_empty()
     }
 
     /// Appends `stored`, a point in the coordinates of its file, to `batch`, unless filters drop it. Returns
@@ -78,10 +82,10 @@ impl Placement {
     /// caller adds the record's position.
     #[inline]
     pub(super) fn put(&mut self, stored: Point, batch: &mut Vec<Point>) -> Result<bool> {
-        if let Some(bounds) = &self.bounds
-            && !bounds.contains(stored)
+        if let Some((reason, _)) = self.windows.iter().find(|(_, bounds)| !bounds.contains(stored))
             && stored.iter().all(|value| value.is_finite())
         {
+            self.dropped.count(*reason);
             return Ok(false);
         }
         let placed = match &self.step {
@@ -143,7 +147,7 @@ fn whole(value: f64, tolerance: f64) -> Option<f64> {
     ((value - rounded).abs() <= tolerance && rounded.abs() < 2f64.powi(52)).then_some(rounded)
 }
 
-/// The bounds filter in stored coordinates. A grid point meant to lie on a side is inside, however the
+/// A window in stored coordinates. A grid point meant to lie on a side is inside, however the
 /// product of scale and integer is rounded.
 fn stored_bounds(from: &Coordinates, bounds: Bounds) -> Bounds {
     let Coordinates::I32 { scale, offset } = from else { return bounds };

@@ -59,6 +59,6 @@ impl EventSource for PointEvents {
     }
 
     fn notices(&self) -> Vec<String> {
-        self.input.notices().to_vec()
+        self.input.notices().iter().cloned().chain(self.input.withheld_notice()).collect()
     }
 }

@@ -1,11 +1,14 @@
 //! Points from the records of LAS files, compressed or not.
 
+use laz::DecompressionSelection;
+
 use super::las_header::LasHeader;
 use super::laz::LazRecords;
 use super::options::SourceOptions;
 use super::origin::FileView;
 use super::pass::{BATCH_POINTS, Pass};
 use super::placement::Placement;
+use super::record_filter::RecordFilter;
 use super::record_reader::RecordReader;
 use super::row_plan::RowPlan;
 use spmesh_core::error::{Error, Result};
@@ -13,47 +16,6 @@ use spmesh_model::bounds::Point;
 
 /// Bytes of records read at once from an uncompressed file.
 const READ_LEN: usize = 1 << 18;
-
-/// Which records to keep.
-#[derive(Debug, Clone)]
-pub(super) struct RecordFilter {
-    keep: [bool; 256],
-    first_only: bool,
-    last_only: bool,
-    is_extended: bool,
-}
-
-impl RecordFilter {
-    pub(super) fn new(options: &SourceOptions, format: u8) -> Self {
-        let mut keep = [options.keep_class.is_empty(); 256];
-        options.keep_class.iter().for_each(|&class| keep[usize::from(class)] = true);
-        options.drop_class.iter().for_each(|&class| keep[usize::from(class)] = false);
-        RecordFilter {
-            keep,
-            first_only: options.first_only,
-            last_only: options.last_only,
-            is_extended: format >= 6,
-        }
-    }
-
-    /// Whether the filter keeps every record.
-    fn wants_all(&self) -> bool {
-        !self.first_only && !self.last_only && self.keep.iter().all(|&keep| keep)
-    }
-
-    /// Whether to keep `record`. Formats 0 to 5 have 5 bits for the class and 3 for each return number,
-    /// formats 6 to 10 have 8 and 4. A return number of 0 means none: it counts as both first and last.
-    fn wants(&self, record: &[u8]) -> bool {
-        let (class, number, returns) = if self.is_extended {
-            (record[16], record[14] & 15, record[14] >> 4)
-        } else {
-            (record[15] & 31, record[14] & 7, (record[14] >> 3) & 7)
-        };
-        self.keep[usize::from(class)]
-            && (!self.first_only || number <= 1)
-            && (!self.last_only || number == 0 || number >= returns)
-    }
-}
 
 /// One pass over the points of a LAS file.
 pub(super) struct RecordPass {
@@ -74,16 +36,18 @@ impl RecordPass {
         options: &SourceOptions,
         plan: RowPlan,
     ) -> Result<Self> {
+        let filter = RecordFilter::new(&options.filters, header.format);
         let reader: Box<dyn RecordReader> = match &header.laz {
             Some(laszip) => {
-                let is_whole = !plan.is_empty();
-                Box::new(LazRecords::new(file, header, laszip, options.threads(), is_whole)?)
+                let selection =
+                    if plan.is_empty() { filter.selection() } else { DecompressionSelection::all() };
+                Box::new(LazRecords::new(file, header, laszip, options.threads(), selection)?)
             }
             None => Box::new(PlainRecords::new(file, header)),
         };
         Ok(RecordPass {
             reader,
-            filter: RecordFilter::new(options, header.format),
+            filter,
             plan,
             record_len: header.record_len,
             records: Vec::new(),
@@ -109,20 +73,27 @@ impl Pass for RecordPass {
             }
         }
         let end = self.records.len().min(self.used + BATCH_POINTS * self.record_len);
-        if self.filter.wants_all() && placement.keeps_integers() {
+        if self.filter.keeps_others() && placement.keeps_integers() {
             let records = || self.records[self.used..end].chunks_exact(self.record_len);
-            batch.extend(records().map(raw_point));
-            if !self.plan.is_empty() {
-                records().for_each(|record| self.plan.append(record, rows));
+            let (before, mut flags) = (batch.len(), 0);
+            batch.extend(records().map(|record| {
+                flags |= RecordFilter::flags(record);
+                raw_point(record)
+            }));
+            if !self.filter.is_withheld(flags) {
+                if !self.plan.is_empty() {
+                    records().for_each(|record| self.plan.append(record, rows));
+                }
+                self.used = end;
+                return Ok(true);
             }
-            self.used = end;
-            return Ok(true);
+            batch.truncate(before);
         }
         let first = self.before + (self.used / self.record_len) as u64;
         for (record, index) in self.records[self.used..end].chunks_exact(self.record_len).zip(first..) {
-            if self.filter.wants(record)
-                && placement.put(raw_point(record), batch).map_err(|e| e.at(format!("record {index}")))?
-            {
+            if let Some(reason) = self.filter.reason(record) {
+                placement.dropped.count(reason);
+            } else if placement.put(raw_point(record), batch).map_err(|e| e.at(format!("record {index}")))? {
                 self.plan.append(record, rows);
             }
         }

@@ -1,155 +1,20 @@
 //! Points as lines of text: xyz, csv and similar formats.
 
+use super::cut::Cut;
 use super::lines::{Lines, number, quote};
 use super::origin::Bytes;
-use super::pass::{BATCH_POINTS, Pass, Stated};
+use super::pass::{BATCH_POINTS, Pass};
 use super::placement::Placement;
-use super::row_plan::{RowPlan, offers_of};
+use super::row_plan::RowPlan;
+use super::text_columns::Columns;
 use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
 use spmesh_model::bounds::Point;
-use spmesh_stream::{Coordinates, Crs};
 
 /// The separator of a line's fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Delimiter {
     WhiteSpace,
     Byte(u8),
-}
-
-/// The columns that hold the coordinates.
-#[derive(Debug, Clone)]
-pub(super) struct Columns {
-    delimiter: Delimiter,
-    /// Columns of x, y and, if points have one, z.
-    axes: Vec<usize>,
-    /// The other columns, in their order: each is a number of the record of a line.
-    others: Vec<usize>,
-    /// Line of the column names, if there is one.
-    names_line: Option<u64>,
-    /// Whether the first line of points has only two columns, so that a third column in another line is an
-    /// error.
-    only_two: bool,
-}
-
-/// A line without numbers, before all points.
-struct Names {
-    line: u64,
-    delimiter: Delimiter,
-    fields: Vec<Vec<u8>>,
-}
-
-/// Finds the columns from the first line that is neither blank nor a comment and, if that holds the names of
-/// the columns, from the next one. The pass checks the other lines.
-///
-/// # Errors
-/// If the first line is neither a point nor names of columns, or if the names do not tell which columns are x
-/// and y.
-pub(super) fn state(file: Bytes) -> Result<(Columns, Stated)> {
-    let mut lines = Lines::new(file, "");
-    let mut names: Option<Names> = None;
-    let (mut columns, mut named) = (None, None);
-    while let Some(line) = lines.next_trimmed()? {
-        let line = without_comment(line);
-        if line.is_empty() {
-            continue;
-        }
-        let delimiter = delimiter_of(line);
-        let fields: Vec<&[u8]> = fields(line, delimiter).collect();
-        if names.is_some() || fields.iter().any(|field| number(field).is_some()) {
-            let found = columns_of(delimiter, &fields, names.as_ref())?;
-            named = attributes_of(&found, names.as_ref()).ok();
-            columns = Some(found);
-            break;
-        }
-        let fields = fields.into_iter().map(<[u8]>::to_vec).collect();
-        names = Some(Names { line: lines.number(), delimiter, fields });
-    }
-    let has_z = columns.as_ref().map(|columns| columns.axes.len() == 3);
-    let columns = match (columns, names) {
-        (Some(columns), _) => columns,
-        (None, Some(names)) if named_axes(&names.fields).is_none() => {
-            return Err(no_text_of_points(names.line));
-        }
-        // Names without points below them offer their columns all the same.
-        (None, Some(names)) => {
-            let found = columns_of(names.delimiter, &[], Some(&names))?;
-            named = attributes_of(&found, Some(&names)).ok();
-            found
-        }
-        (None, None) => Columns {
-            delimiter: Delimiter::WhiteSpace,
-            axes: vec![0, 1],
-            others: Vec::new(),
-            names_line: Some(0),
-            only_two: false,
-        },
-    };
-    let offers = named.iter().flat_map(offers_of).collect();
-    let (coordinates, crs) = (Coordinates::F64, Crs::Unknown);
-    let stated = Stated { coordinates, has_z, crs, bounds: None, points: None, offers };
-    Ok((columns, stated))
-}
-
-/// The columns, from the first line of points and any names above it.
-fn columns_of(delimiter: Delimiter, fields: &[&[u8]], names: Option<&Names>) -> Result<Columns> {
-    let axes: Vec<usize> = (0..fields.len().clamp(2, 3)).collect();
-    let others = (axes.len()..fields.len()).collect();
-    let only_two = fields.len() == 2;
-    let Some(names) = names else {
-        return Ok(Columns { delimiter, axes, others, names_line: None, only_two });
-    };
-    let names_line = Some(names.line);
-    if let Some(axes) = named_axes(&names.fields) {
-        let others = (0..names.fields.len()).filter(|column| !axes.contains(column)).collect();
-        return Ok(Columns { delimiter: names.delimiter, axes, others, names_line, only_two: false });
-    }
-    let has_number = fields.iter().any(|field| number(field).is_some());
-    if names.fields.len() != fields.len() || !has_number {
-        return Err(no_text_of_points(names.line));
-    }
-    if fields.len() > 3 {
-        let reason = "cannot tell which columns are the coordinates: call them x, y and z";
-        return Err(Error::malformed(reason).at(format!("line {}", names.line)));
-    }
-    Ok(Columns { delimiter, axes, others, names_line, only_two })
-}
-
-/// The columns beside the coordinates as attributes: by their names, or by their numbers from 1 on.
-///
-/// # Errors
-/// If they cannot be attributes: two have one name, or they are too many.
-fn attributes_of(columns: &Columns, names: Option<&Names>) -> std::result::Result<Attributes, String> {
-    let name_of = |&column: &usize| {
-        let name = names.and_then(|names| names.fields.get(column)).filter(|name| !name.is_empty());
-        name.map_or(format!("column{}", column + 1), |name| String::from_utf8_lossy(name).into_owned())
-    };
-    let attribute = |column: &usize| Attribute {
-        unknown: Some(f64::NAN.to_le_bytes().to_vec()),
-        ..Attribute::new(name_of(column), NumberType::F64)
-    };
-    Attributes::new(columns.others.iter().map(attribute).collect())
-}
-
-fn no_text_of_points(line: u64) -> Error {
-    let reason = "expected a point, or the names of the columns: a point is a line of numbers separated by \
-                  blanks, commas or semicolons";
-    Error::malformed(reason).at(format!("line {line}"))
-}
-
-/// The columns named x, y and z, or by other usual names; `None` without x and y.
-fn named_axes<Name: AsRef<[u8]>>(names: &[Name]) -> Option<Vec<usize>> {
-    let column = |usual: &[&str]| {
-        let is_usual =
-            |name: &Name| usual.iter().any(|usual| name.as_ref().eq_ignore_ascii_case(usual.as_bytes()));
-        names.iter().position(is_usual)
-    };
-    let mut axes = vec![
-        column(&["x", "easting", "lon", "long", "longitude"])?,
-        column(&["y", "northing", "lat", "latitude"])?,
-    ];
-    axes.extend(column(&["z", "elevation", "height", "altitude"]));
-    Some(axes)
 }
 
 /// The line up to a `#`, or nothing if it starts with `//`.
@@ -190,11 +55,17 @@ pub(super) struct TextPass {
     columns: Columns,
     plan: RowPlan,
     record: Vec<u8>,
+    /// Whether a last line without a line end is left out.
+    is_salvaged: bool,
+    /// Points so far, and what is left if there is such a line.
+    read: u64,
+    cut: Option<Cut>,
 }
 
 impl TextPass {
-    pub(super) fn new(file: Bytes, columns: Columns, plan: RowPlan) -> Self {
-        TextPass { lines: Lines::new(file, ""), columns, plan, record: Vec::new() }
+    pub(super) fn new(file: Bytes, columns: Columns, plan: RowPlan, is_salvaged: bool) -> Self {
+        let lines = Lines::new(file, "");
+        TextPass { lines, columns, plan, record: Vec::new(), is_salvaged, read: 0, cut: None }
     }
 }
 
@@ -205,17 +76,27 @@ impl Pass for TextPass {
         batch: &mut Vec<Point>,
         rows: &mut Vec<u8>,
     ) -> Result<bool> {
+        if self.lines.number() == 0 {
+            self.columns.layout.skip(&mut self.lines)?;
+        }
         for count in 0..BATCH_POINTS {
-            let Some(line) = self.lines.next_trimmed()? else { return Ok(count > 0) };
-            let line = without_comment(line);
+            if self.lines.next_trimmed()?.is_none() {
+                return Ok(count > 0);
+            }
+            let line = self.columns.layout.content(self.lines.current().trim_ascii());
             if line.is_empty() {
                 continue;
+            }
+            if self.is_salvaged && self.lines.unended().is_some() {
+                self.cut = Some(Cut { read: self.read, lost: None });
+                return Ok(count > 0);
             }
             let point = match parse(line, &self.columns) {
                 Ok(point) => point,
                 Err(_) if self.columns.names_line == Some(self.lines.number()) => continue,
                 Err(error) => return Err(error.at(self.lines.position())),
             };
+            self.read += 1;
             if !self.plan.is_empty() {
                 let read = read_others(line, &self.columns, &self.plan, &mut self.record);
                 read.map_err(|e| e.at(self.lines.position()))?;
@@ -225,6 +106,10 @@ impl Pass for TextPass {
             }
         }
         Ok(true)
+    }
+
+    fn cut(&self) -> Option<Cut> {
+        self.cut
     }
 }
 

@@ -62,6 +62,7 @@ fn read_points(input: &Input, done: &mut impl FnMut(u64)) -> Result<Sites> {
     loop {
         reader.next_batch(&mut batch)?;
         if batch.is_empty() {
+            sites.notices.extend(input.withheld_notice());
             return Ok(sites);
         }
         sites.push(&batch)?;

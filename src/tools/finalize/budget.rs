@@ -81,6 +81,20 @@ impl Budget {
         })
     }
 
+    /// What is left beside `bytes` that note which points thinning keeps.
+    ///
+    /// # Errors
+    /// [`ErrorKind::Memory`] if it is too little.
+    pub(super) fn beside_winners(self, bytes: u64) -> Result<Budget> {
+        Budget::of_engine(self.bytes.saturating_sub(bytes)).map_err(|_| {
+            let message = format!("thinning: noting the kept points takes {} MiB", bytes.div_ceil(1 << 20));
+            Error::new(
+                ErrorKind::Memory,
+                format!("{message}: raise --memory, or give larger cells to --thin"),
+            )
+        })
+    }
+
     /// The whole budget, in bytes.
     #[must_use]
     pub fn bytes(&self) -> u64 {

@@ -8,6 +8,8 @@
 //! in chunks; then they wait in pages of memory (`pages`) within the budget, and beyond it in a temporary
 //! file (`spill`).
 //!
+//! If points are to be thinned, a pass before these finds which ones are kept (`thin`).
+//!
 //! The result does not depend on how many points wait in memory or on disk. Counters have 64 bits.
 
 mod batch;
@@ -29,6 +31,7 @@ mod run;
 mod spill;
 mod spool;
 mod stats;
+mod thin;
 mod work;
 
 pub use budget::Budget;
@@ -37,3 +40,4 @@ pub use passes::{Observer, Pass, Passes};
 pub use run::run;
 pub use spool::Spooling;
 pub use stats::Stats;
+pub use thin::{Thin, ThinBy};

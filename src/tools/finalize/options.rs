@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::budget::Budget;
 use super::spool::Spooling;
+use super::thin::Thin;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{OCTREE_DEPTH_MAX, QUADTREE_DEPTH_MAX};
 
@@ -43,6 +44,8 @@ pub struct Options {
     pub order: Order,
     /// Whether the blocks of the result are compressed.
     pub compress: bool,
+    /// Whether only one point per cell is kept.
+    pub thin: Option<Thin>,
     /// Memory for counters, leaves and waiting points.
     pub budget: Budget,
     /// Folder for waiting points that exceed the budget, and for points that are kept for later passes; the

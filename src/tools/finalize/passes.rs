@@ -46,6 +46,8 @@ impl Passes for Input {
 /// The passes over the input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pass {
+    /// Finding the points that thinning keeps.
+    Thin,
     /// Finding the bounding box.
     Bounds,
     /// Counting points per cell.
@@ -61,6 +63,7 @@ impl Pass {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Pass::Thin => "thin",
             Pass::Bounds => "bounds",
             Pass::Count => "count",
             Pass::Refine => "refine",

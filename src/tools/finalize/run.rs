@@ -1,12 +1,14 @@
 //! A whole run: count the points, plan the leaves, write points and tags.
 
 use std::io::Write;
+use std::time::Instant;
 
 use super::count_pass::PointCounts;
 use super::options::{Options, Order};
-use super::passes::{Observer, Passes};
+use super::passes::{Observer, Pass, Passes};
 use super::plan::Plan;
 use super::stats::Stats;
+use super::thin::{Thin, Thinned};
 use super::work::Work;
 use spmesh_core::error::{ErrorKind, Result};
 use spmesh_io::source::Description;
@@ -32,13 +34,45 @@ pub fn run<P: Passes + ?Sized, W: Write>(
     options.check(input.description().dims)?;
     let budget = options.budget.beside_rows(input.description().attributes.row_len())?;
     let options = &Options { budget, ..options.clone() };
-    let mut work = Work::new(input, options, observer);
-    work.write(options, output).map_err(|error| match input.name() {
+    let run = match &options.thin {
+        None => write(input, options, observer, output),
+        Some(thin) => write_thinned(input, thin, options, observer, output),
+    };
+    run.map_err(|error| match input.name() {
         // An error without a name concerns the input as a whole.
         Some(name) if error.kind() == ErrorKind::Malformed => error.of_input(name),
         _ => error,
-    })?;
+    })
+}
+
+fn write<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
+    let mut work = Work::new(input, options, observer);
+    work.write(options, output)?;
     Ok(work.stats)
+}
+
+/// Finds the points that are kept, and writes them.
+fn write_thinned<P: Passes + ?Sized, W: Write>(
+    input: &P,
+    thin: &Thin,
+    options: &Options,
+    observer: &mut dyn Observer,
+    output: W,
+) -> Result<Stats> {
+    let start = Instant::now();
+    observer.pass(Pass::Thin, input.description().stated_points);
+    let winners = thin.winners(input, &options.budget, |points| observer.done(points))?;
+    let (time, thinned) = (start.elapsed(), winners.dropped());
+    let options = Options { budget: options.budget.beside_winners(winners.bytes())?, ..options.clone() };
+    let mut stats = write(&Thinned::new(input, winners), &options, observer, output)?;
+    stats.thinned = thinned;
+    stats.passes.insert(0, (Pass::Thin.name(), time));
+    Ok(stats)
 }
 
 impl<P: Passes + ?Sized> Work<'_, P> {

@@ -9,6 +9,8 @@ pub struct Stats {
     pub points: u64,
     /// Points dropped because a coordinate is not finite.
     pub invalid: u64,
+    /// Points dropped because their cell keeps another.
+    pub thinned: u64,
     /// Every pass over the input with its time, in order.
     pub passes: Vec<(&'static str, Duration)>,
     /// Level of the deepest leaf.

@@ -79,8 +79,12 @@ impl Points {
     fn check_weights(&self, count: u64) -> Result<()> {
         match &self.weights {
             Some(weights) if weights.len() as u64 != count => {
-                Err(Error::usage(format!("{} weights for {count} points: one each is needed", weights.len()))
-                    .of_input(self.name()))
+                {
+                    let message = format!("{} weights for {count} points: one each is needed", weights.len());
+                    let error = Error::usage(message).of_input(self.name());
+                    // The weights may be those of all points of the file.
+                    Err(self.input.withheld_notice().iter().fold(error, |error, notice| error.noting(notice)))
+                }
             }
             _ => Ok(()),
         }
@@ -94,8 +98,8 @@ impl Points {
 
     /// Notices about the files for the user.
     #[must_use]
-    pub fn notices(&self) -> &[String] {
-        self.input.notices()
+    pub fn notices(&self) -> Vec<String> {
+        self.input.notices().iter().cloned().chain(self.input.withheld_notice()).collect()
     }
 
     /// The coordinate reference system.

@@ -45,6 +45,7 @@ fn read_input(input: &Input) -> Result<Structure> {
     }
     let coordinates = input.description().coordinates;
     let mut warnings = input.notices().to_vec();
+    warnings.extend(input.withheld_notice());
     if coordinates == Coordinates::F64
         && let Some(last) = numbered(&points)
     {

@@ -1,0 +1,112 @@
+//! One pass over the files of an input, one after the other.
+
+use std::sync::{Arc, OnceLock};
+
+use super::filters::Dropped;
+use super::input::Source;
+use super::options::SourceOptions;
+use super::pass::{Pass, Stated};
+use super::placement::Placement;
+use super::reader::PointReader;
+use super::row_plan::RowPlan;
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
+
+/// One pass over all files.
+pub(super) struct InputReader {
+    sources: Arc<[Source]>,
+    plans: Arc<[RowPlan]>,
+    /// Rows of the last batch.
+    rows: Vec<u8>,
+    options: SourceOptions,
+    coordinates: Coordinates,
+    /// Number of the file after the current one.
+    next: usize,
+    current: Option<(Box<dyn Pass>, Placement)>,
+    /// Points dropped in files before the current one: not finite, and by filters.
+    invalid: u64,
+    dropped: Dropped,
+    /// Gets the number of dropped points at the end.
+    passed: Arc<OnceLock<Dropped>>,
+}
+
+impl InputReader {
+    /// Opens the first file. `passed` gets the number of dropped points at the end.
+    ///
+    /// # Errors
+    /// If the file cannot be opened.
+    pub(super) fn new(
+        sources: Arc<[Source]>,
+        plans: Arc<[RowPlan]>,
+        options: SourceOptions,
+        coordinates: Coordinates,
+        passed: Arc<OnceLock<Dropped>>,
+    ) -> Result<InputReader> {
+        let mut reader = InputReader {
+            sources,
+            plans,
+            rows: Vec::new(),
+            options,
+            coordinates,
+            next: 0,
+            current: None,
+            invalid: 0,
+            dropped: Dropped::default(),
+            passed,
+        };
+        reader.open_next()?;
+        Ok(reader)
+    }
+
+    /// Opens the next file, if there is one.
+    fn open_next(&mut self) -> Result<()> {
+        if let Some((pass, placement)) = self.current.take() {
+            if let Some(cut) = pass.cut() {
+                let _ = self.sources[self.next - 1].cut.set(cut);
+            }
+            self.invalid += placement.invalid;
+            self.dropped.add(&placement.dropped);
+        }
+        if let Some(source) = self.sources.get(self.next) {
+            let plan = self.plans[self.next].clone();
+            let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
+            let Stated { coordinates, .. } = source.stated;
+            let (windows, skip_invalid) = (self.options.windows(), self.options.skip_invalid);
+            self.current =
+                Some((pass, Placement::new(&coordinates, &self.coordinates, &windows, skip_invalid)));
+            self.next += 1;
+        } else {
+            // Later passes drop the same points.
+            let _ = self.passed.set(self.dropped);
+        }
+        Ok(())
+    }
+}
+
+impl PointReader for InputReader {
+    fn next_batch(&mut self, batch: &mut Vec<Point>) -> Result<()> {
+        batch.clear();
+        self.rows.clear();
+        while let Some((pass, placement)) = &mut self.current {
+            let source = &self.sources[self.next - 1];
+            let goes_on = pass.next_batch(placement, batch, &mut self.rows);
+            let goes_on = goes_on.map_err(|e| e.of_input(&source.name))?;
+            if !batch.is_empty() {
+                return Ok(());
+            }
+            if !goes_on {
+                self.open_next()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn rows(&self) -> &[u8] {
+        &self.rows
+    }
+
+    fn invalid(&self) -> u64 {
+        self.invalid + self.current.as_ref().map_or(0, |(_, placement)| placement.invalid)
+    }
+}
