@@ -88,7 +88,7 @@ pub struct Common {
     #[arg(short, long, global = true)]
     pub quiet: bool,
 
-    /// Show progress: on a terminal, never, or as JSON lines on stderr
+    /// Show progress: on a terminal, never, or as JSON lines on stderr. In a pipe, the last program shows it
     #[arg(long, value_enum, default_value_t = progress::When::Auto, global = true)]
     pub progress: progress::When,
 }

@@ -10,6 +10,10 @@ use clap::Parser;
 use super::Common;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::open_stdout;
+use spmesh_core::upstream;
+
+/// Tools whose output is a stream, in whatever way they are called.
+const STREAM_WRITERS: [&str; 5] = ["spfinalize", "spdelaunay2d", "spdelaunay3d", "tess3", "configgen"];
 
 /// Prints a message for the user on stderr, with the tool's name before it.
 pub fn notice(tool: &str, common: &Common, message: &str) {
@@ -28,12 +32,22 @@ pub(crate) fn say_line(text: &str) {
     let _ = std::io::stderr().write_all(format!("{}\n", escaped(text)).as_bytes());
 }
 
-/// Prints the error that ends a run, and returns the exit code. The end of a pipe is no news.
+/// Prints the error that ends a run, and returns the exit code; passes both on along a pipe. The end of a pipe
+/// is no news.
 pub(crate) fn fail(tool: &str, error: &anyhow::Error) -> ExitCode {
     let code = error.downcast_ref::<Error>().map_or(1, Error::exit_code);
-    if code != ErrorKind::ClosedPipe.exit_code() {
+    if code == ErrorKind::ClosedPipe.exit_code() {
+        return ExitCode::from(code);
+    }
+    // The program before this one in the pipe has said what is wrong.
+    let upstream = upstream::failure();
+    if upstream.is_none() {
         say_line(&format!("{tool}: {error:#}"));
     }
+    let code = upstream.unwrap_or(code);
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    expect_output(tool, &arguments);
+    upstream::mark_failure(code);
     ExitCode::from(code)
 }
 
@@ -48,11 +62,24 @@ pub(crate) fn parse<Flags: Parser>(arguments: &[OsString]) -> std::result::Resul
     };
     if message.use_stderr() {
         let _ = message.print();
+        expect_output(Flags::command().get_name(), arguments);
+        upstream::mark_failure(ErrorKind::Usage.exit_code());
         return Err(ExitCode::from(ErrorKind::Usage.exit_code()));
     }
     match print_help(&message) {
         Ok(()) => Err(ExitCode::SUCCESS),
         Err(error) => Err(fail(Flags::command().get_name(), &error.into())),
+    }
+}
+
+/// Marks a failure on stdout if the tool would have written a stream there.
+fn expect_output(tool: &str, arguments: &[OsString]) {
+    let is_output = |argument: &OsString| {
+        let text = argument.to_string_lossy();
+        text.starts_with("--output") || text.starts_with("-o")
+    };
+    if STREAM_WRITERS.contains(&tool) && !arguments.iter().any(is_output) {
+        upstream::expect_binary_stdout();
     }
 }
 

@@ -6,6 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Common;
 use spmesh_core::parallel::Ticker;
+use spmesh_core::upstream;
 
 /// How often a pass shows that it goes on.
 const TICK: Duration = Duration::from_millis(100);
@@ -13,8 +14,10 @@ const TICK: Duration = Duration::from_millis(100);
 /// When progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum When {
-    /// A bar, if stderr is a terminal.
+    /// A bar, if stderr is a terminal and no program behind this one in a pipe shows one.
     Auto,
+    /// A bar, if stderr is a terminal.
+    Always,
     /// Not at all.
     Never,
     /// A JSON line per second.
@@ -38,10 +41,33 @@ impl Progress {
         Self::counting("points", common, name, total)
     }
 
-    /// Starts to show the pass `name`, of `total` units where that is known.
+    /// Starts to show the pass `name`, of `total` units where that is known. If the output goes to a pipe, the
+    /// program behind it shows how far the work is.
     #[must_use]
     pub fn counting(unit: &'static str, common: &Common, name: &str, total: Option<u64>) -> Self {
-        let show = common.progress == When::Auto && !common.quiet;
+        let is_last = !upstream::is_pipe(std::io::stdout());
+        Self::shown(is_last, unit, common, name, total)
+    }
+
+    /// Starts to show the pass `name`, of `total` points where that is known, before there is any output.
+    #[must_use]
+    pub fn before_output(common: &Common, name: &str, total: Option<u64>) -> Self {
+        Self::shown(true, "points", common, name, total)
+    }
+
+    fn shown(
+        is_wanted: bool,
+        unit: &'static str,
+        common: &Common,
+        name: &str,
+        total: Option<u64>,
+    ) -> Self {
+        let show = !common.quiet
+            && match common.progress {
+                When::Auto => is_wanted,
+                When::Always => true,
+                When::Never | When::Json => false,
+            };
         let bar = match (show, total) {
             (false, _) => ProgressBar::hidden(),
             (true, Some(total)) => ProgressBar::new(total).with_style(

@@ -281,7 +281,8 @@ struct Watch<'a> {
 impl Observer for Watch<'_> {
     fn pass(&mut self, pass: Pass, total: Option<u64>) {
         self.progress = None;
-        self.progress = Some(Progress::new(self.common, pass.name(), total));
+        let start = if pass.is_output() { Progress::new } else { Progress::before_output };
+        self.progress = Some(start(self.common, pass.name(), total));
     }
 
     fn done(&mut self, points: u64) {

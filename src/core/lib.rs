@@ -10,3 +10,4 @@ pub mod prefetch;
 pub mod random;
 pub mod system;
 pub mod temporary;
+pub mod upstream;

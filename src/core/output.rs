@@ -14,6 +14,7 @@ use rustix::fs::{Mode, OFlags};
 use crate::error::{Error, ErrorKind, Result};
 use crate::system;
 use crate::temporary::without_path;
+use crate::upstream;
 
 /// Bytes of the write buffer.
 const BUFFER_LEN: usize = 1 << 18;
@@ -64,6 +65,8 @@ impl Output {
     /// its target is created or replaced, and the link stays. A file that is replaced passes on its
     /// permissions, and its owner if the system allows that.
     ///
+    /// Binary data on stdout are marked if the program fails ([`crate::upstream`]).
+    ///
     /// # Errors
     /// Usage, if `binary` data would go to a terminal; I/O, if stdout is closed or the folder cannot be
     /// written to.
@@ -75,11 +78,13 @@ impl Output {
                     "refusing to write binary data to a terminal: redirect it, pipe it, or use --output",
                 ));
             }
+            upstream::output_is_open(binary);
             // Bypasses `Stdout`, whose line buffering would search binary data for line ends.
             let file = stdout.as_fd().try_clone_to_owned().map_err(|e| Error::io("opening stdout", e))?;
             let sink = Sink::InPlace(BufWriter::with_capacity(BUFFER_LEN, File::from(file)));
             return Ok(Output { name: "stdout".into(), sink, written: 0, write_back_end: 0 });
         }
+        upstream::output_is_open(false);
         let name = path.display().to_string();
         let sink = create_file(path).map_err(|e| Error::io("creating the output", e).of_input(&name))?;
         Ok(Output { name, sink, written: 0, write_back_end: 0 })

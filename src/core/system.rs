@@ -12,6 +12,8 @@ use std::ptr;
 use std::sync::atomic::AtomicU8;
 use std::sync::atomic::{AtomicPtr, Ordering};
 
+use crate::upstream;
+
 /// Which of the descriptors 0, 1 and 2 were closed when the program started, one bit each.
 #[cfg(target_os = "linux")]
 static CLOSED_AT_START: AtomicU8 = AtomicU8::new(0);
@@ -149,6 +151,7 @@ extern "C" fn exit_with_message(_signal: libc::c_int) {
     // SAFETY: the pointer is null or was leaked.
     let (message, code) = unsafe { AT_ABORT.load(Ordering::Acquire).as_ref() }.copied().unwrap_or(("", 1));
     let _ = rustix::io::write(rustix::stdio::stderr(), message.as_bytes());
+    upstream::mark_failure(code);
     // SAFETY: the call ends the process without running anything else in it.
     unsafe { libc::_exit(code.into()) };
 }

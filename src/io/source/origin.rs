@@ -12,6 +12,7 @@ use crate::detect::{HEAD_LEN, Reader, read_head};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::system;
 use spmesh_core::temporary::TemporaryFile;
+use spmesh_core::upstream::Watched;
 
 /// Name of an input in messages: its path, or stdin for "-".
 pub fn name_of(path: &Path) -> String {
@@ -46,12 +47,12 @@ pub(super) enum Admitted {
 ///
 /// # Errors
 /// If it was closed when the program started: an empty input would hide that.
-pub fn open_stdin() -> Result<Stdin> {
+pub fn open_stdin() -> Result<Watched<Stdin>> {
     let stdin = io::stdin();
     if system::was_closed(&stdin) {
         return Err(Error::new(ErrorKind::Io, "stdin is closed: give a file or pipe a stream in"));
     }
-    Ok(stdin)
+    Ok(Watched(stdin))
 }
 
 /// Opens a file for reading, and says of which type it is.
@@ -107,7 +108,7 @@ impl Origin {
     }
 
     fn of_stdin(
-        stdin: &Stdin,
+        stdin: &Watched<Stdin>,
         admitted: Admitted,
         temp_dir: &Path,
         notices: &mut Vec<String>,
@@ -117,7 +118,7 @@ impl Origin {
         if check_type(&file)?.is_file() && file.stream_position().is_ok_and(|position| position == 0) {
             return Ok(Origin::Open(Arc::new(file)));
         }
-        spool_pipe(file, "stdin", admitted, temp_dir, notices)
+        spool_pipe(Watched(file), "stdin", admitted, temp_dir, notices)
     }
 
     /// The content from its start, decompressed if necessary.
@@ -152,7 +153,7 @@ impl Origin {
 
 /// Spools a file that cannot be read twice, and adds a notice.
 fn spool_pipe(
-    mut from: File,
+    mut from: impl Read,
     name: &str,
     admitted: Admitted,
     temp_dir: &Path,

@@ -70,6 +70,12 @@ impl Pass {
             Pass::Write => "write",
         }
     }
+
+    /// Whether it writes the output.
+    #[must_use]
+    pub fn is_output(self) -> bool {
+        self == Pass::Write
+    }
 }
 
 /// Receives the progress of a run; `()` ignores it.
