@@ -69,6 +69,8 @@ fn other_tables_stay_what_they_were() {
         let error = read(&format!("{names}\n1 2 3 4\n"), plain());
         assert_fails(error, ErrorKind::Malformed, &["line 1", "--columns"]);
     }
+    let error = read("# LFID SHOTNUMBER TIME GLON GLAT ZG\n1 2 3 4 5 6\n", plain());
+    assert_fails(error, ErrorKind::Malformed, &["--columns GLON,GLAT,ZG"]);
     // A comment that names x, y and z is believed.
     assert_eq!(read("# id x y z\n7 1 2 3\n", plain()).unwrap().0, [[1.0, 2.0, 3.0]]);
     assert_eq!(read("x,y,z,intensity\n1,2,3,4\n", plain()).unwrap().0, [[1.0, 2.0, 3.0]]);

@@ -242,7 +242,8 @@ fn check_order(names: &Names) -> Result<()> {
         return Ok(());
     }
     let name = |column: usize| String::from_utf8_lossy(&names.fields[column]).into_owned();
-    match first(&["elev", "height", "alt"]) {
+    let starts_with_z = |name: &Vec<u8>| name.starts_with(b"Z") || name.starts_with(b"z");
+    match first(&["elev", "height", "alt"]).or_else(|| names.fields.iter().position(starts_with_z)) {
         Some(z) => Err(unclear(names, &[x, y, z].map(name).join(","))),
         None => Err(unclear(names, &format!("{},{},...", name(x), name(y)))),
     }
