@@ -149,7 +149,8 @@ fn projections_survive_user_defined_keys() {
 #[test]
 fn damaged_definitions_are_read_or_refused() {
     let mut random = Random::new(23);
-    let texts = [ESRI.to_string(), epsg_text("EPSG:7415"), epsg_text("EPSG:3857"), epsg_text("EPSG:2992+6360")];
+    let texts =
+        [ESRI.to_string(), epsg_text("EPSG:7415"), epsg_text("EPSG:3857"), epsg_text("EPSG:2992+6360")];
     for _ in 0..20_000 {
         let mut bytes = texts[random.below(4) as usize].clone().into_bytes();
         for _ in 0..1 + random.below(4) {

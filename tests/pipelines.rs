@@ -2,7 +2,8 @@
 
 use std::fs;
 use std::io::Read;
-use std::process::Stdio;
+use std::path::Path;
+use std::process::{Command, Stdio};
 
 use crate::programs::{
     Folder, assert_outcome, assert_silent_without_reader, cloud, outcome, run, sample, start, tool,
@@ -520,5 +521,69 @@ fn limits_of_memory_are_refused_with_their_own_code() {
         let (code, message) = outcome(&run(program, &["-q", "--memory", "200M", "-o", output], &points));
         assert_eq!((code, &message[..]), (Some(0), ""), "{program}");
         fs::remove_file(output).expect("a mesh");
+    }
+}
+
+/// Runs a pipe in a shell: the exit codes of its programs, the code of the whole, and what it says.
+fn pipe(programs: &str) -> (Vec<i32>, i32, String) {
+    let folder = tool("spinfo").get_program().to_owned();
+    let folder = Path::new(&folder).parent().unwrap().to_path_buf();
+    let script = format!(
+        "set -o pipefail; PATH=\"{}:$PATH\"; {programs}; code=($? ${{PIPESTATUS[@]}}); echo ${{code[@]}}",
+        folder.display()
+    );
+    let output = Command::new("bash").args(["-c", &script.replace("; code=", "\ncode=")]).output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    let codes: Vec<i32> = text.trim().split(' ').map(|code| code.parse().unwrap()).collect();
+    (codes[1..].to_vec(), codes[0], String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn the_first_program_that_fails_gives_the_code_and_the_message() {
+    let folder = Folder::new();
+    let tile = fs::read(sample("lareunion.laz")).unwrap();
+    let cut = folder.write("cut.laz", &tile[..tile.len() / 2]);
+    let twin = folder.write("bad.txt", "#spmesh points 2\nv 1 2\nx\n");
+    let dem = format!("spdem -o {}", folder.path("a.tif"));
+    for (first, code) in [
+        ("spfinalize /no/such.laz".to_string(), 1),
+        ("spfinalize --no-such-flag a.laz".to_string(), 2),
+        ("spfinalize --lof - -".to_string(), 2),
+        (format!("spfinalize {cut}"), 3),
+        (format!("spfinalize --memory 1K {}", sample("lareunion.laz")), 5),
+        (format!("spconvert {twin} --to spm"), 3),
+    ] {
+        let (codes, whole, said) = pipe(&format!("{first} | spdelaunay2d | {dem}"));
+        assert_eq!((codes, whole), (vec![code; 3], code), "{first}: {said}");
+        assert!(!said.contains("spdelaunay2d:") && !said.contains("spdem:"), "{first}: {said}");
+        assert!(!said.is_empty());
+    }
+    let (codes, whole, said) = pipe(&format!("head -c 100 {cut} | spdelaunay2d | {dem}"));
+    assert_eq!((codes, whole), (vec![0, 3, 3], 3));
+    assert_eq!(said.lines().count(), 1, "{said}");
+    assert_eq!(folder.names("."), ["bad.txt", "cut.laz"]);
+}
+
+#[test]
+fn a_failure_in_the_middle_of_a_stream_is_passed_on() {
+    let folder = Folder::new();
+    let points = long_stream(&[]);
+    for len in [points.len() / 2, points.len() - 1] {
+        let file = folder.write("cut.spm", &points[..len]);
+        let dem = format!("spdem -o {}", folder.path("a.tif"));
+        let (codes, _, said) =
+            pipe(&format!("spconvert {file} --to spm | spdelaunay2d | spconvert --to spm | {dem}"));
+        assert_eq!(codes, [3; 4], "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+#[test]
+fn failures_are_marked_in_pipes_of_binary_data_only() {
+    let folder = Folder::new();
+    let output = folder.path("a.spm");
+    assert_eq!(run("spfinalize", &["/no/such.laz"], &[]).stdout, b"\nspmesh: failed 001\n");
+    for arguments in [&["spfinalize", "/no/such.laz", "-o", &output][..], &["spinfo", "/no/such.spm"]] {
+        assert!(run(arguments[0], &arguments[1..], &[]).stdout.is_empty(), "{arguments:?}");
     }
 }

@@ -55,13 +55,7 @@ impl Progress {
         Self::shown(true, "points", common, name, total)
     }
 
-    fn shown(
-        is_wanted: bool,
-        unit: &'static str,
-        common: &Common,
-        name: &str,
-        total: Option<u64>,
-    ) -> Self {
+    fn shown(is_wanted: bool, unit: &'static str, common: &Common, name: &str, total: Option<u64>) -> Self {
         let show = !common.quiet
             && match common.progress {
                 When::Auto => is_wanted,
