@@ -75,15 +75,17 @@ class Attribute:
         return data + (struct.pack("<2d", *self.scale) if self.scale is not None else b"") + (self.unknown or b"")
 
     def values(self, stored: np.ndarray) -> np.ma.MaskedArray:
-        """The values of stored numbers as masked float64; unknown ones are masked."""
+        """The values of stored numbers, as float64 if there is a scale; unknown ones are masked."""
         stored = np.asarray(stored)
         mask = np.zeros(stored.shape, bool)
         if self.unknown is not None:
             plain = np.ascontiguousarray(stored, self.dtype)
             raw = plain.view(f"V{self.dtype.itemsize}")
             mask = (raw == np.frombuffer(self.unknown, raw.dtype)[0]).reshape(stored.shape)
-        scale, offset = self.scale or (1.0, 0.0)
-        return np.ma.MaskedArray(stored.astype(float) * scale + offset, mask)
+        if self.scale is not None:
+            scale, offset = self.scale
+            stored = stored.astype(float) * scale + offset
+        return np.ma.MaskedArray(stored, mask)
 
 
 def _attributes(data: bytes) -> list[Attribute]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import blocks as b
-from .header import Attribute, Header
+from .header import TYPES, Attribute, Header
 from .reader import Reader
 from .writer import Writer
 
@@ -111,14 +111,52 @@ def _joined(parts: list) -> np.ndarray | None:
 
 
 def attributes_of(columns: dict[str, np.ndarray]) -> list[Attribute]:
-    """A list of attributes for columns: arrays (n,) or (n, components) by name."""
+    """A list of attributes for columns: arrays (n,) or (n, components) by name.
+
+    Masked values are written as a number that does not occur in the column, which the list states.
+    """
     found = []
-    for name, column in columns.items():
-        column = np.asarray(column)
+    for name, column in _columns(columns).items():
+        column = np.ma.asanyarray(column)
+        if column.ndim not in (1, 2):
+            raise ValueError(f"attribute {name!r} has the shape {column.shape}, expected (n,) or (n, components)")
         components = 1 if column.ndim == 1 else column.shape[1]
         dtype = np.dtype("u1") if column.dtype == bool else column.dtype
-        found.append(Attribute(name, dtype, components))
+        if dtype.newbyteorder("<") not in [np.dtype(known) for known in TYPES]:
+            raise ValueError(f"attribute {name!r} has the type {dtype}, expected one of {', '.join(TYPES)}")
+        unknown = _free_number(name, column, dtype) if np.ma.getmaskarray(column).any() else None
+        found.append(Attribute(name, dtype, components, unknown=unknown))
     return found
+
+
+def _columns(columns) -> dict[str, np.ndarray]:
+    """Columns by name, of a dictionary or of a structured array such as `Stream.rows`."""
+    return columns if isinstance(columns, dict) else {name: columns[name] for name in columns.dtype.names}
+
+
+def _free_number(name: str, column: np.ma.MaskedArray, dtype: np.dtype) -> bytes:
+    """The bytes of a number that is no value of the column: NaN, or the greatest or least integer that is free."""
+    if dtype.kind == "f":
+        return np.array(np.nan, dtype.newbyteorder("<")).tobytes()
+    values = np.unique(column.compressed())
+    for step in range(len(values) + 1):
+        for number in (np.iinfo(dtype).max - step, np.iinfo(dtype).min + step):
+            if np.iinfo(dtype).min <= number <= np.iinfo(dtype).max and number not in values:
+                return np.array(number, dtype.newbyteorder("<")).tobytes()
+    raise ValueError(f"attribute {name!r} has masked values, and no number of its type is free to stand for them")
+
+
+def _filled(columns: dict[str, np.ndarray], attributes: list[Attribute]) -> dict[str, np.ndarray]:
+    """The columns with the stated number in place of masked values."""
+    stated = {a.name: a for a in attributes}
+    filled = {}
+    for name, column in _columns(columns).items():
+        unknown = stated[name].unknown
+        if unknown is not None:
+            column = np.ma.asanyarray(column).astype(stated[name].dtype)
+            column = column.filled(np.frombuffer(unknown, stated[name].dtype)[0])
+        filled[name] = np.asarray(column)
+    return filled
 
 
 def write_points(file, xyz, attributes=None, scale=None, offset=(0.0, 0.0, 0.0), dims: int = 2, wkt=None) -> None:
@@ -132,10 +170,22 @@ def write_points(file, xyz, attributes=None, scale=None, offset=(0.0, 0.0, 0.0),
         scale = tuple(np.broadcast_to(np.asarray(scale, float), 3).tolist())
     header = Header(
         "points", dims, xyz.shape[1] > dims, scale, tuple(map(float, offset)) if scale else None,
-        points=len(xyz), wkt=wkt, attributes=attributes_of(attributes or {}),
+        points=len(xyz), wkt=wkt, attributes=attributes_of({} if attributes is None else attributes),
     )
     with Writer(file, header) as writer:
-        writer.points(xyz, attributes)
+        writer.points(xyz, None if attributes is None else _filled(attributes, header.attributes))
+
+
+def _indices(triangles) -> np.ndarray:
+    """Triangles as whole numbers (m, 3), each with three vertices."""
+    triangles = np.asarray(triangles)
+    whole = triangles.astype(np.int64).reshape(-1, 3)
+    if triangles.dtype.kind == "f" and not np.array_equal(whole, triangles.reshape(-1, 3)):
+        raise ValueError("a triangle has an index that is no whole number")
+    a, b, c = whole.T
+    if ((a == b) | (b == c) | (c == a)).any():
+        raise ValueError("a triangle uses a vertex twice")
+    return whole
 
 
 def write_triangles(file, xyz, triangles, attributes=None, scale=None, offset=(0.0, 0.0, 0.0), wkt=None) -> None:
@@ -144,14 +194,14 @@ def write_triangles(file, xyz, triangles, attributes=None, scale=None, offset=(0
     Vertices are written with their first triangle and finalized with their last, so triangles that are in a spatial
     order make a stream that needs little memory.
     """
-    xyz, triangles = np.asarray(xyz), np.asarray(triangles, np.int64).reshape(-1, 3)
+    xyz, triangles = np.asarray(xyz), _indices(triangles)
     if triangles.size and not (0 <= triangles.min() and triangles.max() < len(xyz)):
         raise ValueError(f"a triangle uses a vertex beyond the {len(xyz)} given")
     if scale is not None:
         scale = tuple(np.broadcast_to(np.asarray(scale, float), 3).tolist())
     header = Header(
         "triangle mesh", 2, xyz.shape[1] > 2, scale, tuple(map(float, offset)) if scale else None,
-        wkt=wkt, attributes=attributes_of(attributes or {}),
+        wkt=wkt, attributes=attributes_of({} if attributes is None else attributes),
     )
     step = 4096
     corners, places = triangles.ravel(), np.arange(triangles.size)
@@ -164,7 +214,8 @@ def write_triangles(file, xyz, triangles, attributes=None, scale=None, offset=(0
     unused = int((first == triangles.size).sum())
     ids = np.empty(len(xyz), np.int64)
     ids[order] = np.arange(len(xyz))
-    pick = lambda chosen: {name: np.asarray(column)[chosen] for name, column in attributes.items()} if attributes else None
+    columns = _filled({} if attributes is None else attributes, header.attributes)
+    pick = lambda chosen: {name: column[chosen] for name, column in columns.items()} if columns else None
     with Writer(file, header) as writer:
         written = 0
         for number, at in enumerate(range(0, len(triangles), step)):

@@ -194,6 +194,40 @@ class Writers(unittest.TestCase):
         values = spmesh.read(io.BytesIO(data)).attribute("angle")
         self.assertEqual(values.tolist(), [3.0, None, 1.0])
 
+    def test_masked_values_and_integers_survive(self):
+        columns = {
+            "class": np.ma.masked_equal(np.array([2, 255, 0, 6], np.uint8), 6),
+            "time": np.ma.masked_array([1.5, 2.5, 3.5, 4.5], [0, 1, 0, 0]),
+            "id": np.array([2**64 - 1, 2**53 + 1, 0, 1], np.uint64),
+            "angles": np.ma.masked_array(np.arange(8, dtype=np.int16).reshape(4, 2), [[1, 0]] + [[0, 0]] * 3),
+        }
+        file = io.BytesIO()
+        spmesh.write_points(file, cloud(4), columns)
+        read = spmesh.read(io.BytesIO(file.getvalue()))
+        for name, column in columns.items():
+            found = read.attribute(name)
+            self.assertEqual(found.dtype, column.dtype)
+            np.testing.assert_array_equal(np.ma.getmaskarray(found), np.ma.getmaskarray(column))
+            np.testing.assert_array_equal(found.compressed(), np.ma.compressed(column))
+        again = io.BytesIO()
+        spmesh.write_points(again, read.xyz, {name: read.attribute(name) for name in columns})
+        self.assertEqual(spmesh.read(io.BytesIO(again.getvalue())).rows.tobytes(), read.rows.tobytes())
+        full = np.ma.masked_array(np.arange(256, dtype=np.uint8), [1] + [0] * 255)
+        spmesh.write_points(io.BytesIO(), cloud(256), {"a": full})
+        full = np.ma.masked_array(np.arange(257) % 256, [0] * 256 + [1]).astype(np.uint8)
+        with self.assertRaisesRegex(ValueError, "no number of its type is free"):
+            spmesh.write_points(io.BytesIO(), cloud(257), {"a": full})
+        spmesh.write_points(io.BytesIO(), read.xyz, read.rows)
+
+    def test_arrays_that_do_not_fit_are_refused(self):
+        corners = np.eye(3)
+        for triangles, words in (([[0, 1, 1]], "twice"), ([[0, 1, 2.5]], "whole number"), ([[0, 1, 3]], "beyond")):
+            with self.assertRaisesRegex(ValueError, words):
+                spmesh.write_triangles(io.BytesIO(), corners, triangles)
+        for column, words in ((np.zeros(3, np.float16), "float16"), (np.array(list("abc")), "type"), (np.zeros((3, 1, 1)), "shape")):
+            with self.assertRaisesRegex(ValueError, words):
+                spmesh.write_points(io.BytesIO(), corners, {"a": column})
+
     def test_empty_streams_are_whole(self):
         for header in (spmesh.Header(), spmesh.Header("triangle mesh"), spmesh.Header("tetrahedral mesh", 3)):
             stream = spmesh.read(io.BytesIO(written(header)))
