@@ -13,7 +13,7 @@ use spmesh_core::output::open_stdout;
 use spmesh_core::upstream;
 
 /// Tools whose output is a stream, in whatever way they are called.
-const STREAM_WRITERS: [&str; 5] = ["spfinalize", "spdelaunay2d", "spdelaunay3d", "tess3", "configgen"];
+const STREAM_WRITERS: [&str; 4] = ["spfinalize", "spdelaunay2d", "spdelaunay3d", "configgen"];
 
 /// Prints a message for the user on stderr, with the tool's name before it.
 pub fn notice(tool: &str, common: &Common, message: &str) {
@@ -45,6 +45,9 @@ pub(crate) fn fail(tool: &str, error: &anyhow::Error) -> ExitCode {
         say_line(&format!("{tool}: {error:#}"));
     }
     let code = upstream.unwrap_or(code);
+    if code == ErrorKind::Salvaged.exit_code() {
+        upstream::output_is_whole();
+    }
     let arguments: Vec<OsString> = std::env::args_os().collect();
     expect_output(tool, &arguments);
     upstream::mark_failure(code);
