@@ -6,6 +6,7 @@ use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, StreamReader};
 
 use crate::programs::{Folder, assert_outcome, outcome, run, sample};
+use crate::sources::las_file::LasFile;
 
 /// The output of a program that succeeds.
 fn output_of(name: &str, arguments: &[&str], input: &[u8]) -> Vec<u8> {
@@ -354,4 +355,102 @@ fn conversions_keep_attributes() {
         output_of("spconvert", &["--to", "spm"], &text) == output_of("spconvert", &["--to", "spm"], &points)
     );
     assert_eq!(rows_of(&output_of("spconvert", &["--to", "spm"], &text)), rows_of(&points));
+}
+
+/// A LAS file with an array of three i16 per point, with a scale and an unknown value for each component.
+fn las_with_array(scales: [f64; 3], unknown: [i64; 3], arrays: &[[i16; 3]]) -> Vec<u8> {
+    let positions: Vec<[i32; 3]> = (0..arrays.len() as i32).map(|x| [x, x * x, 0]).collect();
+    let plain = LasFile { format: 0, ..LasFile::of(&positions) }.bytes();
+    let mut description = vec![0; 192];
+    // An array of three i16, with an unknown value and a scale.
+    description[2..4].copy_from_slice(&[24, 0b1001]);
+    description[4..8].copy_from_slice(b"flow");
+    for component in 0..3 {
+        let at = 8 * component;
+        description[40 + at..48 + at].copy_from_slice(&unknown[component].to_le_bytes());
+        description[112 + at..120 + at].copy_from_slice(&scales[component].to_le_bytes());
+    }
+    let (head, records) = plain.split_at(227);
+    let mut file =
+        [head, &[0; 2], b"LASF_Spec\0\0\0\0\0\0\0", &[4, 0, 192, 0], &[0; 32], &description].concat();
+    let start = file.len() as u32;
+    file[96..100].copy_from_slice(&start.to_le_bytes());
+    file[100..104].copy_from_slice(&1u32.to_le_bytes());
+    file[105..107].copy_from_slice(&26u16.to_le_bytes());
+    for (record, array) in records.chunks(20).zip(arrays) {
+        file.extend(record);
+        array.iter().for_each(|number| file.extend(number.to_le_bytes()));
+    }
+    file
+}
+
+#[test]
+fn components_of_an_array_keep_their_own_scales() {
+    let folder = Folder::new();
+    let arrays = [[10, 20, 30], [1, 2, 3], [-5, 2, 7]];
+    let read = |scales, unknown, choice: &str| {
+        let file = folder.file("a.las", las_with_array(scales, unknown, &arrays));
+        rows_of(&output_of(
+            "spfinalize",
+            &["--preserve", "--attributes", choice, file.to_str().unwrap()],
+            &[],
+        ))
+    };
+    let (attributes, rows) = read([0.5, 2.0, 3.0], [1, 2, 3], "flow_1,flow_2,flow_3");
+    for (component, expected) in
+        [[5.0, f64::NAN, -2.5], [40.0, f64::NAN, f64::NAN], [90.0, f64::NAN, 21.0]].iter().enumerate()
+    {
+        let column = attributes.column(&format!("flow_{}", component + 1)).unwrap();
+        for ((_, row), expected) in rows.iter().zip(expected) {
+            let found = column.of(row, 0);
+            assert!(found == *expected || found.is_nan() && expected.is_nan(), "{component}: {found}");
+        }
+    }
+    let (attributes, rows) = read([0.5; 3], [7; 3], "flow");
+    let last = attributes.column("flow:3").unwrap();
+    assert_eq!((last.of(&rows[0].1, 0), last.of(&rows[2].1, 0).is_nan()), (15.0, true));
+}
+
+#[test]
+fn delimiters_within_quotation_marks_end_no_field() {
+    let text = "\"q,r\",x,y,z,\"a \"\n5,0,0,1,7\n\"5\",1,0,2,8\n\"6,5\",0,1,3,9\n";
+    let (attributes, rows) =
+        rows_of(&output_of("spfinalize", &["--preserve", "--attributes", "a ", "-"], text.as_bytes()));
+    let column = attributes.column("a ").unwrap();
+    let found: Vec<(Point, f64)> = rows.iter().map(|(point, row)| (*point, column.of(row, 0))).collect();
+    assert_eq!(found, [([0., 0., 1.], 7.), ([1., 0., 2.], 8.), ([0., 1., 3.], 9.)]);
+}
+
+#[test]
+fn one_bad_name_costs_no_other_attribute() {
+    let folder = Folder::new();
+    let many: Vec<String> = (0..300).map(|number| format!("n{number}")).collect();
+    let numbers = vec!["1"; 300].join(",");
+    let files = [
+        ("a.csv", "x,y,z,a,a,good\n0,0,0,1,2,5\n1,0,0,3,4,5\n".to_string()),
+        ("b.csv", format!("x,y,z,{},good\n0,0,0,1,5\n1,0,0,3,5\n", "n".repeat(400))),
+        ("c.csv", format!("x,y,z,{},good\n0,0,0,{numbers},5\n1,0,0,{numbers},5\n", many.join(","))),
+        (
+            "d.ply",
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+             property int a\nproperty int a\nproperty int good\nend_header\n0 0 0 1 2 5\n1 0 0 3 4 5\n"
+                .to_string(),
+        ),
+    ];
+    for (name, content) in files {
+        let file = folder.write(name, content);
+        let (attributes, rows) = rows_of(&output_of("spfinalize", &["--attributes", "good", &file], &[]));
+        let column = attributes.column("good").unwrap();
+        assert!(rows.len() == 2 && rows.iter().all(|(_, row)| column.of(row, 0) == 5.0), "{name}");
+    }
+    let all = output_of("spfinalize", &["--attributes", "all", &folder.path("a.csv")], &[]);
+    assert_eq!(rows_of(&all).0.names(), "a, a_2, good");
+    let many = folder.path("c.csv");
+    assert_outcome("spfinalize", &["--attributes", "all", &many], &[], 2, "choose fewer attributes");
+}
+
+#[test]
+fn contour_lines_are_those_of_elevations() {
+    let arguments = ["--attribute", "a", "--contours", "4"];
+    assert_outcome("spdem", &arguments, &[], 2, "cannot be used with");
 }

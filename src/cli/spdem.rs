@@ -107,12 +107,12 @@ pub struct Flags {
 
     /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
     /// components; red, green and blue are those of rgb
-    #[arg(long, value_name = "NAME", conflicts_with = "kind")]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["kind", "contours"])]
     attribute: Option<String>,
 
     /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
     /// classes need it [default: linear]
-    #[arg(long, value_enum, value_name = "HOW", requires = "attribute")]
+    #[arg(long, value_enum, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
     interpolation: Option<InterpolationFlag>,
 
     /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon

@@ -136,14 +136,16 @@ impl Fields {
     /// The bytes from `at` to `end`, of which `descriptions` tell; the rest are bytes without a meaning.
     fn extra(&mut self, mut at: usize, end: usize, descriptions: &[u8]) {
         for description in descriptions.chunks_exact(DESCRIPTION_LEN) {
-            let Some(mut attribute) = described(description) else { break };
-            let len = attribute.width();
-            if len > end - at {
+            let Some(attributes) = described(description) else { break };
+            if attributes.iter().map(Attribute::width).sum::<usize>() > end - at {
                 break;
             }
-            attribute.name = self.unused_name(&attribute.las_name);
-            self.put(attribute, Field::Bytes { at, len });
-            at += len;
+            for attribute in attributes {
+                let len = attribute.width();
+                let name = self.unused_name(&attribute.name);
+                self.put(Attribute { name, ..attribute }, Field::Bytes { at, len });
+                at += len;
+            }
         }
         if let Ok(components @ 1..) = u8::try_from(end - at) {
             let name = self.unused_name("extra_bytes");
@@ -162,8 +164,9 @@ impl Fields {
     }
 }
 
-/// The field that a description tells of; `None` if it is unknown.
-fn described(description: &[u8]) -> Option<Attribute> {
+/// The field that a description tells of; `None` if it is unknown. An array whose components have different
+/// scales, offsets or unknown values is several fields, called `name_1`, `name_2` and so on.
+fn described(description: &[u8]) -> Option<Vec<Attribute>> {
     let (kind, options) = (description[2], description[3]);
     let name = description[NAME].split(|&byte| byte == 0).next().unwrap_or_default();
     let name: String = String::from_utf8_lossy(name).chars().filter(|char| !char.is_control()).collect();
@@ -175,20 +178,38 @@ fn described(description: &[u8]) -> Option<Attribute> {
         1..=30 => (NumberType::from_code((kind - 1) % 10 + 1)?, (kind - 1) / 10 + 1),
         _ => return None,
     };
-    let attribute = Attribute { components, las_name: name, ..Attribute::new("", number) };
+    let array = Attribute { components, las_name: name.clone(), ..Attribute::new(&name, number) };
     if kind == 0 {
-        return Some(attribute);
+        return Some(vec![array]);
     }
-    let float = |at: usize| f64::from_le_bytes(*description[at..].first_chunk().expect("eight bytes"));
+    let parts: Vec<Attribute> =
+        (0..usize::from(components)).map(|part| scaled(&array, part, description)).collect();
+    if parts.iter().all(|part| *part == parts[0]) {
+        return Some(parts[..1].to_vec());
+    }
+    let single = |(number, part): (usize, Attribute)| Attribute {
+        name: format!("{}_{}", if name.is_empty() { "extra" } else { &name }, number + 1),
+        components: 1,
+        ..part
+    };
+    Some(parts.into_iter().enumerate().map(single).collect())
+}
+
+/// The array with the scale, the offset and the unknown value that a description states for one component.
+fn scaled(array: &Attribute, component: usize, description: &[u8]) -> Attribute {
+    let (options, at) = (description[3], 8 * component);
+    let float =
+        |field: usize| f64::from_le_bytes(*description[field + at..].first_chunk().expect("eight bytes"));
     let scale = if options & HAS_SCALE != 0 { float(SCALE) } else { 1.0 };
     let offset = if options & HAS_OFFSET != 0 { float(OFFSET) } else { 0.0 };
     let is_scaled = options & (HAS_SCALE | HAS_OFFSET) != 0;
     let is_valid = scale != 0.0 && scale.is_finite() && offset.is_finite();
-    Some(Attribute {
+    let has_unknown = options & HAS_NO_DATA != 0;
+    Attribute {
         scale: (is_scaled && is_valid).then_some([scale, offset]),
-        unknown: if options & HAS_NO_DATA != 0 { no_data(number, &description[NO_DATA..]) } else { None },
-        ..attribute
-    })
+        unknown: if has_unknown { no_data(array.number, &description[NO_DATA + at..]) } else { None },
+        ..array.clone()
+    }
 }
 
 /// The number of this type that is stored as one of 64 bits; `None` if it is none of the type.

@@ -7,7 +7,7 @@ use super::lines::Lines;
 use super::sample_type::SampleType;
 use super::statements::{expect_no_field, fields, next_field, parse_integer, unexpected};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attribute, Attributes};
+use spmesh_model::attributes::{Attribute, Attributes, with_usable_names};
 
 /// Greatest number of elements and properties of a header: far above any real header, and little memory.
 const ITEMS_MAX: usize = 1000;
@@ -125,7 +125,7 @@ impl PlyHeader {
             let colour = Attribute { components: 3, ..Attribute::new("rgb", number) };
             attributes.splice(at..at + 3, [colour]);
         }
-        Attributes::new(attributes)
+        Attributes::new(with_usable_names(attributes))
     }
 
     /// Number of rows of a type.

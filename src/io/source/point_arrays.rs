@@ -12,7 +12,7 @@ use super::row_plan::{RowPlan, offers_of};
 use super::sample_type::SampleType;
 use super::vtk::Framed;
 use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attribute, Attributes};
+use spmesh_model::attributes::Attribute;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs};
 
@@ -108,9 +108,9 @@ pub(super) fn state(arrays: &[PointArray]) -> Stated {
 }
 
 /// The attributes that all arrays with points have, in the order of the first.
-fn attributes_of(arrays: &[PointArray]) -> Attributes {
+fn attributes_of(arrays: &[PointArray]) -> Vec<Attribute> {
     let mut pieces = arrays.iter().filter(|array| array.points > 0).map(|array| &array.data);
-    let Some(first) = pieces.next() else { return Attributes::default() };
+    let Some(first) = pieces.next() else { return Vec::new() };
     let of = |(name, array): &(String, PointArray)| Attribute {
         components: array.components,
         ..Attribute::new(name, array.sample.number_type())
@@ -120,8 +120,10 @@ fn attributes_of(arrays: &[PointArray]) -> Attributes {
     for data in pieces {
         attributes.retain(|attribute| data.iter().any(|other| of(other) == *attribute));
     }
-    // Several of one name, or too many, cannot be told apart or held: then there are none.
-    Attributes::new(attributes).unwrap_or_default()
+    // Arrays of one name cannot be told apart in the other pieces.
+    let names: Vec<String> = attributes.iter().map(|attribute| attribute.name.clone()).collect();
+    attributes.retain(|attribute| names.iter().filter(|name| **name == attribute.name).count() == 1);
+    attributes
 }
 
 /// A number, or several, in a record of attributes.
@@ -147,12 +149,15 @@ pub(super) struct ArrayPass {
 
 impl ArrayPass {
     pub(super) fn new(view: FileView, arrays: Arc<[PointArray]>, plan: RowPlan) -> Self {
-        let attributes = if plan.is_empty() { Attributes::default() } else { attributes_of(&arrays) };
-        let field = |(attribute, place): (&Attribute, Range<usize>)| {
+        let attributes = if plan.is_empty() { Vec::new() } else { attributes_of(&arrays) };
+        let mut record_len = 0;
+        let field = |attribute: &Attribute| {
+            let start = record_len;
+            record_len += attribute.width();
             let name = attribute.name.clone();
-            plan.uses(place.start).then_some(RecordField { name, place })
+            plan.uses(start).then_some(RecordField { name, place: start..record_len })
         };
-        let (fields, record_len) = (attributes.places().filter_map(field).collect(), attributes.row_len());
+        let fields = attributes.iter().filter_map(field).collect();
         let (values, field_readers) = (Vec::new(), Vec::new());
         ArrayPass { view, arrays, at: 0, reader: None, values, plan, fields, record_len, field_readers }
     }

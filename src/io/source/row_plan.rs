@@ -20,12 +20,14 @@ pub(super) struct Offer {
 }
 
 /// Attributes whose rows are records as they are.
-pub(super) fn offers_of(attributes: &Attributes) -> Vec<Offer> {
-    let offer = |(attribute, place): (&Attribute, std::ops::Range<usize>)| Offer {
-        attribute: attribute.clone(),
-        field: Field::Bytes { at: place.start, len: place.len() },
+pub(super) fn offers_of<'a>(attributes: impl IntoIterator<Item = &'a Attribute>) -> Vec<Offer> {
+    let mut at = 0;
+    let offer = |attribute: &Attribute| {
+        let len = attribute.width();
+        at += len;
+        Offer { attribute: attribute.clone(), field: Field::Bytes { at: at - len, len } }
     };
-    attributes.places().map(offer).collect()
+    attributes.into_iter().map(offer).collect()
 }
 
 /// The fields of a row, in their order.

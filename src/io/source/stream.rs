@@ -48,7 +48,7 @@ fn state_of(source: &impl EventSource) -> Result<Stated> {
         crs: header.crs.clone(),
         bounds: header.bounds,
         points: header.points,
-        offers: offers_of(&header.attributes),
+        offers: offers_of(header.attributes.iter()),
     })
 }
 

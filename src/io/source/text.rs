@@ -36,11 +36,18 @@ pub(super) fn delimiter_of(line: &[u8]) -> Delimiter {
     if line.contains(&b'\t') && !has_numbers { Delimiter::Byte(b'\t') } else { Delimiter::WhiteSpace }
 }
 
+/// The fields of a line, without the quotation marks around them. A delimiter within a field in quotation marks
+/// does not end it.
 pub(super) fn fields(line: &[u8], delimiter: Delimiter) -> impl Iterator<Item = &[u8]> {
     let is_white_space = delimiter == Delimiter::WhiteSpace;
-    line.split(move |&byte| match delimiter {
-        Delimiter::WhiteSpace => byte.is_ascii_whitespace(),
-        Delimiter::Byte(delimiter) => byte == delimiter,
+    let mut is_quoted = false;
+    line.split(move |&byte| {
+        is_quoted ^= byte == b'"';
+        !is_quoted
+            && match delimiter {
+                Delimiter::WhiteSpace => byte.is_ascii_whitespace(),
+                Delimiter::Byte(delimiter) => byte == delimiter,
+            }
     })
     .filter(move |field| !is_white_space || !field.is_empty())
     .map(|field| {

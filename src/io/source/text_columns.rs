@@ -7,7 +7,7 @@ use super::row_plan::offers_of;
 use super::text::{Delimiter, delimiter_of, fields};
 use super::text_options::{Column, TextOptions};
 use spmesh_core::error::{Error, Result};
-use spmesh_model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_model::attributes::{Attribute, NumberType, with_usable_names};
 use spmesh_stream::{Coordinates, Crs};
 
 /// Lines of points that are looked at for a column that only numbers them.
@@ -103,8 +103,8 @@ pub(super) fn state(
     }
     let has_z = found.is_some().then_some(columns.axes.len() == 3);
     let has_columns = found.is_some() || start.names.is_some();
-    let named = has_columns.then(|| attributes_of(&columns, names).ok()).flatten();
-    let offers = named.iter().flat_map(offers_of).collect();
+    let attributes = if has_columns { attributes_of(&columns, names) } else { Vec::new() };
+    let offers = offers_of(&attributes);
     let (coordinates, crs) = (Coordinates::F64, Crs::Unknown);
     let stated = Stated { coordinates, has_z, crs, bounds: None, points: None, offers };
     Ok((columns, stated))
@@ -287,10 +287,7 @@ fn numbering(lines: &mut Lines<Bytes>, columns: &Columns, first: &[&[u8]]) -> Re
 }
 
 /// The columns beside the coordinates as attributes: by their names, or by their numbers from 1 on.
-///
-/// # Errors
-/// If they cannot be attributes: two have one name, or they are too many.
-fn attributes_of(columns: &Columns, names: Option<&Names>) -> std::result::Result<Attributes, String> {
+fn attributes_of(columns: &Columns, names: Option<&Names>) -> Vec<Attribute> {
     let name_of = |&column: &usize| {
         let name = names.and_then(|names| names.fields.get(column)).filter(|name| !name.is_empty());
         name.map_or(format!("column{}", column + 1), |name| String::from_utf8_lossy(name).into_owned())
@@ -299,7 +296,7 @@ fn attributes_of(columns: &Columns, names: Option<&Names>) -> std::result::Resul
         unknown: Some(f64::NAN.to_le_bytes().to_vec()),
         ..Attribute::new(name_of(column), NumberType::F64)
     };
-    Attributes::new(columns.others.iter().map(attribute).collect())
+    with_usable_names(columns.others.iter().map(attribute).collect())
 }
 
 fn no_text_of_points(line: u64) -> Error {

@@ -5,6 +5,7 @@
 
 mod number;
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 pub use number::{Number, NumberType};
@@ -14,6 +15,8 @@ pub const ROW_LEN_MAX: usize = 1024;
 
 /// Greatest length of a name, in bytes.
 pub const NAME_LEN_MAX: usize = 255;
+/// Bytes that are left for the number behind a name that several attributes have.
+const NUMBER_LEN_MAX: usize = 20;
 
 /// One attribute of all points.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +108,24 @@ impl Attribute {
         }
         Ok(())
     }
+}
+
+/// The attributes with names that a list may have: control characters left out, long names cut, and a number
+/// behind names that others have, as in `name_2`.
+#[must_use]
+pub fn with_usable_names(attributes: Vec<Attribute>) -> Vec<Attribute> {
+    let mut taken: HashSet<String> = HashSet::new();
+    let renamed = attributes.into_iter().map(|attribute| {
+        let plain: String = attribute.name.chars().filter(|char| !char.is_control()).collect();
+        let ends = plain.char_indices().map(|(at, char)| at + char.len_utf8());
+        let end = ends.take_while(|&end| end <= NAME_LEN_MAX - NUMBER_LEN_MAX).last().unwrap_or(0);
+        let base = if end == 0 { "unnamed" } else { &plain[..end] };
+        let numbered = (2..).map(|number| format!("{base}_{number}"));
+        let mut names = std::iter::once(base.to_string()).chain(numbered);
+        let name = names.find(|name| taken.insert(name.clone())).unwrap_or_default();
+        Attribute { name, ..attribute }
+    });
+    renamed.collect()
 }
 
 /// The attributes of all points of a stream, in the order of their numbers in a row.
