@@ -5,6 +5,7 @@ mod compression;
 pub mod configgen;
 pub mod dd4;
 mod messages;
+mod outline;
 pub mod progress;
 mod reduction;
 mod rows;

@@ -3,6 +3,7 @@
 mod cell_index;
 pub mod detect;
 mod geo_keys;
+pub mod outline;
 pub mod raster;
 pub mod sink;
 pub mod source;

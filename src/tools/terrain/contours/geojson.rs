@@ -46,7 +46,8 @@ impl<W: Write> LineWriter<W> {
         LineWriter { output, format, text, features: 0 }
     }
 
-    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end.
+    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end. An
+    /// index line is one that maps draw thicker.
     ///
     /// # Errors
     /// If writing fails.
@@ -54,6 +55,7 @@ impl<W: Write> LineWriter<W> {
         &mut self,
         elevation: f64,
         is_closed: bool,
+        is_index: bool,
         points: impl Iterator<Item = Point2>,
     ) -> Result<()> {
         if self.format == LineFormat::GeoJson {
@@ -63,7 +65,9 @@ impl<W: Write> LineWriter<W> {
         self.text.extend_from_slice(br#"{"type":"Feature","properties":{"elevation":"#);
         self.number(elevation)?;
         self.text.extend_from_slice(br#","is_closed":"#);
-        self.text.extend_from_slice(if is_closed { b"true" } else { b"false" });
+        self.truth(is_closed);
+        self.text.extend_from_slice(br#","index":"#);
+        self.truth(is_index);
         self.text.extend_from_slice(br#"},"geometry":{"type":"LineString","coordinates":["#);
         for (count, [x, y]) in points.enumerate() {
             self.text.extend_from_slice(if count > 0 { b",[" } else { b"[" });
@@ -101,6 +105,10 @@ impl<W: Write> LineWriter<W> {
             self.text.truncate(self.text.len() - 2);
         }
         Ok(())
+    }
+
+    fn truth(&mut self, is_true: bool) {
+        self.text.extend_from_slice(if is_true { b"true" } else { b"false" });
     }
 
     fn hand_over(&mut self, len: usize) -> Result<()> {

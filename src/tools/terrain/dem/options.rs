@@ -1,9 +1,12 @@
 //! What a raster shows, and how it is drawn and written.
 
+use std::sync::Arc;
+
 use super::facet::out_of_range;
 use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction};
+use spmesh_io::source::Mask;
 use spmesh_stream::Crs;
 
 /// How values between vertices follow from those of the vertices.
@@ -37,9 +40,14 @@ pub struct Options {
     pub quantity: Quantity,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
-    /// Cells without data are filled from data at most this many cells away.
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
+    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    pub concave: Option<f64>,
+    /// Cells with centres outside of these polygons have no data.
+    pub mask: Option<Arc<Mask>>,
+    /// Cells without data inside of the outline and the mask are filled from data at most this many cells away.
     pub fill: Option<u32>,
-    /// Bytes for tiles in memory; the others wait in a temporary file.
+    /// Bytes for tiles, and for triangles that wait for the outline; others wait in temporary files.
     pub memory: u64,
     /// How the raster is written.
     pub raster: RasterOptions,
@@ -67,6 +75,11 @@ impl Quantity {
             Quantity::Attribute(_, interpolation) => *interpolation,
             _ => Interpolation::Linear,
         }
+    }
+
+    /// Whether it follows from the gradient of elevations.
+    pub(super) fn is_derived(&self) -> bool {
+        matches!(self, Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_))
     }
 
     /// The value of a whole plane, from its gradient in world coordinates; `None` if it varies.
