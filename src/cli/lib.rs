@@ -6,6 +6,7 @@ pub mod configgen;
 mod crs;
 pub mod dd4;
 mod messages;
+mod outline;
 mod point_filters;
 pub mod progress;
 mod reduction;

@@ -30,6 +30,7 @@ Examples:
   spconvert old.smb -o mesh.spm
   spconvert tile.laz --to text | less
   spconvert protein.spm -o protein.vtu
+  spconvert --local-origin mesh.spm -o mesh.obj   for viewers with 32-bit numbers
   spconvert --compress mesh.spm -o small.spm      without the flag, the stream is expanded
   spconvert mesh.spm --to text | spconvert --to spm | cmp - mesh.spm
 
@@ -78,6 +79,11 @@ pub struct Flags {
     #[arg(long)]
     ascii: bool,
 
+    /// Write coordinates of OBJ as differences from an origin in the middle of the mesh, which a comment states, for
+    /// programs that compute in 32 bits
+    #[arg(long)]
+    local_origin: bool,
+
     #[command(flatten)]
     compression: Compression,
 
@@ -118,6 +124,7 @@ pub fn run(flags: Flags) -> Result<()> {
         dims: flags.dims,
         attributes: AttributeChoice::of_names(&flags.attributes),
         ascii: flags.ascii,
+        local_origin: flags.local_origin,
         compress,
         crs: flags.crs.system()?,
         path: flags.input.is_file().then(|| flags.input.clone()),

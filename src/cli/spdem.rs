@@ -10,6 +10,7 @@ use clap::{Parser, ValueEnum};
 
 use super::cells::{self, CellFlags, RasterFlags};
 use super::crs::CrsFlag;
+use super::outline::OutlineFlags;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
@@ -24,12 +25,18 @@ use spmesh_terrain::dem::{self, Interpolation, Options, Quantity, Stats};
 
 const TOOL: &str = "spdem";
 
+/// Memory by default. Units: bytes.
+const MEMORY: u64 = 256 << 20;
+
 const EXAMPLES: &str = "\
 Examples:
   A terrain model of the ground points of many tiles, with cells of half a metre:
     spfinalize tiles/*.laz --keep-class 2 | spdelaunay2d | spdem --step 0.5 -o terrain.tif
   No data where points are far apart, as on water:
     spdem --step 1 --kill 30 ground.spm -o terrain.tif
+  No data outside of a survey that is no rectangle, but on all of its lakes; and only in a park:
+    spdem --step 1 --concave 30 ground.spm -o terrain.tif
+    spdem --step 1 --mask park.geojson ground.spm -o park.tif
   Slopes, and a hillshade with light from the north-west:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
@@ -43,6 +50,7 @@ Examples:
     spdem --step 1 --bounds 4000,7000,5000,8000 ground.spm -o part.asc
   Contour lines every five metres; then a raster and lines from one pipe:
     spdem --contours 5 ground.spm -o lines.geojson
+    spdem --contours 1 --smooth --min-length 20 --concave 30 ground.spm -o lines.geojson
     spfinalize tiles/*.laz | spdelaunay2d | tee >(spdem --step 1 -o terrain.tif) | spdem --contours 5 -o lines.geojson
   Very many lines as a GeoPackage (the lines format cannot state the coordinate system):
     spdem --contours 0.5 ground.spm -o lines.geojsonl
@@ -58,6 +66,14 @@ drawn as they arrive. A tile of 256 by 256 cells is written as soon as it is ful
 take memory. Tiles beyond --memory wait in a temporary file. ESRI grids are written after the last triangle, \
 from the top, with 256 rows in memory.
 
+The outline is the convex hull. With --concave L, triangles are outside if a chain of triangles leads to them \
+from the hull in which every crossed edge, first one of the hull, is longer than L; all others stay, also with \
+long edges. Triangles with an edge longer than L wait for the end of the stream, in --memory and a temporary \
+file. With integer coordinates, lengths are compared exactly. --mask keeps cells whose centre is in a polygon or \
+on its border; rings of a polygon count by the even-odd rule. --fill fills holes inside of the outline and the \
+mask, also those of --kill; slope, aspect and hillshade of filled cells follow from filled elevations, by \
+differences between neighbouring cells.
+
 An attribute is drawn as elevations are, or with --interpolation nearest as the value of the nearest corner of \
 the triangle. With linear interpolation, triangles with a corner whose value is unknown are left out. A raster has \
 one band of 32-bit numbers; for a picture in colour, join those of red, green and blue (gdalbuildvrt -separate).
@@ -67,7 +83,9 @@ level triangles have none. Where the coordinate reference system states the unit
 into account; otherwise it must be that of x and y.
 
 --contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
-GeoJSON features with the properties elevation, unit (if it is known) and is_closed. Higher ground is on the left of a line; a \
+GeoJSON features with the properties elevation, unit (if it is known), is_closed and index (true for every fifth line from the base, \
+or every N-th with --index N). --mask cuts lines at the polygons. --smooth smooths them; they stay within 0.45 D of \
+their level and never cross. --min-length drops short lines. Higher ground is on the left of a line; a \
 vertex on a level counts as above it. Open lines are held in memory, 16 bytes for each point. \
 --contour-points bounds that: a line with that many points is cut and continued from its last point. \
 Coordinates are those of the mesh, not degrees as RFC 7946 requires; .geojson states their EPSG code as GDAL \
@@ -120,12 +138,11 @@ pub struct Flags {
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     light: Option<[f64; 2]>,
 
-    /// Leave out triangles with an edge longer than this
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    kill: Option<f64>,
+    #[command(flatten)]
+    outline: OutlineFlags,
 
-    /// Fill cells without data from the nearest data in eight directions, at most this many cells away (1 to
-    /// 256)
+    /// Fill cells without data, inside of the outline and the mask alone, from the nearest data in eight
+    /// directions, at most this many cells away (1 to 256)
     #[arg(long, value_name = "CELLS", value_parser = clap::value_parser!(u32).range(1..=256))]
     fill: Option<u32>,
 
@@ -134,9 +151,10 @@ pub struct Flags {
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
-    /// Memory for tiles; the others wait in a temporary file (see --temp-dir)
-    #[arg(long, value_name = "SIZE", default_value = "256M", value_parser = parse_size)]
-    memory: u64,
+    /// Memory for tiles, and for triangles that wait for the outline of --concave; others wait in temporary files
+    /// (see --temp-dir) [default: 256M]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size)]
+    memory: Option<u64>,
 
     #[command(flatten)]
     raster: RasterFlags,
@@ -184,9 +202,10 @@ enum FormatFlag {
 /// opened.
 pub fn run(flags: Flags) -> anyhow::Result<()> {
     let started = Instant::now();
-    let inputs = iter::once(&flags.input).chain(flags.cells.like());
-    check_apart(inputs.map(PathBuf::as_path), &[("--output", &flags.output)])?;
-    if let Some(options) = flags.contours.options(flags.kill()?, flags.crs.system()?)? {
+    let inputs = iter::once(flags.input.as_path());
+    let inputs = inputs.chain(flags.cells.like().map(PathBuf::as_path)).chain(flags.outline.mask_path());
+    check_apart(inputs, &[("--output", &flags.output)])?;
+    if let Some(options) = flags.contours.options(&flags.outline, flags.memory, flags.crs.system()?)? {
         system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let job = Job {
             input: &flags.input,
@@ -218,17 +237,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 }
 
 impl Flags {
-    fn kill(&self) -> Result<Option<f64>, Error> {
-        match self.kill {
-            Some(length) if length.is_nan() || length <= 0.0 => {
-                Err(Error::usage("--kill takes a length above zero"))
-            }
-            kill => Ok(kill),
-        }
-    }
-
     fn options(&self) -> Result<Options, Error> {
-        let kill = self.kill()?;
         if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
             return Err(Error::usage("--light takes two angles in degrees"));
         }
@@ -248,7 +257,16 @@ impl Flags {
             (None, KindFlag::Hillshade) => Quantity::Hillshade(Light::from(azimuth, altitude)),
         };
         let raster = self.raster.options(self.format()?)?;
-        Ok(Options { quantity, kill, fill: self.fill, memory: self.memory, raster, crs: self.crs.system()? })
+        Ok(Options {
+            quantity,
+            kill: self.outline.kill()?,
+            concave: self.outline.concave()?,
+            mask: self.outline.mask()?,
+            fill: self.fill,
+            memory: self.memory.unwrap_or(MEMORY),
+            raster,
+            crs: self.crs.system()?,
+        })
     }
 
     fn line_format(&self) -> Result<LineFormat, Error> {
@@ -274,12 +292,13 @@ impl Flags {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 18] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 19] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
         ("triangles", "triangles", stats.triangles),
         ("triangles with a long edge", "killed", stats.killed),
+        ("triangles outside of the outline", "outside", stats.outside),
         ("triangles with an unknown value", "unknown", stats.unknown),
         ("width (live vertices)", "width", stats.width),
         ("cells", "cells", stats.cells),

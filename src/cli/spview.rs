@@ -11,11 +11,13 @@ use clap::{Parser, ValueEnum};
 
 use super::cells::window_of;
 use super::crs::CrsFlag;
+use super::outline::OutlineFlags;
 use super::progress::Progress;
 use super::{Common, notice, open_input, parse_numbers};
 use moment::{Every, Moment};
 use outputs::{Format, Outputs};
 use spmesh_core::error::{Error, ErrorKind, Result};
+use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_io::raster::Light;
 use spmesh_stream::{Kind, StreamReader};
@@ -30,6 +32,9 @@ Examples:
     spview terrain.spm -o terrain.png
   The same as a page for browsers, with pan and zoom:
     spview terrain.spm -o terrain.html
+  Without the long triangles around a survey that is no rectangle, and only in a park:
+    spview --concave 30 terrain.spm -o terrain.png
+    spview --mask park.geojson terrain.spm -o park.png
   Only the triangles of a part, for print:
     spview --fill none --bounds 4000,7000,4100,7080 terrain.spm -o part.svg
   When each cell of a finalized stream got its first and last point:
@@ -54,6 +59,9 @@ not state them, a file is read twice, and a long pipe needs --bounds.
 Streams in the plane and points in space are seen from above. Colours of time show the position in the \
 stream; a cell shows the time of its first point in the middle and that of its last point at the border. \
 Units are those of the coordinates.
+
+Colours of elevations and attributes span 2 to 98 percent of the visible values, by area; tips at the ends of the \
+colour bar stand for values beyond, and the legend states the range of all values.
 
 Exit codes: 0 success, 1 I/O or runtime failure, 2 usage, 3 malformed or truncated input, 5 not enough \
 memory, 6 input of another version of spmesh, 141 output closed by its reader.";
@@ -110,8 +118,16 @@ pub struct Flags {
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, default_value = "315,45", allow_hyphen_values = true)]
     light: [f64; 2],
 
-    /// The range of elevations that the colours span; those beyond have the colours of the ends [default:
-    /// all]
+    #[command(flatten)]
+    outline: OutlineFlags,
+
+    /// The percentiles of the visible elevations or values that the colours span, or none for all of them; values
+    /// beyond have the colours of the ends, and the legend shows it [default: 2,98; none with --at or --snapshot]
+    #[arg(long, value_name = "LOW,HIGH|none", value_parser = parse_stretch, conflicts_with = "range")]
+    stretch: Option<Stretch>,
+
+    /// The range of elevations or values that the colours span, instead of percentiles; those beyond have the
+    /// colours of the ends
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     range: Option<[f64; 2]>,
 
@@ -163,6 +179,20 @@ pub struct Flags {
     common: Common,
 }
 
+/// The value of `--stretch`: two percentiles, or none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stretch(Option<[f64; 2]>);
+
+fn parse_stretch(text: &str) -> std::result::Result<Stretch, String> {
+    if text == "none" {
+        return Ok(Stretch(None));
+    }
+    match parse_numbers(text)? {
+        [low, high] if 0.0 <= low && low < high && high <= 100.0 => Ok(Stretch(Some([low, high]))),
+        _ => Err("expected two percentages from 0 to 100, the lesser first, or none".to_string()),
+    }
+}
+
 /// The values of `--fill`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FillFlag {
@@ -189,6 +219,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let mut options = flags.options()?;
     let is_numbered = flags.snapshot.is_some();
+    check_apart(flags.outline.mask_path(), &[("--output", &flags.output)])?;
     let mut outputs = Outputs::new(&flags.output, flags.format, is_numbered, flags.tee, &flags.input)?;
     let (input, name) = open_input(&flags.input)?;
     let input: Box<dyn Read> = if flags.tee { Box::new(Tee::new(input)?) } else { Box::new(input) };
@@ -247,7 +278,16 @@ impl Flags {
             bounds: self.bounds.map(window_of).transpose()?,
             oblique: self.oblique,
             light: Light::from(azimuth, altitude),
+            kill: self.outline.kill()?,
+            concave: self.outline.concave()?,
+            mask: self.outline.mask()?,
             range: self.range,
+            stretch: match self.stretch {
+                Some(Stretch(percents)) => percents,
+                // Colours mean the same in all pictures of a stream.
+                None if self.at.is_some() || self.snapshot.is_some() => None,
+                None => defaults.stretch,
+            },
             middle: self.middle,
             crs: self.crs.system()?,
             order: self.order.map(usize::from),

@@ -50,6 +50,15 @@ impl<T: Float> fmt::Display for Decimal<T> {
     }
 }
 
+/// The digits of the shortest decimal of a finite number as an integer, and the power of ten of the last one;
+/// `None` if they are no integer of 128 bits.
+pub fn digits(value: f64) -> Option<(i128, i32)> {
+    let text = format!("{value:e}");
+    let (number, power) = text.split_once('e')?;
+    let behind_point = number.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
+    Some((number.replace('.', "").parse().ok()?, power.parse::<i32>().ok()? - behind_point))
+}
+
 /// The other decimal, if `text` was rounded up from halfway between two.
 fn even_of_tie<T: Float>(number: T, text: &str) -> Option<String> {
     let last = *text.as_bytes().last()?;

@@ -123,6 +123,11 @@ impl Canvas {
         }
     }
 
+    /// The values of all samples, NaN where nothing was painted.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// The picture; `colour` maps a value and a brightness to a colour.
     ///
     /// # Errors

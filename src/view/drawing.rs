@@ -14,12 +14,15 @@ use super::request;
 use super::scene::Scene;
 use super::sheet::{Furniture, Legend, Mark, Shape};
 use super::shown::Shown;
+use super::stretch::{percentiles, some_of};
 use super::style::{Colours, Style};
 use super::triangles::{self, Triangle};
 use super::units::Units;
 use super::{configurations, svg, ticks};
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::Knots;
+use spmesh_geometry::predicates::Point2;
+use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};
@@ -39,6 +42,9 @@ const FINAL: Mark = Mark {
     words: "final cell: middle by its first point, border by its last",
 };
 const OPEN: Mark = Mark { shape: Shape::Area, colour: [255; 3], words: "open cell" };
+
+/// Memory for triangles that wait for the outline; further ones wait in a temporary file. Units: bytes.
+const OUTLINE_MEMORY: u64 = 1 << 28;
 
 /// Receives a complete picture.
 pub type Take<'a> = dyn FnMut(&Picture) -> Result<()> + 'a;
@@ -99,6 +105,10 @@ struct Drawing<'a> {
     count: Option<u64>,
     /// The range of elevations, if the header states it.
     stated: Option<[f64; 2]>,
+    /// Finds triangles with a long edge.
+    long_edges: EdgeLimit,
+    /// Finds the triangles outside of the concave outline.
+    outline: Option<ConcaveOutline>,
     triangles: Layer<Triangle>,
     points: Layer<DrawnPoint>,
     front: Front,
@@ -153,6 +163,10 @@ impl<'a> Drawing<'a> {
             scene,
             count: header.points.filter(|_| !is_mesh),
             stated: stated.filter(|_| has_elevation).map(|bounds| [bounds.min[2], bounds.max[2]]),
+            long_edges: EdgeLimit::new(options.kill, &coordinates),
+            outline: options
+                .concave
+                .map(|length| ConcaveOutline::new(length, &coordinates, OUTLINE_MEMORY, None)),
             triangles: Layer::new(options.form),
             points: Layer::new(options.form),
             cells,
@@ -187,7 +201,38 @@ impl<'a> Drawing<'a> {
     }
 
     fn end(&mut self, take: &mut Take) -> Result<()> {
-        if self.is_over { Ok(()) } else { take(&self.picture(":")?) }
+        if self.is_over {
+            return Ok(());
+        }
+        if let Some(outline) = self.outline.take() {
+            let mut inside = outline.finish()?;
+            while let Some(Waiting { ids, corners, number }) = inside.next_triangle()? {
+                self.push(Triangle { ids, corners, number })?;
+            }
+        }
+        take(&self.picture(":")?)
+    }
+
+    /// Takes a triangle, which is kept for later if it may be outside of the outline.
+    fn triangle(&mut self, triangle: Triangle, places: [Point2; 3]) -> Result<()> {
+        if let Some(outline) = &mut self.outline {
+            let Triangle { ids, corners, number } = triangle;
+            // A triangle that is not drawn has edges of the outline, too. Without places, it is never drawn.
+            let is_killed = self.long_edges.is_exceeded(places);
+            let corners = if is_killed { [[f64::NAN; 3]; 3] } else { corners };
+            if outline.take(places, Waiting { ids, corners, number })? {
+                return Ok(());
+            }
+        }
+        if self.long_edges.is_exceeded(places) { Ok(()) } else { self.push(triangle) }
+    }
+
+    /// Draws a triangle, unless a value is unknown.
+    fn push(&mut self, triangle: Triangle) -> Result<()> {
+        if triangle.corners.iter().any(|corner| corner[2].is_nan()) {
+            return Ok(());
+        }
+        self.triangles.push(triangle, self.scene.as_ref(), &self.style)
     }
 
     fn patch(&mut self, patch: &Patch, rows: &[u8], take: &mut Take) -> Result<()> {
@@ -199,10 +244,8 @@ impl<'a> Drawing<'a> {
             if self.is_over {
                 return Ok(());
             }
-            let triangle = self.front.triangle(local, self.done);
-            if triangle.corners.iter().all(|corner| !corner[2].is_nan()) {
-                self.triangles.push(triangle, self.scene.as_ref(), &self.style)?;
-            }
+            let (triangle, places) = self.front.triangle(local, self.done);
+            self.triangle(triangle, places)?;
             self.done += 1;
         }
         self.front.end();
@@ -257,6 +300,13 @@ impl<'a> Drawing<'a> {
         };
         let (mut map, legend) =
             if self.kind == Kind::Points { self.map_of_points(&scene)? } else { self.map_of_mesh(&scene)? };
+        if let Some(mask) = &self.options.mask {
+            let place = |[x, y]: Point2| {
+                let [x, y, _] = scene.view.place([x, y, 0.0]);
+                [x, y]
+            };
+            map = svg::clipped(&map, mask.polygons.iter(), place);
+        }
         let marks = self.marks(&scene, &mut map);
         let title = format!("{}{relation} {}", self.options.name, self.what());
         let frame = scene.view.frame();
@@ -298,7 +348,10 @@ impl<'a> Drawing<'a> {
         let fill = self.style.fill(canvas.is_some());
         let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
         let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
-        let colours = self.style.colours(fill, elevations, self.done);
+        let colours = self.style.colours(fill, elevations, self.done, |percents| match canvas {
+            Some(canvas) => percentiles(some_of(canvas.values()).map(|value| (value, 1.0)), percents),
+            None => percentiles(layer.kept.iter().flat_map(triangles::weighted), percents),
+        });
         let map = match canvas {
             Some(canvas) => {
                 svg::image(scene.sheet.corner, &canvas.pixels(|value, shade| colours.of(value, shade))?)
@@ -312,9 +365,14 @@ impl<'a> Drawing<'a> {
         let (layer, fill) = (&self.points, self.style.point_fill());
         let seen = layer.bounds.map(|bounds| [bounds.min[2], bounds.max[2]]);
         let elevations = self.stated.or(seen).unwrap_or([0.0; 2]);
-        let colours = self.style.colours(fill, elevations, self.count.unwrap_or(self.done));
         let painted = layer.painted(scene, &self.style);
-        let map = match (&self.cells, layer.canvas.as_ref().or(painted.as_ref())) {
+        let canvas = layer.canvas.as_ref().or(painted.as_ref());
+        let count = self.count.unwrap_or(self.done);
+        let colours = self.style.colours(fill, elevations, count, |percents| match canvas {
+            Some(canvas) => percentiles(some_of(canvas.values()).map(|value| (value, 1.0)), percents),
+            None => percentiles(layer.kept.iter().map(|point| (point.at[2], 1.0)), percents),
+        });
+        let map = match (&self.cells, canvas) {
             (Some(cells), _) => {
                 cells.vectors(scene, &colours) + &points::vectors(&layer.kept, scene, &self.style, None)
             }

@@ -5,8 +5,16 @@ use foldhash::{HashMap, HashMapExt};
 
 use super::triangles::Triangle;
 use spmesh_core::error::Result;
+use spmesh_geometry::predicates::Point2;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{LiveVertices, Patch};
+
+/// A vertex, with its place in stored coordinates.
+#[derive(Debug, Clone, Copy, Default)]
+struct Vertex {
+    at: Point,
+    stored: Point2,
+}
 
 /// The live vertices, and the edges that have one triangle so far.
 ///
@@ -14,9 +22,9 @@ use spmesh_stream::{LiveVertices, Patch};
 #[derive(Debug, Default)]
 pub(super) struct Front {
     /// Live vertices, except those that the current patch finalizes.
-    live: LiveVertices<Point>,
+    live: LiveVertices<Vertex>,
     /// The vertices of the current patch.
-    local: Vec<(u64, Point)>,
+    local: Vec<(u64, Vertex)>,
     /// Those that the current patch finalizes, sorted.
     leaving: Vec<u64>,
     /// Whether edges are tracked.
@@ -38,7 +46,9 @@ impl Front {
     /// If the patch uses a vertex that is finalized or unknown.
     pub(super) fn begin(&mut self, patch: &Patch, to_world: impl Fn(usize, Point) -> Point) -> Result<()> {
         let number = |id: u64| (id - patch.first_id) as usize;
-        let local = self.live.enter(patch, |id, stored| to_world(number(id), stored))?;
+        let vertex =
+            |id, stored: Point| Vertex { at: to_world(number(id), stored), stored: [stored[0], stored[1]] };
+        let local = self.live.enter(patch, vertex)?;
         self.local.clear();
         self.local.extend_from_slice(local);
         self.leaving = patch.finalized.iter().map(|&local| patch.id(local)).collect();
@@ -47,15 +57,18 @@ impl Front {
         Ok(())
     }
 
-    /// A triangle of the current patch, with its number in the stream.
-    pub(super) fn triangle(&mut self, local: [u32; 3], number: u64) -> Triangle {
+    /// A triangle of the current patch, with its number in the stream, and its corners in stored coordinates.
+    pub(super) fn triangle(&mut self, local: [u32; 3], number: u64) -> (Triangle, [Point2; 3]) {
         let vertices = local.map(|local| self.local[local as usize]);
-        let triangle =
-            Triangle { ids: vertices.map(|(id, _)| id), corners: vertices.map(|(_, at)| at), number };
+        let triangle = Triangle {
+            ids: vertices.map(|(id, _)| id),
+            corners: vertices.map(|(_, vertex)| vertex.at),
+            number,
+        };
         if self.is_drawn {
             [[0, 1], [1, 2], [2, 0]].into_iter().for_each(|ends| self.toggle(&triangle, ends));
         }
-        triangle
+        (triangle, vertices.map(|(_, vertex)| vertex.stored))
     }
 
     /// Ends the current patch.
@@ -72,10 +85,10 @@ impl Front {
     /// The places of the live vertices.
     pub(super) fn vertices(&self) -> Vec<Point> {
         let leaving = self.local.iter().copied().filter(|(id, _)| self.leaving.binary_search(id).is_ok());
-        let mut live: Vec<(u64, Point)> = self.live.iter().chain(leaving).collect();
+        let mut live: Vec<(u64, Vertex)> = self.live.iter().chain(leaving).collect();
         // The table has no stable order.
         live.sort_unstable_by_key(|&(id, _)| id);
-        live.into_iter().map(|(_, at)| at).collect()
+        live.into_iter().map(|(_, vertex)| vertex.at).collect()
     }
 
     /// The border of the triangles so far, where more may come.

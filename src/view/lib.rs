@@ -3,7 +3,7 @@
 //! [`draw()`] goes from events to pictures. `request` checks that a stream can be drawn as the options ask. A
 //! `scene` is the `sheet` of paper, with its title, legend and scale, and the `projection` of the world on
 //! it; `frame` says where the map is in the world. `style` says what triangles and points look like, with the
-//! colours of `colour_map`.
+//! colours of `colour_map`; `stretch` finds the range that they span.
 //!
 //! A `layer` keeps `triangles` or `points` as long as they are few, to be drawn one by one, and paints more
 //! of them on the pixels of a `canvas`. `depth_sort` orders triangles that are seen obliquely. `front` holds
@@ -33,6 +33,7 @@ mod request;
 mod scene;
 mod sheet;
 mod shown;
+mod stretch;
 mod style;
 mod svg;
 mod ticks;

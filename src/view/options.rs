@@ -1,6 +1,9 @@
 //! What a picture shows, and when pictures are taken.
 
+use std::sync::Arc;
+
 use spmesh_io::raster::{Light, Window};
+use spmesh_io::source::Mask;
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::Crs;
 
@@ -72,8 +75,18 @@ pub struct Options {
     pub oblique: bool,
     /// Whether the view is oblique, with elevations, rather than from above.
     pub light: Light,
-    /// The range of elevations that the colours span; the range of the stream if `None`.
+    /// Triangles with a longer edge are left out. Units: those of the world.
+    pub kill: Option<f64>,
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
+    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    pub concave: Option<f64>,
+    /// Only what is inside of these polygons is shown, in a view from above.
+    pub mask: Option<Arc<Mask>>,
+    /// The range of elevations or values that the colours span; that of `stretch` if `None`.
     pub range: Option<[f64; 2]>,
+    /// The percentiles of the visible elevations or values that the colours span; the range of the stream if
+    /// `None`.
+    pub stretch: Option<[f64; 2]>,
     /// The elevation at which the two halves of a diverging colour map meet.
     pub middle: Option<f64>,
     /// The coordinate reference system, if not that of the stream; it names the units.
@@ -85,7 +98,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// The defaults for a stream of some name: a width of 1,000 pixels, and light from the north-west.
+    /// The defaults for a stream of some name: a width of 1,000 pixels, light from the north-west, and colours from
+    /// 2 to 98 percent.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Options {
         Options {
@@ -100,7 +114,11 @@ impl Options {
             extent: None,
             oblique: false,
             light: Light::from(315.0, 45.0),
+            kill: None,
+            concave: None,
+            mask: None,
             range: None,
+            stretch: Some([2.0, 98.0]),
             middle: None,
             crs: None,
             order: None,

@@ -32,6 +32,7 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
         let name = kind.name();
         return refuse(format!("--order and --set are for configurations, this is a stream of kind {name}"));
     }
+    check_outline(kind, options, moments)?;
     let has_elevation = header.dims == 3 || header.has_elevation;
     let fill = options.fill;
     let what = if !has_elevation && (options.oblique || !matches!(fill, None | Some(Fill::None | Fill::Time)))
@@ -49,10 +50,26 @@ pub(super) fn check(header: &Header, options: &Options, moments: &Moments) -> Re
     refuse(what.to_string())
 }
 
+/// Checks that the outline of triangles can be found.
+fn check_outline(kind: Kind, options: &Options, moments: &Moments) -> Result<()> {
+    let has_limit = options.kill.is_some() || options.concave.is_some();
+    let what = if kind == Kind::Points && has_limit {
+        "points have no edges: --kill and --concave are for triangle meshes"
+    } else if options.concave.is_some() && *moments != Moments::default() {
+        "the outline is known at the end of the stream: leave out --concave, or --at and --snapshot"
+    } else if options.mask.is_some() && options.oblique {
+        "--mask is for views from above: leave out --oblique"
+    } else {
+        return Ok(());
+    };
+    Err(Error::usage(what))
+}
+
 fn check_of_knots(options: &Options, moments: &Moments) -> Result<()> {
-    let is_plain = *moments == Moments::default() && !options.oblique && options.fill.is_none();
+    let has_outline = options.kill.is_some() || options.concave.is_some() || options.mask.is_some();
+    let is_plain =
+        *moments == Moments::default() && !options.oblique && options.fill.is_none() && !has_outline;
     let what = "configurations are drawn whole, from above and in colours of their own: leave out --at, \
-                --snapshot, \
-                --oblique and --fill";
+                --snapshot, --oblique, --fill, --kill, --concave and --mask";
     if is_plain { Ok(()) } else { Err(Error::usage(what)) }
 }

@@ -20,6 +20,8 @@ const TALLEST: f64 = 1.2;
 const FLATTEST: f64 = 0.1;
 /// Number of rectangles in a colour bar.
 const STEPS: usize = 64;
+/// Length of the tips of a colour bar.
+const TIP: f64 = 8.0;
 /// Sizes of text.
 const TITLE: u32 = 16;
 const LABEL: u32 = 12;
@@ -41,8 +43,29 @@ pub(super) struct Legend {
     pub(super) label: String,
     pub(super) colour_map: &'static ColourMap,
     pub(super) range: [f64; 2],
+    /// The range of all values; those beyond `range` have the colours of the ends.
+    pub(super) all: [f64; 2],
     /// Whether the numbers are counts.
     pub(super) is_count: bool,
+}
+
+impl Legend {
+    /// Whether there are values below the range, and above it.
+    fn is_beyond(&self) -> [bool; 2] {
+        [self.all[0] < self.range[0], self.all[1] > self.range[1]]
+    }
+
+    /// The label, with the range of all values if the colours do not span it.
+    fn words(&self) -> String {
+        let [low, high] = self.all;
+        if !self.is_beyond().contains(&true) {
+            return self.label.clone();
+        }
+        // Three digits of the range are enough.
+        let tick = 10f64.powf((0.5 * high - 0.5 * low).log10().floor() - 1.0);
+        let [low, high] = [low, high].map(|end| ticks::number(end, tick));
+        format!("{} (all: {low} to {high})", self.label)
+    }
 }
 
 /// The form of a mark.
@@ -152,7 +175,7 @@ impl Sheet {
     fn colour_bar(&self, below: f64, legend: &Legend) -> String {
         let across = (0.5 * (self.width - 3.0 * MARGIN)).min(360.0).floor();
         let (top, step) = (below + 24.0, across / STEPS as f64);
-        let mut text = svg::text([MARGIN, below + 18.0], LABEL, Anchor::Start, &legend.label);
+        let mut text = svg::text([MARGIN, below + 18.0], LABEL, Anchor::Start, &legend.words());
         for at in 0..STEPS {
             let (left, colour) =
                 (MARGIN + step * at as f64, legend.colour_map.at(at as f64 / (STEPS - 1) as f64));
@@ -163,6 +186,17 @@ impl Sheet {
                 "<rect x=\"{left}\" y=\"{top}\" width=\"{reach}\" height=\"12\" fill=\"{}\"/>\n",
                 hex(colour)
             );
+        }
+        // A tip at each end beyond which there are values.
+        let is_beyond = legend.is_beyond();
+        for (end, side, tip) in [(0, MARGIN, -TIP), (1, MARGIN + across, TIP)] {
+            if is_beyond[end] {
+                let colour = hex(legend.colour_map.at(end as f64));
+                text += &format!(
+                    "<path class=\"tip\" d=\"M{} {top}v12l{tip} -6z\" fill=\"{colour}\"/>\n",
+                    svg::length(side)
+                );
+            }
         }
         let [low, high] = legend.range;
         let words = |at: f64, tick: f64| {

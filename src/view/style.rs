@@ -19,6 +19,7 @@ pub(super) struct Style {
     edges: When,
     light: Light,
     range: Option<[f64; 2]>,
+    stretch: Option<[f64; 2]>,
     middle: Option<f64>,
     /// Whether vertices have elevations.
     has_elevation: bool,
@@ -36,6 +37,8 @@ pub(super) struct Colours {
     fill: Fill,
     colour_map: &'static ColourMap,
     range: [f64; 2],
+    /// The range of all values.
+    all: [f64; 2],
     /// The brightness of level ground.
     level: f64,
     has_middle: bool,
@@ -51,10 +54,10 @@ impl Style {
         has_elevation: bool,
         unit: &'static str,
     ) -> Style {
-        let Options { fill, edges, light, range, middle, .. } = *options;
+        let Options { fill, edges, light, range, stretch, middle, .. } = *options;
         let (fill, label) = (shown.fill().or(fill), shown.label(units));
         let unit_of_z = units.of_heights;
-        Style { fill, edges, light, range, middle, has_elevation, unit_of_z, unit, label }
+        Style { fill, edges, light, range, stretch, middle, has_elevation, unit_of_z, unit, label }
     }
 
     /// What triangles show. By default, the relief if they have elevations; otherwise nothing but edges, or
@@ -104,22 +107,37 @@ impl Style {
         }
     }
 
-    /// The colours of a range of elevations, or of times up to `count`.
-    pub(super) fn colours(&self, fill: Fill, elevations: [f64; 2], count: u64) -> Colours {
-        let elevations = self.range.unwrap_or(elevations);
+    /// The colours of a range of elevations, or of times up to `count`; `percentiles` finds those of the values.
+    pub(super) fn colours(
+        &self,
+        fill: Fill,
+        all: [f64; 2],
+        count: u64,
+        percentiles: impl FnOnce([f64; 2]) -> Option<[f64; 2]>,
+    ) -> Colours {
         let shows_elevation = matches!(fill, Fill::Elevation | Fill::Relief | Fill::Attribute);
-        let (colour_map, range) = match self.middle {
-            _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64]),
-            None => (&BATLOW, elevations),
+        let stretch = self.stretch.filter(|_| shows_elevation && self.range.is_none());
+        let stretched = stretch.and_then(|percents| {
+            let [low, high] = percentiles(percents)?;
+            // Samples of a picture may miss the ends.
+            Some([
+                if percents[0] > 0.0 { low } else { all[0] },
+                if percents[1] < 100.0 { high } else { all[1] },
+            ])
+        });
+        let elevations = self.range.or(stretched).unwrap_or(all);
+        let (colour_map, range, all) = match self.middle {
+            _ if !shows_elevation => (&VIRIDIS, [0.0, count as f64], [0.0, count as f64]),
+            None => (&BATLOW, elevations, all),
             Some(middle) => {
                 let reach = elevations.map(|elevation| (elevation - middle).abs());
                 let reach = reach[0].max(reach[1]);
-                (&VIK, [middle - reach, middle + reach])
+                (&VIK, [middle - reach, middle + reach], all)
             }
         };
         let level = colour_map::shade(&self.light, [0.0; 2]).clamp(0.05, 0.95);
         let (has_middle, unit, label) = (self.middle.is_some(), self.unit, self.label.clone());
-        Colours { fill, colour_map, range, level, has_middle, unit, label }
+        Colours { fill, colour_map, range, all, level, has_middle, unit, label }
     }
 }
 
@@ -144,7 +162,7 @@ impl Colours {
             Fill::Elevation | Fill::Relief | Fill::Attribute => self.label.clone(),
         };
         let is_count = self.fill == Fill::Time;
-        Some(Legend { label, colour_map: self.colour_map, range: self.range, is_count })
+        Some(Legend { label, colour_map: self.colour_map, range: self.range, all: self.all, is_count })
     }
 
     /// The position of a value in the range, from 0 to 1. Halves first: the differences themselves may

@@ -43,6 +43,21 @@ pub(super) fn ring(places: &[Point2]) -> String {
     path + "Z"
 }
 
+/// A part of a picture, clipped to polygons, each by the even-odd rule.
+pub(super) fn clipped<'a>(
+    part: &str,
+    polygons: impl Iterator<Item = &'a Vec<Vec<Point2>>>,
+    place: impl Fn(Point2) -> Point2,
+) -> String {
+    let mut text = "<clipPath id=\"mask\">\n".to_string();
+    for polygon in polygons {
+        let rings =
+            polygon.iter().map(|vertices| ring(&vertices.iter().map(|&at| place(at)).collect::<Vec<_>>()));
+        text += &format!("<path clip-rule=\"evenodd\" d=\"{}\"/>\n", rings.collect::<String>());
+    }
+    text + "</clipPath>\n<g clip-path=\"url(#mask)\">\n" + part + "</g>\n"
+}
+
 /// A line in a path.
 pub(super) fn line([from, to]: [Point2; 2]) -> String {
     format!("M{}L{}", place(from), place(to))

@@ -38,6 +38,13 @@ impl Drawable for Triangle {
     }
 }
 
+/// The values of the corners of a triangle, each with a third of its area.
+pub(super) fn weighted(triangle: &Triangle) -> impl Iterator<Item = (f64, f64)> + use<> {
+    let [a, b, c] = triangle.corners;
+    let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).abs();
+    [a, b, c].into_iter().map(move |corner| (corner[2], area / 3.0))
+}
+
 /// Triangles as paths; in an oblique view, those behind come first.
 pub(super) fn vectors(triangles: &[Triangle], scene: &Scene, style: &Style, colours: &Colours) -> String {
     let turn = scene.view.turn();

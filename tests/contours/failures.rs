@@ -27,7 +27,6 @@ fn each_failure_has_its_exit_code() {
         ["--bounds", "0,0,9,9"],
         ["--kind", "slope"],
         ["--light", "0,90"],
-        ["--memory", "1G"],
         ["--temp-dir", "/tmp"],
         ["--fill", "3"],
         ["--no-data", "0"],
@@ -36,6 +35,13 @@ fn each_failure_has_its_exit_code() {
         lines(&flags, 2, "cannot be used with");
     }
     lines(&["--cog"], 2, "cannot be used with");
+    lines(&["--memory", "1G"], 2, "--memory is for rasters, or for lines with --concave");
+    lines(&["--memory", "1G", "--concave", "5000"], 0, "levels");
+    lines(&["--concave", "-1"], 2, "--concave takes a length above zero");
+    lines(&["--min-length", "0"], 2, "--min-length takes a length above zero");
+    lines(&["--index", "0"], 2, "0 is not in 1..");
+    lines(&["--mask", "no/such/file"], 1, "no/such/file");
+    check(&["--smooth", "-o", "/dev/null"], &mesh, 2, "--contours");
     lines(&["--format", "tif"], 2, "write them to NAME.geojson");
     lines(&["--contour-base", "nan"], 2, "must be finite");
     lines(&["--contour-points", "1"], 2, "1 is not in 2..");

@@ -4,7 +4,9 @@ mod degenerate;
 mod exact;
 mod failures;
 mod memory;
+mod outline;
 mod pipelines;
+mod smooth;
 
 use serde_json::Value;
 use spmesh_core::error::Result;
@@ -64,7 +66,7 @@ fn parse(text: &[u8], format: LineFormat) -> Vec<Line> {
 }
 
 fn options(interval: f64, base: f64) -> Options {
-    Options { levels: Levels::new(interval, base).unwrap(), kill: None, points: None, crs: None }
+    Options::new(Levels::new(interval, base).unwrap())
 }
 
 fn try_lines(stream: &[u8], options: &Options) -> Result<(Vec<Line>, Stats)> {

@@ -4,6 +4,8 @@ use std::io::Cursor;
 
 use spmesh_convert::{Format, Options, convert};
 use spmesh_core::error::ErrorKind;
+use spmesh_model::bounds::Bounds;
+use spmesh_stream::{Coordinates, Header, Kind, write_triangles};
 
 use super::independent::{obj, ply};
 use super::{converted, samples, text_of, with_notices};
@@ -98,4 +100,41 @@ fn formats_are_recognized_by_content() {
     assert_eq!(guess("stdin").unwrap_err().kind(), ErrorKind::Usage);
     guess("mesh.OBJ").unwrap();
     guess("points.spa").unwrap();
+}
+
+#[test]
+fn local_coordinates_are_exact_in_32_bits() {
+    // Coordinates with steps of a hundredth, far from the origin, which f32 rounds to multiples of 0.25 and 0.5.
+    let point = |i: u32| [i % 17 * 613, i / 17 * 977, i * 71 % 500].map(|part| f64::from(part) - 4000.0);
+    let points: Vec<[f64; 3]> = (0..60).map(point).collect();
+    let triangles: Vec<[u32; 3]> = (0..58).map(|i| [i, i + 1, i + 2]).collect();
+    let coordinates = Coordinates::I32 { scale: [0.01; 3], offset: [2_499_000.0, 7_100_000.0, 20.0] };
+    let mut header = Header::new(Kind::TriangleMesh, coordinates, 2, true);
+    header.bounds = Bounds::of_points(&points);
+    let mut stream = Vec::new();
+    let at = |vertex: u32| points[vertex as usize];
+    write_triangles(header, &triangles, points.len(), 0, at, &mut stream).unwrap();
+    let expected = obj(std::str::from_utf8(&converted(&stream, Format::Spm, Format::Obj).unwrap()).unwrap());
+    let options = Options { local_origin: true, ..Options::default() };
+    let mut text = Vec::new();
+    convert(Cursor::new(stream.clone()), "test", Format::Obj, &mut text, &options, |_| ()).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let origin = text.lines().find_map(|line| line.strip_prefix("# origin ")).expect("a comment");
+    let origin: Vec<f64> = origin.split(' ').map(|number| number.parse().unwrap()).collect();
+    let local = obj(&text);
+    assert_eq!(local.triangles, expected.triangles);
+    for (local, world) in local.vertices.iter().zip(&expected.vertices) {
+        for axis in 0..3 {
+            assert!((origin[axis] + local[axis] - world[axis]).abs() < 1e-8);
+            assert!((f64::from(local[axis] as f32) - local[axis]).abs() < 1e-5);
+            // As many digits as the world has.
+            assert_eq!((local[axis] * 100.0).round() / 100.0, local[axis]);
+        }
+    }
+    let error =
+        convert(Cursor::new(stream), "test", Format::Ply, &mut Vec::new(), &options, |_| ()).unwrap_err();
+    assert!(
+        error.kind() == ErrorKind::Usage && error.to_string().contains("--local-origin is for OBJ"),
+        "{error}"
+    );
 }

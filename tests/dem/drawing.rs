@@ -258,7 +258,7 @@ fn long_edges_leave_holes() {
 
 impl Mesh {
     /// The mesh without vertices that no triangle uses; `None` if it has no triangles.
-    fn without_unused(&self) -> Option<Mesh> {
+    pub fn without_unused(&self) -> Option<Mesh> {
         let used = |vertex: &usize| self.triangles.as_flattened().contains(&(*vertex as u32));
         let kept: Vec<usize> = (0..self.points.len()).filter(used).collect();
         let new = |vertex: u32| kept.iter().position(|&old| old == vertex as usize).unwrap() as u32;

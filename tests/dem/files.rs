@@ -36,6 +36,8 @@ fn holes_are_filled_from_what_is_near() {
     let (stream, grid) = mesh_and_grid();
     let whole = Options { kill: Some(150.0), ..options(Quantity::Elevation) };
     let drawn = raster(&stream, &grid, &whole);
+    // Cells outside of the convex hull stay empty.
+    let covered = raster(&stream, &grid, &options(Quantity::Elevation));
     let columns = grid.columns as usize;
     for reach in [1, 40] {
         for memory in [1 << 30, 600_000] {
@@ -47,8 +49,9 @@ fn holes_are_filled_from_what_is_near() {
             assert_eq!((stats.known, stats.filled), (of_tiff.known, of_tiff.filled));
             let mut count = 0;
             for (number, (&value, &before)) in found.iter().zip(&drawn).enumerate() {
-                let expected =
-                    filled(&drawn, columns, [number % columns, number / columns], i64::from(reach));
+                let is_inside = !covered[number].is_nan();
+                let nearest = filled(&drawn, columns, [number % columns, number / columns], i64::from(reach));
+                let expected = if is_inside { nearest } else { before };
                 let is_near = (value - expected).abs() <= 1e-3 || value.is_nan() && expected.is_nan();
                 assert!(is_near, "{reach}: cell {number} has {value}, expected {expected}");
                 count += u64::from(before.is_nan() && !value.is_nan());
@@ -61,16 +64,21 @@ fn holes_are_filled_from_what_is_near() {
 
 #[test]
 fn complete_tiles_are_sources_for_their_neighbours() {
-    // A square that covers the first of two tiles in a row and a small part of the second.
-    let points = vec![[0.0, 0.0, 5.0], [300.0, 0.0, 5.0], [300.0, 256.0, 5.0], [0.0, 256.0, 5.0]];
-    let mesh = super::Mesh { points, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+    // A square that covers the first of two tiles in a row and a small part of the second; the rest of the second
+    // is covered by triangles with a long edge.
+    let corners = [[0.0, 0.0], [300.0, 0.0], [512.0, 0.0], [512.0, 256.0], [300.0, 256.0], [0.0, 256.0]];
+    let points = corners.iter().map(|&[x, y]| [x, y, 5.0]).chain([[900.0, 128.0, 5.0]]).collect();
+    let triangles = vec![[0, 1, 4], [0, 4, 5], [1, 6, 4], [1, 2, 6], [4, 6, 3]];
+    let mesh = super::Mesh { points, triangles };
     let stream = mesh.stream(spmesh_stream::Coordinates::F64);
     let grid = spmesh_io::raster::Grid { left: 0.0, top: 256.0, step: 1.0, columns: 512, rows: 256 };
-    let options = Options { fill: Some(100), ..options(Quantity::Elevation) };
+    let options = Options { fill: Some(100), kill: Some(500.0), ..options(Quantity::Elevation) };
     let (bytes, stats) = file(&stream, RasterFormat::GeoTiff, &grid, &options).unwrap();
-    assert_eq!((stats.known, stats.filled), (400 * 256, 100 * 256));
     let found = tiff_values(&bytes, &grid);
-    assert!(found.iter().enumerate().all(|(cell, value)| (cell % 512 < 400) == (*value == 5.0)));
+    let is_row_filled =
+        |row: &[f32]| row.iter().enumerate().all(|(cell, value)| (cell < 400) == (*value == 5.0));
+    assert!(found.chunks(512).all(is_row_filled));
+    assert_eq!((stats.known, stats.filled), (400 * 256, 100 * 256));
 }
 
 #[test]

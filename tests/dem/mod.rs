@@ -3,6 +3,8 @@
 mod drawing;
 mod failures;
 mod files;
+mod masks;
+pub mod outline;
 mod pieces;
 pub mod pipelines;
 mod tiles;
@@ -51,7 +53,16 @@ impl Mesh {
 }
 
 fn options(quantity: Quantity) -> Options {
-    Options { quantity, kill: None, fill: None, memory: 1 << 30, raster: RasterOptions::default(), crs: None }
+    Options {
+        quantity,
+        kill: None,
+        concave: None,
+        mask: None,
+        fill: None,
+        memory: 1 << 30,
+        raster: RasterOptions::default(),
+        crs: None,
+    }
 }
 
 /// The bytes of a raster file.

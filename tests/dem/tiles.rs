@@ -105,7 +105,7 @@ fn tiles_that_are_full_leave_memory() {
         points: points.iter().map(|&[x, y]| [x as f64, y as f64, x as f64]).collect(),
         triangles: (0..500).flat_map(square).collect(),
     };
-    let limited = Options { memory: 3 * 270_336, ..options(Quantity::Elevation) };
+    let limited = Options { memory: 3 * 278_528, ..options(Quantity::Elevation) };
     for is_back in [false, true] {
         if is_back {
             mesh.triangles.reverse();

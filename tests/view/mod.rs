@@ -3,6 +3,7 @@
 mod configurations;
 mod failures;
 mod moments;
+mod outline;
 mod pixels;
 mod shapes;
 mod svg;

@@ -11,18 +11,18 @@ use crate::programs::cloud;
 use spmesh_reference::sets::{Random, uniform};
 
 /// A picture as pixels.
-fn pixels(picture: &Picture) -> Pixmap {
+pub(super) fn pixels(picture: &Picture) -> Pixmap {
     Pixmap::decode_png(&picture.png().unwrap()).unwrap()
 }
 
-fn colour(pixmap: &Pixmap, column: u32, row: u32) -> [u8; 3] {
+pub(super) fn colour(pixmap: &Pixmap, column: u32, row: u32) -> [u8; 3] {
     let pixel = pixmap.pixel(column, row).unwrap();
     assert_eq!(pixel.alpha(), 255);
     [pixel.red(), pixel.green(), pixel.blue()]
 }
 
 /// The rectangle of the map: left, upper, right, lower.
-fn map(picture: &Picture) -> [u32; 4] {
+pub(super) fn map(picture: &Picture) -> [u32; 4] {
     let elements = parse(&picture.svg);
     let at = elements.iter().position(|element| element.name == "clipPath").unwrap();
     let [x, y, width, height] =

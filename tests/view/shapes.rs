@@ -17,7 +17,7 @@ fn random_mesh(count: usize, side: i64) -> Mesh {
 }
 
 fn options(fill: Fill) -> Options {
-    Options { fill: Some(fill), ..Options::new("mesh") }
+    Options { fill: Some(fill), stretch: None, ..Options::new("mesh") }
 }
 
 /// The triangles of a picture.
@@ -195,7 +195,10 @@ fn the_furniture_says_what_is_shown() {
     let elements = parse(&picture.svg);
     let words: Vec<&str> =
         within(&elements, "furniture", "text").iter().map(|element| &element.text[..]).collect();
-    assert!(words.contains(&"Elevation") && words.iter().any(|text| text.ends_with(" units")), "{words:?}");
+    assert!(
+        words.contains(&"Elevation (all: 0 to 96)") && words.iter().any(|text| text.ends_with(" units")),
+        "{words:?}"
+    );
     let count = super::triangles(&mesh);
     assert_eq!(picture.title, format!("a<b>&\"c\".spm: {count} triangles, 225 vertices"));
     let numbers: Vec<f64> = words.iter().filter_map(|text| text.parse().ok()).collect();

@@ -5,11 +5,12 @@ use std::time::Instant;
 
 use clap::Args;
 
+use crate::outline::{OutlineFlags, length};
 use crate::progress::Progress;
 use crate::reduction::open_stream;
 use crate::rows::{self, Row};
 use crate::{Common, StatsFormat, peak_memory};
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_stream::Crs;
 use spmesh_terrain::contours::{self, Levels, LineFormat, Options, Stats, epsg_code};
@@ -26,7 +27,7 @@ pub(super) struct ContourFlags {
         long,
         value_name = "D",
         allow_negative_numbers = true,
-        conflicts_with_all = ["CellFlags", "RasterFlags", "kind", "light", "fill", "memory"]
+        conflicts_with_all = ["CellFlags", "RasterFlags", "kind", "light", "fill"]
     )]
     contours: Option<f64>,
 
@@ -48,18 +49,50 @@ pub(super) struct ContourFlags {
         requires = "contours"
     )]
     contour_points: Option<u32>,
+
+    /// Drop lines shorter than this, open or closed
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, requires = "contours")]
+    min_length: Option<f64>,
+
+    /// Mark every N-th line from the base with the property index
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 5,
+        value_parser = clap::value_parser!(u32).range(1..),
+        requires = "contours"
+    )]
+    index: u32,
+
+    /// Smooth lines; they never cross
+    #[arg(long, requires = "contours")]
+    smooth: bool,
 }
 
 impl ContourFlags {
-    /// The lines to write, if any.
+    /// The lines to write, if any. Memory is for triangles that wait for the outline.
     ///
     /// # Errors
-    /// As [`Levels::new`].
-    pub(super) fn options(&self, kill: Option<f64>, crs: Option<Crs>) -> Result<Option<Options>> {
+    /// As [`Levels::new`] and the functions of [`OutlineFlags`]; usage, if memory is given without an outline.
+    pub(super) fn options(&self, outline: &OutlineFlags, memory: Option<u64>, crs: Option<Crs>) -> Result<Option<Options>> {
         let Some(interval) = self.contours else { return Ok(None) };
-        let levels = Levels::new(interval, self.contour_base)?;
-        let points = self.contour_points.map(|points| points as usize);
-        Ok(Some(Options { levels, kill, points, crs }))
+        let defaults = Options::new(Levels::new(interval, self.contour_base)?);
+        let concave = outline.concave()?;
+        if memory.is_some() && concave.is_none() {
+            return Err(Error::usage("--memory is for rasters, or for lines with --concave: leave it out"));
+        }
+        Ok(Some(Options {
+            kill: outline.kill()?,
+            concave,
+            memory: memory.unwrap_or(defaults.memory),
+            mask: outline.mask()?,
+            points: self.contour_points.map(|points| points as usize),
+            min_length: length("--min-length", self.min_length)?,
+            index: self.index,
+            is_smooth: self.smooth,
+            crs,
+            ..defaults
+        }))
     }
 }
 
@@ -136,18 +169,20 @@ fn about_crs(format: LineFormat, crs: &Crs) -> String {
     }
 }
 
-fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 15] {
+fn counts(stats: &Stats, output_bytes: u64) -> [Row<u64>; 17] {
     [
         ("input (bytes)", "input_bytes", stats.input_bytes),
         ("vertices", "vertices", stats.vertices),
         ("triangles", "triangles", stats.triangles),
         ("triangles with a long edge", "killed", stats.killed),
+        ("triangles outside of the outline", "outside", stats.outside),
         ("width (live vertices)", "width", stats.width),
         ("levels with lines", "levels", stats.levels),
         ("lines", "lines", stats.lines),
         ("lines that are rings", "rings", stats.rings),
         ("points of lines", "points", stats.points),
         ("single points, left out", "single_points", stats.single_points),
+        ("short lines, left out", "short", stats.short),
         ("cuts", "cuts", stats.cuts),
         ("points of open lines, at most", "open_points", stats.open_points),
         ("open ends of lines, at most", "open_ends", stats.open_ends),

@@ -4,10 +4,12 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::rows::Rows;
-use super::world::{world_of, write_numbers};
+use super::world::{world_bounds, world_of, write_numbers};
 use super::{EventSink, expect_kind, lost_of_header, write_error};
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
 use spmesh_model::attributes::{Attribute, Attributes, NumberType};
+use spmesh_model::bounds::{Bounds, Point};
+use spmesh_model::decimal::digits;
 use spmesh_stream::{Event, Header, Kind};
 
 /// Writes a triangle mesh or points as OBJ. Vertices are counted from 1; finalization is not written. An
@@ -17,6 +19,8 @@ pub struct ObjSink<W> {
     output: W,
     header: Header,
     colour: Option<Colour>,
+    /// What is subtracted from coordinates.
+    origin: Point,
 }
 
 /// The attribute that OBJ has room for.
@@ -58,8 +62,43 @@ impl<W: Write> ObjSink<W> {
     pub fn new(mut output: W, header: &Header) -> Result<Self> {
         expect_kind(header, "OBJ", &[Kind::Points, Kind::TriangleMesh])?;
         output.write_all(b"# OBJ written by spmesh\n").map_err(write_error)?;
-        Ok(ObjSink { output, header: header.clone(), colour: Colour::of_points(&header.attributes) })
+        let colour = Colour::of_points(&header.attributes);
+        Ok(ObjSink { output, header: header.clone(), colour, origin: [0.0; 3] })
     }
+
+    /// Starts an output whose coordinates are differences from an origin near the middle of the box of the stream,
+    /// so that programs that compute in f32 lose nothing. A comment `# origin X Y Z` states it.
+    ///
+    /// # Errors
+    /// As [`ObjSink::new`]; usage, if the header does not state the box.
+    pub fn with_local_origin(output: W, header: &Header) -> Result<Self> {
+        let mut sink = ObjSink::new(output, header)?;
+        let bounds = header.bounds.ok_or_else(|| {
+            Error::usage("--local-origin needs the bounds of the stream, and its header does not state them")
+        })?;
+        let Bounds { min, max } = world_bounds(header, &bounds);
+        // Whole numbers have short decimals, and keep differences short.
+        sink.origin = [0, 1, 2].map(|axis| (0.5 * min[axis] + 0.5 * max[axis]).round());
+        write_numbers(&mut sink.output, "# origin", &sink.origin)?;
+        Ok(sink)
+    }
+
+    /// The coordinates that are written: world coordinates, or the difference from the origin.
+    fn written(&self, point: Point) -> Point {
+        let world = world_of(&self.header, point);
+        if self.origin == [0.0; 3] {
+            return world;
+        }
+        [0, 1, 2].map(|axis| shortest(world[axis], self.origin[axis]))
+    }
+}
+
+/// The difference of two numbers with no more digits than the first one has, so that 499000.1 minus 499000 is 0.1.
+fn shortest(number: f64, origin: f64) -> f64 {
+    let difference = number - origin;
+    let Some((_, power)) = digits(number) else { return difference };
+    let places = power.min(0).unsigned_abs() as usize;
+    format!("{difference:.places$}").parse().unwrap_or(difference)
 }
 
 impl<W: Write> EventSink for ObjSink<W> {
@@ -72,7 +111,7 @@ impl<W: Write> EventSink for ObjSink<W> {
         };
         let mut rows = Rows::new(&self.header, rows);
         for &point in points {
-            let [x, y, z] = world_of(&self.header, point);
+            let [x, y, z] = self.written(point);
             let row = rows.next();
             match &self.colour {
                 None => write_numbers(&mut self.output, "v", &[x, y, z])?,

@@ -4,11 +4,14 @@ use std::io::Read;
 
 use serde_json::Value;
 
+use super::geojson::{
+    array, for_each_feature, geometry_of, is_json, member, parse, position, read_rest, type_of,
+};
 use super::lines::quote;
 use super::words::{finite, for_each_line_at};
 use crate::detect::read_head;
 use spmesh_core::error::{Error, Result};
-use spmesh_core::limits::{BREAKLINE_VERTICES_MAX, GEOJSON_LEN_MAX};
+use spmesh_core::limits::BREAKLINE_VERTICES_MAX;
 use spmesh_model::points::Point2;
 
 /// The role of a polyline in a spline, as in the features of configurations.
@@ -54,16 +57,9 @@ const PROPERTY: &str = "spline";
 /// # Errors
 /// If reading fails, a line or geometry is not of these forms, or there is none at all.
 pub fn read_polylines(mut input: impl Read) -> Result<Vec<Polyline>> {
-    let reading = |e| Error::io("reading", e);
-    let mut head = read_head(&mut input).map_err(reading)?;
-    let is_json = head.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{');
-    let polylines = if is_json {
-        input.take(GEOJSON_LEN_MAX + 1 - head.len() as u64).read_to_end(&mut head).map_err(reading)?;
-        if head.len() as u64 > GEOJSON_LEN_MAX {
-            let message = format!("GeoJSON of more than {GEOJSON_LEN_MAX} bytes: write its lines as text");
-            return Err(Error::malformed(message));
-        }
-        of_json(&head)?
+    let head = read_head(&mut input).map_err(|e| Error::io("reading", e))?;
+    let polylines = if is_json(&head) {
+        of_json(&read_rest(input, head, "write the lines as text")?)?
     } else {
         of_text(head.chain(input))?
     };
@@ -117,41 +113,18 @@ fn of_text(input: impl Read) -> Result<Vec<Polyline>> {
 }
 
 fn of_json(bytes: &[u8]) -> Result<Vec<Polyline>> {
-    let value: Value =
-        serde_json::from_slice(bytes).map_err(|e| Error::malformed(format!("not JSON: {e}")))?;
     let mut polylines = Vec::new();
-    let features = match type_of(&value) {
-        "FeatureCollection" => match value.get("features").and_then(Value::as_array) {
-            Some(features) => features.iter().collect(),
-            None => return Err(Error::malformed("not GeoJSON: a collection has no features")),
-        },
-        _ => vec![&value],
-    };
-    for (number, feature) in features.into_iter().enumerate() {
-        of_feature(feature, &mut polylines).map_err(|e| e.at(format!("feature {number}")))?;
-    }
+    for_each_feature(&parse(bytes)?, |feature| {
+        let word = member(member(feature, "properties"), PROPERTY).as_str();
+        let kind = word.map(|word| kind_of(word.as_bytes())).transpose()?;
+        of_geometry(geometry_of(feature), kind, &mut polylines)
+    })?;
     Ok(polylines)
-}
-
-fn type_of(value: &Value) -> &str {
-    value.get("type").and_then(Value::as_str).unwrap_or_default()
-}
-
-fn of_feature(feature: &Value, polylines: &mut Vec<Polyline>) -> Result<()> {
-    let (geometry, kind) = match type_of(feature) {
-        "Feature" => {
-            let word = feature.get("properties").and_then(|properties| properties.get(PROPERTY));
-            let kind = word.and_then(Value::as_str).map(|word| kind_of(word.as_bytes())).transpose()?;
-            (feature.get("geometry").unwrap_or(&Value::Null), kind)
-        }
-        _ => (feature, None),
-    };
-    of_geometry(geometry, kind, polylines)
 }
 
 fn of_geometry(geometry: &Value, kind: Option<PolylineKind>, polylines: &mut Vec<Polyline>) -> Result<()> {
     if type_of(geometry) == "GeometryCollection" {
-        let parts = array(geometry.get("geometries").unwrap_or(&Value::Null))?;
+        let parts = array(member(geometry, "geometries"))?;
         return parts.iter().try_for_each(|part| of_geometry(part, kind, polylines));
     }
     // Nesting depth of the lists around positions, and the default role.
@@ -163,8 +136,7 @@ fn of_geometry(geometry: &Value, kind: Option<PolylineKind>, polylines: &mut Vec
         "MultiPolygon" => (3, PolylineKind::Crease),
         other => return Err(Error::malformed(format!("{other:?} is no geometry of GeoJSON"))),
     };
-    let coordinates = geometry.get("coordinates").unwrap_or(&Value::Null);
-    of_coordinates(coordinates, levels, kind.unwrap_or(own), polylines)
+    of_coordinates(member(geometry, "coordinates"), levels, kind.unwrap_or(own), polylines)
 }
 
 fn of_coordinates(
@@ -183,18 +155,6 @@ fn of_coordinates(
     };
     polylines.push(Polyline { kind, vertices, position: format!("polyline {}", polylines.len()) });
     Ok(())
-}
-
-fn array(value: &Value) -> Result<&Vec<Value>> {
-    value.as_array().ok_or_else(|| Error::malformed("not GeoJSON: coordinates are no list"))
-}
-
-fn position(value: &Value) -> Result<Point2> {
-    let numbers: Option<Vec<f64>> = array(value)?.iter().map(Value::as_f64).collect();
-    match numbers.as_deref() {
-        Some(&[x, y, ..]) => Ok([x, y]),
-        _ => Err(Error::malformed("not GeoJSON: a position is not two numbers or more")),
-    }
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ pub struct Options {
     pub ascii: bool,
     /// The coordinate reference system, if not that of the input.
     pub crs: Option<Crs>,
+    /// Write coordinates of OBJ as differences from an origin in the middle.
+    pub local_origin: bool,
     /// Compress the blocks of a stream.
     pub compress: bool,
     /// The file of the input, compressed or not, if the input is a file. Points are read from it directly;
@@ -152,11 +154,15 @@ fn open_sink<'a>(
     };
     let temp_dir = options.temp_dir.as_deref();
     let encoding = if options.ascii { PlyEncoding::Ascii } else { PlyEncoding::Binary };
+    if options.local_origin && to != Format::Obj {
+        return Err(Error::usage("--local-origin is for OBJ: leave it out, or add --to obj"));
+    }
+    let obj = if options.local_origin { ObjSink::with_local_origin } else { ObjSink::new };
     if header.kind == Kind::TetrahedralMesh {
         let surface = surface_header(header);
         match to {
             Format::Obj => {
-                return Ok(Box::new(HullSink::new(ObjSink::new(output, &surface)?, "OBJ", header)));
+                return Ok(Box::new(HullSink::new(obj(output, &surface)?, "OBJ", header)));
             }
             Format::Ply => {
                 let ply = PlySink::new(output, &surface, encoding, temp_dir)?;
@@ -171,7 +177,7 @@ fn open_sink<'a>(
             Box::new(SpmSink::new(output, &header)?)
         }
         Format::Text => Box::new(TwinSink::new(output, header)?),
-        Format::Obj => Box::new(ObjSink::new(output, header)?),
+        Format::Obj => Box::new(obj(output, header)?),
         Format::Ply => Box::new(PlySink::new(output, header, encoding, temp_dir)?),
         Format::Vtu => Box::new(VtuSink::new(output, header, temp_dir)?),
         Format::Medit => Box::new(MeditSink::new(output, header, temp_dir)?),

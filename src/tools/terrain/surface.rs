@@ -2,10 +2,7 @@
 
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::{Point2, Predicates2, Sign};
-use spmesh_stream::{Coordinates, Header, Kind};
-
-/// Relative tolerance, so that edges exactly at the limit pass however their length is rounded.
-const LENGTH_TOLERANCE: f64 = 1e-12;
+use spmesh_stream::{Header, Kind};
 
 /// Checks that a stream is a triangle mesh; it must have elevations if they are needed.
 ///
@@ -22,36 +19,6 @@ pub(crate) fn check_input(header: &Header, needs_elevation: bool) -> Result<()> 
         kind => format!("this is a stream of kind {}, expected a triangle mesh", kind.name()),
     };
     Err(Error::usage(what))
-}
-
-/// The limit on the edges of triangles that are drawn.
-#[derive(Debug)]
-pub(crate) struct LongEdges {
-    scale: Point2,
-    longest: f64,
-}
-
-impl LongEdges {
-    /// Edges longer than `kill` are too long; none are if it is `None`. Units: those of the world.
-    pub(crate) fn new(kill: Option<f64>, coordinates: &Coordinates) -> LongEdges {
-        let scale = match coordinates {
-            Coordinates::F64 => [1.0; 2],
-            Coordinates::I32 { scale: [x, y, _], .. } => [*x, *y],
-        };
-        LongEdges { scale, longest: kill.map_or(f64::INFINITY, |length| length * (1.0 + LENGTH_TOLERANCE)) }
-    }
-
-    /// Whether a triangle has an edge that is too long; its corners are in stored coordinates.
-    pub(crate) fn are_in(&self, [a, b, c]: [Point2; 3]) -> bool {
-        let is_long = |p, q| self.length(p, q) > self.longest;
-        self.longest.is_finite() && (is_long(a, b) || is_long(b, c) || is_long(c, a))
-    }
-
-    /// The length of an edge. Units: those of the world.
-    fn length(&self, a: Point2, b: Point2) -> f64 {
-        let [x, y] = [0, 1].map(|axis| (b[axis] - a[axis]) * self.scale[axis]);
-        x.hypot(y)
-    }
 }
 
 /// Whether corners are counterclockwise; false if they are collinear.

@@ -1,5 +1,7 @@
 //! Multiples of a decimal as people mean them: three times 0.1 is 0.3.
 
+use spmesh_model::decimal::digits;
+
 /// The greatest power of ten that f64 represents exactly.
 const POWER_MAX: i32 = 22;
 
@@ -58,14 +60,6 @@ impl Exact {
         let step = shifted(step, step_power).filter(|step| step.abs() < STEP_MAX)?;
         (-power <= POWER_MAX).then(|| Exact { base, step, units: 10f64.powi(-power) })
     }
-}
-
-/// The digits of the shortest decimal of a finite number, and the power of ten of the last digit.
-fn digits(value: f64) -> Option<(i128, i32)> {
-    let text = format!("{value:e}");
-    let (number, power) = text.split_once('e')?;
-    let behind_point = number.split_once('.').map_or(0, |(_, digits)| digits.len() as i32);
-    Some((number.replace('.', "").parse().ok()?, power.parse::<i32>().ok()? - behind_point))
 }
 
 #[cfg(test)]

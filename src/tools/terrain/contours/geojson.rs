@@ -51,7 +51,8 @@ impl<W: Write> LineWriter<W> {
         LineWriter { output, format, text, unit, features: 0 }
     }
 
-    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end.
+    /// Writes a line of at least two points, in world coordinates. A ring repeats its first point at the end. An
+    /// index line is one that maps draw thicker.
     ///
     /// # Errors
     /// If writing fails.
@@ -59,6 +60,7 @@ impl<W: Write> LineWriter<W> {
         &mut self,
         elevation: f64,
         is_closed: bool,
+        is_index: bool,
         points: impl Iterator<Item = Point2>,
     ) -> Result<()> {
         if self.format == LineFormat::GeoJson {
@@ -69,7 +71,9 @@ impl<W: Write> LineWriter<W> {
         self.number(elevation)?;
         self.text.extend_from_slice(self.unit.as_bytes());
         self.text.extend_from_slice(br#","is_closed":"#);
-        self.text.extend_from_slice(if is_closed { b"true" } else { b"false" });
+        self.truth(is_closed);
+        self.text.extend_from_slice(br#","index":"#);
+        self.truth(is_index);
         self.text.extend_from_slice(br#"},"geometry":{"type":"LineString","coordinates":["#);
         for (count, [x, y]) in points.enumerate() {
             self.text.extend_from_slice(if count > 0 { b",[" } else { b"[" });
@@ -107,6 +111,10 @@ impl<W: Write> LineWriter<W> {
             self.text.truncate(self.text.len() - 2);
         }
         Ok(())
+    }
+
+    fn truth(&mut self, is_true: bool) {
+        self.text.extend_from_slice(if is_true { b"true" } else { b"false" });
     }
 
     fn hand_over(&mut self, len: usize) -> Result<()> {

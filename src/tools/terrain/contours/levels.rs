@@ -43,6 +43,11 @@ impl Levels {
         self.decimals.at(level)
     }
 
+    /// The distance between levels.
+    pub(super) fn interval(&self) -> f64 {
+        self.interval
+    }
+
     /// The highest level at or below an elevation. A vertex there counts as above this level and all lower
     /// ones.
     ///

@@ -2,31 +2,39 @@
 //!
 //! `levels` numbers the elevations that have lines, and ranks each vertex among them. From the ranks,
 //! `crossings` finds the edges of a triangle that a line passes, in integers; `places` computes where.
-//! `open_lines` joins the pieces of adjacent triangles. A complete line gets its canonical form from
-//! `canonical`, and `geojson` writes it. `decimals` computes with numbers as people write them.
+//! `open_lines` joins the pieces of adjacent triangles. `smooth` smooths complete lines on demand. A complete line
+//! gets its canonical form from `canonical`; `clip` cuts it at a mask, and `geojson` writes it. `drain` does all
+//! this. `decimals` computes with numbers as people write them.
 
 mod canonical;
+mod clip;
 mod crossings;
 mod decimals;
+mod drain;
 mod geojson;
 mod levels;
 mod open_lines;
 mod places;
+mod smooth;
 
 use std::io::{Read, Write};
-
-use foldhash::{HashSet, HashSetExt};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 pub use geojson::{LineFormat, epsg_code};
 pub use levels::Levels;
 
-use crate::surface::{LongEdges, check_input, is_counterclockwise};
+use crate::surface::{check_input, is_counterclockwise};
+use drain::Drain;
 use geojson::LineWriter;
-use open_lines::{Contour, OpenLines};
+use open_lines::OpenLines;
 use places::{Elevations, Plane, Vertex};
+use smooth::{Place, Slide};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::{CONTOURS_PER_TRIANGLE_MAX, CONTOURS_PER_TRIANGLE_MEAN_MAX};
-use spmesh_geometry::predicates::FiniteFloatPredicates;
+use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
+use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
+use spmesh_io::source::Mask;
 use spmesh_stream::{Crs, Event, Header, LiveVertices, Patch, StreamReader};
 
 /// The lines to make.
@@ -41,6 +49,40 @@ pub struct Options {
     pub points: Option<usize>,
     /// The coordinate reference system, if not that of the mesh.
     pub crs: Option<Crs>,
+    /// Triangles outside of the concave outline are left out, as in `dem`. Units: those of the world.
+    pub concave: Option<f64>,
+    /// Bytes for triangles that wait for the outline; further ones wait in a temporary file.
+    pub memory: u64,
+    /// The folder of the temporary file.
+    pub temp_dir: Option<PathBuf>,
+    /// Lines are clipped to these polygons.
+    pub mask: Option<Arc<Mask>>,
+    /// Shorter lines are left out. Units: those of the world.
+    pub min_length: Option<f64>,
+    /// Every line at a multiple of this many intervals from the base is an index line.
+    pub index: u32,
+    /// Whether lines are smoothed.
+    pub is_smooth: bool,
+}
+
+impl Options {
+    /// Plain lines at some levels: all of them, with every fifth as index line.
+    #[must_use]
+    pub fn new(levels: Levels) -> Options {
+        Options {
+            levels,
+            kill: None,
+            points: None,
+            concave: None,
+            memory: 1 << 28,
+            temp_dir: None,
+            mask: None,
+            min_length: None,
+            index: 5,
+            is_smooth: false,
+            crs: None,
+        }
+    }
 }
 
 /// Counts of a run.
@@ -52,6 +94,8 @@ pub struct Stats {
     pub triangles: u64,
     /// Triangles left out because of a long edge.
     pub killed: u64,
+    /// Triangles outside of the concave outline.
+    pub outside: u64,
     /// The high-water mark of live vertices.
     pub width: u64,
     /// Levels that have lines.
@@ -64,6 +108,8 @@ pub struct Stats {
     pub points: u64,
     /// Lines left out because all of their points coincide.
     pub single_points: u64,
+    /// Lines left out because they are short.
+    pub short: u64,
     /// Number of cuts.
     pub cuts: u64,
     /// The high-water mark of points of open lines.
@@ -87,7 +133,10 @@ pub struct Stats {
 /// order in which they become complete. Coordinates are those of the world; integer coordinates get two
 /// digits more than their step. Successive equal points are merged.
 ///
-/// Memory: the live vertices, and the open lines, 16 bytes for each point.
+/// Smoothed lines are within 0.45 intervals of their level, and cross neither each other nor themselves.
+///
+/// Memory: the live vertices, the open lines, 16 bytes for each point or 48 if lines are smoothed, and those of
+/// [`ConcaveOutline`].
 ///
 /// # Errors
 /// If the input is not a triangle mesh with elevations, is malformed or truncated; if levels are too close to
@@ -97,26 +146,51 @@ pub fn contour<R: Read, W: Write>(
     output: W,
     format: LineFormat,
     options: &Options,
+    progress: impl FnMut(u64),
+) -> Result<Stats> {
+    if options.is_smooth {
+        contour_with::<Slide, _, _>(reader, output, format, options, progress)
+    } else {
+        contour_with::<Point2, _, _>(reader, output, format, options, progress)
+    }
+}
+
+/// As [`contour`], with points of some kind.
+fn contour_with<P: Place, R: Read, W: Write>(
+    reader: &mut StreamReader<R>,
+    output: W,
+    format: LineFormat,
+    options: &Options,
     mut progress: impl FnMut(u64),
 ) -> Result<Stats> {
     let header = reader.header().clone();
     check_input(&header, true).map_err(|e| e.of_input(reader.name()))?;
-    let mut tracer = Tracer::new(&header, options);
+    let mut tracer = Tracer::<P>::new(&header, options);
     let crs = options.crs.as_ref().unwrap_or(&header.crs);
-    let mut drain = Drain::new(&header, LineWriter::new(output, format, crs), options.levels);
+    let mut drain = Drain::new(&header, LineWriter::new(output, format, crs), options);
     let mut live = LiveVertices::new();
     while let Some(event) = reader.next_event()? {
         if let Event::Patch(patch) = event {
             let triangles = tracer.corners(&patch, &mut live).map_err(|error| reader.locate(error))?;
             for triangle in triangles {
-                tracer.trace(&triangle).map_err(|error| reader.locate(error))?;
+                tracer.take(&triangle).map_err(|error| reader.locate(error))?;
                 drain.write(&mut tracer.lines.complete)?;
             }
             if tracer.lines.is_sweep_due() {
-                tracer.lines.finish_ended(|vertex| live.contains(vertex));
+                let outline = tracer.outline.as_ref();
+                let is_waiting = |vertex| outline.is_some_and(|outline| outline.holds(vertex));
+                tracer.lines.finish_ended(|vertex| live.contains(vertex) || is_waiting(vertex));
                 drain.write(&mut tracer.lines.complete)?;
             }
             progress(reader.totals().vertices);
+        }
+    }
+    if let Some(outline) = tracer.outline.take() {
+        let mut inside = outline.finish()?;
+        tracer.outside = inside.outside;
+        while let Some(triangle) = inside.next_triangle()? {
+            tracer.trace_again(&triangle)?;
+            drain.write(&mut tracer.lines.complete)?;
         }
     }
     tracer.lines.finish_ended(|_| false);
@@ -127,6 +201,7 @@ pub fn contour<R: Read, W: Write>(
         vertices: totals.vertices,
         triangles: totals.simplices,
         killed: tracer.killed,
+        outside: tracer.outside,
         width: live.live_max() as u64,
         levels: drain.levels_with_lines.len() as u64,
         cuts: tracer.lines.cuts,
@@ -139,30 +214,38 @@ pub fn contour<R: Read, W: Write>(
 }
 
 /// Follows lines through triangles.
-struct Tracer {
+struct Tracer<P> {
     levels: Levels,
     plane: Plane,
     to_world: Elevations,
-    long_edges: LongEdges,
+    long_edges: EdgeLimit,
     predicates: FiniteFloatPredicates,
-    lines: OpenLines,
+    lines: OpenLines<P>,
+    /// Finds the triangles outside of the concave outline.
+    outline: Option<ConcaveOutline>,
     killed: u64,
+    outside: u64,
     /// Triangles and pieces of lines so far.
     triangles: u64,
     pieces: u64,
     elevations: Option<[f64; 2]>,
 }
 
-impl Tracer {
-    fn new(header: &Header, options: &Options) -> Tracer {
+impl<P: Place> Tracer<P> {
+    fn new(header: &Header, options: &Options) -> Tracer<P> {
         Tracer {
             levels: options.levels,
             plane: Plane::new(&header.coordinates),
             to_world: Elevations::new(&header.coordinates),
-            long_edges: LongEdges::new(options.kill, &header.coordinates),
+            long_edges: EdgeLimit::new(options.kill, &header.coordinates),
             predicates: FiniteFloatPredicates::default(),
             lines: OpenLines::new(options.points.map_or(usize::MAX, |points| points.max(2))),
+            outline: options.concave.map(|length| {
+                let temp_dir = options.temp_dir.as_deref();
+                ConcaveOutline::new(length, &header.coordinates, options.memory, temp_dir).with_vertices()
+            }),
             killed: 0,
+            outside: 0,
             triangles: 0,
             pieces: 0,
             elevations: None,
@@ -174,7 +257,7 @@ impl Tracer {
         &mut self,
         patch: &'a Patch,
         live: &'a mut LiveVertices<Vertex>,
-    ) -> Result<impl Iterator<Item = [Vertex; 3]> + use<'a>> {
+    ) -> Result<impl Iterator<Item = [Vertex; 3]> + use<'a, P>> {
         let mut failure = None;
         let vertices = live.enter(patch, |id, [x, y, z]| {
             let elevation = self.to_world.to_world(z);
@@ -192,11 +275,38 @@ impl Tracer {
         }
     }
 
+    /// Adds the pieces of all lines in a triangle, or keeps it if it may be outside of the outline.
+    fn take(&mut self, corners: &[Vertex; 3]) -> Result<()> {
+        if let Some(outline) = &mut self.outline {
+            let places = corners.map(|corner| corner.at);
+            let triangle = Waiting {
+                ids: corners.map(|corner| corner.id),
+                corners: corners.map(|Vertex { at: [x, y], elevation, .. }| [x, y, elevation]),
+                number: 0,
+            };
+            if outline.take(places, triangle)? {
+                return Ok(());
+            }
+        }
+        self.trace(corners)
+    }
+
+    /// Adds the pieces in a triangle that was kept.
+    fn trace_again(&mut self, Waiting { ids, corners, .. }: &Waiting) -> Result<()> {
+        let vertex = |i: usize| {
+            let [x, y, elevation] = corners[i];
+            let rank = self.levels.rank(elevation)?;
+            Ok(Vertex { id: ids[i], at: [x, y], elevation, rank })
+        };
+        let corners = [vertex(0)?, vertex(1)?, vertex(2)?];
+        self.trace(&corners)
+    }
+
     /// Adds the pieces of all lines in a triangle.
     fn trace(&mut self, corners: &[Vertex; 3]) -> Result<()> {
         let places = corners.map(|corner| corner.at);
         self.triangles += 1;
-        if self.long_edges.are_in(places) {
+        if self.long_edges.is_exceeded(places) {
             self.killed += 1;
             return Ok(());
         }
@@ -234,43 +344,7 @@ impl Tracer {
         let piece = crossings::piece(corners, level);
         let edges = [piece.from, piece.to].map(|edge| crossings::ends(corners, edge));
         let elevation = self.levels.elevation(level);
-        let place = |side: usize| {
-            let [p, q] = edges[side];
-            self.plane.place(p, q, elevation)
-        };
+        let place = |side: usize| P::of(&self.plane, edges[side], elevation, self.levels.interval());
         self.lines.add(edges.map(|edge| crossings::crossing(edge, level)), place)
-    }
-}
-
-/// Writes complete lines, and counts them.
-struct Drain<W> {
-    writer: LineWriter<W>,
-    levels: Levels,
-    plane: Plane,
-    levels_with_lines: HashSet<i64>,
-    stats: Stats,
-}
-
-impl<W: Write> Drain<W> {
-    fn new(header: &Header, writer: LineWriter<W>, levels: Levels) -> Drain<W> {
-        let plane = Plane::new(&header.coordinates);
-        Drain { writer, levels, plane, levels_with_lines: HashSet::new(), stats: Stats::default() }
-    }
-
-    fn write(&mut self, complete: &mut Vec<Contour>) -> Result<()> {
-        for Contour { level, mut points, is_closed } in complete.drain(..) {
-            if !canonical::tidy(&mut points, is_closed) {
-                self.stats.single_points += 1;
-                continue;
-            }
-            self.levels_with_lines.insert(level);
-            self.stats.lines += 1;
-            self.stats.rings += u64::from(is_closed);
-            self.stats.points += points.len() as u64;
-            let again = is_closed.then(|| points[0]);
-            let places = points.iter().copied().chain(again).map(|place| self.plane.to_world(place));
-            self.writer.line(self.levels.elevation(level), is_closed, places)?;
-        }
-        Ok(())
     }
 }

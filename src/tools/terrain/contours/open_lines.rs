@@ -7,17 +7,16 @@ use foldhash::{HashMap, HashMapExt};
 
 use super::crossings::Crossing;
 use spmesh_core::error::{Error, Result};
-use spmesh_geometry::predicates::Point2;
 
 /// Sweep again when held > 2 x (held after the last sweep) + `SLACK`, in open ends and points.
 const SLACK: usize = 1 << 16;
 
 /// A complete line, or a part of a line that was cut.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Contour {
+pub(super) struct Contour<P> {
     pub(super) level: i64,
     /// Places. A ring does not repeat its first one at the end.
-    pub(super) points: Vec<Point2>,
+    pub(super) points: Vec<P>,
     pub(super) is_closed: bool,
 }
 
@@ -28,9 +27,9 @@ enum End {
     Last,
 }
 
-#[derive(Debug, Default)]
-struct Line {
-    points: VecDeque<Point2>,
+#[derive(Debug)]
+struct Line<P> {
+    points: VecDeque<P>,
     /// The crossings where it may grow, at its first and its last point.
     ends: [Option<Crossing>; 2],
 }
@@ -43,9 +42,9 @@ struct Line {
 /// Memory: the points of these lines, and some 50 bytes for each end. Sweeps over all ends find lines that
 /// cannot grow; a sweep is due when twice as much is held as after the last one.
 #[derive(Debug)]
-pub(super) struct OpenLines {
+pub(super) struct OpenLines<P> {
     waiting: HashMap<Crossing, (usize, End)>,
-    lines: Vec<Line>,
+    lines: Vec<Line<P>>,
     free: Vec<usize>,
     /// Lines with this many points are cut.
     points_limit: usize,
@@ -60,12 +59,12 @@ pub(super) struct OpenLines {
     /// Open ends and points held after the last sweep.
     held_after_sweep: usize,
     /// Complete lines that the caller has not taken yet.
-    pub(super) complete: Vec<Contour>,
+    pub(super) complete: Vec<Contour<P>>,
 }
 
-impl OpenLines {
+impl<P: Copy> OpenLines<P> {
     /// No lines. Lines with `points_limit` points, at least two, will be cut.
-    pub(super) fn new(points_limit: usize) -> OpenLines {
+    pub(super) fn new(points_limit: usize) -> OpenLines<P> {
         OpenLines {
             waiting: HashMap::new(),
             lines: Vec::new(),
@@ -89,7 +88,7 @@ impl OpenLines {
     pub(super) fn add(
         &mut self,
         [from, to]: [Crossing; 2],
-        place: impl Fn(usize) -> Result<Point2>,
+        place: impl Fn(usize) -> Result<P>,
     ) -> Result<()> {
         let line = match (self.take(from, End::Last)?, self.take(to, End::First)?) {
             (None, None) => {
@@ -174,7 +173,7 @@ impl OpenLines {
         self.waiting.insert(crossing, (line, end));
     }
 
-    fn insert(&mut self, line: Line) -> usize {
+    fn insert(&mut self, line: Line<P>) -> usize {
         match self.free.pop() {
             Some(place) => {
                 self.lines[place] = line;
@@ -187,9 +186,9 @@ impl OpenLines {
         }
     }
 
-    fn remove(&mut self, line: usize) -> Line {
+    fn remove(&mut self, line: usize) -> Line<P> {
         self.free.push(line);
-        std::mem::take(&mut self.lines[line])
+        std::mem::replace(&mut self.lines[line], Line { points: VecDeque::new(), ends: [None; 2] })
     }
 
     /// Joins two lines; the second one starts where the first one ends. Moves the shorter one.

@@ -49,6 +49,14 @@ impl Plane {
     /// # Errors
     /// Usage, if differences overflow.
     pub(super) fn place(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
+        self.unrounded(p, q, elevation).map(|place| self.rounded(place))
+    }
+
+    /// As [`Plane::place`], before it is rounded to the digits of places.
+    ///
+    /// # Errors
+    /// As [`Plane::place`].
+    pub(super) fn unrounded(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         let [p, q] = if (p.at, p.elevation) < (q.at, q.elevation) { [p, q] } else { [q, p] };
         let at = if elevation == p.elevation {
             p.at
@@ -64,7 +72,12 @@ impl Plane {
             let what = "coordinates are too great to interpolate between: shift and scale them";
             return Err(Error::usage(what));
         }
-        Ok(if self.grid.is_some() { at.map(|value| (value * PARTS).round()) } else { at })
+        Ok(if self.grid.is_some() { at.map(|value| value * PARTS) } else { at })
+    }
+
+    /// A place with the digits that places have.
+    pub(super) fn rounded(&self, place: Point2) -> Point2 {
+        if self.grid.is_some() { place.map(f64::round) } else { place }
     }
 
     /// A place in world coordinates.

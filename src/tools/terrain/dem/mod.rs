@@ -4,10 +4,13 @@
 //! order, by the `rasterizer`. `axis` and `centers` place the centres. `span` finds exactly the centres in a
 //! triangle, with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
-//! triangle, `flush` writes the remaining tiles, whose holes `fill` fills.
+//! triangle, `flush` writes the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
+//! `cell_mask` finds the cells in polygons.
 
 mod axis;
+mod cell_mask;
 mod centers;
+mod derived;
 mod facet;
 mod fill;
 mod flush;
@@ -46,6 +49,8 @@ pub struct Stats {
     pub killed: u64,
     /// Triangles left out because a corner has no known value.
     pub unknown: u64,
+    /// Triangles outside of the concave outline.
+    pub outside: u64,
     /// The high-water mark of live vertices.
     pub width: u64,
     /// Cells of the raster.
@@ -109,7 +114,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     match options.raster.format {
         RasterFormat::Ascii => {
             width = read(reader, column.as_ref(), &mut rasterizer, None, progress)?;
-            let mut flush = Flush::new(&mut rasterizer.cache, filler);
+            let mut flush = Flush::new(&mut rasterizer, filler, options, grid.step)?;
             let band_width = (grid.columns as usize).next_multiple_of(TILE);
             let mut band = vec![f32::NAN; band_width * TILE];
             raster::write_rows(output, &file, |row, values| {
@@ -125,12 +130,17 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         }
         RasterFormat::GeoTiff => raster::write_tiles(output, &file, |tiles| {
             let mut write = |tiles: &mut Tiles, [column, row]: TilePlace, values: &[f32]| {
-                known += flush::count_known(values);
-                tiles.tile(column, row, values)
+                let count = flush::count_known(values);
+                known += count;
+                // A tile may be outside of the mask.
+                if count > 0 { tiles.tile(column, row, values) } else { Ok(()) }
             };
             let mut complete = |at: TilePlace, values: &[f32]| write(tiles, at, values);
-            width = read(reader, column.as_ref(), &mut rasterizer, Some(&mut complete), progress)?;
-            let mut flush = Flush::new(&mut rasterizer.cache, filler);
+            // Elevations of tiles that are written would not be there when slopes of filled cells need them.
+            let is_written_early = rasterizer.heights.is_none();
+            let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
+            width = read(reader, column.as_ref(), &mut rasterizer, sink, progress)?;
+            let mut flush = Flush::new(&mut rasterizer, filler, options, grid.step)?;
             flush.write_rest(tiles, |tiles, [column, row], values| tiles.read(column, row, values), write)?;
             filled = flush.filled;
             Ok(())
@@ -142,6 +152,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
         triangles: totals.simplices,
         killed: rasterizer.killed,
         unknown: rasterizer.unknown,
+        outside: rasterizer.outside,
         width,
         cells: grid.cells(),
         known,
@@ -193,6 +204,7 @@ fn read<R: Read>(
             progress(reader.totals().vertices);
         }
     }
+    rasterizer.draw_inside(complete)?;
     Ok(live.live_max() as u64)
 }
 
@@ -211,7 +223,7 @@ fn draw(
         return Err(Error::usage(what));
     }
     for triangle in patch.triangles() {
-        rasterizer.draw(triangle.map(|local| vertices[local as usize].1), complete.as_deref_mut())?;
+        rasterizer.take(triangle.map(|local| vertices[local as usize]), complete.as_deref_mut())?;
     }
     Ok(())
 }

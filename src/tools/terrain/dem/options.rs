@@ -1,10 +1,13 @@
 //! What a raster shows, and how it is drawn and written.
 
+use std::sync::Arc;
+
 use super::facet::out_of_range;
 use spmesh_core::error::Result;
 use spmesh_crs::{Horizontal, System};
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction, Reference};
+use spmesh_io::source::Mask;
 use spmesh_stream::Crs;
 
 /// How values between vertices follow from those of the vertices.
@@ -38,9 +41,14 @@ pub struct Options {
     pub quantity: Quantity,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
-    /// Cells without data are filled from data at most this many cells away.
+    /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
+    /// hull in which every crossed edge is longer than this. Units: those of the world.
+    pub concave: Option<f64>,
+    /// Cells with centres outside of these polygons have no data.
+    pub mask: Option<Arc<Mask>>,
+    /// Cells without data inside of the outline and the mask are filled from data at most this many cells away.
     pub fill: Option<u32>,
-    /// Bytes for tiles in memory; the others wait in a temporary file.
+    /// Bytes for tiles, and for triangles that wait for the outline; others wait in temporary files.
     pub memory: u64,
     /// How the raster is written.
     pub raster: RasterOptions,
@@ -54,7 +62,7 @@ impl Options {
         let are_elevations = self.quantity == Quantity::Elevation;
         let mut reference = Reference::of(system, are_elevations, self.raster.format);
         let is_angular = system.horizontal.as_ref().is_some_and(Horizontal::is_angular);
-        if self.quantity.is_relief() && is_angular {
+        if self.quantity.is_derived() && is_angular {
             reference.notices.push(
                 "x and y are angles, so slopes are too steep by far: project the points first".to_string(),
             );
@@ -76,17 +84,17 @@ impl Options {
 }
 
 impl Quantity {
-    /// Whether values follow from slopes.
-    fn is_relief(&self) -> bool {
-        matches!(self, Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_))
-    }
-
     /// How values vary in a triangle.
     pub(super) fn interpolation(&self) -> Interpolation {
         match self {
             Quantity::Attribute(_, interpolation) => *interpolation,
             _ => Interpolation::Linear,
         }
+    }
+
+    /// Whether it follows from the gradient of elevations.
+    pub(super) fn is_derived(&self) -> bool {
+        matches!(self, Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_))
     }
 
     /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.

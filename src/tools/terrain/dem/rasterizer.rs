@@ -1,17 +1,20 @@
 //! Draws triangles on tiles.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use super::cell_mask::CellMask;
 use super::centers::Centers;
 use super::facet::{Facet, place};
 use super::options::{Interpolation, Options, Quantity};
 use super::span::{Edges, Span};
 use super::tile::overlap;
 use super::tile_cache::{TileCache, TilePlace};
-use crate::surface::{LongEdges, is_counterclockwise};
+use crate::surface::is_counterclockwise;
 use spmesh_core::error::Result;
 use spmesh_crs::System;
 use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
+use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
 use spmesh_stream::Coordinates;
@@ -25,14 +28,22 @@ pub(super) struct Rasterizer {
     centers: Centers,
     quantity: Quantity,
     /// Units of x and y that one unit of z is.
-    unit_of_z: f64,
-    long_edges: LongEdges,
+    pub(super) unit_of_z: f64,
+    long_edges: EdgeLimit,
+    /// Finds the triangles outside of the concave outline.
+    outline: Option<ConcaveOutline>,
     pub(super) cache: TileCache,
+    /// The elevations, if the quantity of filled cells is derived from them.
+    pub(super) heights: Option<TileCache>,
+    /// Whether triangles that are left out are marked as holes, which are filled later.
+    marks_holes: bool,
     pub(super) predicates: FiniteFloatPredicates,
     /// Number of triangles left out because of a long edge.
     pub(super) killed: u64,
     /// Number of triangles left out because the value of a corner is unknown.
     pub(super) unknown: u64,
+    /// Number of triangles outside of the concave outline.
+    pub(super) outside: u64,
     /// The spans of a triangle in one row of tiles; a field so that the allocation is reused.
     spans: Vec<Span>,
 }
@@ -48,17 +59,71 @@ impl Rasterizer {
         options: &Options,
         system: &System,
     ) -> Result<Rasterizer> {
+        let temp_dir = options.raster.temp_dir.as_deref();
+        // A part of the memory is for triangles that wait for the outline.
+        let for_outline = if options.concave.is_some() { options.memory / 4 } else { 0 };
+        let for_tiles = options.memory - for_outline;
+        let has_heights = options.fill.is_some() && options.quantity.is_derived();
+        let for_cache = if has_heights { for_tiles / 2 } else { for_tiles };
+        let mask = options.mask.as_ref().map(|mask| Arc::new(CellMask::new(mask, grid)));
+        let cache = || TileCache::new(grid, for_cache, temp_dir, mask.clone());
+        let unit_of_z = system.vertical_ratio().unwrap_or(1.0);
         Ok(Rasterizer {
-            centers: Centers::new(grid, coordinates),
+            centers: Centers::new(grid, coordinates, unit_of_z),
+            unit_of_z,
             quantity: options.quantity.clone(),
-            unit_of_z: system.vertical_ratio().unwrap_or(1.0),
-            long_edges: LongEdges::new(options.kill, coordinates),
-            cache: TileCache::new(grid, options.memory, options.raster.temp_dir.as_deref())?,
+            long_edges: EdgeLimit::new(options.kill, coordinates),
+            outline: options
+                .concave
+                .map(|length| ConcaveOutline::new(length, coordinates, for_outline, temp_dir)),
+            cache: cache()?,
+            heights: has_heights.then(cache).transpose()?,
+            marks_holes: options.fill.is_some(),
             predicates: FiniteFloatPredicates::default(),
             killed: 0,
             unknown: 0,
+            outside: 0,
             spans: Vec::with_capacity(TILE),
         })
+    }
+
+    /// Draws a triangle of vertices with ids, or keeps it until [`Rasterizer::draw_inside`] if it may be outside
+    /// of the outline. The rest is as for [`Rasterizer::draw`].
+    ///
+    /// # Errors
+    /// As [`Rasterizer::draw`] and [`ConcaveOutline::take`].
+    pub(super) fn take(
+        &mut self,
+        vertices: [(u64, Point); 3],
+        complete: Option<&mut TileSink>,
+    ) -> Result<()> {
+        let corners = vertices.map(|(_, corner)| corner);
+        if let Some(outline) = &mut self.outline {
+            let triangle = Waiting { ids: vertices.map(|(id, _)| id), corners, number: 0 };
+            if outline.take(corners.map(place), triangle)? {
+                return Ok(());
+            }
+        }
+        self.draw(corners, complete)
+    }
+
+    /// Draws the kept triangles that are inside of the outline.
+    ///
+    /// # Errors
+    /// As [`Rasterizer::draw`]; if the temporary file fails.
+    pub(super) fn draw_inside(&mut self, mut complete: Option<&mut TileSink>) -> Result<()> {
+        let Some(outline) = self.outline.take() else { return Ok(()) };
+        let mut inside = outline.finish()?;
+        self.outside = inside.outside;
+        while let Some(triangle) = inside.next_triangle()? {
+            // Reborrows the sink for each triangle.
+            let complete: Option<&mut TileSink> = match &mut complete {
+                Some(complete) => Some(&mut **complete),
+                None => None,
+            };
+            self.draw(triangle.corners, complete)?;
+        }
+        Ok(())
     }
 
     /// Draws a triangle with corners in stored coordinates and values of the world, NaN if unknown. Tiles that become
@@ -70,13 +135,13 @@ impl Rasterizer {
     pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut TileSink>) -> Result<()> {
         let corners = least_first(corners);
         let places = corners.map(place);
-        if self.is_unknown(corners) {
-            self.unknown += 1;
-            return Ok(());
-        }
-        if self.long_edges.are_in(places) {
-            self.killed += 1;
-            return Ok(());
+        let is_unknown = self.is_unknown(corners);
+        let is_hole = is_unknown || self.long_edges.is_exceeded(places);
+        if is_hole {
+            *(if is_unknown { &mut self.unknown } else { &mut self.killed }) += 1;
+            if !self.marks_holes {
+                return Ok(());
+            }
         }
         let [bottom, top] = range(places, 1);
         let rows = self.centers.rows.cells(bottom, top);
@@ -88,12 +153,13 @@ impl Rasterizer {
         if columns.is_empty() || !is_counterclockwise(places, &mut self.predicates)? {
             return Ok(());
         }
-        let (facet, edges) = (Facet::of(corners), Edges::of(places, &self.centers.columns));
+        let edges = Edges::of(places, &self.centers.columns);
+        let facet = (!is_hole).then(|| Facet::of(corners));
         let mut from = rows.start;
         while from < rows.end {
             let band = from as usize / TILE;
             let end = rows.end.min(((band + 1) * TILE) as u32);
-            self.draw_band(&facet, &edges, columns.clone(), from..end, &mut complete)?;
+            self.draw_band(facet.as_ref(), &edges, columns.clone(), from..end, &mut complete)?;
             from = end;
         }
         Ok(())
@@ -108,10 +174,10 @@ impl Rasterizer {
         }
     }
 
-    /// Draws the part of a triangle in one row of tiles.
+    /// Draws the part of a triangle in one row of tiles; a hole has no plane.
     fn draw_band(
         &mut self,
-        facet: &Facet,
+        facet: Option<&Facet>,
         edges: &Edges,
         columns: Range<u32>,
         rows: Range<u32>,
@@ -128,7 +194,11 @@ impl Rasterizer {
         let tiles = ends.map_or(0..0, |(start, end)| start as usize / TILE..(end as usize).div_ceil(TILE));
         let band = rows.start as usize / TILE;
         for column in tiles {
-            self.draw_tile(facet, [column, band], rows.start, &spans)?;
+            let at = [column, band];
+            draw_tile(&mut self.cache, &self.centers, &self.quantity, facet, at, rows.start, &spans)?;
+            if let Some(heights) = &mut self.heights {
+                draw_tile(heights, &self.centers, &Quantity::Elevation, facet, at, rows.start, &spans)?;
+            }
             if let Some(complete) = complete.as_deref_mut()
                 && let Some(tile) = self.cache.take_complete([column, band])
             {
@@ -139,52 +209,65 @@ impl Rasterizer {
         self.spans = spans;
         Ok(())
     }
+}
 
-    /// Draws the part of the spans in one tile; they start at a row.
-    fn draw_tile(&mut self, facet: &Facet, at: TilePlace, first_row: u32, spans: &[Span]) -> Result<()> {
-        let [left, top] = at.map(|place| (place * TILE) as u32);
-        let within = |cells: &Range<u32>| cells.start.max(left)..cells.end.min(left + TILE as u32);
-        if spans.iter().all(|span| within(&span.cells).is_empty()) {
-            return Ok(());
-        }
-        let interpolation = self.quantity.interpolation();
-        let gradient = self.centers.gradient_to_world(facet.gradient).map(|part| part * self.unit_of_z);
-        let flat = self.quantity.of_plane(gradient)?;
-        let Some(tile) = self.cache.tile(at)? else {
-            // All cells of a written tile belong to other triangles, so this one may only touch them.
-            let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
-            return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
-        };
-        for (row, span) in (first_row..).zip(spans) {
-            let y = self.centers.rows.at(row);
-            let values_of = |cells: Range<u32>, values: &mut [f32]| match flat {
-                Some(value) => {
-                    values.fill(value);
-                    Ok(())
-                }
-                None => {
-                    let abscissae = cells.map(|column| self.centers.columns.at(column));
-                    match interpolation {
-                        Interpolation::Linear => facet.row(y, abscissae, values)?,
-                        Interpolation::Nearest => facet.row_of_nearest(y, abscissae, values),
-                    }
-                    Ok(())
-                }
-            };
-            let place = |cells: &Range<u32>| (cells.start - left) as usize..(cells.end - left) as usize;
-            let owned = within(&(span.cells.start..span.owned_end));
-            if !owned.is_empty() {
-                let values = tile.own((row - top) as usize, place(&owned))?;
-                values_of(owned, values)?;
-            }
-            for column in within(&(span.owned_end..span.cells.end)) {
-                let mut value = [0.0];
-                values_of(column..column + 1, &mut value)?;
-                tile.touch((row - top) as usize, (column - left) as usize, value[0]);
-            }
-        }
-        Ok(())
+/// Draws the part of the spans in one tile; they start at a row. A hole has no plane.
+fn draw_tile(
+    cache: &mut TileCache,
+    centers: &Centers,
+    quantity: &Quantity,
+    facet: Option<&Facet>,
+    at: TilePlace,
+    first_row: u32,
+    spans: &[Span],
+) -> Result<()> {
+    let [left, top] = at.map(|place| (place * TILE) as u32);
+    let within = |cells: &Range<u32>| cells.start.max(left)..cells.end.min(left + TILE as u32);
+    if spans.iter().all(|span| within(&span.cells).is_empty()) {
+        return Ok(());
     }
+    let interpolation = quantity.interpolation();
+    let gradient = facet.map(|facet| centers.gradient_to_world(facet.gradient));
+    let flat = gradient.map_or(Ok(None), |gradient| quantity.of_plane(gradient))?;
+    let Some(tile) = cache.tile(at)? else {
+        // All cells of a written tile belong to other triangles, so this one may only touch them, or is a hole that
+        // overlaps them.
+        let is_owner = |span: &Span| !within(&(span.cells.start..span.owned_end)).is_empty();
+        return if spans.iter().any(is_owner) { Err(overlap()) } else { Ok(()) };
+    };
+    let place = |cells: &Range<u32>| (cells.start - left) as usize..(cells.end - left) as usize;
+    let Some(facet) = facet else {
+        for (row, span) in (first_row..).zip(spans) {
+            let cells = within(&span.cells);
+            if !cells.is_empty() {
+                tile.mark_hole((row - top) as usize, place(&cells));
+            }
+        }
+        return Ok(());
+    };
+    for (row, span) in (first_row..).zip(spans) {
+        let y = centers.rows.at(row);
+        let values_of = |cells: Range<u32>, values: &mut [f32]| {
+            let abscissae = cells.map(|column| centers.columns.at(column));
+            match (flat, interpolation) {
+                (Some(value), _) => values.fill(value),
+                (None, Interpolation::Linear) => facet.row(y, abscissae, values)?,
+                (None, Interpolation::Nearest) => facet.row_of_nearest(y, abscissae, values),
+            }
+            Ok(())
+        };
+        let owned = within(&(span.cells.start..span.owned_end));
+        if !owned.is_empty() {
+            let values = tile.own((row - top) as usize, place(&owned))?;
+            values_of(owned, values)?;
+        }
+        for column in within(&(span.owned_end..span.cells.end)) {
+            let mut value = [0.0];
+            values_of(column..column + 1, &mut value)?;
+            tile.touch((row - top) as usize, (column - left) as usize, value[0]);
+        }
+    }
+    Ok(())
 }
 
 /// The same triangle, starting at the corner that is least in x, then y, so that values do not depend on the

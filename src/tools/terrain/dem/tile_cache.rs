@@ -1,15 +1,19 @@
 //! The tiles of a raster: some in memory, others in a temporary file.
 
-use std::path::Path;
-
-use super::tile::Tile;
+use super::cell_mask::CellMask;
+use super::tile::{Tile, WORDS_OF_TILE};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::RASTER_TILES_MAX;
 use spmesh_core::temporary::Records;
 use spmesh_io::raster::{Grid, TILE};
+use std::path::Path;
+use std::sync::Arc;
 
 /// The action in the message when reading the temporary file fails.
 const READING: &str = "reading tiles back";
+
+/// Where the parts of a tile start in its record.
+const STARTS: [u64; 3] = [0, Tile::VALUES_LEN, Tile::VALUES_LEN + Tile::BITS_LEN];
 
 /// The column and the row of a tile.
 pub(super) type TilePlace = [usize; 2];
@@ -53,14 +57,22 @@ pub(super) struct TileCache {
     pub(super) spilled: u64,
     /// A released tile, for reuse.
     spare: Option<Tile>,
+    /// Cells outside of it have no data.
+    mask: Option<Arc<CellMask>>,
 }
 
 impl TileCache {
-    /// Blank tiles. Those in memory take `memory` bytes at most, or one tile if that is more.
+    /// Blank tiles. Those in memory take `memory` bytes at most, or one tile if that is more. Cells outside of
+    /// the mask have no data when they are read or taken.
     ///
     /// # Errors
     /// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
-    pub(super) fn new(grid: Grid, memory: u64, temp_dir: Option<&Path>) -> Result<TileCache> {
+    pub(super) fn new(
+        grid: Grid,
+        memory: u64,
+        temp_dir: Option<&Path>,
+        mask: Option<Arc<CellMask>>,
+    ) -> Result<TileCache> {
         let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
         let count = across as u64 * down as u64;
         if count > RASTER_TILES_MAX {
@@ -81,6 +93,7 @@ impl TileCache {
             spill: Records::new(temp_dir, Tile::LEN),
             spilled: 0,
             spare: None,
+            mask,
         })
     }
 
@@ -120,18 +133,15 @@ impl TileCache {
             self.held[place as usize].tile.owned_count() == self.inside(at).iter().product::<usize>() as u32;
         is_complete.then(|| {
             self.states[number] = State::Written;
-            self.release(place as usize)
+            let mut tile = self.release(place as usize);
+            self.blank_outside(at, &mut tile.values);
+            tile
         })
     }
 
     /// Returns a tile from [`TileCache::take_complete`] for reuse.
     pub(super) fn recycle(&mut self, tile: Tile) {
         self.spare = Some(tile);
-    }
-
-    /// Whether no triangle has been drawn on a tile.
-    pub(super) fn is_blank(&self, at: TilePlace) -> bool {
-        self.states[self.number(at)] == State::Blank
     }
 
     /// Whether a tile was complete and written.
@@ -151,7 +161,37 @@ impl TileCache {
                 self.spill.read(READING, record, 0, bytemuck::cast_slice_mut(values))?;
             }
         }
+        self.blank_outside(at, values);
         Ok(true)
+    }
+
+    /// Reads which cells of a tile lie in triangles, holes included, and in the mask: a bit for each cell.
+    ///
+    /// # Errors
+    /// If the temporary file fails.
+    pub(super) fn read_outline(&mut self, at: TilePlace) -> Result<Vec<u64>> {
+        let mut bits = vec![0; 2 * WORDS_OF_TILE];
+        match self.states[self.number(at)] {
+            State::Blank | State::Written => {}
+            State::Held(place) => bits = self.held[place as usize].tile.bits().concat(),
+            State::Spilled(record) => {
+                let bytes = bytemuck::cast_slice_mut(&mut bits);
+                self.spill.read(READING, record, Tile::VALUES_LEN, bytes)?;
+            }
+        }
+        let (owned, holes) = bits.split_at(WORDS_OF_TILE);
+        let mut cells: Vec<u64> = owned.iter().zip(holes).map(|(owned, hole)| owned | hole).collect();
+        if let Some(mask) = &self.mask {
+            cells.iter_mut().zip(mask.tile(at)).for_each(|(cells, mask)| *cells &= mask);
+        }
+        Ok(cells)
+    }
+
+    /// Takes the values of cells outside of the mask away.
+    fn blank_outside(&self, at: TilePlace, values: &mut [f32]) {
+        if let Some(mask) = &self.mask {
+            blank_others(&mask.tile(at), values);
+        }
     }
 
     fn number(&self, [column, row]: TilePlace) -> usize {
@@ -203,19 +243,27 @@ impl TileCache {
     }
 }
 
+/// Takes the values of cells away whose bit is not set.
+pub(super) fn blank_others(cells: &[u64], values: &mut [f32]) {
+    for (values, word) in values.chunks_mut(u64::BITS as usize).zip(cells) {
+        let outside = values.iter_mut().enumerate().filter(|(bit, _)| word >> bit & 1 == 0);
+        outside.for_each(|(_, value)| *value = f32::NAN);
+    }
+}
+
 /// Writes a tile to the temporary file and returns the number of its record.
 fn write(spill: &mut Records, tile: &Tile) -> Result<u32> {
-    let (record, [values, owned]) = (spill.add(), tile.bytes());
+    let record = spill.add();
     let what = "writing tiles that exceed --memory";
-    spill.write(what, record, 0, values)?;
-    spill.write(what, record, Tile::VALUES_LEN, owned)?;
+    for (bytes, start) in tile.bytes().into_iter().zip(STARTS) {
+        spill.write(what, record, start, bytes)?;
+    }
     Ok(record)
 }
 
 /// Reads a tile from the temporary file.
 fn read(spill: &mut Records, record: u32, tile: &mut Tile) -> Result<()> {
-    tile.fill(|[values, owned]| {
-        spill.read(READING, record, 0, values)?;
-        spill.read(READING, record, Tile::VALUES_LEN, owned)
+    tile.fill(|parts| {
+        parts.into_iter().zip(STARTS).try_for_each(|(bytes, start)| spill.read(READING, record, start, bytes))
     })
 }
