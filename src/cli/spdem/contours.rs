@@ -74,7 +74,12 @@ impl ContourFlags {
     ///
     /// # Errors
     /// As [`Levels::new`] and the functions of [`OutlineFlags`]; usage, if memory is given without an outline.
-    pub(super) fn options(&self, outline: &OutlineFlags, memory: Option<u64>, crs: Option<Crs>) -> Result<Option<Options>> {
+    pub(super) fn options(
+        &self,
+        outline: &OutlineFlags,
+        memory: Option<u64>,
+        crs: Option<Crs>,
+    ) -> Result<Option<Options>> {
         let Some(interval) = self.contours else { return Ok(None) };
         let defaults = Options::new(Levels::new(interval, self.contour_base)?);
         let concave = outline.concave()?;
