@@ -314,7 +314,7 @@ fn attributes_are_drawn_as_rasters() {
 fn attributes_are_shown_in_pictures() {
     let mesh = slanted();
     let svg = String::from_utf8(output_of("spview", &["--colour-by", "value"], &mesh)).unwrap();
-    assert!(svg.contains(">value<"), "the legend names the attribute");
+    assert!(svg.contains(">value (all: 0 to 87)<"), "the legend names the attribute and its range");
     assert_outcome(
         "spview",
         &["--colour-by", "rgb"],
