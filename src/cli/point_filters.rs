@@ -49,15 +49,15 @@ pub(super) struct PointFilters {
 
     /// Keep only points with an intensity from MIN to MAX; in this and the next filters, an end that is left
     /// out is open, as in 100,
-    #[arg(long, value_name = "MIN,MAX")]
+    #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true)]
     keep_intensity: Option<Interval>,
 
     /// Keep only points with user data from MIN to MAX
-    #[arg(long, value_name = "MIN,MAX")]
+    #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true)]
     keep_user_data: Option<Interval>,
 
     /// Keep only points with a point source ID from MIN to MAX: mostly the number of the flight line
-    #[arg(long, value_name = "MIN,MAX")]
+    #[arg(long, value_name = "MIN,MAX", allow_hyphen_values = true)]
     keep_point_source: Option<Interval>,
 
     /// Keep only points with a GPS time from MIN to MAX

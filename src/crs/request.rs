@@ -19,6 +19,10 @@ pub fn requested(argument: &str) -> Result<Crs> {
     if let Some(codes) = strip_authority(bare) {
         return of_codes(codes).map(Crs::Wkt);
     }
+    if bare.is_empty() || bare.bytes().all(|byte| byte.is_ascii_digit()) && !Path::new(argument).exists() {
+        let what = format!("--crs {argument:?}: expected EPSG:CODE, well-known text, or a file");
+        return Err(Error::usage(what));
+    }
     let text = if bare.contains(['[', '(']) && !Path::new(argument).exists() {
         bare.to_string()
     } else {
@@ -28,7 +32,7 @@ pub fn requested(argument: &str) -> Result<Crs> {
             Error::io(message, cause).of_input(argument)
         })?
     };
-    of_text(text.trim())
+    of_text(text.trim_start_matches('\u{feff}').trim())
 }
 
 fn strip_authority(text: &str) -> Option<&str> {

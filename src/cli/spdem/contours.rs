@@ -152,6 +152,9 @@ pub(super) fn run(
 fn summary(stats: &Stats) -> String {
     match stats.elevations {
         _ if stats.triangles == 0 => "no lines: there are no triangles".to_string(),
+        _ if stats.lines == 0 && stats.short > 0 => {
+            format!("no lines: all {} are shorter than --min-length", stats.short)
+        }
         Some([least, greatest]) if stats.lines == 0 => {
             format!("no lines: elevations are from {least} to {greatest}")
         }

@@ -4,16 +4,23 @@ use std::io::Read;
 
 use serde_json::Value;
 
+use crate::detect::BYTE_ORDER_MARK;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::limits::GEOJSON_LEN_MAX;
 use spmesh_model::points::Point2;
 
 /// Whether a text that starts with these bytes is JSON.
 pub(super) fn is_json(head: &[u8]) -> bool {
-    head.iter().find(|byte| !byte.is_ascii_whitespace()) == Some(&b'{')
+    without_mark(head).trim_ascii_start().starts_with(b"{")
 }
 
-/// Reads the rest of a small file behind its first bytes; `remedy` says what to do if it is too long.
+/// Bytes without the byte order mark before them, if there is one.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes)
+}
+
+/// Reads the rest of a small file behind its first bytes, and removes a byte order mark; `remedy` says what to do
+/// if the file is too long.
 ///
 /// # Errors
 /// If reading fails, or the file is too long.
@@ -23,6 +30,7 @@ pub(super) fn read_rest(input: impl Read, mut head: Vec<u8>, remedy: &str) -> Re
     if head.len() as u64 > GEOJSON_LEN_MAX {
         return Err(Error::malformed(format!("more than {GEOJSON_LEN_MAX} bytes: {remedy}")));
     }
+    head.drain(..head.len() - without_mark(&head).len());
     Ok(head)
 }
 

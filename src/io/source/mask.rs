@@ -147,6 +147,9 @@ mod tests {
         );
         let multi = "MULTIPOLYGON (((0 0,4 0,4 4,0 4,0 0)),\n((1 1,2 1,1 2,1 1)))";
         assert_eq!(read(multi), [vec![square()], vec![hole()]]);
+        // Some editors put a byte order mark before the text.
+        assert_eq!(read(&format!("\u{feff}{polygon}")), std::slice::from_ref(&one));
+        assert_eq!(read(&format!("\u{feff}{wkt}")), std::slice::from_ref(&one));
         let edges = Mask { polygons: vec![vec![hole()]] };
         let edges: Vec<_> = edges.edges().map(|(number, [from, _])| (number, from)).collect();
         assert_eq!(edges, [(0, [1.0, 1.0]), (0, [2.0, 1.0]), (0, [1.0, 2.0])]);

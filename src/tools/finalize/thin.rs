@@ -134,7 +134,7 @@ impl Thin {
                 let Some(place) = self.place(&coordinates, point) else {
                     let world = coordinates.to_world(point);
                     let message =
-                        format!("cells of side {} are too small for the point {world:?}", self.cell);
+                        format!("cells of side {:e} are too small for the point {world:?}", self.cell);
                     return Err(Error::usage(format!("{message}: give larger ones to --thin")));
                 };
                 places.push(place);

@@ -223,7 +223,7 @@ fn draw(
         return Err(Error::usage(what));
     }
     for triangle in patch.triangles() {
-        rasterizer.take(triangle.map(|local| vertices[local as usize]), complete.as_deref_mut())?;
+        rasterizer.take(triangle.map(|local| &vertices[local as usize]), complete.as_deref_mut())?;
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use super::tile_cache::{TileCache, TilePlace};
 use crate::surface::is_counterclockwise;
 use spmesh_core::error::Result;
 use spmesh_crs::System;
-use spmesh_geometry::predicates::{FiniteFloatPredicates, Point2};
+use spmesh_geometry::predicates::FiniteFloatPredicates;
 use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
@@ -92,19 +92,24 @@ impl Rasterizer {
     ///
     /// # Errors
     /// As [`Rasterizer::draw`] and [`ConcaveOutline::take`].
+    #[inline]
     pub(super) fn take(
         &mut self,
-        vertices: [(u64, Point); 3],
+        vertices: [&(u64, Point); 3],
         complete: Option<&mut TileSink>,
     ) -> Result<()> {
-        let corners = vertices.map(|(_, corner)| corner);
-        if let Some(outline) = &mut self.outline {
-            let triangle = Waiting { ids: vertices.map(|(id, _)| id), corners, number: 0 };
-            if outline.take(corners.map(place), triangle)? {
-                return Ok(());
-            }
+        if self.outline.is_some() && self.keeps(vertices)? {
+            return Ok(());
         }
-        self.draw(corners, complete)
+        self.draw(vertices.map(|(_, corner)| corner), complete)
+    }
+
+    /// Keeps a triangle if it may be outside of the outline, and returns whether it did.
+    fn keeps(&mut self, vertices: [&(u64, Point); 3]) -> Result<bool> {
+        let Some(outline) = &mut self.outline else { return Ok(false) };
+        let corners = vertices.map(|(_, corner)| *corner);
+        let triangle = Waiting { ids: vertices.map(|(id, _)| *id), corners, number: 0 };
+        outline.take(corners.map(place), triangle)
     }
 
     /// Draws the kept triangles that are inside of the outline.
@@ -121,36 +126,54 @@ impl Rasterizer {
                 Some(complete) => Some(&mut **complete),
                 None => None,
             };
-            self.draw(triangle.corners, complete)?;
+            self.draw(triangle.corners.each_ref(), complete)?;
         }
         Ok(())
     }
 
     /// Draws a triangle with corners in stored coordinates and values of the world, NaN if unknown. Tiles that become
-    /// complete go to `complete`, if there is one.
+    /// complete go to `complete`, if there is one. Corners are references because loads right after a copy would
+    /// wait for it, which takes half of the time where triangles are small.
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Malformed`], if it is clockwise, or overlaps another triangle at a
     /// centre; those of `complete` and of temporary files.
-    pub(super) fn draw(&mut self, corners: [Point; 3], mut complete: Option<&mut TileSink>) -> Result<()> {
-        let corners = least_first(corners);
-        let places = corners.map(place);
+    #[inline]
+    pub(super) fn draw(&mut self, corners: [&Point; 3], complete: Option<&mut TileSink>) -> Result<()> {
         let is_unknown = self.is_unknown(corners);
-        let is_hole = is_unknown || self.long_edges.is_exceeded(places);
+        let is_hole = is_unknown || self.has_long_edge(corners);
         if is_hole {
             *(if is_unknown { &mut self.unknown } else { &mut self.killed }) += 1;
             if !self.marks_holes {
                 return Ok(());
             }
         }
-        let [bottom, top] = range(places, 1);
+        // Where triangles are smaller than cells, most contain no centre.
+        let [bottom, top] = range(corners, 1);
         let rows = self.centers.rows.cells(bottom, top);
         if rows.is_empty() {
             return Ok(());
         }
-        let [left, right] = range(places, 0);
+        let [left, right] = range(corners, 0);
         let columns = self.centers.columns.cells(left, right);
-        if columns.is_empty() || !is_counterclockwise(places, &mut self.predicates)? {
+        if columns.is_empty() {
+            return Ok(());
+        }
+        self.draw_cells(least_first(corners.map(|corner| *corner)), is_hole, columns, rows, complete)
+    }
+
+    /// Draws a triangle that starts with its least corner; the cells with centres in it are in these columns and
+    /// rows.
+    fn draw_cells(
+        &mut self,
+        corners: [Point; 3],
+        is_hole: bool,
+        columns: Range<u32>,
+        rows: Range<u32>,
+        mut complete: Option<&mut TileSink>,
+    ) -> Result<()> {
+        let places = corners.map(place);
+        if !is_counterclockwise(places, &mut self.predicates)? {
             return Ok(());
         }
         let edges = Edges::of(places, &self.centers.columns);
@@ -165,8 +188,14 @@ impl Rasterizer {
         Ok(())
     }
 
+    #[inline]
+    fn has_long_edge(&self, corners: [&Point; 3]) -> bool {
+        self.long_edges.is_limited() && self.long_edges.is_exceeded(corners.map(|corner| place(*corner)))
+    }
+
     /// Whether no cell can have a value: linear values need those of all corners.
-    fn is_unknown(&self, corners: [Point; 3]) -> bool {
+    #[inline]
+    fn is_unknown(&self, corners: [&Point; 3]) -> bool {
         let unknown = corners.iter().filter(|corner| corner[2].is_nan()).count();
         match self.quantity.interpolation() {
             Interpolation::Linear => unknown > 0,
@@ -284,6 +313,6 @@ fn least_first([a, b, c]: [Point; 3]) -> [Point; 3] {
 }
 
 /// The least and the greatest coordinate along an axis.
-fn range([a, b, c]: [Point2; 3], axis: usize) -> [f64; 2] {
+fn range([a, b, c]: [&Point; 3], axis: usize) -> [f64; 2] {
     [a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis])]
 }
