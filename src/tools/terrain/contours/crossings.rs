@@ -19,7 +19,7 @@ pub(super) struct Piece {
 }
 
 /// The levels that pass through a triangle: at least one corner is above them, and one is not.
-pub(super) fn levels([a, b, c]: &[Vertex; 3]) -> std::ops::RangeInclusive<i64> {
+pub(super) fn levels([a, b, c]: [&Vertex; 3]) -> std::ops::RangeInclusive<i64> {
     a.rank.min(b.rank).min(c.rank) + 1..=a.rank.max(b.rank).max(c.rank)
 }
 
@@ -28,15 +28,15 @@ pub(super) fn levels([a, b, c]: &[Vertex; 3]) -> std::ops::RangeInclusive<i64> {
 /// Corners above the level are on the left of the line. So the line enters over the edge that leads,
 /// counterclockwise, from above to below, and leaves over the edge that leads from below to above. The
 /// adjacent triangle has the edge in the other direction, so pieces fit.
-pub(super) fn piece(corners: &[Vertex; 3], level: i64) -> Piece {
-    let is_above = corners.each_ref().map(|corner| corner.rank >= level);
+pub(super) fn piece(corners: [&Vertex; 3], level: i64) -> Piece {
+    let is_above = corners.map(|corner| corner.rank >= level);
     let edge = |is_from: bool| (0..3).find(|&i| is_above[i] == is_from && is_above[(i + 1) % 3] != is_from);
     Piece { level, from: edge(true).unwrap_or(0), to: edge(false).unwrap_or(0) }
 }
 
 /// The ends of an edge of a triangle.
-pub(super) fn ends(corners: &[Vertex; 3], edge: usize) -> [&Vertex; 2] {
-    [&corners[edge], &corners[(edge + 1) % 3]]
+pub(super) fn ends<'a>(corners: [&'a Vertex; 3], edge: usize) -> [&'a Vertex; 2] {
+    [corners[edge], corners[(edge + 1) % 3]]
 }
 
 /// The crossing of a level and an edge.
@@ -58,12 +58,15 @@ mod tests {
             let mut ranks = [3; 3];
             ranks[first] = 5;
             let triangle = corners(ranks);
-            assert_eq!(levels(&triangle), 4..=5);
-            assert_eq!(piece(&triangle, 5), Piece { level: 5, from: first, to: (first + 2) % 3 });
+            assert_eq!(levels(triangle.each_ref()), 4..=5);
+            assert_eq!(piece(triangle.each_ref(), 5), Piece { level: 5, from: first, to: (first + 2) % 3 });
             ranks = [5; 3];
             ranks[first] = 3;
-            assert_eq!(piece(&corners(ranks), 4), Piece { level: 4, from: (first + 2) % 3, to: first });
+            assert_eq!(
+                piece(corners(ranks).each_ref(), 4),
+                Piece { level: 4, from: (first + 2) % 3, to: first }
+            );
         }
-        assert!(levels(&corners([2; 3])).is_empty());
+        assert!(levels(corners([2; 3]).each_ref()).is_empty());
     }
 }

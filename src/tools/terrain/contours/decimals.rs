@@ -41,7 +41,11 @@ impl Decimals {
     #[inline]
     pub(super) fn at(&self, k: i64) -> f64 {
         match self.exact {
-            Some(Exact { base, step, units }) => (base + step * i128::from(k)) as f64 / units,
+            Some(Exact { base, step, units }) => {
+                let sum = base + step * i128::from(k);
+                // Processors convert 64 bits, but not 128.
+                i64::try_from(sum).map_or_else(|_| sum as f64, |sum| sum as f64) / units
+            }
             None => self.base + self.step * k as f64,
         }
     }

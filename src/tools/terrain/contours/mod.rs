@@ -173,7 +173,7 @@ fn contour_with<P: Place, R: Read, W: Write>(
         if let Event::Patch(patch) = event {
             let triangles = tracer.corners(&patch, &mut live).map_err(|error| reader.locate(error))?;
             for triangle in triangles {
-                tracer.take(&triangle).map_err(|error| reader.locate(error))?;
+                tracer.take(triangle).map_err(|error| reader.locate(error))?;
                 drain.write(&mut tracer.lines.complete)?;
             }
             if tracer.lines.is_sweep_due() {
@@ -257,7 +257,7 @@ impl<P: Place> Tracer<P> {
         &mut self,
         patch: &'a Patch,
         live: &'a mut LiveVertices<Vertex>,
-    ) -> Result<impl Iterator<Item = [Vertex; 3]> + use<'a, P>> {
+    ) -> Result<impl Iterator<Item = [&'a Vertex; 3]> + use<'a, P>> {
         let mut failure = None;
         let vertices = live.enter(patch, |id, [x, y, z]| {
             let elevation = self.to_world.to_world(z);
@@ -271,24 +271,24 @@ impl<P: Place> Tracer<P> {
         })?;
         match failure {
             Some(error) => Err(error),
-            None => Ok(patch.triangles().map(|triangle| triangle.map(|local| vertices[local as usize].1))),
+            None => Ok(patch.triangles().map(|triangle| triangle.map(|local| &vertices[local as usize].1))),
         }
     }
 
     /// Adds the pieces of all lines in a triangle, or keeps it if it may be outside of the outline.
-    fn take(&mut self, corners: &[Vertex; 3]) -> Result<()> {
-        if let Some(outline) = &mut self.outline {
-            let places = corners.map(|corner| corner.at);
-            let triangle = Waiting {
-                ids: corners.map(|corner| corner.id),
-                corners: corners.map(|Vertex { at: [x, y], elevation, .. }| [x, y, elevation]),
-                number: 0,
-            };
-            if outline.take(places, triangle)? {
-                return Ok(());
-            }
-        }
-        self.trace(corners)
+    fn take(&mut self, corners: [&Vertex; 3]) -> Result<()> {
+        if self.outline.is_some() && self.keeps(corners)? { Ok(()) } else { self.trace(corners) }
+    }
+
+    /// Keeps a triangle if it may be outside of the outline, and returns whether it did.
+    fn keeps(&mut self, corners: [&Vertex; 3]) -> Result<bool> {
+        let Some(outline) = &mut self.outline else { return Ok(false) };
+        let triangle = Waiting {
+            ids: corners.map(|corner| corner.id),
+            corners: corners.map(|&Vertex { at: [x, y], elevation, .. }| [x, y, elevation]),
+            number: 0,
+        };
+        outline.take(corners.map(|corner| corner.at), triangle)
     }
 
     /// Adds the pieces in a triangle that was kept.
@@ -299,14 +299,14 @@ impl<P: Place> Tracer<P> {
             Ok(Vertex { id: ids[i], at: [x, y], elevation, rank })
         };
         let corners = [vertex(0)?, vertex(1)?, vertex(2)?];
-        self.trace(&corners)
+        self.trace(corners.each_ref())
     }
 
     /// Adds the pieces of all lines in a triangle.
-    fn trace(&mut self, corners: &[Vertex; 3]) -> Result<()> {
-        let places = corners.map(|corner| corner.at);
+    fn trace(&mut self, corners: [&Vertex; 3]) -> Result<()> {
+        let places = || corners.map(|corner| corner.at);
         self.triangles += 1;
-        if self.long_edges.is_exceeded(places) {
+        if self.long_edges.is_limited() && self.long_edges.is_exceeded(places()) {
             self.killed += 1;
             return Ok(());
         }
@@ -316,7 +316,7 @@ impl<P: Place> Tracer<P> {
         }
         self.count_pieces(levels.end().abs_diff(*levels.start()).saturating_add(1))?;
         // A triangle that is degenerate in the plane still passes lines on, so only the error matters.
-        is_counterclockwise(places, &mut self.predicates)?;
+        is_counterclockwise(places(), &mut self.predicates)?;
         levels.into_iter().try_for_each(|level| self.add(corners, level))
     }
 
@@ -340,7 +340,7 @@ impl<P: Place> Tracer<P> {
     }
 
     /// Adds the piece of the line of a level in a triangle.
-    fn add(&mut self, corners: &[Vertex; 3], level: i64) -> Result<()> {
+    fn add(&mut self, corners: [&Vertex; 3], level: i64) -> Result<()> {
         let piece = crossings::piece(corners, level);
         let edges = [piece.from, piece.to].map(|edge| crossings::ends(corners, edge));
         let elevation = self.levels.elevation(level);

@@ -1,7 +1,6 @@
 //! Open lines, which may still grow: pieces in triangles are joined where they meet.
 
 use std::collections::VecDeque;
-use std::collections::hash_map::Entry;
 
 use foldhash::{HashMap, HashMapExt};
 
@@ -10,6 +9,9 @@ use spmesh_core::error::{Error, Result};
 
 /// Sweep again when held > 2 x (held after the last sweep) + `SLACK`, in open ends and points.
 const SLACK: usize = 1 << 16;
+
+/// Points that a new line has room for.
+const POINTS_FIRST: usize = 8;
 
 /// A complete line, or a part of a line that was cut.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,7 +94,8 @@ impl<P: Copy> OpenLines<P> {
     ) -> Result<()> {
         let line = match (self.take(from, End::Last)?, self.take(to, End::First)?) {
             (None, None) => {
-                let points = VecDeque::from([place(0)?, place(1)?]);
+                let mut points = VecDeque::with_capacity(POINTS_FIRST);
+                points.extend([place(0)?, place(1)?]);
                 self.points += 2;
                 let line = self.insert(Line { points, ends: [None; 2] });
                 self.wait(line, End::First, from);
@@ -150,15 +153,15 @@ impl<P: Copy> OpenLines<P> {
     }
 
     /// Takes the line that waits with this end at a crossing.
+    #[inline]
     fn take(&mut self, crossing: Crossing, end: End) -> Result<Option<usize>> {
-        match self.waiting.entry(crossing) {
-            Entry::Vacant(_) => Ok(None),
-            Entry::Occupied(found) if found.get().1 == end => {
-                let (line, _) = found.remove();
+        match self.waiting.remove(&crossing) {
+            None => Ok(None),
+            Some((line, found)) if found == end => {
                 self.lines[line].ends[end as usize] = None;
                 Ok(Some(line))
             }
-            Entry::Occupied(_) => {
+            Some(_) => {
                 let [p, q] = crossing.edge;
                 Err(Error::malformed(format!(
                     "two triangles have the edge between vertices {p} and {q} on the same side"
@@ -168,6 +171,7 @@ impl<P: Copy> OpenLines<P> {
     }
 
     /// Registers that a line waits at a crossing for its next piece.
+    #[inline]
     fn wait(&mut self, line: usize, end: End, crossing: Crossing) {
         self.lines[line].ends[end as usize] = Some(crossing);
         self.waiting.insert(crossing, (line, end));

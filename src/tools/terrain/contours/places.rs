@@ -48,6 +48,7 @@ impl Plane {
     ///
     /// # Errors
     /// Usage, if differences overflow.
+    #[inline]
     pub(super) fn place(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         self.unrounded(p, q, elevation).map(|place| self.rounded(place))
     }
@@ -56,6 +57,7 @@ impl Plane {
     ///
     /// # Errors
     /// As [`Plane::place`].
+    #[inline]
     pub(super) fn unrounded(&self, p: &Vertex, q: &Vertex, elevation: f64) -> Result<Point2> {
         let [p, q] = if (p.at, p.elevation) < (q.at, q.elevation) { [p, q] } else { [q, p] };
         let at = if elevation == p.elevation {
@@ -76,11 +78,13 @@ impl Plane {
     }
 
     /// A place with the digits that places have.
+    #[inline]
     pub(super) fn rounded(&self, place: Point2) -> Point2 {
         if self.grid.is_some() { place.map(f64::round) } else { place }
     }
 
     /// A place in world coordinates.
+    #[inline]
     pub(super) fn to_world(&self, place: Point2) -> Point2 {
         match &self.grid {
             Some(grid) => [0, 1].map(|axis| grid[axis].at(place[axis] as i64)),

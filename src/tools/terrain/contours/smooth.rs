@@ -43,6 +43,7 @@ pub(super) trait Place: Copy {
 
 /// A point that stays where it is.
 impl Place for Point2 {
+    #[inline]
     fn of(plane: &Plane, [p, q]: [&Vertex; 2], elevation: f64, _: f64) -> Result<Point2> {
         plane.place(p, q, elevation)
     }
