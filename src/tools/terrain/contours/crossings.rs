@@ -35,7 +35,7 @@ pub(super) fn piece(corners: [&Vertex; 3], level: i64) -> Piece {
 }
 
 /// The ends of an edge of a triangle.
-pub(super) fn ends<'a>(corners: [&'a Vertex; 3], edge: usize) -> [&'a Vertex; 2] {
+pub(super) fn ends(corners: [&Vertex; 3], edge: usize) -> [&Vertex; 2] {
     [corners[edge], corners[(edge + 1) % 3]]
 }
 
