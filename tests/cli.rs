@@ -5,11 +5,12 @@ use std::path::Path;
 
 use crate::programs::{outcome, run, sample};
 
-const TOOLS: [&str; 11] = [
+const TOOLS: [&str; 12] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
+    "spheight",
     "spview",
     "tess3",
     "dd4",

@@ -8,7 +8,7 @@ use spmesh_io::detect::{Format, READERS, Reader, SPCONVERT, detect};
 use crate::programs::{Folder, assert_outcome, cloud, outcome, run, sample};
 
 /// gzip data with two members.
-fn gzip(content: &[u8]) -> Vec<u8> {
+pub fn gzip(content: &[u8]) -> Vec<u8> {
     let member = |part: &[u8]| {
         let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         encoder.write_all(part).expect("memory takes all");
@@ -35,6 +35,7 @@ fn arguments(tool: &str) -> &'static [&'static str] {
         "configgen" => &["--degree", "1"],
         "splinefit" => &["fit", "--tol", "1000"],
         "spconvert" => &["--to", "text"],
+        "spheight" => &["--ground", "none", "--out-dir", "."],
         _ => &[],
     }
 }

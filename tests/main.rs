@@ -15,6 +15,7 @@ mod endless;
 mod files;
 mod finalize;
 mod formats;
+mod height;
 mod house;
 mod limits;
 mod links;

@@ -16,6 +16,7 @@ pub mod spdelaunay2d;
 pub mod spdelaunay3d;
 pub mod spdem;
 pub mod spfinalize;
+pub mod spheight;
 pub mod spinfo;
 #[cfg(feature = "splines")]
 pub mod splinefit;

@@ -2,6 +2,7 @@
 
 mod cell_index;
 pub mod detect;
+pub mod las;
 pub mod outline;
 pub mod raster;
 pub mod sink;

@@ -9,7 +9,9 @@ use std::io::{self, Read};
 
 use spmesh_core::error::{Error, Result};
 
-pub use readers::{CONFIGGEN, DD4, READERS, Reader, SPCONVERT, SPFINALIZE, SPINFO, SPLINEFIT, TESS3};
+pub use readers::{
+    CONFIGGEN, DD4, READERS, Reader, SPCONVERT, SPFINALIZE, SPHEIGHT, SPINFO, SPLINEFIT, TESS3,
+};
 pub(crate) use text::is_off;
 
 /// Bytes from the start of an input that recognition needs.

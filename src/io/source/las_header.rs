@@ -17,10 +17,12 @@ use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{Coordinates, Crs};
 
 /// Length of a point record per format, without extra bytes.
-const RECORD_LENS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+pub(crate) const RECORD_LENS: [usize; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
-const VLR_HEADER_LEN: u64 = 54;
-const EVLR_HEADER_LEN: u64 = 60;
+pub(crate) const VLR_HEADER_LEN: u64 = 54;
+pub(crate) const EVLR_HEADER_LEN: u64 = 60;
+/// User and number of the records that describe extra bytes.
+const EXTRA_BYTES: (&[u8], u16) = (b"LASF_Spec", 4);
 const GLOBAL_ENCODING_WKT: u16 = 1 << 4;
 
 /// Length of the shortest header, that of LAS 1.0 to 1.2.
@@ -28,37 +30,37 @@ const HEADER_LEN_MIN: u16 = 227;
 
 /// What reading the points needs.
 #[derive(Debug, Clone)]
-pub(super) struct LasHeader {
+pub(crate) struct LasHeader {
     /// Point data record format, 0 to 10.
-    pub(super) format: u8,
+    pub(crate) format: u8,
     /// Length of a point record in bytes.
-    pub(super) record_len: usize,
+    pub(crate) record_len: usize,
     /// Number of point records.
-    pub(super) points: u64,
+    pub(crate) points: u64,
     /// Byte at which point data starts.
-    pub(super) points_start: u64,
+    pub(crate) points_start: u64,
     /// Byte at which point data ends at the latest: that of extended records, waveforms, or the file's end.
-    pub(super) points_end: u64,
+    pub(crate) points_end: u64,
     /// How the points are compressed, if they are.
-    pub(super) laz: Option<Laszip>,
+    pub(crate) laz: Option<Laszip>,
     /// Scale and offset.
-    pub(super) coordinates: Coordinates,
+    pub(crate) coordinates: Coordinates,
     /// Bounding box as stated, in stored coordinates; `None` if it makes no sense.
     pub(super) bounds: Option<Bounds>,
     /// Coordinate reference system.
-    pub(super) crs: Crs,
+    pub(crate) crs: Crs,
     /// Whether the points before a cut are wanted, and how many are behind it.
     pub(super) is_salvaged: bool,
-    pub(super) lost: u64,
+    pub(crate) lost: u64,
     /// Fields of the records beside the coordinates.
     pub(super) offers: Vec<Offer>,
 }
 
 /// The laszip record.
 #[derive(Debug, Clone)]
-pub(super) struct Laszip {
+pub(crate) struct Laszip {
     /// What the library makes of it.
-    pub(super) vlr: LazVlr,
+    pub(crate) vlr: LazVlr,
     /// Whether the points are in chunks. Old files have them in one piece, without a chunk table.
     pub(super) is_chunked: bool,
 }
@@ -69,7 +71,7 @@ impl LasHeader {
     ///
     /// # Errors
     /// If the header is damaged, of another version, or states more points than the file can hold.
-    pub(super) fn read(file: &FileView, is_salvaged: bool, notices: &mut Vec<String>) -> Result<LasHeader> {
+    pub(crate) fn read(file: &FileView, is_salvaged: bool, notices: &mut Vec<String>) -> Result<LasHeader> {
         let mut input = BufReader::new(file.range(0, file.len()));
         let raw = raw::Header::read_from(&mut input).map_err(|e| malformed("header at byte 0", &e))?;
         let version = (raw.version.major, raw.version.minor);
@@ -334,7 +336,12 @@ impl Records {
         } else {
             let mut bytes = vec![0; len as usize];
             read(data, &mut bytes)?;
-            slot.get_or_insert(bytes);
+            match slot {
+                // Some files describe extra bytes in several records, one after the other.
+                Some(described) if (user, number) == EXTRA_BYTES => described.extend(bytes),
+                Some(_) => {}
+                none => *none = Some(bytes),
+            }
         }
         Ok(Some(after))
     }
@@ -342,7 +349,7 @@ impl Records {
     fn slot(&mut self, user: &[u8], record: u16) -> Option<&mut Option<Vec<u8>>> {
         match (user, record) {
             (b"laszip encoded", 22204) => Some(&mut self.laszip),
-            (b"LASF_Spec", 4) => Some(&mut self.extra_bytes),
+            EXTRA_BYTES => Some(&mut self.extra_bytes),
             (b"LASF_Projection", 2112) => Some(&mut self.wkt),
             (b"LASF_Projection", 34735..=34737) => Some(&mut self.geo_keys[usize::from(record - 34735)]),
             _ => None,

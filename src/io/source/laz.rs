@@ -62,7 +62,7 @@ impl Job {
 }
 
 /// Records of a compressed file.
-pub(super) struct LazRecords {
+pub(crate) struct LazRecords {
     file: FileView,
     codec: Codec,
     threads: usize,
@@ -77,7 +77,7 @@ pub(super) struct LazRecords {
 
 impl LazRecords {
     /// Records of which the fields of `selection` are decompressed.
-    pub(super) fn new(
+    pub(crate) fn new(
         file: FileView,
         header: &LasHeader,
         laszip: &Laszip,

@@ -20,11 +20,11 @@ pub fn name_of(path: &Path) -> String {
 }
 
 /// The content of a file: its bytes, decompressed if it is compressed.
-pub(super) type Bytes = Plain<FileView>;
+pub(crate) type Bytes = Plain<FileView>;
 
 /// Bytes that can be read several times.
 #[derive(Debug)]
-pub(super) enum Origin {
+pub(crate) enum Origin {
     /// A regular file, opened anew by each pass, so that an input of many tiles needs only one descriptor at
     /// a time.
     Path(PathBuf),
@@ -34,7 +34,7 @@ pub(super) enum Origin {
 
 /// What of an input may be copied to a temporary file. An endless input would fill the disk.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Admitted {
+pub(crate) enum Admitted {
     /// All of it, if it starts as a format that the reader reads.
     Formats(&'static Reader),
     /// This many bytes.
@@ -86,7 +86,7 @@ impl Origin {
     /// The bytes of `path`; "-" is standard input. An input that cannot be read twice (a pipe, a terminal, a
     /// socket) is spooled to an unlinked temporary file in `temp_dir`, with a notice, as far as it is
     /// `admitted`.
-    pub(super) fn new(
+    pub(crate) fn new(
         path: &Path,
         admitted: Admitted,
         temp_dir: &Path,
@@ -122,13 +122,13 @@ impl Origin {
     }
 
     /// The content from its start, decompressed if necessary.
-    pub(super) fn plain(&self) -> Result<Bytes> {
+    pub(crate) fn plain(&self) -> Result<Bytes> {
         Plain::new(self.view()?).map_err(|e| Error::io("reading", e))
     }
 
     /// The decompressed content as a file, for formats that are not read sequentially. Messages call it
     /// `name`.
-    pub(super) fn unpacked(&self, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
+    pub(crate) fn unpacked(&self, name: &str, temp_dir: &Path, notices: &mut Vec<String>) -> Result<Origin> {
         let (file, size) = spool(self.plain()?, temp_dir)?;
         let place = temp_dir.display();
         notices.push(format!("{name}: decompressed {size} to an unlinked temporary file in {place}"));
@@ -136,12 +136,12 @@ impl Origin {
     }
 
     /// Copies all bytes of `input` to an unlinked temporary file.
-    pub(super) fn spooled(input: impl Read, temp_dir: &Path) -> Result<Origin> {
+    pub(crate) fn spooled(input: impl Read, temp_dir: &Path) -> Result<Origin> {
         spool(input, temp_dir).map(|(file, _)| file)
     }
 
     /// A view of all bytes as stored, positioned at their start.
-    pub(super) fn view(&self) -> Result<FileView> {
+    pub(crate) fn view(&self) -> Result<FileView> {
         let file = match self {
             Origin::Path(path) => Arc::new(File::open(path).map_err(|e| Error::io("opening", e))?),
             Origin::Open(file) => Arc::clone(file),
@@ -206,7 +206,7 @@ fn spool(mut input: impl Read, temp_dir: &Path) -> Result<(Origin, String)> {
 
 /// A reader with a position of its own over a shared file, so that passes do not disturb each other.
 #[derive(Debug, Clone)]
-pub(super) struct FileView {
+pub(crate) struct FileView {
     file: Arc<File>,
     position: u64,
     end: u64,
@@ -214,22 +214,22 @@ pub(super) struct FileView {
 
 impl FileView {
     /// Length of the file in bytes.
-    pub(super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.end
     }
 
     /// Offset of the next byte, counted from the start of the file.
-    pub(super) fn position(&self) -> u64 {
+    pub(crate) fn position(&self) -> u64 {
         self.position
     }
 
     /// The same bytes from `start` up to `end`, both counted from the start of the file.
-    pub(super) fn range(&self, start: u64, end: u64) -> FileView {
+    pub(crate) fn range(&self, start: u64, end: u64) -> FileView {
         FileView { file: Arc::clone(&self.file), position: start, end: end.min(self.end) }
     }
 
     /// Fills `buffer` with the bytes from `start` on, without changing the position.
-    pub(super) fn read_at(&self, start: u64, buffer: &mut [u8]) -> io::Result<()> {
+    pub(crate) fn read_at(&self, start: u64, buffer: &mut [u8]) -> io::Result<()> {
         self.range(start, self.end).read_exact(buffer)
     }
 }

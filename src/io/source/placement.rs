@@ -123,6 +123,56 @@ impl Placement {
     }
 }
 
+/// How points in one encoding are expressed in another, without being dropped or moved to a grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Alignment {
+    /// Stored integers times a factor, plus a shift: nothing is rounded.
+    Whole {
+        /// Steps of the other grid in a step of this one, per axis: positive integers of up to 2^21.
+        factor: Point,
+        /// Where the origin of this grid is in the other one.
+        shift: Point,
+    },
+    /// Through world coordinates, in f64.
+    World {
+        /// The encoding of the points.
+        from: Coordinates,
+        /// The one that they are expressed in; between its steps, if it is a grid.
+        to: Coordinates,
+    },
+}
+
+impl Alignment {
+    /// The alignment of points in `from` with `to`.
+    #[must_use]
+    pub fn between(from: &Coordinates, to: &Coordinates) -> Alignment {
+        match whole_steps(from, to) {
+            Some((factor, shift)) => Alignment::Whole { factor, shift },
+            None => Alignment::World { from: *from, to: *to },
+        }
+    }
+
+    /// A stored point in the other encoding.
+    #[inline]
+    #[must_use]
+    pub fn place(&self, stored: Point) -> Point {
+        match self {
+            Alignment::Whole { factor, shift } => {
+                std::array::from_fn(|axis| stored[axis] * factor[axis] + shift[axis])
+            }
+            Alignment::World { from, to } => {
+                let world = from.to_world(stored);
+                match to {
+                    Coordinates::F64 => world,
+                    Coordinates::I32 { scale, offset } => {
+                        std::array::from_fn(|axis| (world[axis] - offset[axis]) / scale[axis])
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Factor and shift per axis that convert stored integers of `from` to those of `to`; `None` if there are
 /// none. In the world, a point moves by at most 2^-9 steps of `from` and 10^-6 steps of `to`.
 pub(super) fn whole_steps(from: &Coordinates, to: &Coordinates) -> Option<(Point, Point)> {

@@ -3,7 +3,7 @@
 use spmesh_core::error::Result;
 
 /// Supplies point records in their uncompressed form.
-pub(super) trait RecordReader: Send {
+pub(crate) trait RecordReader: Send {
     /// Replaces the content of `records` with the next whole records; leaves it empty at the end.
     ///
     /// # Errors

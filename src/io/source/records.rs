@@ -113,7 +113,7 @@ fn raw_point(record: &[u8]) -> Point {
 }
 
 /// Records of an uncompressed file.
-struct PlainRecords {
+pub(crate) struct PlainRecords {
     file: FileView,
     at: u64,
     left: u64,
@@ -121,7 +121,7 @@ struct PlainRecords {
 }
 
 impl PlainRecords {
-    fn new(file: FileView, header: &LasHeader) -> Self {
+    pub(crate) fn new(file: FileView, header: &LasHeader) -> Self {
         PlainRecords { file, at: header.points_start, left: header.points, record_len: header.record_len }
     }
 }

@@ -1,0 +1,114 @@
+//! Wrong flags and damaged input.
+
+use super::{mesh_of, scattered};
+use crate::programs::{Folder, outcome, run, sample};
+use crate::sources::las_file::{LasFile, geo_keys};
+
+/// Runs the program with a ground and points in files; returns the exit code and the messages.
+fn refused(folder: &Folder, arguments: &[&str]) -> (Option<i32>, String) {
+    let found = outcome(&run("spheight", arguments, &[]));
+    assert!(!found.1.contains("panicked"), "{found:?}");
+    let left: Vec<String> = folder.names("").into_iter().filter(|name| name.starts_with("out")).collect();
+    assert!(left.is_empty(), "{left:?}");
+    found
+}
+
+#[test]
+fn wrong_requests_are_refused_with_a_remedy() {
+    let folder = Folder::new();
+    let points = LasFile { projection: vec![geo_keys(2154)], ..scattered(50, 100, 1) };
+    folder.file("ground.spm", mesh_of(&points.bytes()));
+    folder.file("points.las", points.bytes());
+    folder.file("other.las", LasFile { projection: vec![geo_keys(32631)], ..points.clone() }.bytes());
+    folder.file("text.xyz", "1 2 3\n");
+    let stream = run("spfinalize", &["-q", "-"], &points.bytes());
+    folder.file("points.spm", stream.stdout);
+    let path = |name: &str| folder.path(name);
+    let (ground, points, out) = (path("ground.spm"), path("points.las"), path("out.las"));
+    for (arguments, part) in [
+        (vec!["--ground", &ground, &points], "--output"),
+        (vec!["--ground", &ground, "-o", &out], "no input"),
+        (vec!["--ground", &ground, &points, &points, "-o", &out], "--out-dir"),
+        (vec!["--ground", &ground, &points, &points, "--out-dir", &path("two")], "mixed"),
+        (vec!["--ground", &ground, &points, "-o", &path("out.tif")], ".las or NAME.laz"),
+        (vec!["--ground", &ground, &points, "-o", &points], "replace the input"),
+        (vec!["--ground", &ground, &points, "-o", &ground, "--format", "las"], "replace the input"),
+        (vec!["--ground", &ground, &points, "--out-dir", &path("")], "replace the input"),
+        (vec!["--ground", "-", "-", "-o", &out], "stdin can be one input only"),
+        (vec!["--ground", &path("points.spm"), &points, "-o", &out], "triangulate them with spdelaunay2d"),
+        (vec!["--ground", &ground, &path("other.las"), "-o", &out], "coordinate reference system"),
+        (vec!["--ground", &ground, &points, "-o", &out, "--replace-z", "--outside", "no-data"], "nearest"),
+        (vec!["--ground", &ground, &points, "-o", &out, "--name", ""], "--name"),
+        (vec!["--ground", &ground, &points, "-o", "-", "--format", "las"], "pipe"),
+    ] {
+        let (code, message) = refused(&folder, &arguments);
+        assert_eq!(code, Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(part), "{arguments:?}: {message}");
+    }
+    for (input, part) in [(path("text.xyz"), "LAS"), (sample("truncated.las"), "truncated")] {
+        let (code, message) = refused(&folder, &["--ground", &ground, &input, "-o", &out]);
+        assert!(code == Some(3) && message.contains(part), "{message}");
+    }
+    let (code, message) = refused(&folder, &["--ground", &path("none"), &points, "-o", &out]);
+    assert!(code == Some(1) && message.contains("none"), "{message}");
+}
+
+#[test]
+fn a_field_is_not_written_twice() {
+    let folder = Folder::new();
+    let points = scattered(50, 100, 1);
+    folder.file("ground.spm", mesh_of(&points.bytes()));
+    folder.file("points.las", points.bytes());
+    let (ground, first) = (folder.path("ground.spm"), folder.path("first.las"));
+    let once = run("spheight", &["--ground", &ground, &folder.path("points.las"), "-o", &first], &[]);
+    assert!(once.status.success());
+    let out = folder.path("out.las");
+    let (code, message) = refused(&folder, &["--ground", &ground, &first, "-o", &out]);
+    assert!(code == Some(2) && message.contains("--name"), "{message}");
+    let again = run("spheight", &["--ground", &ground, &first, "-o", &out, "--name", "again"], &[]);
+    assert!(again.status.success(), "{:?}", outcome(&again));
+}
+
+/// Heights that need more than 32 bits.
+#[test]
+fn heights_may_not_overflow() {
+    let folder = Folder::new();
+    let ground = LasFile { scale: [1.0; 3], ..LasFile::of(&[[0, 0, 0], [9, 0, 0], [0, 9, 0]]) };
+    let points = LasFile { scale: [1.0, 1.0, 0.001], offset: [0.0, 0.0, 3e6], ..LasFile::of(&[[1, 1, 5]]) };
+    folder.file("ground.spm", mesh_of(&ground.bytes()));
+    folder.file("points.las", points.bytes());
+    let (ground, points) = (folder.path("ground.spm"), folder.path("points.las"));
+    let (code, message) = refused(&folder, &["--ground", &ground, &points, "-o", &folder.path("out.las")]);
+    assert!(code == Some(2) && message.contains("record 0") && message.contains("32 bits"), "{message}");
+}
+
+/// Every cut of a ground and of points, and bits that are flipped.
+#[test]
+fn damage_is_an_error_and_leaves_no_file() {
+    let folder = Folder::new();
+    let points = scattered(3000, 1000, 1);
+    let mesh = mesh_of(&points.bytes());
+    let laz = points.compressed(500);
+    folder.file("ground.spm", &mesh);
+    folder.file("points.laz", &laz);
+    let (ground, damaged) = (folder.path("ground.spm"), folder.path("damaged"));
+    let (input, out) = (folder.path("points.laz"), folder.path("out.laz"));
+    for part in 0..12 {
+        folder.file("damaged", &mesh[..mesh.len() * part / 12]);
+        let (code, message) = refused(&folder, &["--ground", &damaged, &input, "-o", &out]);
+        assert_eq!(code, Some(3), "{message}");
+        folder.file("damaged", &laz[..laz.len() * part / 12]);
+        let (code, message) = refused(&folder, &["--ground", &ground, &damaged, "-o", &out]);
+        assert_eq!(code, Some(3), "{message}");
+    }
+    let mut random = spmesh_core::random::Random::new(5);
+    for _ in 0..60 {
+        let mut flipped = laz.clone();
+        // The header, and the records before the points.
+        let at = random.below(500) as usize;
+        flipped[at] ^= 1 << random.below(8);
+        folder.file("damaged", &flipped);
+        let found = outcome(&run("spheight", &["--ground", &ground, &damaged, "-o", &out], &[]));
+        assert!(matches!(found.0, Some(0..=3)) && !found.1.contains("panicked"), "byte {at}: {found:?}");
+    }
+}
