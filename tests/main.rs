@@ -23,6 +23,7 @@ mod manifest;
 mod messages;
 mod output;
 mod pipelines;
+mod point_rasters;
 mod points4;
 mod programs;
 mod raster;

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use spmesh_crs::requested;
 use spmesh_io::raster::{
-    Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, Reference, TILE, write_rows,
+    Grid, NoData, RasterFile, RasterFormat, RasterOptions, Reduction, Reference, Samples, TILE, write_rows,
     write_tiles,
 };
 use tiff::decoder::{Decoder, DecodingResult, Limits};
@@ -46,7 +46,14 @@ fn file(grid: &Grid, format: RasterFormat) -> Vec<u8> {
 fn of<'a>(grid: &Grid, options: &'a RasterOptions) -> RasterFile<'a> {
     static KEYS: LazyLock<Reference> =
         LazyLock::new(|| Reference::of_crs(&requested("EPSG:32610").unwrap(), true, RasterFormat::GeoTiff));
-    RasterFile { options, grid: *grid, reference: &KEYS, reduction: Reduction::Mean, is_staged: false }
+    RasterFile {
+        options,
+        grid: *grid,
+        reference: &KEYS,
+        reduction: Reduction::Mean,
+        samples: Samples::Floats,
+        is_staged: false,
+    }
 }
 
 fn decoded(bytes: &[u8]) -> (Decoder<Cursor<&[u8]>>, Vec<f32>) {

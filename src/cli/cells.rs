@@ -102,6 +102,19 @@ impl RasterFlags {
         Ok(RasterOptions { format, no_data, has_overviews: cog, temp_dir })
     }
 
+    /// Checks the flags for a raster of bytes, in which 0 stands for no data.
+    ///
+    /// # Errors
+    /// Usage, if another value is asked for.
+    pub(super) fn check_bytes(&self) -> Result<()> {
+        if self.no_data.is_some_and(|no_data| no_data != 0.0) {
+            return Err(Error::usage(
+                "hillshades are bytes in which 0 stands for no data: leave out --no-data",
+            ));
+        }
+        Ok(())
+    }
+
     /// Checks that no flag for rasters is given when the output is not a raster.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! `spdem`: flags, and the counts of `--stats`.
 
 mod contours;
+mod points;
 
 use std::iter;
 use std::path::PathBuf;
@@ -19,9 +20,10 @@ use contours::{ContourFlags, Job};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_io::raster::{Light, RasterFormat};
+use spmesh_io::raster::{Differences, Light, RasterFormat, Shading};
 use spmesh_terrain::contours::LineFormat;
-use spmesh_terrain::dem::{self, Interpolation, Options, Quantity, Stats};
+use spmesh_terrain::dem::{self, Interpolation, Method, Options, Quantity, Stats};
+use spmesh_terrain::points::{Options as PointOptions, Statistic};
 
 const TOOL: &str = "spdem";
 
@@ -40,6 +42,10 @@ Examples:
   Slopes, and a hillshade with light from the north-west:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
+    spdem --step 1 --kind hillshade --multidirectional ground.spm -o shade.tif
+  The highest point and the number of points per square metre, from points:
+    spfinalize tiles/*.laz | spdem --points --kind max --step 1 -o highest.tif
+    spfinalize tiles/*.laz | spdem --points --kind density --step 5 -o density.tif
   The intensity of the returns, and their classes:
     spfinalize tiles/*.laz --attributes intensity,classification | spdelaunay2d > all.spm
     spdem --step 1 --attribute intensity all.spm -o intensity.tif
@@ -71,16 +77,21 @@ from the hull in which every crossed edge, first one of the hull, is longer than
 long edges. Triangles with an edge longer than L wait for the end of the stream, in --memory and a temporary \
 file. With integer coordinates, lengths are compared exactly. --mask keeps cells whose centre is in a polygon or \
 on its border; rings of a polygon count by the even-odd rule. --fill fills holes inside of the outline and the \
-mask, also those of --kill; slope, aspect and hillshade of filled cells follow from filled elevations, by \
-differences between neighbouring cells.
+mask, also those of --kill.
 
 An attribute is drawn as elevations are, or with --interpolation nearest as the value of the nearest corner of \
 the triangle. With linear interpolation, triangles with a corner whose value is unknown are left out. A raster has \
 one band of 32-bit numbers; for a picture in colour, join those of red, green and blue (gdalbuildvrt -separate).
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
-level triangles have none. Where the coordinate reference system states the unit of elevations, slopes take it \
+level ground has none. Hillshades are bytes from 1 to 255, and 0 for no data. They equal what gdaldem computes from \
+the raster of elevations: from a cell and its eight neighbours, so a cell without all of them has no value. \
+--method triangle takes the slope of one triangle instead. Where the coordinate reference system states the unit of elevations, slopes take it \
 into account; otherwise it must be that of x and y.
+
+--points draws points without a mesh: how many are in each cell, how dense they are, or the least, the \
+greatest, the range, the mean and the standard deviation of their elevations or of an attribute. A point on a \
+border is in the right or upper cell. Sums are exact.
 
 --contours D writes lines instead of a raster, at all multiples of D (starting at --contour-base), as \
 GeoJSON features with the properties elevation, unit (if it is known), is_closed and index (true for every fifth line from the base, \
@@ -119,13 +130,23 @@ pub struct Flags {
     #[command(flatten)]
     contours: ContourFlags,
 
-    /// The quantity in the cells
-    #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Elevation)]
-    kind: KindFlag,
+    /// Read points instead of a mesh, and draw the statistic of --kind of those in each cell: of their elevations, or of
+    /// an --attribute
+    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "method", "light", "multidirectional"])]
+    points: bool,
+
+    /// The quantity in the cells; with --points, from count on [default: elevation; with --points, count]
+    #[arg(long, value_enum, value_name = "KIND")]
+    kind: Option<KindFlag>,
+
+    /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
+    /// triangle at the centre [default: horn]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    method: Option<MethodFlag>,
 
     /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
     /// components; red, green and blue are those of rgb
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["kind", "contours"])]
+    #[arg(long, value_name = "NAME", conflicts_with = "contours")]
     attribute: Option<String>,
 
     /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
@@ -137,6 +158,10 @@ pub struct Flags {
     /// [default: 315,45]
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
     light: Option<[f64; 2]>,
+
+    /// Light a hillshade from four sides, from south-west to north: from no side is a slope flat
+    #[arg(long)]
+    multidirectional: bool,
 
     #[command(flatten)]
     outline: OutlineFlags,
@@ -177,6 +202,37 @@ enum KindFlag {
     Slope,
     Aspect,
     Hillshade,
+    Count,
+    Density,
+    Min,
+    Max,
+    Range,
+    Mean,
+    Std,
+}
+
+impl KindFlag {
+    /// What is said of the points in a cell, if it is that.
+    fn statistic(self) -> Option<Statistic> {
+        Some(match self {
+            KindFlag::Count => Statistic::Count,
+            KindFlag::Density => Statistic::Density,
+            KindFlag::Min => Statistic::Min,
+            KindFlag::Max => Statistic::Max,
+            KindFlag::Range => Statistic::Range,
+            KindFlag::Mean => Statistic::Mean,
+            KindFlag::Std => Statistic::Std,
+            _ => return None,
+        })
+    }
+}
+
+/// The values of `--method`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodFlag {
+    Horn,
+    Zevenbergen,
+    Triangle,
 }
 
 /// The values of `--interpolation`.
@@ -216,6 +272,17 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         };
         return contours::run(&job, &options, started, |message| notice(TOOL, &flags.common, message));
     }
+    if flags.points {
+        system::exit_at_abort(points::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
+        let job = points::Job {
+            input: &flags.input,
+            output: &flags.output,
+            cells: &flags.cells,
+            stats: flags.stats,
+            common: &flags.common,
+        };
+        return Ok(points::run(&job, &flags.point_options()?, started)?);
+    }
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
     let mut output = cells::create(&flags.output, options.raster.format)?;
@@ -237,28 +304,72 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 }
 
 impl Flags {
+    fn point_options(&self) -> Result<PointOptions, Error> {
+        let kind = self.kind.unwrap_or(KindFlag::Count);
+        let statistic = kind.statistic().ok_or_else(|| {
+            Error::usage(
+                "points are counted, or have a min, max, range, mean or std: triangulate them for others",
+            )
+        })?;
+        Ok(PointOptions {
+            statistic,
+            attribute: self.attribute.clone(),
+            memory: self.memory.unwrap_or(MEMORY),
+            raster: self.raster.options(self.format()?)?,
+            crs: self.crs.system()?,
+        })
+    }
+
     fn options(&self) -> Result<Options, Error> {
+        let kind = self.kind.unwrap_or(KindFlag::Elevation);
+        if kind.statistic().is_some() {
+            return Err(Error::usage(
+                "this --kind is one of points: add --points, and give a stream of spfinalize",
+            ));
+        }
+        if self.attribute.is_some() && self.kind.is_some() {
+            return Err(Error::usage("--attribute is drawn instead of a --kind: leave out one of them"));
+        }
         if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
             return Err(Error::usage("--light takes two angles in degrees"));
         }
-        if self.light.is_some() && self.kind != KindFlag::Hillshade {
+        if self.light.is_some() && kind != KindFlag::Hillshade {
             return Err(Error::usage("--light is for a hillshade: add --kind hillshade"));
         }
+        if self.multidirectional && kind != KindFlag::Hillshade {
+            return Err(Error::usage("--multidirectional is for a hillshade: add --kind hillshade"));
+        }
         let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
+        let shading = match self.multidirectional {
+            true => Shading::Many(altitude),
+            false => Shading::One(Light::from(azimuth, altitude)),
+        };
         let interpolation = match self.interpolation {
             None | Some(InterpolationFlag::Linear) => Interpolation::Linear,
             Some(InterpolationFlag::Nearest) => Interpolation::Nearest,
         };
-        let quantity = match (&self.attribute, self.kind) {
+        let quantity = match (&self.attribute, kind) {
             (Some(name), _) => Quantity::Attribute(name.clone(), interpolation),
-            (None, KindFlag::Elevation) => Quantity::Elevation,
             (None, KindFlag::Slope) => Quantity::Slope,
             (None, KindFlag::Aspect) => Quantity::Aspect,
-            (None, KindFlag::Hillshade) => Quantity::Hillshade(Light::from(azimuth, altitude)),
+            (None, KindFlag::Hillshade) => Quantity::Hillshade(shading),
+            (None, _) => Quantity::Elevation,
+        };
+        if kind == KindFlag::Elevation && self.method.is_some() {
+            return Err(Error::usage("--method is for slopes, aspects and hillshades: add --kind"));
+        }
+        if kind == KindFlag::Hillshade {
+            self.raster.check_bytes()?;
+        }
+        let method = match self.method.unwrap_or(MethodFlag::Horn) {
+            MethodFlag::Horn => Method::Cells(Differences::Horn),
+            MethodFlag::Zevenbergen => Method::Cells(Differences::ZevenbergenThorne),
+            MethodFlag::Triangle => Method::Triangle,
         };
         let raster = self.raster.options(self.format()?)?;
         Ok(Options {
             quantity,
+            method,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: self.outline.mask()?,

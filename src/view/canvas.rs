@@ -2,9 +2,9 @@
 
 use resvg::tiny_skia::{ColorU8, Pixmap};
 
-use super::colour_map::{Colour, mix};
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
+use spmesh_io::raster::colour_map::{Colour, mix};
 
 /// Samples of a pixel along each side.
 const SAMPLES: usize = 2;

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::colour_map::hex;
 use super::scene::Scene;
 use super::style::Colours;
 use super::svg;
 use spmesh_core::error::Result;
+use spmesh_io::raster::colour_map::hex;
 use spmesh_model::bounds::Point;
 use spmesh_model::cells::{CellCode, CellTree};
 use spmesh_stream::{Coordinates, FinalizedCells};

@@ -1,7 +1,6 @@
 //! Pictures of configurations: knots, centroid triangulations, and the link of a set of knots (thesis, figure
 //! 7.3).
 
-use super::colour_map::{Colour, hex};
 use super::options::Options;
 use super::picture::Picture;
 use super::points;
@@ -12,6 +11,7 @@ use super::ticks;
 use super::units::Units;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::configurations::{self, CentroidMesh, Configurations, FARAWAY, Knots};
+use spmesh_io::raster::colour_map::{Colour, hex};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::{ConfigurationSet, Coordinates, Header};
 

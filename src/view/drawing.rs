@@ -3,7 +3,6 @@
 use std::io::Read;
 
 use super::cells::Cells;
-use super::colour_map::Colour;
 use super::front::Front;
 use super::layer::Layer;
 use super::options::{Fill, Moments, Options};
@@ -23,6 +22,7 @@ use spmesh_core::error::Result;
 use spmesh_geometry::configurations::Knots;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::outline::{ConcaveOutline, EdgeLimit, Waiting};
+use spmesh_io::raster::colour_map::Colour;
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_model::cells::CellCode;
 use spmesh_stream::{ConfigurationSet, Coordinates, Event, Header, Kind, Patch, StreamReader};

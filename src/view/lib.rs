@@ -16,7 +16,6 @@
 
 mod canvas;
 mod cells;
-mod colour_map;
 mod configurations;
 mod depth_sort;
 mod drawing;

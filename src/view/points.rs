@@ -3,12 +3,12 @@
 use std::collections::HashSet;
 
 use super::canvas::Canvas;
-use super::colour_map::{Colour, hex};
 use super::layer::Drawable;
 use super::options::Fill;
 use super::scene::Scene;
 use super::style::{Colours, Style};
 use super::svg;
+use spmesh_io::raster::colour_map::{Colour, hex};
 use spmesh_model::bounds::Point;
 
 /// Marked places that are nearer to each other share a dot. Units: lengths of the picture.

@@ -1,11 +1,11 @@
 //! The sheet of a picture: the place of the map, and the title, legend and scale around it.
 
-use super::colour_map::{Colour, ColourMap, hex};
 use super::frame::Frame;
 use super::svg::{self, Anchor};
 use super::ticks;
 use spmesh_core::error::{Error, Result};
 use spmesh_geometry::predicates::Point2;
+use spmesh_io::raster::colour_map::{Colour, ColourMap, hex};
 
 /// The margin of the sheet. Units: lengths of the picture, as all lengths here.
 const MARGIN: f64 = 16.0;

@@ -1,12 +1,12 @@
 //! The values and colours of triangles and points.
 
 use super::canvas::Paint;
-use super::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
 use super::options::{Fill, Options, When};
 use super::sheet::Legend;
 use super::shown::{self, Shown};
 use super::units::Units;
 use spmesh_io::raster::Light;
+use spmesh_io::raster::colour_map::{self, BATLOW, Colour, ColourMap, VIK, VIRIDIS};
 use spmesh_model::bounds::Point;
 
 /// The colour of triangles that show nothing.

@@ -3,13 +3,13 @@
 use foldhash::{HashSet, HashSetExt};
 
 use super::canvas::Canvas;
-use super::colour_map::hex;
 use super::depth_sort::{Turned, back_to_front};
 use super::layer::Drawable;
 use super::options::Fill;
 use super::scene::Scene;
 use super::style::{Colours, Style};
 use super::svg;
+use spmesh_io::raster::colour_map::hex;
 use spmesh_model::bounds::Point;
 
 /// A triangle of a stream.

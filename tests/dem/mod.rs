@@ -4,6 +4,7 @@ mod drawing;
 mod failures;
 mod files;
 mod masks;
+mod neighbours;
 pub mod outline;
 mod pieces;
 pub mod pipelines;
@@ -15,7 +16,7 @@ use spmesh_core::error::Result;
 use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
-use spmesh_terrain::dem::{Options, Quantity, Stats, rasterize};
+use spmesh_terrain::dem::{Method, Options, Quantity, Stats, rasterize};
 
 use spmesh_reference::incremental;
 use spmesh_reference::sets::Random;
@@ -55,6 +56,7 @@ impl Mesh {
 fn options(quantity: Quantity) -> Options {
     Options {
         quantity,
+        method: Method::Triangle,
         kill: None,
         concave: None,
         mask: None,

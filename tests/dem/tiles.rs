@@ -28,7 +28,7 @@ pub(super) fn mesh_and_grid() -> (Vec<u8>, Grid) {
     (mesh.stream(Coordinates::F64), grid)
 }
 
-/// The values of a GeoTIFF. Missing tiles have no data.
+/// The values of a GeoTIFF of floats or bytes. Missing tiles have no data.
 pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (grid.columns, grid.rows));
@@ -36,7 +36,13 @@ pub(super) fn tiff_values(bytes: &[u8], grid: &Grid) -> Vec<f32> {
     let columns = grid.columns as usize;
     let mut values = vec![f32::NAN; grid.cells() as usize];
     for chunk in (0..lengths.len()).filter(|&chunk| lengths[chunk] > 0) {
-        let DecodingResult::F32(tile) = decoder.read_chunk(chunk as u32).unwrap() else { panic!("32 bits") };
+        let tile = match decoder.read_chunk(chunk as u32).unwrap() {
+            DecodingResult::F32(tile) => tile,
+            DecodingResult::U8(tile) => {
+                tile.into_iter().map(|byte| if byte == 0 { -9999.0 } else { byte.into() }).collect()
+            }
+            _ => panic!("floats or bytes"),
+        };
         let (width, _) = decoder.chunk_data_dimensions(chunk as u32);
         let across = columns.div_ceil(TILE);
         let [left, top] = [chunk % across * TILE, chunk / across * TILE];

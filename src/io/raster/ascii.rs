@@ -11,7 +11,7 @@ pub(super) fn write_rows(
     file: &RasterFile,
     mut row: impl FnMut(u32, &mut [f32]) -> Result<()>,
 ) -> Result<()> {
-    let (Grid { left, step, columns, rows, .. }, no_data) = (file.grid, file.options.no_data);
+    let (Grid { left, step, columns, rows, .. }, no_data) = (file.grid, file.no_data());
     let bottom = file.grid.bottom();
     let header = format!(
         "ncols {columns}\nnrows {rows}\nxllcorner {left}\nyllcorner {bottom}\ncellsize {step}\nNODATA_value {no_data}\n"

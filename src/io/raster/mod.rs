@@ -4,6 +4,7 @@
 //! `no_data` for cells without data and `reference` for the coordinate reference system; `relief` derives slope, aspect and shading from gradients.
 
 mod ascii;
+pub mod colour_map;
 mod geotiff;
 mod grid;
 mod like;
@@ -18,7 +19,7 @@ pub use geotiff::{Reduction, TILE, Tiles, write_tiles};
 pub use grid::{Cells, Grid, Window};
 pub use no_data::NoData;
 pub use reference::Reference;
-pub use relief::{Light, aspect, slope};
+pub use relief::{Differences, Gradient, Light, Shading, aspect, slope};
 
 use spmesh_core::error::Result;
 
@@ -46,6 +47,27 @@ pub struct RasterOptions {
     pub temp_dir: Option<PathBuf>,
 }
 
+/// What cells hold.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Samples {
+    /// Floating-point numbers of 32 bits.
+    #[default]
+    Floats,
+    /// Bytes from 1 to 255; 0 stands for no data.
+    Bytes,
+    /// Red, green, blue and opacity, as bytes. Cells without data are transparent. The values of a tile are four
+    /// planes, one after the other.
+    Colours,
+}
+
+impl Samples {
+    /// Values of a cell.
+    #[must_use]
+    pub fn bands(self) -> usize {
+        if self == Samples::Colours { 4 } else { 1 }
+    }
+}
+
 /// A raster file to write.
 #[derive(Debug, Clone, Copy)]
 pub struct RasterFile<'a> {
@@ -57,12 +79,21 @@ pub struct RasterFile<'a> {
     pub reference: &'a Reference,
     /// How overviews are made.
     pub reduction: Reduction,
+    /// What its cells hold.
+    pub samples: Samples,
     /// Whether tiles are staged in a temporary file until all have come, so that they can be read back. Files
     /// with overviews and outputs that cannot seek are always staged.
     pub is_staged: bool,
 }
 
-/// Writes a file. `row` fills in the values of each row, from the top; NaN marks cells without data.
+impl RasterFile<'_> {
+    /// The value of cells without data.
+    fn no_data(&self) -> NoData {
+        if self.samples == Samples::Floats { self.options.no_data } else { NoData(0.0) }
+    }
+}
+
+/// Writes a file of one value per cell. `row` fills in the values of each row, from the top; NaN marks cells without data.
 ///
 /// Memory: 256 rows.
 ///

@@ -9,7 +9,7 @@ use super::values::{line, write_error};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Reference, Window};
+use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Window};
 use spmesh_splines::bases::{Raster, Scratch};
 
 /// Rows that a thread evaluates at a time: enough to outweigh the start of a sweep, which looks at all
@@ -48,7 +48,14 @@ pub fn write_raster<W: Write + Seek>(
     let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
     let crs = &spline.layout.frame.crs;
     let reference = Reference::of_crs(crs, attribute == Attribute::Value, options.format);
-    let file = RasterFile { options, grid: *grid, reference: &reference, reduction, is_staged: false };
+    let file = RasterFile {
+        options,
+        grid: *grid,
+        reference: &reference,
+        reduction,
+        samples: Samples::Floats,
+        is_staged: false,
+    };
     raster::write_rows(output, &file, |row, values| {
         for (value, &found) in values.iter_mut().zip(bands.row(row as usize)?) {
             *value = found as f32;

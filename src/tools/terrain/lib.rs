@@ -1,5 +1,6 @@
-//! Rasters and contour lines of triangle meshes, drawn while triangles arrive.
+//! Rasters and contour lines of triangle meshes, drawn while triangles arrive; and rasters of points.
 
 pub mod contours;
 pub mod dem;
+pub mod points;
 mod surface;

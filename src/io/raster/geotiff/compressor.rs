@@ -1,8 +1,7 @@
 //! Compresses tiles in order, on a separate thread.
 
 use super::overviews::TileName;
-use super::tile_code;
-use crate::raster::NoData;
+use super::tile_code::TileCode;
 use spmesh_core::error::Result;
 use spmesh_core::parallel::OrderedPool;
 
@@ -27,9 +26,9 @@ impl Compressor {
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Io`] if the system refuses a thread.
-    pub(super) fn start(no_data: NoData) -> Result<Compressor> {
+    pub(super) fn start(code: TileCode) -> Result<Compressor> {
         let compress = move |(name, values): (TileName, Vec<f32>)| {
-            let bytes = tile_code::encode(&values, no_data);
+            let bytes = code.encode(&values);
             Compressed { name, bytes, values }
         };
         Ok(Compressor { pool: OrderedPool::start("compressor", 1, TILES_MAX, compress)? })

@@ -1,4 +1,4 @@
-//! GeoTIFF files of one band of f32 (OGC 19-008r4, GeoTIFF 1.1), with overviews on request.
+//! GeoTIFF files of one band of f32 or bytes, or of colours (OGC 19-008r4, GeoTIFF 1.1), with overviews on request.
 //!
 //! Tiles arrive in any order. `compressor` encodes them by `tile_code` on a separate thread, `overviews`
 //! reduces them, and `store` holds the encoded bytes until all tiles have come. `directory` writes the bytes
@@ -18,9 +18,10 @@ pub use overviews::Reduction;
 use overviews::{Overviews, TileName, level_sizes, tiles_of};
 use store::{Extent, Store};
 
-use super::{Grid, NoData, RasterFile, RasterOptions};
+use super::{Grid, RasterFile, RasterOptions, Samples};
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::GeoKeys;
+use tile_code::TileCode;
 
 /// Side of a tile in cells.
 pub const TILE: usize = 256;
@@ -32,6 +33,10 @@ const DEFLATE: u16 = 8;
 const FLOAT_PREDICTOR: u16 = 3;
 const FLOAT: u16 = 3;
 const BLACK_IS_ZERO: u16 = 1;
+const HORIZONTAL_PREDICTOR: u16 = 2;
+const UNSIGNED: u16 = 1;
+const RGB: u16 = 2;
+const UNASSOCIATED_ALPHA: u16 = 2;
 const REDUCED_IMAGE: u32 = 1;
 
 /// Tags of TIFF.
@@ -47,6 +52,7 @@ const TILE_WIDTH: u16 = 322;
 const TILE_LENGTH: u16 = 323;
 const TILE_OFFSETS: u16 = 324;
 const TILE_BYTE_COUNTS: u16 = 325;
+const EXTRA_SAMPLES: u16 = 338;
 const SAMPLE_FORMAT: u16 = 339;
 
 /// Tags of GeoTIFF, and GDAL's tag for cells without data.
@@ -59,7 +65,7 @@ const GDAL_NO_DATA: u16 = 42113;
 
 /// Takes tiles in any order.
 pub struct Tiles<'a> {
-    no_data: NoData,
+    code: TileCode,
     levels: Vec<Level>,
     overviews: Option<Overviews>,
     compressor: Compressor,
@@ -91,17 +97,19 @@ pub fn write_tiles<W: Write + Seek>(
     let sizes = level_sizes([columns, rows], file.options.has_overviews);
     let levels: Vec<Level> = sizes.iter().map(|&size| Level::new(size)).collect();
     let cells: u64 = sizes.iter().map(|&[columns, rows]| u64::from(columns) * u64::from(rows)).sum();
-    let size = if cells * tile_code::LEN as u64 > BIG { Size::Big } else { Size::Classic };
+    let code = TileCode { samples: file.samples, no_data: file.no_data() };
+    let size = if cells * code.cell_len() as u64 > BIG { Size::Big } else { Size::Classic };
     let head_len = directory::encode(&directories(file, &levels), size).len() as u64;
-    let RasterOptions { no_data, has_overviews, temp_dir, .. } = file.options;
-    let (no_data, temp_dir) = (*no_data, temp_dir.as_deref());
+    let RasterOptions { has_overviews, temp_dir, .. } = file.options;
+    let temp_dir = temp_dir.as_deref();
     let is_staged = file.is_staged || *has_overviews || output.stream_position().is_err();
     let store = if is_staged { Store::staged(output, temp_dir)? } else { Store::direct(output, head_len)? };
     let mut tiles = Tiles {
-        no_data,
-        overviews: has_overviews.then(|| Overviews::new(file.reduction, sizes, temp_dir)),
+        code,
+        overviews: has_overviews
+            .then(|| Overviews::new(file.reduction, file.samples.bands(), sizes, temp_dir)),
         levels,
-        compressor: Compressor::start(no_data)?,
+        compressor: Compressor::start(code)?,
         store,
         spare: Vec::new(),
         bytes: Vec::new(),
@@ -131,19 +139,19 @@ impl Tiles<'_> {
     /// Writes the tile at this column and row of tiles, counted from the top left. NaN marks cells without
     /// data.
     ///
-    /// Domain: 256 by 256 values, row by row; values beyond the grid are ignored.
+    /// Domain: 256 by 256 values, row by row, for each band; values beyond the grid are ignored.
     ///
     /// # Errors
     /// If writing fails.
     pub fn tile(&mut self, column: usize, row: usize, values: &[f32]) -> Result<()> {
-        debug_assert_eq!(values.len(), TILE * TILE);
+        debug_assert_eq!(values.len(), self.code.samples.bands() * TILE * TILE);
         let mut copy = std::mem::take(&mut self.spare);
         copy.clear();
         copy.extend_from_slice(values);
         self.put((0, [column, row]), copy)
     }
 
-    /// Reads back a tile of a staged file; false if the tile was not written.
+    /// Reads back a tile of a staged file of floating-point numbers; false if the tile was not written.
     ///
     /// # Errors
     /// If it cannot be read.
@@ -154,7 +162,7 @@ impl Tiles<'_> {
         if self.bytes.is_empty() {
             return Ok(false);
         }
-        let decoded = tile_code::decode(&self.bytes, self.no_data, values);
+        let decoded = self.code.decode(&self.bytes, values);
         decoded.map_err(|error| Error::io("reading tiles back", error)).map(|()| true)
     }
 
@@ -226,8 +234,7 @@ impl Tiles<'_> {
 
 /// The directories of the image and its overviews.
 fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
-    let mut directories: Vec<Directory> =
-        levels.iter().map(|level| describe(level, file.options.no_data)).collect();
+    let mut directories: Vec<Directory> = levels.iter().map(|level| describe(level, file)).collect();
     directories[0].extend(refer(&file.grid, &file.reference.keys));
     let overviews = directories.iter_mut().skip(1);
     overviews.for_each(|directory| directory.push((NEW_SUBFILE_TYPE, Values::Longs(vec![REDUCED_IMAGE]))));
@@ -235,25 +242,36 @@ fn directories(file: &RasterFile, levels: &[Level]) -> Vec<Directory> {
 }
 
 /// The tags that describe the samples and where the tiles are.
-fn describe(level: &Level, no_data: NoData) -> Directory {
+fn describe(level: &Level, file: &RasterFile) -> Directory {
+    let bands = file.samples.bands();
+    let (bits, format, predictor) = match file.samples {
+        Samples::Floats => (32, FLOAT, FLOAT_PREDICTOR),
+        Samples::Bytes | Samples::Colours => (8, UNSIGNED, HORIZONTAL_PREDICTOR),
+    };
+    let each = |number: u16| Values::Shorts(vec![number; bands]);
     let short = |number: u16| Values::Shorts(vec![number]);
     let long = |number: u32| Values::Longs(vec![number]);
     let part = |part: usize| Values::Offsets(level.tiles.iter().map(|extent| extent[part]).collect());
-    vec![
+    let mut tags = vec![
         (IMAGE_WIDTH, long(level.size[0])),
         (IMAGE_LENGTH, long(level.size[1])),
-        (BITS_PER_SAMPLE, short(8 * tile_code::LEN as u16)),
+        (BITS_PER_SAMPLE, each(bits)),
         (COMPRESSION, short(DEFLATE)),
-        (PHOTOMETRIC_INTERPRETATION, short(BLACK_IS_ZERO)),
-        (SAMPLES_PER_PIXEL, short(1)),
-        (PREDICTOR, short(FLOAT_PREDICTOR)),
+        (PHOTOMETRIC_INTERPRETATION, short(if bands == 1 { BLACK_IS_ZERO } else { RGB })),
+        (SAMPLES_PER_PIXEL, short(bands as u16)),
+        (PREDICTOR, short(predictor)),
         (TILE_WIDTH, long(TILE as u32)),
         (TILE_LENGTH, long(TILE as u32)),
         (TILE_OFFSETS, part(0)),
         (TILE_BYTE_COUNTS, part(1)),
-        (SAMPLE_FORMAT, short(FLOAT)),
-        (GDAL_NO_DATA, Values::Text(no_data.to_string())),
-    ]
+        (SAMPLE_FORMAT, each(format)),
+    ];
+    // What is transparent has no data.
+    tags.push(match file.samples {
+        Samples::Colours => (EXTRA_SAMPLES, short(UNASSOCIATED_ALPHA)),
+        _ => (GDAL_NO_DATA, Values::Text(file.no_data().to_string())),
+    });
+    tags
 }
 
 /// The tags that georeference the cells.

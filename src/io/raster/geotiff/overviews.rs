@@ -8,7 +8,6 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::TILE;
-use super::tile_code::LEN;
 use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
 
@@ -17,8 +16,8 @@ pub(super) type TileName = (usize, [usize; 2]);
 
 /// Cells along a side of a quarter.
 const HALF: usize = TILE / 2;
-/// Bytes of a quarter.
-const QUARTER_LEN: usize = HALF * HALF * LEN;
+/// Bytes of a quarter, for each band.
+const QUARTER_LEN: usize = HALF * HALF * size_of::<f32>();
 
 /// How a cell of an overview gets its value from the four cells that it covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,6 +47,7 @@ pub(super) fn tiles_of(size: [u32; 2]) -> [usize; 2] {
 #[derive(Debug)]
 pub(super) struct Overviews {
     reduction: Reduction,
+    bands: usize,
     sizes: Vec<[u32; 2]>,
     open: HashMap<TileName, OpenTile>,
     quarters: Records,
@@ -62,9 +62,14 @@ struct OpenTile {
 
 impl Overviews {
     /// No tiles yet; `sizes` are the sizes of the levels.
-    pub(super) fn new(reduction: Reduction, sizes: Vec<[u32; 2]>, temp_dir: Option<&Path>) -> Overviews {
-        let quarters = Records::new(temp_dir, 4 * QUARTER_LEN as u64);
-        Overviews { reduction, sizes, open: HashMap::new(), quarters }
+    pub(super) fn new(
+        reduction: Reduction,
+        bands: usize,
+        sizes: Vec<[u32; 2]>,
+        temp_dir: Option<&Path>,
+    ) -> Overviews {
+        let quarters = Records::new(temp_dir, (4 * bands * QUARTER_LEN) as u64);
+        Overviews { reduction, bands, sizes, open: HashMap::new(), quarters }
     }
 
     /// Reduces a tile to a quarter of a tile of the next level, and returns that tile if it is complete.
@@ -79,7 +84,9 @@ impl Overviews {
         if level + 1 >= self.sizes.len() {
             return Ok(None);
         }
-        let quarter = self.quarter(values, self.inside(level, at));
+        let inside = self.inside(level, at);
+        let planes = values.chunks_exact(TILE * TILE);
+        let quarter: Vec<f32> = planes.flat_map(|plane| self.quarter(plane, inside)).collect();
         let name = (level + 1, at.map(|place| place / 2));
         let number = at[0] % 2 + 2 * (at[1] % 2);
         let quarters = &mut self.quarters;
@@ -87,7 +94,7 @@ impl Overviews {
         open.present |= 1 << number;
         let (record, present) = (open.record, open.present);
         let bytes = bytemuck::cast_slice(&quarter);
-        self.quarters.write(KEEPING, record, (number * QUARTER_LEN) as u64, bytes)?;
+        self.quarters.write(KEEPING, record, self.start(number), bytes)?;
         if present == self.expected(level, name.1) { self.take(name).map(Some) } else { Ok(None) }
     }
 
@@ -103,19 +110,27 @@ impl Overviews {
     /// # Errors
     /// If the temporary file fails.
     pub(super) fn take(&mut self, name: TileName) -> Result<(TileName, Vec<f32>)> {
-        let mut values = vec![f32::NAN; TILE * TILE];
+        let mut values = vec![f32::NAN; self.bands * TILE * TILE];
         let Some(OpenTile { record, present }) = self.open.remove(&name) else { return Ok((name, values)) };
-        let mut quarter = vec![0f32; HALF * HALF];
+        let mut quarter = vec![0f32; self.bands * HALF * HALF];
         for number in (0..4).filter(|number| present & (1 << number) != 0) {
             let bytes = bytemuck::cast_slice_mut(&mut quarter);
-            self.quarters.read("reading overviews back", record, (number * QUARTER_LEN) as u64, bytes)?;
+            self.quarters.read("reading overviews back", record, self.start(number), bytes)?;
             let start = number % 2 * HALF + number / 2 * HALF * TILE;
-            for (into, from) in values[start..].chunks_mut(TILE).zip(quarter.chunks_exact(HALF)) {
-                into[..HALF].copy_from_slice(from);
+            let planes = values.chunks_exact_mut(TILE * TILE).zip(quarter.chunks_exact(HALF * HALF));
+            for (plane, quarter) in planes {
+                for (into, from) in plane[start..].chunks_mut(TILE).zip(quarter.chunks_exact(HALF)) {
+                    into[..HALF].copy_from_slice(from);
+                }
             }
         }
         self.quarters.forget(record);
         Ok((name, values))
+    }
+
+    /// First byte of a quarter in its record.
+    fn start(&self, number: usize) -> u64 {
+        (number * self.bands * QUARTER_LEN) as u64
     }
 
     /// Number of cells of a tile that are in the image, along each axis.

@@ -6,6 +6,7 @@ use foldhash::{HashMap, HashMapExt};
 
 use super::fill::{Filler, around};
 use super::flush::fill_holes;
+use super::neighbours::{SIDE, place, places};
 use super::options::Quantity;
 use super::tile::{CELLS, Tile};
 use super::tile_cache::{TileCache, TilePlace};
@@ -13,9 +14,6 @@ use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::TILE;
-
-/// Cells along a side of the window: a tile, and a margin of one cell.
-const SIDE: usize = TILE + 2;
 
 /// The elevations of a raster whose holes are filled, from which the values of filled cells follow: by central
 /// differences, or by differences to the only neighbour along an axis. A cell without neighbours along an axis has
@@ -49,8 +47,7 @@ impl Derived {
         let mut records = Records::new(temp_dir, Tile::VALUES_LEN);
         let mut filled = HashMap::new();
         let mut values = vec![f32::NAN; CELLS];
-        let [across, down] = heights.tiles();
-        for at in (0..down).flat_map(|row| (0..across).map(move |column| [column, row])) {
+        for at in places(heights.tiles()) {
             if heights.read(at, &mut values)?
                 && fill_holes(&mut heights, filler, at, &mut |_, _| Ok(false), &mut values)?
             {
@@ -74,7 +71,7 @@ impl Derived {
         self.window.fill(f32::NAN);
         for [x, y] in around(at, self.heights.tiles()) {
             if self.read([x, y])? {
-                self.place([x + 1 - at[0], y + 1 - at[1]]);
+                place(&mut self.window, &self.tile, [x + 1 - at[0], y + 1 - at[1]]);
             }
         }
         // The elevations as drawn: cells without one are filled.
@@ -99,21 +96,6 @@ impl Derived {
                 self.records.read("reading filled tiles back", record, 0, bytes).map(|()| true)
             }
             None => self.heights.read(at, &mut self.tile),
-        }
-    }
-
-    /// Copies the part of a tile in the window; `at` is 1, 1 for the tile in the middle.
-    fn place(&mut self, at: [usize; 2]) {
-        // The first cell in the tile, its place in the window, and the number of cells.
-        let part = |at: usize| match at {
-            0 => (TILE - 1, 0, 1),
-            1 => (0, 1, TILE),
-            _ => (0, TILE + 1, 1),
-        };
-        let [(from_column, column, width), (from_row, row, height)] = at.map(part);
-        for line in 0..height {
-            let from = &self.tile[(from_row + line) * TILE + from_column..][..width];
-            self.window[(row + line) * SIDE + column..][..width].copy_from_slice(from);
         }
     }
 

@@ -2,8 +2,10 @@
 
 use super::derived::Derived;
 use super::fill::Filler;
+use super::neighbours::places;
 use super::options::Options;
 use super::rasterizer::Rasterizer;
+use super::stages::Stages;
 use super::tile::WORD;
 use super::tile_cache::{TileCache, TilePlace, blank_others};
 use spmesh_core::error::Result;
@@ -64,12 +66,7 @@ impl<'a> Flush<'a> {
     ///
     /// # Errors
     /// Those of `read_written`; if the temporary file fails.
-    pub(super) fn tile(
-        &mut self,
-        at: TilePlace,
-        read_written: &mut ReadTile,
-        values: &mut [f32],
-    ) -> Result<bool> {
+    fn tile(&mut self, at: TilePlace, read_written: &mut ReadTile, values: &mut [f32]) -> Result<bool> {
         if !self.cache.read(at, values)? {
             return Ok(false);
         }
@@ -86,40 +83,16 @@ impl<'a> Flush<'a> {
         Ok(known > 0)
     }
 
-    /// Calls `take` with the tiles that were not written, row by row, except blank ones.
+    /// Passes the tiles that were not written to `stages`, row by row, except blank ones.
     ///
     /// # Errors
-    /// Those of `take` and of [`Flush::tile`].
-    pub(super) fn write_rest<T>(
-        &mut self,
-        target: &mut T,
-        mut read: impl FnMut(&mut T, TilePlace, &mut [f32]) -> Result<bool>,
-        mut take: impl FnMut(&mut T, TilePlace, &[f32]) -> Result<()>,
-    ) -> Result<()> {
-        let [across, down] = self.cache.tiles();
+    /// Those of `stages` and of [`Flush::tile`].
+    pub(super) fn write_rest(&mut self, stages: &mut Stages) -> Result<()> {
         let mut values = vec![f32::NAN; TILE * TILE];
-        for at in (0..down).flat_map(|row| (0..across).map(move |column| [column, row])) {
+        for at in places(self.cache.tiles()) {
             let is_left = !self.cache.is_written(at);
-            if is_left && self.tile(at, &mut |at, values| read(target, at, values), &mut values)? {
-                take(target, at, &values)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Reads a row of tiles as rows of cells. None of them may have been written.
-    ///
-    /// # Errors
-    /// If the temporary file fails.
-    pub(super) fn band(&mut self, row: usize, band: &mut [f32]) -> Result<()> {
-        let [across, _] = self.cache.tiles();
-        let mut values = vec![f32::NAN; TILE * TILE];
-        for column in 0..across {
-            if !self.tile([column, row], &mut |_, _| Ok(false), &mut values)? {
-                values.fill(f32::NAN);
-            }
-            for (into, from) in band.chunks_exact_mut(across * TILE).zip(values.chunks_exact(TILE)) {
-                into[column * TILE..][..TILE].copy_from_slice(from);
+            if is_left && self.tile(at, &mut |at, values| stages.read(at, values), &mut values)? {
+                stages.take(at, &values)?;
             }
         }
         Ok(())

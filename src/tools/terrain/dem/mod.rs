@@ -4,39 +4,48 @@
 //! order, by the `rasterizer`. `axis` and `centers` place the centres. `span` finds exactly the centres in a
 //! triangle, with the help of `search` where rounding leaves doubts. `facet` is the plane of a triangle. A
 //! `tile` holds cells; `tile_cache` holds all tiles, some of them in a temporary file. After the last
-//! triangle, `flush` writes the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
-//! `cell_mask` finds the cells in polygons.
+//! triangle, `flush` passes on the remaining tiles, whose holes `fill` fills; `derived` has the slopes there.
+//! `cell_mask` finds the cells in polygons. Complete tiles go through `stages`: `neighbours` derives slopes from
+//! the cells of elevations. A `tile_store` holds complete tiles, of which `band` makes rows.
 
 mod axis;
+pub(crate) mod band;
 mod cell_mask;
 mod centers;
 mod derived;
 mod facet;
 mod fill;
 mod flush;
+mod neighbours;
 mod options;
 mod rasterizer;
 mod search;
 mod span;
+mod stages;
 mod tile;
-mod tile_cache;
+pub(crate) mod tile_cache;
+pub(crate) mod tile_store;
 
 use std::io::{Read, Seek, Write};
 
-pub use options::{Interpolation, Options, Quantity};
+pub use options::{Interpolation, Method, Options, Quantity};
 
 use crate::surface::check_input;
+use band::Band;
 use fill::Filler;
 use flush::Flush;
+use neighbours::Neighbours;
 use rasterizer::{Rasterizer, TileSink};
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::System;
 use spmesh_geometry::predicates::{PredicateCounts, Predicates2};
-use spmesh_io::raster::{self, Grid, RasterFormat, TILE, Tiles, Window};
+use spmesh_io::raster::{self, Gradient, Grid, RasterFormat, Window};
 use spmesh_model::attributes::Column;
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Event, Header, LiveVertices, Patch, StreamReader};
-use tile_cache::TilePlace;
+use stages::Stages;
+use tile_cache::{TilePlace, tiles_of};
+use tile_store::{TileStore, TileTarget};
 
 /// Counts of a run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -105,64 +114,94 @@ pub fn rasterize<R: Read, W: Write + Seek>(
 ) -> Result<Stats> {
     let header = reader.header().clone();
     let column = check(&header, &options.quantity).map_err(|e| e.of_input(reader.name()))?;
-    let filler = options.fill.map(Filler::new).transpose()?;
+    // Before anything is made for each tile.
+    tiles_of(grid)?;
     let system = System::of(options.crs.as_ref().unwrap_or(&header.crs));
-    let mut rasterizer = Rasterizer::new(*grid, &header.coordinates, options, &system)?;
     let reference = options.reference(&system);
     let file = options.file(*grid, &reference);
-    let (mut width, mut known, mut filled) = (0, 0, 0);
-    match options.raster.format {
+    let run = Run { grid, options, column, system: &system };
+    let mut stats = match options.raster.format {
         RasterFormat::Ascii => {
-            width = read(reader, column.as_ref(), &mut rasterizer, None, progress)?;
-            let mut flush = Flush::new(&mut rasterizer, filler, options, grid.step)?;
-            let band_width = (grid.columns as usize).next_multiple_of(TILE);
-            let mut band = vec![f32::NAN; band_width * TILE];
-            raster::write_rows(output, &file, |row, values| {
-                let row = row as usize;
-                if row.is_multiple_of(TILE) {
-                    flush.band(row / TILE, &mut band)?;
-                }
-                values.copy_from_slice(&band[row % TILE * band_width..][..values.len()]);
-                known += flush::count_known(values);
+            // Rows are written from the top, so all tiles wait.
+            let mut store = TileStore::new(options.memory / 2, options.raster.temp_dir.as_deref());
+            let mut stats = run.draw(reader, &mut store, options.memory / 2, progress)?;
+            let mut band = Band::new(*grid);
+            raster::write_rows(output, &file, |row, values| band.read(&mut store, row, values))?;
+            stats.spilled += store.spilled;
+            stats.spilled_bytes += store.spill_len();
+            stats
+        }
+        RasterFormat::GeoTiff => {
+            let mut stats = Stats::default();
+            raster::write_tiles(output, &file, |tiles| {
+                stats = run.draw(reader, tiles, options.memory, progress)?;
                 Ok(())
             })?;
-            filled = flush.filled;
+            stats
         }
-        RasterFormat::GeoTiff => raster::write_tiles(output, &file, |tiles| {
-            let mut write = |tiles: &mut Tiles, [column, row]: TilePlace, values: &[f32]| {
-                let count = flush::count_known(values);
-                known += count;
-                // A tile may be outside of the mask.
-                if count > 0 { tiles.tile(column, row, values) } else { Ok(()) }
-            };
-            let mut complete = |at: TilePlace, values: &[f32]| write(tiles, at, values);
-            // Elevations of tiles that are written would not be there when slopes of filled cells need them.
-            let is_written_early = rasterizer.heights.is_none();
-            let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
-            width = read(reader, column.as_ref(), &mut rasterizer, sink, progress)?;
-            let mut flush = Flush::new(&mut rasterizer, filler, options, grid.step)?;
-            flush.write_rest(tiles, |tiles, [column, row], values| tiles.read(column, row, values), write)?;
-            filled = flush.filled;
-            Ok(())
-        })?,
+    };
+    stats.notices = reference.notices;
+    Ok(stats)
+}
+
+/// What the tiles of a raster follow from.
+struct Run<'r> {
+    grid: &'r Grid,
+    options: &'r Options,
+    /// The attribute that is drawn.
+    column: Option<Column>,
+    system: &'r System,
+}
+
+impl Run<'_> {
+    /// Passes all tiles with values to a target, each once and complete, in any order.
+    fn draw<R: Read>(
+        &self,
+        reader: &mut StreamReader<R>,
+        target: &mut dyn TileTarget,
+        memory: u64,
+        progress: impl FnMut(u64),
+    ) -> Result<Stats> {
+        let options = self.options;
+        let filler = options.fill.map(Filler::new).transpose()?;
+        let differences = options.differences();
+        let for_drawing = if differences.is_some() { memory / 2 } else { memory };
+        let coordinates = reader.header().coordinates;
+        let mut rasterizer = Rasterizer::new(*self.grid, &coordinates, options, self.system, for_drawing)?;
+        let neighbours = differences.map(|differences| {
+            let store = TileStore::new(memory - for_drawing, options.raster.temp_dir.as_deref());
+            let gradient = Gradient::new(differences, self.grid.step / rasterizer.unit_of_z);
+            Neighbours::new(options.quantity.clone(), gradient, rasterizer.cache.tiles(), store)
+        });
+        // Holes are filled from the elevations around them, so these stay until the end.
+        let is_written_early =
+            rasterizer.heights.is_none() && (neighbours.is_none() || options.fill.is_none());
+        let mut stages = Stages::new(neighbours, target);
+        let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
+        let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
+        let width = read(reader, self.column.as_ref(), &mut rasterizer, sink, progress)?;
+        let mut flush = Flush::new(&mut rasterizer, filler, options, self.grid.step)?;
+        flush.write_rest(&mut stages)?;
+        let filled = flush.filled;
+        let [known, spilled, spilled_bytes] = stages.finish()?;
+        let totals = reader.totals();
+        Ok(Stats {
+            vertices: totals.vertices,
+            triangles: totals.simplices,
+            killed: rasterizer.killed,
+            unknown: rasterizer.unknown,
+            outside: rasterizer.outside,
+            width,
+            cells: self.grid.cells(),
+            known,
+            filled,
+            spilled: rasterizer.cache.spilled + spilled,
+            spilled_bytes: rasterizer.cache.spill_len() + spilled_bytes,
+            input_bytes: reader.bytes_read(),
+            predicates: *rasterizer.predicates.counts(),
+            notices: Vec::new(),
+        })
     }
-    let totals = reader.totals();
-    Ok(Stats {
-        vertices: totals.vertices,
-        triangles: totals.simplices,
-        killed: rasterizer.killed,
-        unknown: rasterizer.unknown,
-        outside: rasterizer.outside,
-        width,
-        cells: grid.cells(),
-        known,
-        filled,
-        spilled: rasterizer.cache.spilled,
-        spilled_bytes: rasterizer.cache.spill_len(),
-        input_bytes: reader.bytes_read(),
-        predicates: *rasterizer.predicates.counts(),
-        notices: reference.notices,
-    })
 }
 
 /// Checks that a stream holds triangles with what is to be drawn; returns the column of an attribute.

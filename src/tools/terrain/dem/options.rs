@@ -6,7 +6,9 @@ use super::facet::out_of_range;
 use spmesh_core::error::Result;
 use spmesh_crs::{Horizontal, System};
 use spmesh_geometry::predicates::Point2;
-use spmesh_io::raster::{self, Grid, Light, RasterFile, RasterOptions, Reduction, Reference};
+use spmesh_io::raster::{
+    self, Differences, Gradient, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Shading,
+};
 use spmesh_io::source::Mask;
 use spmesh_stream::Crs;
 
@@ -24,14 +26,24 @@ pub enum Interpolation {
 pub enum Quantity {
     /// The elevation at the centre.
     Elevation,
-    /// The angle of the triangle with the horizontal, in degrees.
+    /// The angle of the surface with the horizontal, in degrees.
     Slope,
-    /// The direction of steepest descent, in degrees clockwise from north; no data where a triangle is level.
+    /// The direction of steepest descent, in degrees clockwise from north; no data where the surface is level.
     Aspect,
-    /// The brightness of the triangle in some light, from 0 to 255.
-    Hillshade(Light),
+    /// The brightness of the surface in some light, as bytes from 1 to 255.
+    Hillshade(Shading),
     /// An attribute of the points, as `spmesh_model::attributes::Attributes::column` takes it.
     Attribute(String, Interpolation),
+}
+
+/// What slopes, aspects and hillshades are those of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The triangle at the centre of the cell.
+    Triangle,
+    /// The cells of the raster of elevations: of a cell and its eight neighbours. A cell without all of them has no
+    /// value.
+    Cells(Differences),
 }
 
 /// What is drawn, and the memory for it.
@@ -39,6 +51,8 @@ pub enum Quantity {
 pub struct Options {
     /// The quantity that cells hold.
     pub quantity: Quantity,
+    /// What slopes, aspects and hillshades are those of.
+    pub method: Method,
     /// Triangles with a longer edge are left out. Units: those of the world.
     pub kill: Option<f64>,
     /// Triangles outside of the concave outline are left out: a chain of triangles leads to them from the convex
@@ -79,7 +93,24 @@ impl Options {
         };
         // Holes are filled from tiles that are already written, so these must be readable.
         let is_staged = self.fill.is_some();
-        RasterFile { options: &self.raster, grid, reference, reduction, is_staged }
+        let samples = match self.quantity {
+            Quantity::Hillshade(_) => Samples::Bytes,
+            _ => Samples::Floats,
+        };
+        RasterFile { options: &self.raster, grid, reference, reduction, samples, is_staged }
+    }
+
+    /// The quantity that is drawn from triangles.
+    pub(super) fn drawn(&self) -> Quantity {
+        if self.differences().is_some() { Quantity::Elevation } else { self.quantity.clone() }
+    }
+
+    /// How the quantity follows from cells of elevations, if it does.
+    pub(super) fn differences(&self) -> Option<Differences> {
+        match self.method {
+            Method::Cells(differences) if self.quantity.is_derived() => Some(differences),
+            _ => None,
+        }
     }
 }
 
@@ -105,10 +136,23 @@ impl Quantity {
         let value = match self {
             Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),
             _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
-            Quantity::Slope => raster::slope(gradient),
+            Quantity::Slope => raster::slope(gradient) as f32,
             Quantity::Aspect => raster::aspect(gradient),
-            Quantity::Hillshade(light) => light.shade(gradient),
+            Quantity::Hillshade(shading) => shading.byte(gradient).into(),
         };
-        Ok(Some(value as f32))
+        Ok(Some(value))
+    }
+
+    /// The value of a cell from its elevation and those of its eight neighbours.
+    ///
+    /// # Errors
+    /// As [`Quantity::of_plane`].
+    #[inline]
+    pub(super) fn of_cells(&self, gradient: &Gradient, cells: &[f32; 9]) -> Result<f32> {
+        let gradient = match self {
+            Quantity::Hillshade(Shading::One(_)) => gradient.of_pairs(cells),
+            _ => gradient.at(cells),
+        };
+        Ok(self.of_plane(gradient)?.unwrap_or(f32::NAN))
     }
 }

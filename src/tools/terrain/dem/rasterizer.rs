@@ -49,7 +49,7 @@ pub(super) struct Rasterizer {
 }
 
 impl Rasterizer {
-    /// Nothing drawn so far.
+    /// Nothing drawn so far. `memory` is for tiles, and for triangles that wait for the outline. Units: bytes.
     ///
     /// # Errors
     /// As [`TileCache::new`].
@@ -58,12 +58,14 @@ impl Rasterizer {
         coordinates: &Coordinates,
         options: &Options,
         system: &System,
+        memory: u64,
     ) -> Result<Rasterizer> {
         let temp_dir = options.raster.temp_dir.as_deref();
         // A part of the memory is for triangles that wait for the outline.
         let for_outline = if options.concave.is_some() { options.memory / 4 } else { 0 };
-        let for_tiles = options.memory - for_outline;
-        let has_heights = options.fill.is_some() && options.quantity.is_derived();
+        let for_tiles = memory.saturating_sub(for_outline);
+        let quantity = options.drawn();
+        let has_heights = options.fill.is_some() && quantity.is_derived();
         let for_cache = if has_heights { for_tiles / 2 } else { for_tiles };
         let mask = options.mask.as_ref().map(|mask| Arc::new(CellMask::new(mask, grid)));
         let cache = || TileCache::new(grid, for_cache, temp_dir, mask.clone());
@@ -71,7 +73,7 @@ impl Rasterizer {
         Ok(Rasterizer {
             centers: Centers::new(grid, coordinates, unit_of_z),
             unit_of_z,
-            quantity: options.quantity.clone(),
+            quantity,
             long_edges: EdgeLimit::new(options.kill, coordinates),
             outline: options
                 .concave

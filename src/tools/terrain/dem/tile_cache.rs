@@ -16,7 +16,7 @@ const READING: &str = "reading tiles back";
 const STARTS: [u64; 3] = [0, Tile::VALUES_LEN, Tile::VALUES_LEN + Tile::BITS_LEN];
 
 /// The column and the row of a tile.
-pub(super) type TilePlace = [usize; 2];
+pub(crate) type TilePlace = [usize; 2];
 
 /// Where a tile is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +38,23 @@ struct Held {
     /// The clock at its last use.
     used: u64,
     tile: Tile,
+}
+
+/// The number of tiles in a row of a grid, and in a column.
+///
+/// # Errors
+/// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
+pub(crate) fn tiles_of(grid: &Grid) -> Result<[usize; 2]> {
+    let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
+    let count = across as u64 * down as u64;
+    if count <= RASTER_TILES_MAX {
+        return Ok([across, down]);
+    }
+    Err(Error::usage(format!(
+        "{} by {} cells of size {} are {count} tiles, at most {RASTER_TILES_MAX} are possible: take larger cells, \
+         or a part with --bounds",
+        grid.columns, grid.rows, grid.step
+    )))
 }
 
 /// All tiles of a grid.
@@ -66,27 +83,18 @@ impl TileCache {
     /// the mask have no data when they are read or taken.
     ///
     /// # Errors
-    /// Usage, if there are more tiles than [`RASTER_TILES_MAX`].
+    /// As [`tiles_of`].
     pub(super) fn new(
         grid: Grid,
         memory: u64,
         temp_dir: Option<&Path>,
         mask: Option<Arc<CellMask>>,
     ) -> Result<TileCache> {
-        let [across, down] = [grid.columns, grid.rows].map(|count| (count as usize).div_ceil(TILE));
-        let count = across as u64 * down as u64;
-        if count > RASTER_TILES_MAX {
-            return Err(Error::usage(format!(
-                "{} by {} cells of size {} are {count} tiles, at most {RASTER_TILES_MAX} are possible: take \
-                 larger \
-                 cells, or a part with --bounds",
-                grid.columns, grid.rows, grid.step
-            )));
-        }
+        let [across, down] = tiles_of(&grid)?;
         Ok(TileCache {
             grid,
             across,
-            states: vec![State::Blank; count as usize],
+            states: vec![State::Blank; across * down],
             held: Vec::new(),
             held_max: usize::try_from(memory / Tile::LEN).unwrap_or(usize::MAX).max(1),
             clock: 0,

@@ -1,16 +1,16 @@
 //! Colour maps that are perceptually uniform and ordered by lightness.
 
-use spmesh_io::raster::Light;
+use super::Light;
 
 /// Red, green and blue.
-pub(super) type Colour = [u8; 3];
+pub type Colour = [u8; 3];
 
 /// Colours at equal steps from the least value to the greatest.
 #[derive(Debug, PartialEq)]
-pub(super) struct ColourMap(&'static [Colour]);
+pub struct ColourMap(&'static [Colour]);
 
 /// For time and order (viridis, CC0).
-pub(super) const VIRIDIS: ColourMap = ColourMap(&[
+pub const VIRIDIS: ColourMap = ColourMap(&[
     [68, 1, 84],
     [71, 45, 123],
     [59, 82, 139],
@@ -23,7 +23,7 @@ pub(super) const VIRIDIS: ColourMap = ColourMap(&[
 ]);
 
 /// For elevations (batlow of Crameri, "Scientific colour maps", MIT).
-pub(super) const BATLOW: ColourMap = ColourMap(&[
+pub const BATLOW: ColourMap = ColourMap(&[
     [1, 25, 89],
     [16, 63, 96],
     [28, 90, 98],
@@ -37,7 +37,7 @@ pub(super) const BATLOW: ColourMap = ColourMap(&[
 ]);
 
 /// Diverging, for values below and above a middle (vik of Crameri, MIT).
-pub(super) const VIK: ColourMap = ColourMap(&[
+pub const VIK: ColourMap = ColourMap(&[
     [0, 18, 97],
     [2, 63, 125],
     [30, 111, 157],
@@ -53,7 +53,8 @@ pub(super) const VIK: ColourMap = ColourMap(&[
 
 impl ColourMap {
     /// The colour at a position from 0 to 1; positions beyond have the colours of the ends.
-    pub(super) fn at(&self, part: f64) -> Colour {
+    #[must_use]
+    pub fn at(&self, part: f64) -> Colour {
         let steps = self.0.len() - 1;
         // NaN has the first colour.
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
@@ -64,7 +65,8 @@ impl ColourMap {
 }
 
 /// The colour `part` of the way between two colours.
-pub(super) fn mix(from: Colour, to: Colour, part: f64) -> Colour {
+#[must_use]
+pub fn mix(from: Colour, to: Colour, part: f64) -> Colour {
     [0, 1, 2].map(|channel| {
         let [from, to] = [from, to].map(|colour| f64::from(colour[channel]));
         (from + part * (to - from)).round() as u8
@@ -72,17 +74,20 @@ pub(super) fn mix(from: Colour, to: Colour, part: f64) -> Colour {
 }
 
 /// A colour as SVG writes it.
-pub(super) fn hex([r, g, b]: Colour) -> String {
+#[must_use]
+pub fn hex([r, g, b]: Colour) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// Grey of some brightness, from 0 to 1.
-pub(super) fn grey(shade: f64) -> Colour {
+#[must_use]
+pub fn grey(shade: f64) -> Colour {
     [(255.0 * shade).round() as u8; 3]
 }
 
 /// A colour in light: level ground, of brightness `level`, keeps it; other surfaces darken or brighten it.
-pub(super) fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
+#[must_use]
+pub fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
     /// The part of a colour that remains in the dark.
     const AMBIENT: f64 = 0.45;
     if shade <= level {
@@ -93,8 +98,9 @@ pub(super) fn lit(colour: Colour, shade: f64, level: f64) -> Colour {
 }
 
 /// The brightness of a surface, from 0 to 1.
-pub(super) fn shade(light: &Light, gradient: [f64; 2]) -> f64 {
-    let shade = light.shade(gradient) / 255.0;
+#[must_use]
+pub fn shade(light: &Light, gradient: [f64; 2]) -> f64 {
+    let shade = light.shade(gradient);
     // A vertical wall, whose gradient overflows.
     if shade.is_nan() { 0.0 } else { shade }
 }
