@@ -5,12 +5,13 @@ use std::path::Path;
 
 use crate::programs::{outcome, run, sample};
 
-const TOOLS: [&str; 12] = [
+const TOOLS: [&str; 13] = [
     "spfinalize",
     "spdelaunay2d",
     "spdelaunay3d",
     "spdem",
     "spheight",
+    "spcanopy",
     "spview",
     "tess3",
     "dd4",

@@ -35,6 +35,7 @@ fn arguments(tool: &str) -> &'static [&'static str] {
         "configgen" => &["--degree", "1"],
         "splinefit" => &["fit", "--tol", "1000"],
         "spconvert" => &["--to", "text"],
+        "spcanopy" => &["--ground", "none"],
         "spheight" => &["--ground", "none", "--out-dir", "."],
         _ => &[],
     }

@@ -3,6 +3,7 @@
 mod allocation;
 mod attributes;
 mod audit;
+mod canopy;
 mod cell_grid;
 mod cli;
 mod configgen;

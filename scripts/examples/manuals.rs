@@ -6,8 +6,8 @@ use std::path::Path;
 use clap::{Command, CommandFactory};
 use clap_complete::Shell;
 use spmesh_cli::{
-    configgen, dd4, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize, spheight, spinfo, splinefit,
-    spview, tess3,
+    configgen, dd4, spcanopy, spconvert, spdelaunay2d, spdelaunay3d, spdem, spfinalize, spheight, spinfo,
+    splinefit, spview, tess3,
 };
 
 fn main() -> std::io::Result<()> {
@@ -30,13 +30,14 @@ fn main() -> std::io::Result<()> {
     Ok(())
 }
 
-fn tools() -> [Command; 12] {
+fn tools() -> [Command; 13] {
     [
         spfinalize::Flags::command(),
         spdelaunay2d::Flags::command(),
         spdelaunay3d::Flags::command(),
         spdem::Flags::command(),
         spheight::Flags::command(),
+        spcanopy::Flags::command(),
         spview::Flags::command(),
         tess3::Flags::command(),
         dd4::Flags::command(),

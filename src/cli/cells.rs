@@ -102,6 +102,11 @@ impl RasterFlags {
         Ok(RasterOptions { format, no_data, has_overviews: cog, temp_dir })
     }
 
+    /// The folder of temporary files, if it is not the system's.
+    pub(super) fn temp_dir(&self) -> Option<&Path> {
+        self.temp_dir.as_deref()
+    }
+
     /// Checks the flags for a raster of bytes, in which 0 stands for no data.
     ///
     /// # Errors

@@ -11,6 +11,7 @@ mod point_filters;
 pub mod progress;
 mod reduction;
 mod rows;
+pub mod spcanopy;
 pub mod spconvert;
 pub mod spdelaunay2d;
 pub mod spdelaunay3d;

@@ -10,7 +10,7 @@ use std::io::{self, Read};
 use spmesh_core::error::{Error, Result};
 
 pub use readers::{
-    CONFIGGEN, DD4, READERS, Reader, SPCONVERT, SPFINALIZE, SPHEIGHT, SPINFO, SPLINEFIT, TESS3,
+    CONFIGGEN, DD4, READERS, Reader, SPCANOPY, SPCONVERT, SPFINALIZE, SPHEIGHT, SPINFO, SPLINEFIT, TESS3,
 };
 pub(crate) use text::is_off;
 

@@ -75,6 +75,9 @@ pub const TESS3: Reader = Reader {
     axes: 3,
 };
 
+/// `spcanopy`.
+pub const SPCANOPY: Reader = Reader { tool: "spcanopy", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
+
 /// `spheight`, for the files whose points get heights.
 pub const SPHEIGHT: Reader = Reader { tool: "spheight", formats: &[&[Format::Las]], has_raw: false, axes: 3 };
 
@@ -87,8 +90,8 @@ pub const DD4: Reader = Reader {
 };
 
 /// All of them.
-pub const READERS: [&Reader; 8] =
-    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPHEIGHT, &TESS3, &DD4];
+pub const READERS: [&Reader; 9] =
+    [&SPFINALIZE, &CONFIGGEN, &SPLINEFIT, &SPINFO, &SPCONVERT, &SPCANOPY, &SPHEIGHT, &TESS3, &DD4];
 
 /// The reader of a caller that does not name its tool.
 static ANY: Reader = Reader { tool: "this program", formats: &[POINTS], has_raw: true, axes: 3 };

@@ -4,7 +4,6 @@ use std::io::{Seek, Write};
 
 use super::ground::{Ground, Outside, Unit};
 use spmesh_core::error::{Error, Result};
-use spmesh_crs::{System, differences};
 use spmesh_io::las::{Changes, ExtraField, LasCopy, LasFile};
 use spmesh_io::source::Alignment;
 use spmesh_model::bounds::Point;
@@ -70,7 +69,7 @@ pub fn write_heights<W: Write + Seek>(
     options: &FileOptions,
     mut progress: impl FnMut(u64),
 ) -> Result<(W, Counts)> {
-    check_systems(ground, file)?;
+    ground.check_system(file.crs()).map_err(|e| e.of_input(file.name()))?;
     let Coordinates::I32 { scale, .. } = *file.coordinates() else { unreachable!("LAS files have a grid") };
     let field = |name: &String| ExtraField {
         name: name.clone(),
@@ -134,17 +133,6 @@ pub fn write_heights<W: Write + Seek>(
         progress(counts.points);
     }
     Ok((copy.finish().map_err(of_file)?, counts))
-}
-
-/// Refuses a file in another coordinate reference system than the ground's. One that states none takes that of the
-/// ground.
-fn check_systems(ground: &Ground, file: &LasFile) -> Result<()> {
-    let found = differences(&System::of(ground.crs()), &System::of(file.crs())).join("; ");
-    if found.is_empty() {
-        return Ok(());
-    }
-    let what = format!("the coordinate reference system of {} is another one ({found})", ground.name());
-    Err(Error::usage(format!("{what}: reproject one of them")).of_input(file.name()))
 }
 
 /// The integer that stands for a height.

@@ -7,7 +7,8 @@ use super::blocks::{Blocks, Triangle};
 use super::nearest::Nearest;
 use super::point_grid::PointGrid;
 use super::surface::{height, rounded, shares};
-use spmesh_core::error::Result;
+use spmesh_core::error::{Error, Result};
+use spmesh_crs::{System, differences};
 use spmesh_geometry::predicates::{FiniteFloatPredicates, is_counterclockwise};
 use spmesh_model::bounds::Point;
 use spmesh_stream::{Coordinates, Crs, Event, LiveVertices, StreamReader, check_surface};
@@ -96,6 +97,19 @@ impl Ground {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Refuses points in another coordinate reference system. Points without one take that of the ground.
+    ///
+    /// # Errors
+    /// Usage, if the systems differ.
+    pub fn check_system(&self, crs: &Crs) -> Result<()> {
+        let found = differences(&System::of(&self.crs), &System::of(crs)).join("; ");
+        if found.is_empty() {
+            return Ok(());
+        }
+        let what = format!("the coordinate reference system of {} is another one ({found})", self.name);
+        Err(Error::usage(format!("{what}: reproject one of them")))
     }
 
     /// Number of its triangles.

@@ -16,6 +16,7 @@ mod derived;
 mod facet;
 mod fill;
 mod flush;
+mod highest;
 mod neighbours;
 mod options;
 mod rasterizer;
@@ -28,6 +29,7 @@ pub(crate) mod tile_store;
 
 use std::io::{Read, Seek, Write};
 
+pub use highest::Highest;
 pub use options::{Interpolation, Method, Options, Quantity};
 
 use crate::surface::check_input;
