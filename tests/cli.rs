@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::programs::{outcome, run, sample};
+use crate::programs::{Folder, outcome, run, sample};
 
 const TOOLS: [&str; 13] = [
     "spfinalize",
@@ -143,4 +143,34 @@ fn each_failure_has_its_exit_code() {
         assert!(message.contains(word), "{name} {arguments:?}: {message}");
         assert!(!message.contains("panicked"), "{name} {arguments:?}: {message}");
     }
+}
+
+/// Nothing is read, and no file is made.
+#[test]
+fn names_of_other_formats_are_refused() {
+    let folder = Folder::new();
+    let tools: [(&str, &[&str]); 13] = [
+        ("spfinalize", &["-"]),
+        ("spdelaunay2d", &[]),
+        ("spdelaunay3d", &[]),
+        ("spdem", &[]),
+        ("spdem", &["--contours", "1"]),
+        ("spheight", &["--ground", "none", "none.las"]),
+        ("spcanopy", &["--ground", "none", "none.las"]),
+        ("spview", &[]),
+        ("tess3", &["none.pdb"]),
+        ("dd4", &["none.nrrd"]),
+        ("configgen", &["--degree", "1", "none.xyz"]),
+        ("splinefit", &["fit", "none.xyz"]),
+        ("splinefit", &["eval", "none.spm"]),
+    ];
+    for (tool, arguments) in tools {
+        for ending in ["jpg", "vrt", "ZIP"] {
+            let path = folder.path(&format!("out.{ending}"));
+            let output = run(tool, &[arguments, &["-o", &path]].concat(), &[]);
+            let (code, message) = outcome(&output);
+            assert!(code == Some(2) && message.contains("out."), "{tool} {ending}: {message}");
+        }
+    }
+    assert!(folder.names("").is_empty());
 }

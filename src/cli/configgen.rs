@@ -10,6 +10,7 @@ use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
 use super::{Common, StatsFormat, notice, open_input, progress::Progress};
+use crate::endings;
 use spmesh_configgen::{Border, BoxName, Flips, Made, Options, Places, RuleName, Sites, SpecialKind};
 use spmesh_configgen::{read_features, read_patches};
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -172,6 +173,7 @@ impl Flags {
         let inputs = self.inputs();
         let lists = [&self.values, &self.patches, &self.features].into_iter().flatten();
         check_apart(inputs.iter().chain(lists).map(PathBuf::as_path), &[("--output", &self.output)])?;
+        endings::check(&self.output, &[endings::STREAM])?;
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let options = self.options()?;

@@ -11,6 +11,7 @@ use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
 use super::{Common, StatsFormat, notice, progress::Progress};
+use crate::endings;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -126,6 +127,7 @@ impl Flags {
         }
         let inputs = self.source.file().into_iter().chain(self.product.file());
         check_apart(inputs, &[("--output", &self.output)])?;
+        endings::check(&self.output, &[endings::STREAM, endings::MESH, endings::TABLE])?;
         // Fail before the computation if the output cannot be created.
         let mut output = Output::create(&self.output, self.product.is_binary(&self.output)?)?;
         let product = self.product.product(&self.output)?;

@@ -5,6 +5,7 @@ mod compression;
 pub mod configgen;
 mod crs;
 pub mod dd4;
+mod endings;
 mod messages;
 mod outline;
 mod point_filters;

@@ -11,6 +11,7 @@ use clap::Args;
 use super::compression::Compression;
 use super::progress::Progress;
 use super::{Common, StatsFormat, notice, open_input, parse_size, threads};
+use crate::endings;
 use report::Report;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::output::Output;
@@ -123,6 +124,7 @@ impl<const D: usize> Tool<D> {
         system::exit_at_abort(self.out_of_memory, ErrorKind::Memory.exit_code());
         let part = flags.part()?;
         check_apart(flags.inputs.iter().map(PathBuf::as_path), &[("--output", &flags.output)])?;
+        endings::check(&flags.output, &[endings::STREAM])?;
         let started = Instant::now();
         let (output, stats) =
             if flags.merge { self.merge(flags, part)? } else { self.reduce(flags, duplicates, part)? };

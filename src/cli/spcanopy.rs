@@ -16,6 +16,7 @@ use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_size, peak_memory, read_list, threads};
+use crate::endings;
 use layers::{Layers, Settings};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::places::check_apart;
@@ -143,6 +144,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     }
     let inputs = paths.iter().chain([&flags.ground]).chain(flags.cells.like()).map(PathBuf::as_path);
     check_apart(inputs.chain(flags.outline.mask_path()), &[("--output", &flags.output)])?;
+    endings::check(&flags.output, &[endings::RASTER])?;
     let format = cells::format_of(&flags.output).unwrap_or_default();
     let mut output = cells::create(&flags.output, format)?;
     let input = Input::open(&paths, &flags.source_options()?)?;

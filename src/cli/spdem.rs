@@ -16,6 +16,7 @@ use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
+use crate::endings;
 use contours::{ContourFlags, Job};
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::places::check_apart;
@@ -261,6 +262,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     let inputs = iter::once(flags.input.as_path());
     let inputs = inputs.chain(flags.cells.like().map(PathBuf::as_path)).chain(flags.outline.mask_path());
     check_apart(inputs, &[("--output", &flags.output)])?;
+    if flags.format.is_none() {
+        endings::check(&flags.output, &[endings::RASTER, endings::LINES])?;
+    }
     if let Some(options) = flags.contours.options(&flags.outline, flags.memory, flags.crs.system()?)? {
         system::exit_at_abort(contours::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let job = Job {

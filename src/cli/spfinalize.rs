@@ -11,6 +11,7 @@ use super::point_filters::PointFilters;
 use super::progress::Progress;
 use super::text_flags::TextFlags;
 use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory, read_list};
+use crate::endings;
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::parallel::available_threads;
@@ -174,6 +175,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
     // Fail before the work if the output cannot be created.
+    endings::check(&flags.output, &[endings::STREAM])?;
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;
     let inputs = paths.iter().chain(&flags.lof).map(PathBuf::as_path);

@@ -13,6 +13,7 @@ use clap::{Parser, ValueEnum};
 
 use super::compression::Compression;
 use super::{Common, StatsFormat, notice, progress::Progress, read_list, refuse_terminal};
+use crate::endings;
 use method::MethodFlags;
 use selection::SelectionFlags;
 use spmesh_core::error::{Error, ErrorKind, Result};
@@ -196,6 +197,7 @@ fn run_one(flags: &Flags) -> Result<Finished> {
     let options = flags.options()?;
     let is_binary = options.product == Product::Mesh;
     check_apart([input.as_path()], &[("--output", &flags.output)])?;
+    endings::check(&flags.output, &[if is_binary { endings::STREAM } else { endings::TABLE }])?;
     // Fail before the work if the output cannot be created.
     let mut output = Some(Output::create(&flags.output, is_binary)?);
     let started = Instant::now();

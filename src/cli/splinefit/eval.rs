@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::{Threads, check_stdin, say};
 use crate::cells::{self, CellFlags, RasterFlags};
+use crate::endings;
 use crate::{Common, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
@@ -84,6 +85,10 @@ impl Flags {
         check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites))?;
         let inputs = iter::once(&self.spline).chain(&self.at).chain(self.cells.like());
         check_apart(inputs.map(PathBuf::as_path), &[("--output", &self.output)])?;
+        if self.format.is_none() {
+            let of_cells = if self.at.is_none() { endings::RASTER } else { &[] };
+            endings::check(&self.output, &[of_cells, endings::TABLE])?;
+        }
         match &self.at {
             Some(sites) => self.sites(common, sites),
             None => self.cells(common),

@@ -11,6 +11,7 @@ use clap::{Args, ValueEnum};
 use super::{Threads, check_stdin, report, say};
 use crate::compression::Compression;
 use crate::crs::CrsFlag;
+use crate::endings;
 use crate::{Common, StatsFormat, open_input, parse_box, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
@@ -150,6 +151,7 @@ impl Flags {
         let started = Instant::now();
         self.check_stdin()?;
         self.check_apart()?;
+        endings::check(&self.output, &[endings::STREAM])?;
         // Fail before the work if an output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::compression::Compression;
+use crate::endings;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -34,6 +35,9 @@ pub(super) struct Flags {
 
 impl Flags {
     pub(super) fn run(&self) -> Result<()> {
+        if !self.svg {
+            endings::check(&self.output, &[endings::STREAM, &["svg"]])?;
+        }
         let is_picture = self.svg || self.output.extension().is_some_and(|ending| ending == "svg");
         let compress = self.compression.of_output(!is_picture)?;
         check_apart([self.spline.as_path()], &[("--output", &self.output)])?;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
+use crate::endings;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
@@ -71,6 +72,9 @@ impl Outputs {
         let tee = is_tee.then_some(("--tee", Path::new("-")));
         let outputs: Vec<_> = iter::once(("--output", path)).chain(tee).collect();
         check_apart([input], &outputs)?;
+        if format.is_none() {
+            endings::check(path, &[endings::PICTURE])?;
+        }
         let format = format.or_else(|| format_of(path)).unwrap_or(Format::Svg);
         let target = if is_numbered {
             if is_stdout {
