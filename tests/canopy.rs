@@ -23,7 +23,7 @@ fn forest() -> LasFile {
         let height = if class == 7 { 60.0 } else { height - 0.05 };
         let (number, of) = if random.below(5) == 0 { (2, 2) } else { (1, 1) };
         file.records.push(Record {
-            position: [x, y, ground_at(x) + height].map(|value| (value / SCALE).round() as i32),
+            position: steps([x, y, ground_at(x) + height]),
             class,
             number,
             of,
@@ -39,7 +39,7 @@ fn ground_at(x: f64) -> f64 {
 
 /// The mesh of the ground: wider than the stand.
 fn ground() -> Vec<u8> {
-    let corner = |x: i32, y: i32| [x, y, ground_at(f64::from(x))].map_to_steps();
+    let corner = |x: i32, y: i32| steps([f64::from(x), f64::from(y), ground_at(f64::from(x))]);
     let mut places = Vec::new();
     for x in (-20..=60).step_by(20) {
         places.extend((-20..=60).step_by(20).map(|y| corner(x, y)));
@@ -48,14 +48,9 @@ fn ground() -> Vec<u8> {
     run("spdelaunay2d", &["-q"], &points.stdout).stdout
 }
 
-trait ToSteps {
-    fn map_to_steps(self) -> [i32; 3];
-}
-
-impl ToSteps for [f64; 3] {
-    fn map_to_steps(self) -> [i32; 3] {
-        self.map(|value| (value / SCALE).round() as i32)
-    }
+/// A place of the world in steps.
+fn steps(place: [f64; 3]) -> [i32; 3] {
+    place.map(|value| (value / SCALE).round() as i32)
 }
 
 /// The values of an ESRI grid; NaN for no data.
@@ -174,7 +169,7 @@ fn bare_ground_has_a_canopy_of_zero() {
     let folder = Folder::new();
     folder.file("ground.spm", ground());
     let places: Vec<[i32; 3]> =
-        (0..100).map(|i| [f64::from(i % 10), f64::from(i / 10), 90.0].map_to_steps()).collect();
+        (0..100).map(|i| steps([f64::from(i % 10), f64::from(i / 10), 90.0])).collect();
     folder.file("low.las", LasFile::of(&places).bytes());
     folder.file("none.las", LasFile::of(&[]).bytes());
     let [ground, low, none, out] =

@@ -12,6 +12,7 @@ mod convert;
 mod crs;
 mod dd4;
 mod dem;
+mod empty;
 mod endless;
 mod files;
 mod finalize;

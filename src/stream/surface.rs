@@ -11,6 +11,8 @@ use spmesh_core::error::{Error, Result};
 pub fn check_surface(header: &Header, needs_elevation: bool) -> Result<()> {
     let what = match header.kind {
         Kind::TriangleMesh if header.has_elevation || !needs_elevation => return Ok(()),
+        // An input without points may not tell whether they would have elevations.
+        Kind::TriangleMesh if header.points == Some(0) => return Ok(()),
         Kind::TriangleMesh => "vertices have no elevation: give points x y z to spfinalize".to_string(),
         Kind::PartialTriangleMesh => {
             "this is a partial triangle mesh: finish it with spdelaunay2d --merge".to_string()

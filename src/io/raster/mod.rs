@@ -19,7 +19,7 @@ pub use geotiff::{Reduction, TILE, Tiles, write_tiles};
 pub use grid::{Cells, Grid, Window};
 pub use no_data::NoData;
 pub use reference::Reference;
-pub use relief::{Differences, Gradient, Light, Shading, aspect, slope};
+pub use relief::{Differences, Gradient, Light, Shading, aspect, rounded_aspect, slope};
 
 use spmesh_core::error::Result;
 

@@ -7,9 +7,20 @@ pub fn slope([p, q]: [f64; 2]) -> f64 {
 }
 
 /// The direction of steepest descent, in degrees clockwise from north, from 0 to below 360; NaN where the
-/// surface is level. Rounded as `gdaldem` does it: to f32, before and after the change to clockwise angles.
+/// surface is level.
 #[must_use]
-pub fn aspect([p, q]: [f64; 2]) -> f32 {
+pub fn aspect([p, q]: [f64; 2]) -> f64 {
+    if p == 0.0 && q == 0.0 {
+        return f64::NAN;
+    }
+    let degrees = (-p).atan2(-q).to_degrees().rem_euclid(360.0);
+    // 360 becomes 0, also where only rounding to f32 makes it 360.
+    if degrees as f32 == 360.0 { 0.0 } else { degrees.abs() }
+}
+
+/// [`aspect()`], rounded as `gdaldem` does it: to f32, before and after the change to clockwise angles.
+#[must_use]
+pub fn rounded_aspect([p, q]: [f64; 2]) -> f32 {
     if p == 0.0 && q == 0.0 {
         return f32::NAN;
     }
@@ -49,9 +60,10 @@ impl Light {
 pub enum Shading {
     /// From one direction.
     One(Light),
-    /// From south-west, west, north-west and north at this altitude in degrees, each weighted by how much a slope
-    /// is turned sideways to it (Mark, "Multidirectional, oblique-weighted, shaded-relief image of the Island of
-    /// Hawaii", USGS OFR 92-422, 1992).
+    /// From south-west, west, north-west and north at this altitude in degrees, with the weights of `gdaldem`: by how
+    /// much a slope is turned sideways to west and north, and towards or away from the others (after Mark,
+    /// "Multidirectional, oblique-weighted, shaded-relief image of the Island of Hawaii", USGS OFR 92-422, 1992, who
+    /// has the weights of south-west and north-west the other way round).
     Many(f64),
 }
 
@@ -67,7 +79,8 @@ impl Shading {
         if steepness == 0.0 {
             return altitude.to_radians().sin().max(0.0);
         }
-        // The squared sines of the angles between the aspect and each azimuth, times the steepness.
+        // Times the steepness: the squared cosine of the angle between the aspect and south-west, the squared sine
+        // of that to west, and so on.
         let south_west = 0.5 * steepness + p * q;
         let weights = [south_west, p * p, steepness - south_west, q * q];
         let shades =
@@ -177,17 +190,18 @@ mod tests {
             ([1.0, 0.0], 270.0),
             ([1.0, -1.0], 315.0),
         ] {
-            assert_eq!(aspect(gradient), expected, "{gradient:?}");
+            assert_eq!(rounded_aspect(gradient), expected, "{gradient:?}");
+            assert_eq!(aspect(gradient), f64::from(expected), "{gradient:?}");
         }
-        assert!(aspect([0.0, 0.0]).is_nan());
-        assert_eq!(aspect([1e-30, -1.0]), 0.0);
+        assert!(rounded_aspect([0.0, 0.0]).is_nan() && aspect([0.0, 0.0]).is_nan());
+        assert_eq!(rounded_aspect([1e-30, -1.0]), 0.0);
     }
 
     #[test]
     fn light_from_many_sides_is_that_of_one_where_it_is_sideways_to_the_others() {
         let level = 0.5f64.sqrt();
         let many = Shading::Many(45.0);
-        assert_eq!(many.shade([0.0, 0.0]), level);
+        assert!((many.shade([0.0, 0.0]) - level).abs() < 1e-15);
         assert_eq!((many.byte([0.0, 0.0]), many.byte([f64::INFINITY; 2])), (181, 1));
         // Steepest to the east: west counts once, the diagonals a half each, north nothing.
         let gradient = [0.3, 0.0];

@@ -57,7 +57,7 @@ impl Attribute {
             Attribute::Value => jet.value,
             Attribute::Gradient => p,
             Attribute::Slope => slope(jet.gradient),
-            Attribute::Aspect => aspect(jet.gradient).into(),
+            Attribute::Aspect => aspect(jet.gradient),
             // NaN where the square is zero.
             Attribute::ProfileCurvature => {
                 -(p * p * r + 2.0 * p * q * s + q * q * t) / (square * (1.0 + square).powf(1.5))

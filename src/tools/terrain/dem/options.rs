@@ -137,7 +137,7 @@ impl Quantity {
             Quantity::Elevation | Quantity::Attribute(..) => return Ok(None),
             _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
             Quantity::Slope => raster::slope(gradient) as f32,
-            Quantity::Aspect => raster::aspect(gradient),
+            Quantity::Aspect => raster::rounded_aspect(gradient),
             Quantity::Hillshade(shading) => shading.byte(gradient).into(),
         };
         Ok(Some(value))

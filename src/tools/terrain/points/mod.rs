@@ -94,7 +94,9 @@ pub fn check(header: &Header, options: &Options) -> Result<Option<Column>> {
         })?;
         return Ok(Some(column));
     }
-    if options.statistic.needs_value() && !header.has_elevation && header.dims == 2 {
+    // An input without points may not tell whether they would have elevations.
+    let is_flat = !header.has_elevation && header.dims == 2 && header.points != Some(0);
+    if options.statistic.is_value() && is_flat {
         return Err(Error::usage(
             "points have no elevation: give points x y z to spfinalize, or --attribute",
         ));

@@ -31,11 +31,6 @@ impl Statistic {
         !matches!(self, Statistic::Count | Statistic::Density)
     }
 
-    /// Whether points need a value.
-    pub(super) fn needs_value(self) -> bool {
-        self.is_value()
-    }
-
     /// The value of a cell of some area; NaN if it has none. Rounded once, from exact sums.
     pub(super) fn of(self, cell: &Cell, steps: &Steps, area: f64) -> f32 {
         let count = cell.count as f64;
