@@ -99,7 +99,7 @@ fn canopies_are_the_highest_of_their_layers() {
     };
     let mut expected = bottom.clone();
     for threshold in ["2,", "5,", "10,", "15,"] {
-        expected = highest(expected, &layer(&["--keep-z", threshold], &["--kill", "1.5"]));
+        expected = highest(expected, &layer(&["--keep-z", threshold], &["--kill", "2"]));
     }
     let found = canopy(&[]);
     assert!(
@@ -118,8 +118,8 @@ fn canopies_are_the_highest_of_their_layers() {
         (side + 1..values.len() - side - 1).filter(is_pit).count()
     };
     assert!(pits(&bottom) > 30 && pits(&found) * 10 < pits(&bottom), "{} {}", pits(&bottom), pits(&found));
-    let two = canopy(&["--layers", "8", "--max-edge", "2"]);
-    let expected = highest(bottom, &layer(&["--keep-z", "8,"], &["--kill", "2"]));
+    let two = canopy(&["--layers", "8", "--max-edge", "3"]);
+    let expected = highest(bottom, &layer(&["--keep-z", "8,"], &["--kill", "3"]));
     assert!(two.iter().zip(&expected).all(|(found, expected)| (found - expected).abs() < 0.02));
     // Neither memory nor threads show.
     assert!(found == canopy(&["--memory", "64M", "--threads", "1"]) && found == canopy(&["--threads", "3"]));

@@ -114,7 +114,7 @@ impl RasterFlags {
     pub(super) fn check_bytes(&self) -> Result<()> {
         if self.no_data.is_some_and(|no_data| no_data != 0.0) {
             return Err(Error::usage(
-                "hillshades are bytes in which 0 stands for no data: leave out --no-data",
+                "pictures are bytes in which 0 stands for no data: leave out --no-data",
             ));
         }
         Ok(())

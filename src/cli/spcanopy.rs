@@ -39,7 +39,7 @@ const LAYER_STEP: f64 = 5.0;
 const LAYERS_MAX: usize = 102;
 
 /// The longest edge of upper layers, in cells.
-const EDGE_CELLS: f64 = 3.0;
+const EDGE_CELLS: f64 = 4.0;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -98,7 +98,7 @@ pub struct Flags {
     #[arg(long, value_name = "HEIGHTS", value_delimiter = ',', allow_negative_numbers = true)]
     layers: Vec<f64>,
 
-    /// Longest edge of triangles in layers above 0 [default: three cells]
+    /// Longest edge of triangles in layers above 0 [default: four cells]
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     max_edge: Option<f64>,
 

@@ -2,6 +2,7 @@
 
 mod contours;
 mod points;
+mod quantity;
 
 use std::iter;
 use std::path::PathBuf;
@@ -15,16 +16,17 @@ use super::outline::OutlineFlags;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
-use super::{Common, StatsFormat, notice, parse_numbers, parse_size, peak_memory};
+use super::{Common, StatsFormat, notice, parse_size, peak_memory};
 use crate::endings;
 use contours::{ContourFlags, Job};
+use quantity::QuantityFlags;
 use spmesh_core::error::{Error, ErrorKind};
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_io::raster::{Differences, Light, RasterFormat, Shading};
+use spmesh_io::raster::RasterFormat;
 use spmesh_terrain::contours::LineFormat;
-use spmesh_terrain::dem::{self, Interpolation, Method, Options, Quantity, Stats};
-use spmesh_terrain::points::{Options as PointOptions, Statistic};
+use spmesh_terrain::dem::{self, Options, Quantity, Stats};
+use spmesh_terrain::points::Options as PointOptions;
 
 const TOOL: &str = "spdem";
 
@@ -44,6 +46,7 @@ Examples:
     spdem --step 1 --kind slope ground.spm -o slope.tif
     spdem --step 1 --kind hillshade ground.spm -o shade.tif
     spdem --step 1 --kind hillshade --multidirectional ground.spm -o shade.tif
+    spdem --step 1 --kind shaded-relief ground.spm -o relief.tif
   The highest point and the number of points per square metre, from points:
     spfinalize tiles/*.laz | spdem --points --kind max --step 1 -o highest.tif
     spfinalize tiles/*.laz | spdem --points --kind density --step 5 -o density.tif
@@ -86,7 +89,8 @@ one band of 32-bit numbers; for a picture in colour, join those of red, green an
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north; \
 level ground has none. Hillshades are bytes from 1 to 255, and 0 for no data. They equal what gdaldem computes from \
-the raster of elevations: from a cell and its eight neighbours, so a cell without all of them has no value. \
+the raster of elevations: from a cell and its eight neighbours, so a cell without all of them has no value. A \
+shaded relief has the colours of elevations in that light, and is transparent where there are no data. \
 --method triangle takes the slope of one triangle instead. Where the coordinate reference system states the unit of elevations, slopes take it \
 into account; otherwise it must be that of x and y.
 
@@ -131,38 +135,8 @@ pub struct Flags {
     #[command(flatten)]
     contours: ContourFlags,
 
-    /// Read points instead of a mesh, and draw the statistic of --kind of those in each cell: of their elevations, or of
-    /// an --attribute
-    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "method", "light", "multidirectional"])]
-    points: bool,
-
-    /// The quantity in the cells; with --points, from count on [default: elevation; with --points, count]
-    #[arg(long, value_enum, value_name = "KIND")]
-    kind: Option<KindFlag>,
-
-    /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
-    /// triangle at the centre [default: horn]
-    #[arg(long, value_enum, value_name = "METHOD")]
-    method: Option<MethodFlag>,
-
-    /// Draw an attribute of the points instead of elevations: its name, with :1, :2 ... for one of several
-    /// components; red, green and blue are those of rgb
-    #[arg(long, value_name = "NAME", conflicts_with = "contours")]
-    attribute: Option<String>,
-
-    /// How an attribute varies between points: linear, or the value of the nearest corner of the triangle, as
-    /// classes need it [default: linear]
-    #[arg(long, value_enum, value_name = "HOW", requires = "attribute", conflicts_with = "contours")]
-    interpolation: Option<InterpolationFlag>,
-
-    /// Direction of the light of a hillshade, in degrees: clockwise from north, and above the horizon
-    /// [default: 315,45]
-    #[arg(long, value_name = "AZIMUTH,ALTITUDE", value_parser = parse_numbers::<2>, allow_hyphen_values = true)]
-    light: Option<[f64; 2]>,
-
-    /// Light a hillshade from four sides, from south-west to north: from no side is a slope flat
-    #[arg(long)]
-    multidirectional: bool,
+    #[command(flatten)]
+    quantity: QuantityFlags,
 
     #[command(flatten)]
     outline: OutlineFlags,
@@ -194,53 +168,6 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
-}
-
-/// The values of `--kind`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum KindFlag {
-    Elevation,
-    Slope,
-    Aspect,
-    Hillshade,
-    Count,
-    Density,
-    Min,
-    Max,
-    Range,
-    Mean,
-    Std,
-}
-
-impl KindFlag {
-    /// What is said of the points in a cell, if it is that.
-    fn statistic(self) -> Option<Statistic> {
-        Some(match self {
-            KindFlag::Count => Statistic::Count,
-            KindFlag::Density => Statistic::Density,
-            KindFlag::Min => Statistic::Min,
-            KindFlag::Max => Statistic::Max,
-            KindFlag::Range => Statistic::Range,
-            KindFlag::Mean => Statistic::Mean,
-            KindFlag::Std => Statistic::Std,
-            _ => return None,
-        })
-    }
-}
-
-/// The values of `--method`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MethodFlag {
-    Horn,
-    Zevenbergen,
-    Triangle,
-}
-
-/// The values of `--interpolation`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum InterpolationFlag {
-    Linear,
-    Nearest,
 }
 
 /// The values of `--format`.
@@ -276,7 +203,7 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
         };
         return contours::run(&job, &options, started, |message| notice(TOOL, &flags.common, message));
     }
-    if flags.points {
+    if flags.quantity.points {
         system::exit_at_abort(points::OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
         let job = points::Job {
             input: &flags.input,
@@ -309,15 +236,9 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
 
 impl Flags {
     fn point_options(&self) -> Result<PointOptions, Error> {
-        let kind = self.kind.unwrap_or(KindFlag::Count);
-        let statistic = kind.statistic().ok_or_else(|| {
-            Error::usage(
-                "points are counted, or have a min, max, range, mean or std: triangulate them for others",
-            )
-        })?;
         Ok(PointOptions {
-            statistic,
-            attribute: self.attribute.clone(),
+            statistic: self.quantity.statistic()?,
+            attribute: self.quantity.attribute.clone(),
             memory: self.memory.unwrap_or(MEMORY),
             raster: self.raster.options(self.format()?)?,
             crs: self.crs.system()?,
@@ -325,61 +246,27 @@ impl Flags {
     }
 
     fn options(&self) -> Result<Options, Error> {
-        let kind = self.kind.unwrap_or(KindFlag::Elevation);
-        if kind.statistic().is_some() {
-            return Err(Error::usage(
-                "this --kind is one of points: add --points, and give a stream of spfinalize",
-            ));
+        let quantity = self.quantity.quantity()?;
+        let format = self.format()?;
+        match quantity {
+            Quantity::Hillshade(_) => self.raster.check_bytes()?,
+            Quantity::ShadedRelief(..) if format == RasterFormat::Ascii => {
+                return Err(Error::usage(
+                    "a shaded relief has colours, which an ESRI grid cannot hold: write .tif",
+                ));
+            }
+            Quantity::ShadedRelief(..) => self.raster.check_bytes()?,
+            _ => {}
         }
-        if self.attribute.is_some() && self.kind.is_some() {
-            return Err(Error::usage("--attribute is drawn instead of a --kind: leave out one of them"));
-        }
-        if self.light.is_some_and(|light| !light.iter().all(|angle| angle.is_finite())) {
-            return Err(Error::usage("--light takes two angles in degrees"));
-        }
-        if self.light.is_some() && kind != KindFlag::Hillshade {
-            return Err(Error::usage("--light is for a hillshade: add --kind hillshade"));
-        }
-        if self.multidirectional && kind != KindFlag::Hillshade {
-            return Err(Error::usage("--multidirectional is for a hillshade: add --kind hillshade"));
-        }
-        let [azimuth, altitude] = self.light.unwrap_or([315.0, 45.0]);
-        let shading = match self.multidirectional {
-            true => Shading::Many(altitude),
-            false => Shading::One(Light::from(azimuth, altitude)),
-        };
-        let interpolation = match self.interpolation {
-            None | Some(InterpolationFlag::Linear) => Interpolation::Linear,
-            Some(InterpolationFlag::Nearest) => Interpolation::Nearest,
-        };
-        let quantity = match (&self.attribute, kind) {
-            (Some(name), _) => Quantity::Attribute(name.clone(), interpolation),
-            (None, KindFlag::Slope) => Quantity::Slope,
-            (None, KindFlag::Aspect) => Quantity::Aspect,
-            (None, KindFlag::Hillshade) => Quantity::Hillshade(shading),
-            (None, _) => Quantity::Elevation,
-        };
-        if kind == KindFlag::Elevation && self.method.is_some() {
-            return Err(Error::usage("--method is for slopes, aspects and hillshades: add --kind"));
-        }
-        if kind == KindFlag::Hillshade {
-            self.raster.check_bytes()?;
-        }
-        let method = match self.method.unwrap_or(MethodFlag::Horn) {
-            MethodFlag::Horn => Method::Cells(Differences::Horn),
-            MethodFlag::Zevenbergen => Method::Cells(Differences::ZevenbergenThorne),
-            MethodFlag::Triangle => Method::Triangle,
-        };
-        let raster = self.raster.options(self.format()?)?;
         Ok(Options {
             quantity,
-            method,
+            method: self.quantity.method(),
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
             mask: self.outline.mask()?,
             fill: self.fill,
             memory: self.memory.unwrap_or(MEMORY),
-            raster,
+            raster: self.raster.options(format)?,
             crs: self.crs.system()?,
         })
     }

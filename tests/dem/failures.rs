@@ -53,6 +53,13 @@ fn each_failure_has_its_exit_code() {
         (&with(&["--kill", "nan"]), &mesh, 2, "a length above zero"),
         (&with(&["--light", "0,90"]), &mesh, 2, "--kind hillshade"),
         (&with(&["--kind", "hillshade", "--light", "0,inf"]), &mesh, 2, "two angles"),
+        (&with(&["--multidirectional"]), &mesh, 2, "--kind hillshade"),
+        (&with(&["--range", "0,1"]), &mesh, 2, "--kind shaded-relief"),
+        (&with(&["--kind", "shaded-relief", "--range", "1,1"]), &mesh, 2, "--range"),
+        (&with(&["--kind", "shaded-relief", "--method", "triangle"]), &mesh, 2, "leave out"),
+        (&with(&["--kind", "shaded-relief", "--format", "asc"]), &mesh, 2, "write .tif"),
+        (&with(&["--kind", "hillshade", "--no-data", "7"]), &mesh, 2, "leave out --no-data"),
+        (&with(&["--method", "horn"]), &mesh, 2, "add --kind"),
         (&with(&["--memory", "none"]), &mesh, 2, "none"),
         (&["-o", "/no/such/folder/x.tif"], &mesh, 1, "/no/such/folder"),
     ]);

@@ -1,9 +1,15 @@
 //! Slopes, aspects and hillshades from neighbouring cells, against the formulas written out on the whole raster.
 
-use spmesh_io::raster::{Differences, Grid, Light, RasterFormat, RasterOptions, Shading};
+use std::io::Cursor;
+
+use spmesh_io::raster::colour_map::{BATLOW, lit};
+use spmesh_io::raster::{Differences, Grid, Light, RasterFormat, RasterOptions, Shading, TILE};
 use spmesh_reference::sets::Random;
-use spmesh_stream::Coordinates;
+use spmesh_stream::{Coordinates, StreamReader};
 use spmesh_terrain::dem::{Method, Options, Quantity};
+use tiff::ColorType;
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::tags::Tag;
 
 use super::tiles::tiff_values;
 use super::{Mesh, file, is_same, options, raster, values};
@@ -145,6 +151,61 @@ fn values_follow_from_the_cells_around() {
             }
         }
     }
+}
+
+/// Colours are those of the elevations, in the light of the slopes; cells without a slope are transparent.
+#[test]
+fn reliefs_have_the_colours_of_elevations() {
+    let whole = Coordinates::I32 { scale: [1.0; 3], offset: [0.0; 3] };
+    let stream = squares().stream(whole);
+    let heights = raster(&stream, &GRID, &options(Quantity::Elevation));
+    let shading = Shading::One(Light::from(300.0, 40.0));
+    for (range, [low, high]) in [(None, [0.0; 2]), (Some([100.0, 200.0]), [100.0, 200.0])] {
+        let chosen = Options {
+            method: Method::Cells(Differences::Horn),
+            ..options(Quantity::ShadedRelief(shading, range))
+        };
+        let header = StreamReader::new(&stream[..], "mesh").unwrap().header().clone();
+        let all = header.bounds.unwrap();
+        let [low, high] = if range.is_none() { [all.min[2], all.max[2]] } else { [low, high] };
+        for has_overviews in [false, true] {
+            let raster = RasterOptions { has_overviews, ..RasterOptions::default() };
+            let chosen = Options { raster, ..chosen.clone() };
+            let (tiff, stats) = file(&stream, RasterFormat::GeoTiff, &GRID, &chosen).unwrap();
+            let found = colours_of(&tiff);
+            assert_eq!(stats.known, found.iter().filter(|colour| colour[3] == 255).count() as u64);
+            for (cell, &colour) in found.iter().enumerate() {
+                let expected = gradient(&heights, cell, Differences::Horn).map_or([0; 4], |gradient| {
+                    let part = (f64::from(heights[cell]) - low) / (high - low);
+                    let level = 40f64.to_radians().sin();
+                    let [r, g, b] = lit(BATLOW.at(part), cosine(gradient, 300.0, 40.0), level);
+                    [r, g, b, 255]
+                });
+                let off = (0..4).map(|band| colour[band].abs_diff(expected[band])).max().unwrap();
+                assert!(off <= 1 && colour[3] == expected[3], "{cell}: {colour:?} {expected:?}");
+            }
+        }
+    }
+}
+
+/// Red, green, blue and opacity of each cell; zeros in missing tiles.
+fn colours_of(tiff: &[u8]) -> Vec<[u8; 4]> {
+    let mut decoder = Decoder::new(Cursor::new(tiff)).unwrap();
+    assert_eq!(decoder.colortype().unwrap(), ColorType::RGBA(8));
+    let lengths = decoder.get_tag_u64_vec(Tag::TileByteCounts).unwrap();
+    let mut colours = vec![[0; 4]; COLUMNS * ROWS];
+    for chunk in (0..lengths.len()).filter(|&chunk| lengths[chunk] > 0) {
+        let DecodingResult::U8(tile) = decoder.read_chunk(chunk as u32).unwrap() else { panic!("bytes") };
+        let (width, _) = decoder.chunk_data_dimensions(chunk as u32);
+        let across = COLUMNS.div_ceil(TILE);
+        let [left, top] = [chunk % across * TILE, chunk / across * TILE];
+        for (row, found) in tile.chunks_exact(4 * width as usize).enumerate() {
+            for (column, colour) in found.chunks_exact(4).enumerate() {
+                colours[(top + row) * COLUMNS + left + column] = colour.try_into().unwrap();
+            }
+        }
+    }
+    colours
 }
 
 /// Holes are filled before slopes are taken.

@@ -20,6 +20,7 @@ mod highest;
 mod neighbours;
 mod options;
 mod rasterizer;
+mod relief;
 mod search;
 mod span;
 mod stages;
@@ -38,6 +39,7 @@ use fill::Filler;
 use flush::Flush;
 use neighbours::Neighbours;
 use rasterizer::{Rasterizer, TileSink};
+use relief::Derivation;
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::System;
 use spmesh_geometry::predicates::{PredicateCounts, Predicates2};
@@ -170,11 +172,13 @@ impl Run<'_> {
         let for_drawing = if differences.is_some() { memory / 2 } else { memory };
         let coordinates = reader.header().coordinates;
         let mut rasterizer = Rasterizer::new(*self.grid, &coordinates, options, self.system, for_drawing)?;
-        let neighbours = differences.map(|differences| {
+        let neighbours = differences.map(|differences| -> Result<Neighbours> {
             let store = TileStore::new(memory - for_drawing, options.raster.temp_dir.as_deref());
             let gradient = Gradient::new(differences, self.grid.step / rasterizer.unit_of_z);
-            Neighbours::new(options.quantity.clone(), gradient, rasterizer.cache.tiles(), store)
+            let derivation = Derivation::new(&options.quantity, gradient, reader.header())?;
+            Ok(Neighbours::new(derivation, rasterizer.cache.tiles(), store))
         });
+        let neighbours = neighbours.transpose().map_err(|e| e.of_input(reader.name()))?;
         // Holes are filled from the elevations around them, so these stay until the end.
         let is_written_early =
             rasterizer.heights.is_none() && (neighbours.is_none() || options.fill.is_none());

@@ -3,12 +3,12 @@
 //! A tile waits until the tiles around it are complete. At the end of the mesh, tiles that never came are blank.
 
 use super::fill::around;
-use super::options::Quantity;
+use super::relief::Derivation;
 use super::tile::CELLS;
 use super::tile_cache::TilePlace;
 use super::tile_store::{TileStore, TileTarget};
 use spmesh_core::error::Result;
-use spmesh_io::raster::{Gradient, TILE};
+use spmesh_io::raster::TILE;
 
 /// Cells along a side of the window: a tile, and a margin of one cell.
 pub(super) const SIDE: usize = TILE + 2;
@@ -19,8 +19,7 @@ pub(super) const SIDE: usize = TILE + 2;
 /// neighbour is missing.
 #[derive(Debug)]
 pub(super) struct Neighbours {
-    quantity: Quantity,
-    gradient: Gradient,
+    derivation: Derivation,
     /// Number of tiles along each axis.
     tiles: [usize; 2],
     store: TileStore,
@@ -31,21 +30,18 @@ pub(super) struct Neighbours {
     users: Vec<u8>,
     window: Vec<f32>,
     tile: Vec<f32>,
+    /// The values of a derived tile, band by band.
+    values: Vec<f32>,
 }
 
 impl Neighbours {
     /// No tiles so far. The store is empty; `tiles` is the number of tiles in a row and in a column of the grid.
-    pub(super) fn new(
-        quantity: Quantity,
-        gradient: Gradient,
-        tiles: [usize; 2],
-        store: TileStore,
-    ) -> Neighbours {
+    pub(super) fn new(derivation: Derivation, tiles: [usize; 2], store: TileStore) -> Neighbours {
         let places = || places(tiles);
         let counts: Vec<u8> = places().map(|at| around(at, tiles).count() as u8).collect();
         Neighbours {
-            quantity,
-            gradient,
+            values: vec![f32::NAN; derivation.bands() * CELLS],
+            derivation,
             tiles,
             store,
             has_come: vec![false; counts.len()],
@@ -108,11 +104,11 @@ impl Neighbours {
                     place(&mut self.window, &self.tile, [0, 1].map(|axis| other[axis] + 1 - at[axis]));
                 }
             }
-            for (row, values) in self.tile.chunks_exact_mut(TILE).enumerate() {
+            for row in 0..TILE {
                 let lines = [0, 1, 2].map(|line| &self.window[(row + line) * SIDE..][..SIDE]);
-                derive_row(&self.quantity, &self.gradient, lines, values)?;
+                self.derivation.row(lines, &mut self.values, row)?;
             }
-            target.put(at, &self.tile)?;
+            target.put(at, &self.values)?;
         }
         for other in around(at, self.tiles) {
             let number = self.number(other);
@@ -132,27 +128,6 @@ impl Neighbours {
 /// All places of a grid of tiles, row by row.
 pub(super) fn places([across, down]: [usize; 2]) -> impl Iterator<Item = TilePlace> {
     (0..down).flat_map(move |row| (0..across).map(move |column| [column, row]))
-}
-
-/// Derives a row of cells from the lines of elevations above, in, and below it, with a cell more at each end. A cell
-/// has no value if it or a neighbour has none, as on the border of the raster.
-fn derive_row(
-    quantity: &Quantity,
-    gradient: &Gradient,
-    lines: [&[f32]; 3],
-    values: &mut [f32],
-) -> Result<()> {
-    let [above, here, below] = lines.map(|line| line.windows(3));
-    for (((value, above), here), below) in values.iter_mut().zip(above).zip(here).zip(below) {
-        let cells: [f32; 9] =
-            [above[0], above[1], above[2], here[0], here[1], here[2], below[0], below[1], below[2]];
-        // NaN spreads.
-        *value = match cells.iter().sum::<f32>().is_nan() && cells.iter().any(|cell| cell.is_nan()) {
-            true => f32::NAN,
-            false => quantity.of_cells(gradient, &cells)?,
-        };
-    }
-    Ok(())
 }
 
 /// Copies the part of a tile in the window; `at` is 1, 1 for the tile in the middle.

@@ -32,6 +32,9 @@ pub enum Quantity {
     Aspect,
     /// The brightness of the surface in some light, as bytes from 1 to 255.
     Hillshade(Shading),
+    /// The colour of the elevation, lit as a hillshade: red, green, blue and opacity. Colours span these elevations, or
+    /// all that the header of the mesh states. It follows from cells whatever the method.
+    ShadedRelief(Shading, Option<[f64; 2]>),
     /// An attribute of the points, as `spmesh_model::attributes::Attributes::column` takes it.
     Attribute(String, Interpolation),
 }
@@ -95,6 +98,7 @@ impl Options {
         let is_staged = self.fill.is_some();
         let samples = match self.quantity {
             Quantity::Hillshade(_) => Samples::Bytes,
+            Quantity::ShadedRelief(..) => Samples::Colours,
             _ => Samples::Floats,
         };
         RasterFile { options: &self.raster, grid, reference, reduction, samples, is_staged }
@@ -107,8 +111,9 @@ impl Options {
 
     /// How the quantity follows from cells of elevations, if it does.
     pub(super) fn differences(&self) -> Option<Differences> {
-        match self.method {
-            Method::Cells(differences) if self.quantity.is_derived() => Some(differences),
+        match (self.method, &self.quantity) {
+            (Method::Cells(differences), quantity) if quantity.is_derived() => Some(differences),
+            (Method::Triangle, Quantity::ShadedRelief(..)) => Some(Differences::Horn),
             _ => None,
         }
     }
@@ -125,7 +130,10 @@ impl Quantity {
 
     /// Whether it follows from the gradient of elevations.
     pub(super) fn is_derived(&self) -> bool {
-        matches!(self, Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_))
+        matches!(
+            self,
+            Quantity::Slope | Quantity::Aspect | Quantity::Hillshade(_) | Quantity::ShadedRelief(..)
+        )
     }
 
     /// The value of a whole plane, from its gradient, in which all coordinates have one unit; `None` if it varies.
@@ -138,7 +146,9 @@ impl Quantity {
             _ if !gradient.iter().all(|part| part.is_finite()) => return Err(out_of_range()),
             Quantity::Slope => raster::slope(gradient) as f32,
             Quantity::Aspect => raster::rounded_aspect(gradient),
-            Quantity::Hillshade(shading) => shading.byte(gradient).into(),
+            Quantity::Hillshade(shading) | Quantity::ShadedRelief(shading, _) => {
+                shading.byte(gradient).into()
+            }
         };
         Ok(Some(value))
     }

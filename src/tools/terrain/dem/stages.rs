@@ -2,6 +2,7 @@
 
 use super::flush::count_known;
 use super::neighbours::Neighbours;
+use super::tile::CELLS;
 use super::tile_cache::TilePlace;
 use super::tile_store::TileTarget;
 use spmesh_core::error::Result;
@@ -21,7 +22,7 @@ struct Counted<'t> {
 impl TileTarget for Counted<'_> {
     fn put(&mut self, at: TilePlace, values: &[f32]) -> Result<()> {
         let known = count_known(values);
-        self.known += known;
+        self.known += known / (values.len() / CELLS) as u64;
         // A tile may be outside of the mask.
         if known > 0 { self.target.put(at, values) } else { Ok(()) }
     }
