@@ -11,7 +11,6 @@ use clap::Parser;
 
 use super::cells::{self, CellFlags, RasterFlags};
 use super::outline::{OutlineFlags, length};
-use super::point_filters::PointFilters;
 use super::progress::Progress;
 use super::reduction::open_stream;
 use super::rows::{self, Row};
@@ -21,11 +20,12 @@ use layers::{Layers, Settings};
 use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
+use spmesh_finalize::Budget;
 use spmesh_height::{Ground, HeightPoints};
 use spmesh_io::detect::SPCANOPY;
 use spmesh_io::raster::{Grid, RasterFormat, Window};
 use spmesh_io::source::{Filters, Input, SourceOptions};
-use spmesh_terrain::dem::{Method, Options, Quantity};
+use spmesh_terrain::dem::{Method, Options, Quantity, Sample};
 
 const TOOL: &str = "spcanopy";
 
@@ -106,6 +106,18 @@ pub struct Flags {
     #[arg(long)]
     all_returns: bool,
 
+    /// Take only points of these classes
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    keep_class: Vec<u8>,
+
+    /// Leave out points of these classes [default: 7 and 18, which are noise, if no classes are kept]
+    #[arg(long, value_name = "CLASS", value_delimiter = ',')]
+    drop_class: Vec<u8>,
+
+    /// Take points that are marked as withheld
+    #[arg(long)]
+    keep_withheld: bool,
+
     #[command(flatten)]
     outline: OutlineFlags,
 
@@ -126,9 +138,6 @@ pub struct Flags {
 
     #[command(flatten)]
     common: Common,
-
-    #[command(flatten)]
-    points: PointFilters,
 }
 
 /// Runs the tool.
@@ -211,19 +220,17 @@ impl Flags {
     }
 
     fn source_options(&self) -> Result<SourceOptions> {
-        if self.points.thin.is_some() {
-            return Err(Error::usage("--thin is for spfinalize: a canopy needs all points"));
-        }
-        let mut filters: Filters = self.points.filters();
-        filters.first_only |= !self.all_returns && !filters.last_only && filters.keep_return.is_empty();
-        if filters.keep_class.is_empty() && filters.drop_class.is_empty() {
-            filters.drop_class = NOISE.to_vec();
-        }
+        let is_default = self.keep_class.is_empty() && self.drop_class.is_empty();
+        let filters = Filters {
+            keep_withheld: self.keep_withheld,
+            first_only: !self.all_returns,
+            keep_class: self.keep_class.clone(),
+            drop_class: if is_default { NOISE.to_vec() } else { self.drop_class.clone() },
+            ..Filters::default()
+        };
         Ok(SourceOptions {
             reader: &SPCANOPY,
             filters,
-            bounds: self.points.bounds,
-            skip_invalid: self.points.skip_invalid,
             dims: 2,
             temp_dir: self.raster.temp_dir().map(Into::into),
             threads: Some(self.threads()),
@@ -239,6 +246,7 @@ impl Flags {
     fn surface_options(&self, format: RasterFormat) -> Result<Options> {
         Ok(Options {
             quantity: Quantity::Elevation,
+            sample: Sample::Centre,
             method: Method::Triangle,
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,
@@ -250,11 +258,20 @@ impl Flags {
         })
     }
 
+    /// How layers are made. Half of the memory is for points, half for tiles.
     fn settings(&self, grid: &Grid) -> Result<Settings> {
+        let threads = self.threads().get();
+        let least = 2 * Budget::process_min(threads);
+        if self.memory < least {
+            let [given, least] = [self.memory >> 20, least.div_ceil(1 << 20)];
+            let text =
+                format!("--memory of {given} MiB is too little for {threads} threads: give {least}M or more");
+            return Err(Error::new(ErrorKind::Memory, text));
+        }
         Ok(Settings {
             edge_max: length("--max-edge", self.max_edge)?.unwrap_or(EDGE_CELLS * grid.step),
             memory: self.memory / 2,
-            threads: self.threads().get(),
+            threads,
             temp_dir: self.raster.temp_dir().map(Into::into),
         })
     }

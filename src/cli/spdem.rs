@@ -260,6 +260,7 @@ impl Flags {
         }
         Ok(Options {
             quantity,
+            sample: self.quantity.sample(),
             method: self.quantity.method(),
             kill: self.outline.kill()?,
             concave: self.outline.concave()?,

@@ -175,11 +175,11 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     system::exit_at_abort(OUT_OF_MEMORY, ErrorKind::Memory.exit_code());
     let options = flags.options()?;
     // Fail before the work if the output cannot be created.
-    endings::check(&flags.output, &[endings::STREAM])?;
     let mut output = Output::create(&flags.output, true)?;
     let paths = flags.paths()?;
     let inputs = paths.iter().chain(&flags.lof).map(PathBuf::as_path);
     check_apart(inputs, &[("--output", &flags.output)])?;
+    endings::check(&flags.output, &[endings::STREAM])?;
     let input = Input::open(&paths, &flags.source_options()?)?;
     for message in input.notices() {
         notice(TOOL, &flags.common, message);

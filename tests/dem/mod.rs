@@ -8,6 +8,7 @@ mod neighbours;
 pub mod outline;
 mod pieces;
 pub mod pipelines;
+mod samples;
 mod tiles;
 
 use std::io::Cursor;
@@ -16,7 +17,7 @@ use spmesh_core::error::Result;
 use spmesh_io::raster::{Grid, RasterFormat, RasterOptions};
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::{Coordinates, Header, Kind, StreamReader, write_triangles};
-use spmesh_terrain::dem::{Method, Options, Quantity, Stats, rasterize};
+use spmesh_terrain::dem::{Method, Options, Quantity, Sample, Stats, rasterize};
 
 use spmesh_reference::incremental;
 use spmesh_reference::sets::Random;
@@ -56,6 +57,7 @@ impl Mesh {
 fn options(quantity: Quantity) -> Options {
     Options {
         quantity,
+        sample: Sample::Centre,
         method: Method::Triangle,
         kill: None,
         concave: None,

@@ -91,11 +91,8 @@ fn expected(quantity: &Quantity, gradient: [f64; 2]) -> f64 {
         _ if is_level => (1.0 + 254.0 * 30f64.to_radians().sin()).round(),
         _ => {
             let aspect = (-east).atan2(-north);
-            // `gdaldem` has sines for two azimuths, and cosines for the diagonal ones.
             let shade = |azimuth: f64| {
-                let sine = (aspect - azimuth.to_radians()).sin().powi(2);
-                let weight = if azimuth % 90.0 == 0.0 { sine } else { 1.0 - sine };
-                weight * cosine(gradient, azimuth, 30.0)
+                (aspect - azimuth.to_radians()).cos().powi(2) * cosine(gradient, azimuth, 30.0)
             };
             (1.0 + 254.0 * 0.5 * [225.0, 270.0, 315.0, 360.0].map(shade).iter().sum::<f64>()).round()
         }

@@ -27,7 +27,7 @@ const READERS: [(&str, &[&str], bool); 13] = [
 #[test]
 fn every_program_says_what_it_lacks_and_leaves_no_file() {
     let folder = Folder::new();
-    let output = folder.path("output.svg");
+    let output = folder.path("output");
     let in_header = ["version", "version-1", "kind", "feature-bit", "coordinate-type", "record-required"];
     let in_block = "tag-unknown-after-skipped";
     let names = in_header.into_iter().chain([in_block]);

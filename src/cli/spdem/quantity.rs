@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::parse_numbers;
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::{Differences, Light, Shading};
-use spmesh_terrain::dem::{Interpolation, Method, Quantity};
+use spmesh_terrain::dem::{Interpolation, Method, Quantity, Sample};
 use spmesh_terrain::points::Statistic;
 
 /// Flags that say what cells hold.
@@ -13,12 +13,17 @@ use spmesh_terrain::points::Statistic;
 pub(super) struct QuantityFlags {
     /// Read points instead of a mesh, and draw the statistic of --kind of those in each cell: of their elevations, or of
     /// an --attribute
-    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "method", "light", "multidirectional", "range"])]
+    #[arg(long, conflicts_with_all = ["contours", "OutlineFlags", "fill", "interpolation", "sample", "method", "light", "multidirectional", "range"])]
     pub(super) points: bool,
 
     /// The quantity in the cells; with --points, from count on [default: elevation; with --points, count]
     #[arg(long, value_enum, value_name = "KIND")]
     kind: Option<KindFlag>,
+
+    /// What of the surface over a cell its elevation is, also where slopes and the like follow from it: the elevation at
+    /// the centre, or the mean, the least or the greatest over the part that the mesh covers [default: centre]
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with_all = ["contours", "fill", "interpolation"])]
+    sample: Option<SampleFlag>,
 
     /// What slopes, aspects and hillshades are those of: the cells around (Horn, or Zevenbergen and Thorne), or the
     /// triangle at the centre [default: horn]
@@ -82,6 +87,15 @@ impl KindFlag {
     }
 }
 
+/// The values of `--sample`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum SampleFlag {
+    Centre,
+    Mean,
+    Min,
+    Max,
+}
+
 /// The values of `--method`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodFlag {
@@ -141,6 +155,16 @@ impl QuantityFlags {
         })
     }
 
+    /// What of the surface over a cell its elevation is.
+    pub(super) fn sample(&self) -> Sample {
+        match self.sample.unwrap_or(SampleFlag::Centre) {
+            SampleFlag::Centre => Sample::Centre,
+            SampleFlag::Mean => Sample::Mean,
+            SampleFlag::Min => Sample::Min,
+            SampleFlag::Max => Sample::Max,
+        }
+    }
+
     /// What slopes and the like are those of.
     pub(super) fn method(&self) -> Method {
         match self.method.unwrap_or(MethodFlag::Horn) {
@@ -170,6 +194,7 @@ impl QuantityFlags {
                 self.method.is_some() && kind == KindFlag::Elevation,
                 "--method is for slopes, aspects and hillshades: add --kind",
             ),
+            (is_triangle && self.sample().is_whole(), "--sample is of cells: leave out --method triangle"),
             (is_triangle && is_relief, "a shaded relief follows from cells: leave out --method triangle"),
         ];
         match refusals.iter().find(|(is_wrong, _)| *is_wrong) {

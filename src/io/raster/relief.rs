@@ -60,10 +60,9 @@ impl Light {
 pub enum Shading {
     /// From one direction.
     One(Light),
-    /// From south-west, west, north-west and north at this altitude in degrees, with the weights of `gdaldem`: by how
-    /// much a slope is turned sideways to west and north, and towards or away from the others (after Mark,
-    /// "Multidirectional, oblique-weighted, shaded-relief image of the Island of Hawaii", USGS OFR 92-422, 1992, who
-    /// has the weights of south-west and north-west the other way round).
+    /// From south-west, west, north-west and north at this altitude in degrees, with the weights of `gdaldem`: the
+    /// squared cosine of the angle between the aspect and each azimuth (after Mark, "Multidirectional,
+    /// oblique-weighted, shaded-relief image of the Island of Hawaii", USGS OFR 92-422, 1992, who has sines).
     Many(f64),
 }
 
@@ -79,8 +78,7 @@ impl Shading {
         if steepness == 0.0 {
             return altitude.to_radians().sin().max(0.0);
         }
-        // Times the steepness: the squared cosine of the angle between the aspect and south-west, the squared sine
-        // of that to west, and so on.
+        // The squared cosines of the angles between the aspect and each azimuth, times the squared steepness.
         let south_west = 0.5 * steepness + p * q;
         let weights = [south_west, p * p, steepness - south_west, q * q];
         let shades =

@@ -164,6 +164,8 @@ fn mesh_header<B: Bulk<D>, const D: usize>(points: &Header, part: Option<Region<
     let are_whole = matches!(points.coordinates, Coordinates::I32 { .. });
     let outer = part.unwrap_or(Region::EVERYTHING);
     header.bounds = points.bounds.and_then(|bounds| bounds.within(&outer, are_whole));
+    // Readers of an empty mesh need not ask for what its points would have.
+    header.points = points.points.filter(|&count| count == 0 && part.is_none());
     header.region = part.map(|region| region.in_space());
     header.crs = points.crs.clone();
     header.attributes = points.attributes.clone();

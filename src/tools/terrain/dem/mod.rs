@@ -12,6 +12,8 @@ mod axis;
 pub(crate) mod band;
 mod cell_mask;
 mod centers;
+mod coverage;
+mod cut;
 mod derived;
 mod facet;
 mod fill;
@@ -31,10 +33,11 @@ pub(crate) mod tile_store;
 use std::io::{Read, Seek, Write};
 
 pub use highest::Highest;
-pub use options::{Interpolation, Method, Options, Quantity};
+pub use options::{Interpolation, Method, Options, Quantity, Sample};
 
 use crate::surface::check_input;
 use band::Band;
+use coverage::Coverage;
 use fill::Filler;
 use flush::Flush;
 use neighbours::Neighbours;
@@ -170,8 +173,21 @@ impl Run<'_> {
         let filler = options.fill.map(Filler::new).transpose()?;
         let differences = options.differences();
         let for_drawing = if differences.is_some() { memory / 2 } else { memory };
+        let temp_dir = options.raster.temp_dir.as_deref();
         let coordinates = reader.header().coordinates;
         let mut rasterizer = Rasterizer::new(*self.grid, &coordinates, options, self.system, for_drawing)?;
+        if options.sample.is_whole() {
+            // The header states nothing of attributes.
+            let bounds = reader.header().bounds.filter(|_| self.column.is_none());
+            let greatest = bounds.map(|bounds| {
+                let [low, high] =
+                    [bounds.min, bounds.max].map(|corner| coordinates.to_world(corner)[2].abs());
+                low.max(high)
+            });
+            let (grid, sample) = (*self.grid, options.sample);
+            let coverage = Coverage::new(sample, grid, coordinates, greatest, for_drawing, temp_dir);
+            rasterizer.coverage = Some(coverage);
+        }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
             let store = TileStore::new(memory - for_drawing, options.raster.temp_dir.as_deref());
             let gradient = Gradient::new(differences, self.grid.step / rasterizer.unit_of_z);
@@ -186,6 +202,10 @@ impl Run<'_> {
         let mut complete = |at: TilePlace, values: &[f32]| stages.take(at, values);
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
         let width = read(reader, self.column.as_ref(), &mut rasterizer, sink, progress)?;
+        let mut covered = [0; 2];
+        if let Some(coverage) = rasterizer.coverage.take() {
+            covered = coverage.finish(&rasterizer.cache, &mut stages)?;
+        }
         let mut flush = Flush::new(&mut rasterizer, filler, options, self.grid.step)?;
         flush.write_rest(&mut stages)?;
         let filled = flush.filled;
@@ -201,8 +221,8 @@ impl Run<'_> {
             cells: self.grid.cells(),
             known,
             filled,
-            spilled: rasterizer.cache.spilled + spilled,
-            spilled_bytes: rasterizer.cache.spill_len() + spilled_bytes,
+            spilled: rasterizer.cache.spilled + spilled + covered[0],
+            spilled_bytes: rasterizer.cache.spill_len() + spilled_bytes + covered[1],
             input_bytes: reader.bytes_read(),
             predicates: *rasterizer.predicates.counts(),
             notices: Vec::new(),

@@ -39,6 +39,28 @@ pub enum Quantity {
     Attribute(String, Interpolation),
 }
 
+/// What of the surface over a cell its elevation is.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Sample {
+    /// The elevation at the centre.
+    #[default]
+    Centre,
+    /// The mean over the part of the cell that the mesh covers.
+    Mean,
+    /// The least one there.
+    Min,
+    /// The greatest one there.
+    Max,
+}
+
+impl Sample {
+    /// Whether the surface over the whole cell counts.
+    #[must_use]
+    pub fn is_whole(self) -> bool {
+        self != Sample::Centre
+    }
+}
+
 /// What slopes, aspects and hillshades are those of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
@@ -54,6 +76,8 @@ pub enum Method {
 pub struct Options {
     /// The quantity that cells hold.
     pub quantity: Quantity,
+    /// What of the surface over a cell its value is. With any but [`Sample::Centre`], nothing is filled.
+    pub sample: Sample,
     /// What slopes, aspects and hillshades are those of.
     pub method: Method,
     /// Triangles with a longer edge are left out. Units: those of the world.

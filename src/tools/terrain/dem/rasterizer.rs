@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::cell_mask::CellMask;
 use super::centers::Centers;
+use super::coverage::Coverage;
 use super::facet::{Facet, place};
 use super::options::{Interpolation, Options, Quantity};
 use super::span::{Edges, Span};
@@ -33,6 +34,8 @@ pub(super) struct Rasterizer {
     /// Finds the triangles outside of the concave outline.
     outline: Option<ConcaveOutline>,
     pub(super) cache: TileCache,
+    /// The surface over whole cells, if these are not sampled at their centres.
+    pub(super) coverage: Option<Coverage>,
     /// The elevations, if the quantity of filled cells is derived from them.
     pub(super) heights: Option<TileCache>,
     /// Whether triangles that are left out are marked as holes, which are filled later.
@@ -79,6 +82,7 @@ impl Rasterizer {
                 .concave
                 .map(|length| ConcaveOutline::new(length, coordinates, for_outline, temp_dir)),
             cache: cache()?,
+            coverage: None,
             heights: has_heights.then(cache).transpose()?,
             marks_holes: options.fill.is_some(),
             predicates: FiniteFloatPredicates::default(),
@@ -149,6 +153,11 @@ impl Rasterizer {
             if !self.marks_holes {
                 return Ok(());
             }
+        }
+        if let Some(coverage) = &mut self.coverage {
+            let corners = least_first(corners.map(|corner| *corner));
+            let is_known = !is_hole && is_counterclockwise(corners.map(place), &mut self.predicates)?;
+            return if is_known { coverage.add(corners) } else { Ok(()) };
         }
         // Where triangles are smaller than cells, most contain no centre.
         let [bottom, top] = range(corners, 1);

@@ -196,7 +196,7 @@ impl TileCache {
     }
 
     /// Takes the values of cells outside of the mask away.
-    fn blank_outside(&self, at: TilePlace, values: &mut [f32]) {
+    pub(super) fn blank_outside(&self, at: TilePlace, values: &mut [f32]) {
         if let Some(mask) = &self.mask {
             blank_others(&mask.tile(at), values);
         }

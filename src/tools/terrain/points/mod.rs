@@ -1,20 +1,18 @@
 //! `spdem --points`: rasters of what the points in each cell are like.
 //!
 //! `place` finds the cell of a point. `statistic` says what is kept of the points of a cell, and what follows from it;
-//! it counts and sums in integers, so the order of the points does not matter. `counters` holds cells by tiles, some
-//! of them in a temporary file.
+//! it counts and sums in integers, so the order of the points does not matter. The cells are in [`Accumulators`].
 
-mod counters;
 mod place;
 mod statistic;
 
 use std::io::{Read, Seek, Write};
 use std::ops::Range;
 
+use crate::accumulators::Accumulators;
 use crate::dem::band::Band;
 use crate::dem::tile_cache::{TilePlace, tiles_of};
 use crate::dem::tile_store::TileTarget;
-use counters::Counters;
 use place::Placement;
 use spmesh_core::error::{Error, Result};
 use spmesh_crs::System;
@@ -24,7 +22,7 @@ use spmesh_io::raster::{
 use spmesh_model::attributes::Column;
 use spmesh_stream::{Coordinates, Crs, Event, Header, Kind, StreamReader};
 pub use statistic::Statistic;
-use statistic::{CELL_LEN, Cell, Steps};
+use statistic::{Cell, Steps};
 
 /// What is counted, and the memory for it.
 #[derive(Debug, Clone)]
@@ -137,7 +135,7 @@ pub fn rasterize<R: Read, W: Write + Seek>(
     };
     let steps = Steps::of(&header, column.as_ref());
     let mut stats = Stats { cells: grid.cells(), ..Stats::default() };
-    let mut counters = Counters::new(options.memory, options.raster.temp_dir.as_deref());
+    let mut counters = Accumulators::new(Cell::default(), options.memory, options.raster.temp_dir.as_deref());
     count(reader, column.as_ref(), &steps, grid, &mut counters, &mut stats, progress)?;
     stats.spilled = counters.spilled;
     stats.input_bytes = reader.bytes_read();
@@ -169,7 +167,7 @@ fn count<R: Read>(
     column: Option<&Column>,
     steps: &Steps,
     grid: &Grid,
-    counters: &mut Counters,
+    counters: &mut Accumulators<Cell>,
     stats: &mut Stats,
     mut progress: impl FnMut(u64),
 ) -> Result<()> {
@@ -199,7 +197,7 @@ fn count<R: Read>(
 
 /// The tiles of a raster, made from the counters of their cells.
 struct Finished {
-    counters: Counters,
+    counters: Accumulators<Cell>,
     statistic: Statistic,
     steps: Steps,
     grid: Grid,
@@ -231,5 +229,3 @@ impl TileTarget for Finished {
         Ok(true)
     }
 }
-
-const _: () = assert!(CELL_LEN == 64);

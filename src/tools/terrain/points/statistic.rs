@@ -77,9 +77,6 @@ pub(super) struct Cell {
     unused: u64,
 }
 
-/// Bytes of a cell.
-pub(super) const CELL_LEN: usize = size_of::<Cell>();
-
 impl Default for Cell {
     fn default() -> Cell {
         Cell { sum: 0, squares: 0, count: 0, min: i64::MAX, max: i64::MIN, unused: 0 }

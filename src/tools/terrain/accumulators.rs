@@ -1,34 +1,35 @@
-//! The cells of tiles: some in memory, others in a temporary file.
+//! What is kept for the cells of tiles: some tiles in memory, others in a temporary file.
 
 use std::path::Path;
 
+use bytemuck::Pod;
 use foldhash::{HashMap, HashMapExt};
 
-use super::statistic::{CELL_LEN, Cell};
 use crate::dem::tile_cache::TilePlace;
 use spmesh_core::error::Result;
 use spmesh_core::temporary::Records;
 use spmesh_io::raster::TILE;
 
-/// Cells of a tile, and their length. Units: bytes.
+/// Cells of a tile.
 const CELLS: usize = TILE * TILE;
-const TILE_LEN: u64 = (CELLS * CELL_LEN) as u64;
 
 /// A tile in memory.
 #[derive(Debug)]
-struct Held {
+struct Held<C> {
     at: TilePlace,
     /// The clock at its last use.
     used: u64,
-    cells: Vec<Cell>,
+    cells: Vec<C>,
 }
 
-/// The cells of all tiles that have points.
+/// The cells of all tiles that something was added to.
 ///
-/// Memory: the budget, or one tile (4 MiB) if that is more.
+/// Memory: the budget, or one tile of 65,536 cells if that is more.
 #[derive(Debug)]
-pub(super) struct Counters {
-    held: Vec<Held>,
+pub(crate) struct Accumulators<C> {
+    /// A cell that nothing was added to.
+    blank: C,
+    held: Vec<Held<C>>,
     held_max: usize,
     /// Where each tile is: its index in memory, or its record.
     places: HashMap<TilePlace, Place>,
@@ -37,7 +38,7 @@ pub(super) struct Counters {
     clock: u64,
     spill: Records,
     /// Number of tiles written to the temporary file.
-    pub(super) spilled: u64,
+    pub(crate) spilled: u64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -46,16 +47,20 @@ enum Place {
     Spilled(u32),
 }
 
-impl Counters {
+impl<C: Pod> Accumulators<C> {
+    /// Bytes of a tile.
+    const TILE_LEN: u64 = (CELLS * size_of::<C>()) as u64;
+
     /// No cells. Those in memory take `memory` bytes at most.
-    pub(super) fn new(memory: u64, temp_dir: Option<&Path>) -> Counters {
-        Counters {
+    pub(crate) fn new(blank: C, memory: u64, temp_dir: Option<&Path>) -> Self {
+        Accumulators {
+            blank,
             held: Vec::new(),
-            held_max: usize::try_from(memory / TILE_LEN).unwrap_or(usize::MAX).max(1),
+            held_max: usize::try_from(memory / Self::TILE_LEN).unwrap_or(usize::MAX).max(1),
             places: HashMap::new(),
             last: 0,
             clock: 0,
-            spill: Records::new(temp_dir, TILE_LEN),
+            spill: Records::new(temp_dir, Self::TILE_LEN),
             spilled: 0,
         }
     }
@@ -65,23 +70,28 @@ impl Counters {
     /// # Errors
     /// If the temporary file fails.
     #[inline]
-    pub(super) fn cell(&mut self, at: TilePlace, cell: usize) -> Result<&mut Cell> {
+    pub(crate) fn cell(&mut self, at: TilePlace, cell: usize) -> Result<&mut C> {
         if self.held.get(self.last).is_none_or(|held| held.at != at) {
             self.last = self.hold(at)?;
         }
         Ok(&mut self.held[self.last].cells[cell])
     }
 
-    /// The cells of a tile; `None` if it has no points.
+    /// The cells of a tile; `None` if nothing was added to it.
     ///
     /// # Errors
     /// If the temporary file fails.
-    pub(super) fn read(&mut self, at: TilePlace) -> Result<Option<&[Cell]>> {
+    pub(crate) fn read(&mut self, at: TilePlace) -> Result<Option<&[C]>> {
         if !self.places.contains_key(&at) {
             return Ok(None);
         }
         let index = self.hold(at)?;
         Ok(Some(&self.held[index].cells))
+    }
+
+    /// Bytes of the temporary file.
+    pub(crate) fn spill_len(&self) -> u64 {
+        self.spill.file_len()
     }
 
     /// Brings a tile into memory, and returns its index there.
@@ -96,7 +106,7 @@ impl Counters {
             None => None,
         };
         let index = if self.held.len() < self.held_max {
-            self.held.push(Held { at, used: 0, cells: vec![Cell::default(); CELLS] });
+            self.held.push(Held { at, used: 0, cells: vec![self.blank; CELLS] });
             self.held.len() - 1
         } else {
             self.evict()?
@@ -109,7 +119,7 @@ impl Counters {
                 self.spill.read("reading cells back", record, 0, bytes)?;
                 self.spill.forget(record);
             }
-            None => held.cells.fill(Cell::default()),
+            None => held.cells.fill(self.blank),
         }
         self.places.insert(at, Place::Held(index));
         Ok(index)

@@ -1,0 +1,149 @@
+//! Cuts triangles at the sides of cells.
+
+use spmesh_core::error::Result;
+use spmesh_model::bounds::Point;
+
+/// Most corners of a triangle that is cut four times.
+const CORNERS_MAX: usize = 7;
+
+/// A convex polygon with elevations, in the coordinates of cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Polygon {
+    corners: [Point; CORNERS_MAX],
+    count: usize,
+}
+
+impl Polygon {
+    fn of([a, b, c]: [Point; 3]) -> Polygon {
+        let none = [0.0; 3];
+        Polygon { corners: [a, b, c, none, none, none, none], count: 3 }
+    }
+
+    /// Its corners.
+    pub(super) fn corners(&self) -> &[Point] {
+        &self.corners[..self.count]
+    }
+
+    /// Its area, and the mean of its elevations.
+    pub(super) fn integral(&self) -> (f64, f64) {
+        let Some((first, others)) = self.corners().split_first() else { return (0.0, 0.0) };
+        let (mut area, mut sum) = (0.0, 0.0);
+        for pair in others.windows(2) {
+            let [p, q] = [0, 1].map(|at| [0, 1, 2].map(|axis| pair[at][axis] - first[axis]));
+            let part = 0.5 * (p[0] * q[1] - p[1] * q[0]).abs();
+            area += part;
+            sum += part * (p[2] + q[2]) / 3.0;
+        }
+        (area, if area > 0.0 { first[2] + sum / area } else { first[2] })
+    }
+
+    /// The parts below and above a place on an axis. A side that lies there belongs to both.
+    fn cut(&self, axis: usize, at: f64) -> [Polygon; 2] {
+        let mut parts = [Polygon { corners: self.corners, count: 0 }; 2];
+        let corners = self.corners();
+        for (number, corner) in corners.iter().enumerate() {
+            let next = &corners[(number + 1) % corners.len()];
+            let [here, there] = [corner[axis] - at, next[axis] - at];
+            if here <= 0.0 {
+                parts[0].push(*corner);
+            }
+            if here >= 0.0 {
+                parts[1].push(*corner);
+            }
+            if here < 0.0 && there > 0.0 || here > 0.0 && there < 0.0 {
+                let share = here / (here - there);
+                let mut crossing = [0, 1, 2].map(|axis| corner[axis] + share * (next[axis] - corner[axis]));
+                crossing[axis] = at;
+                parts.iter_mut().for_each(|part| part.push(crossing));
+            }
+        }
+        parts
+    }
+
+    fn push(&mut self, corner: Point) {
+        // Rounding may add corners that a convex polygon would not have: they are nearly on another one.
+        if self.count < CORNERS_MAX {
+            self.corners[self.count] = corner;
+            self.count += 1;
+        }
+    }
+
+    /// The least and the greatest coordinate along an axis.
+    fn range(&self, axis: usize) -> [f64; 2] {
+        let places = || self.corners().iter().map(|corner| corner[axis]);
+        [places().fold(f64::INFINITY, f64::min), places().fold(f64::NEG_INFINITY, f64::max)]
+    }
+}
+
+/// Calls `part` with the part of a triangle in each cell that it meets, of a raster of `size` columns and rows.
+///
+/// # Errors
+/// Those of `part`.
+pub(super) fn cells_of(
+    corners: [Point; 3],
+    size: [u32; 2],
+    mut part: impl FnMut([usize; 2], &Polygon) -> Result<()>,
+) -> Result<()> {
+    strips(Polygon::of(corners), 1, size[1], |row, strip| {
+        strips(*strip, 0, size[0], |column, cell| part([column, row], cell))
+    })
+}
+
+/// Calls `part` with the part of a polygon between each pair of neighbouring integers on an axis, from 0 to `end`.
+fn strips(
+    polygon: Polygon,
+    axis: usize,
+    end: u32,
+    mut part: impl FnMut(usize, &Polygon) -> Result<()>,
+) -> Result<()> {
+    let [low, high] = polygon.range(axis);
+    if !(high > 0.0 && low < f64::from(end)) {
+        return Ok(());
+    }
+    let first = low.max(0.0).floor();
+    let mut rest = if low < 0.0 { polygon.cut(axis, 0.0)[1] } else { polygon };
+    let last = high.min(f64::from(end)).ceil() as usize;
+    for number in first as usize..last {
+        let side = (number + 1) as f64;
+        if high <= side {
+            return part(number, &rest);
+        }
+        let [here, beyond] = rest.cut(axis, side);
+        part(number, &here)?;
+        rest = beyond;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_add_up_to_the_triangle() {
+        for corners in [
+            [[0.5, 0.25, 1.0], [7.75, 2.5, 5.0], [3.0, 6.0, -2.0]],
+            [[0.0, 0.0, 0.0], [4.0, 0.0, 1.0], [0.0, 4.0, 2.0]],
+            [[1.25, 1.5, 3.0], [1.5, 1.25, 3.0], [1.75, 1.75, 3.0]],
+            [[-3.0, 2.0, 1.0], [2.5, -4.0, 0.0], [9.5, 9.5, 7.0]],
+        ] {
+            let whole = Polygon::of(corners);
+            let (mut area, mut sum) = (0.0, 0.0);
+            cells_of(corners, [8, 8], |[column, row], part| {
+                let ((size, mean), place) = (part.integral(), [column as f64, row as f64]);
+                for (axis, side) in place.into_iter().enumerate() {
+                    let [low, high] = part.range(axis);
+                    assert!(low >= side && high <= side + 1.0, "{column} {row}");
+                }
+                area += size;
+                sum += size * mean;
+                Ok(())
+            })
+            .unwrap();
+            let inside = whole.cut(0, 0.0)[1].cut(1, 0.0)[1].cut(0, 8.0)[0].cut(1, 8.0)[0];
+            let (expected, mean) = inside.integral();
+            assert!((area - expected).abs() < 1e-12 * expected, "{area} {expected}");
+            assert!((sum - expected * mean).abs() < 1e-11 * expected, "{sum}");
+        }
+    }
+}
