@@ -12,6 +12,7 @@ mod point_filters;
 pub mod progress;
 mod reduction;
 mod rows;
+mod sheets;
 pub mod spcanopy;
 pub mod spconvert;
 pub mod spdelaunay2d;

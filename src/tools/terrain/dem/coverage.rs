@@ -9,9 +9,9 @@ use bytemuck::{Pod, Zeroable};
 use super::cut::{Polygon, cells_of};
 use super::options::Sample;
 use super::stages::Stages;
-use super::tile::CELLS;
-use super::tile_cache::{TileCache, tiles_of};
+use super::tile_cache::TileCache;
 use crate::accumulators::Accumulators;
+use crate::files::{CELLS, places, tiles_of};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
@@ -121,7 +121,7 @@ impl Coverage {
     /// Those of `stages`; if the temporary file fails.
     pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
-        for at in super::neighbours::places(tiles_of(&self.grid)?) {
+        for at in places(tiles_of(&self.grid)?) {
             let Some(cells) = self.cells.read(at)? else { continue };
             for (value, cover) in values.iter_mut().zip(cells) {
                 *value = match self.sample {
