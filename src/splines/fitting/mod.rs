@@ -17,7 +17,7 @@
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
 //! | `mesh`, `spline_space` | triangulated knots, and the functions over them |
-//! | `goal`, `knot_placement`, `triangle_residuals`, `refine` | the search for knots |
+//! | `spacing`, `goal`, `knot_placement`, `triangle_residuals`, `refine` | knots on grids, and the search for knots |
 
 mod automatic;
 mod blocks;
@@ -43,6 +43,7 @@ mod robust;
 mod rows;
 mod selected_inverse;
 mod solve;
+mod spacing;
 mod spline_space;
 mod symmetric;
 mod trend;
@@ -55,7 +56,7 @@ pub use cross_validation::{Folds, degrees_of_freedom, generalised_cross_validati
 pub use energy::thin_plate;
 pub use goal::{Goal, Round};
 pub use interpolation::{Interpolation, interpolate};
-pub use knot_placement::{KNOTS_MIN, grid_knots};
+pub use knot_placement::{KNOTS_MIN, bounds, grid_knots};
 pub use likelihood::restricted_likelihood;
 pub use mesh::Mesh;
 pub use normal_equations::NormalEquations;
@@ -65,5 +66,6 @@ pub use refine::{Refined, refine};
 pub use residuals::{Residual, Summary, for_each_residual, summarise};
 pub use robust::{Loss, RobustFit, robust, robust_from};
 pub use solve::{Equations, Undetermined, least_squares};
+pub use spacing::spacing;
 pub use spline_space::SplineSpace;
 pub use symmetric::Symmetric;

@@ -28,7 +28,7 @@ pub struct Options {
     pub polylines_name: String,
     /// Degree of splines, for knots with configurations of several degrees.
     pub degree: Option<usize>,
-    /// Seed of random numbers: folds, and estimates of traces.
+    /// Seed of folds.
     pub seed: u64,
     /// Threads that evaluate functions.
     pub threads: NonZeroUsize,
