@@ -9,7 +9,7 @@ import subprocess
 
 import inputs
 import numpy as np
-from predictions import HEAD, PEERS, Ours, compare
+from predictions import HEAD, KRIGING, PEERS, Ours, compare
 from tsv import write_tables
 from work import progress
 
@@ -41,7 +41,10 @@ def ways():
         Ours("splinefit"),
         Ours("splinefit --step D", step=1.0),
         Ours("splinefit --step 0.7*D", step=0.7),
+        Ours("splinefit --step D --lambda gcv", ("--lambda", "gcv"), step=1.0),
+        Ours("splinefit --step D --lambda cv", ("--lambda", "cv"), step=1.0),
         *PEERS,
+        *KRIGING,
     ]
 
 

@@ -91,6 +91,7 @@ pub(super) fn excess(residuals: &Statistics) -> Option<String> {
 fn short(number: f64) -> String {
     let rounded = format!("{number:.3e}");
     match number.abs() {
+        0.0 => "0".into(),
         // Without trailing zeros after the point.
         1e-4..1e6 => rounded.parse().map_or(rounded, |number: f64| number.to_string()),
         _ => rounded,

@@ -65,8 +65,10 @@ impl Statistics {
             square += found.residual * found.residual;
             sketch.add(found.residual);
             if found.residual.abs() * found.weight.sqrt() <= limit {
-                let [low, high] = range.unwrap_or([found.value; 2]);
-                range = Some([low.min(found.value), high.max(found.value)]);
+                // Without the sign of a negative zero.
+                let value = found.value + 0.0;
+                let [low, high] = range.unwrap_or([value; 2]);
+                range = Some([low.min(value), high.max(value)]);
             }
             if worst.is_none() || found.residual.abs() > greatest {
                 (greatest, worst) = (found.residual.abs(), Some(frame.to_decimal(found.point)));
