@@ -18,8 +18,9 @@ const STEPS_MAX: usize = 24;
 /// The most parabolas.
 const PARABOLAS_MAX: usize = 3;
 
-/// The least `lambda`, in units of the default one: waves a fifth as long are halved.
-const FLOOR: f64 = 1e-4;
+/// The least `lambda`, in units of the default one. It halves waves a bit longer than the distance of
+/// observations, which is less than they can resolve.
+const FLOOR: f64 = 0.1;
 /// Scores are equal if their ratio, as that of likelihoods of all observations, is nearer to one.
 const INDIFFERENCE: f64 = 0.01;
 

@@ -93,11 +93,11 @@ pub fn fit(
         (None, Some(side)) => (even(points, options, side, done)?, None),
         (None, None) => search(points, options, done).map(|(layout, search)| (layout, Some(search)))?,
     };
-    if let Some(search) = found.as_mut().filter(|search| !search.is_reached && is_automatic(options)) {
-        if let Some(finer) = finer_grid(points, options, layout.places(), done)? {
-            search.is_replaced = true;
-            layout = finer;
-        }
+    if let Some(search) = found.as_mut().filter(|search| !search.is_reached && is_automatic(options))
+        && let Some(finer) = finer_grid(points, options, layout.places(), done)?
+    {
+        search.is_replaced = true;
+        layout = finer;
     }
     layout.frame.join(points.crs())?;
     let frame = layout.frame.clone();
