@@ -31,8 +31,9 @@ def run(work, flags):
         fitted, held = held_back(points)
         progress(f"terrain: {path.name}: {len(points)} points, {len(held)} held back in the hull")
         rows = [["", *row] for row in compare(work, ways(), fitted, held[:, :2], held[:, 2])]
-        spoilt = with_gross_errors(fitted)
-        rows += [["1 %", *row] for row in compare(work, robust_ways(), spoilt, held[:, :2], held[:, 2])]
+        if not flags.clean:
+            spoilt = with_gross_errors(fitted)
+            rows += [["1 %", *row] for row in compare(work, robust_ways(), spoilt, held[:, :2], held[:, 2])]
         write_tables(flags.out / f"terrain-{path.stem}", ("gross errors", "way", *HEAD), rows)
 
 
