@@ -25,7 +25,7 @@ fn each_failure_has_its_exit_code() {
         (&["fit", "--tol", "0"], b"", 2, "not a number above zero"),
         (&["fit", "--max-knots", "5"], plane.as_bytes(), 2, "5 knots: 29 are needed"),
         (&["fit", "--lambda", "-1"], b"", 2, "--lambda"),
-        (&["fit", "--lambda=reml"], b"", 2, "expected a number that is not negative"),
+        (&["fit", "--lambda=ml"], b"", 2, "expected a number that is not negative"),
         (&["fit", "--lambda", "cv:1"], b"", 2, "above one"),
         (&["fit", "--degree", "3"], plane.as_bytes(), 2, "use configgen"),
         (&["fit", "--knots", &knots, "--degree", "3"], plane.as_bytes(), 2, "with configgen"),

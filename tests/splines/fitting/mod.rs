@@ -7,6 +7,7 @@ mod energies;
 mod failures;
 mod figure;
 mod interpolation;
+mod likelihood;
 mod normal_equations;
 mod refinement;
 mod robustness;
