@@ -1,6 +1,7 @@
 //! `dd4`: points in, streams of cells out.
 
 mod failures;
+mod interrupts;
 mod products;
 mod routes;
 
