@@ -2,8 +2,10 @@
 
 mod failures;
 mod interrupts;
+mod oblique;
 mod products;
 mod routes;
+mod time_scale;
 
 use std::fs;
 
