@@ -60,7 +60,8 @@ pub struct Flags {
     #[arg(long, value_name = "Q", allow_negative_numbers = true)]
     quantum: Option<Quantum>,
 
-    /// Multiply times by S, so that a unit of time counts as S units of space, as in --time-scale 2.5. --where,
+    /// Multiply times by S, so that a unit of time counts as S units of space, as in --time-scale 2.5.
+    /// --where,
     /// --at and --slice still take times of the input; streams hold the products
     #[arg(
         long,

@@ -14,9 +14,9 @@ use spmesh_terrain::files::{Destination, Division, SheetSize, Sheets};
 /// Flags that divide a raster.
 #[derive(Debug, Clone, Args)]
 pub(super) struct SheetFlags {
-    /// Write many rasters in one pass: squares with sides of SIZE in world units, or NX columns and NY rows of rasters.
-    /// With -o NAME.tif, they are NAME_X_Y.tif, where X, Y is the lower left corner of a square, or the column and the
-    /// row, from 0 at the lower left
+    /// Write many rasters in one pass: squares with sides of SIZE in world units, or NX columns and NY rows
+    /// of rasters. With -o NAME.tif, they are NAME_X_Y.tif, where X, Y is the lower left corner of a square,
+    /// or the column and the row, from 0 at the lower left
     #[arg(long, value_name = "SIZE|NX,NY", value_parser = parse_size, allow_hyphen_values = true)]
     tiles: Option<SheetSize>,
 
@@ -32,7 +32,8 @@ pub(super) enum RasterOutput {
 }
 
 impl SheetFlags {
-    /// Opens the output, so that a failure shows before the work. None of many rasters may replace one of `inputs`.
+    /// Opens the output, so that a failure shows before the work. None of many rasters may replace one of
+    /// `inputs`.
     ///
     /// # Errors
     /// Usage, if flags are wrong; if it cannot be created.

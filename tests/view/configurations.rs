@@ -89,8 +89,8 @@ fn copies_of_knots_are_drawn_apart() {
         let (knots, triangles) = places(true);
         assert_eq!(knots, count);
         assert_eq!(triangles.len(), set(stream).degrees[0].len());
-        // Triangles are counterclockwise in the plane, and y goes down in pictures. So flat triangles have opened to
-        // the right side, and no other one has turned over.
+        // Triangles are counterclockwise in the plane, and y goes down in pictures. So flat triangles have
+        // opened to the right side, and no other one has turned over.
         let wrong = triangles.iter().filter(|ring| area(ring) >= 0.0).count();
         assert!(wrong <= flat, "{wrong} of {} triangles are flat or turned over", triangles.len());
     }

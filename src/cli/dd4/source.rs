@@ -41,7 +41,8 @@ pub struct SourceFlags {
     raw: Option<RawLayout>,
 
     /// Coordinates of a volume: grid indices from 0, or what its header states (world), in its units and
-    /// rounded. The grid may be oblique if its axes are perpendicular: a stream then holds distances along them
+    /// rounded. The grid may be oblique if its axes are perpendicular: a stream then holds distances along
+    /// them
     #[arg(long, value_enum, default_value_t = SpacingFlag::Index, value_name = "index|world", hide_possible_values = true)]
     spacing: SpacingFlag,
 

@@ -80,8 +80,8 @@ pub(super) struct Flags {
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = parse_positive, conflicts_with_all = ["tol", "max_knots"])]
     step: Option<f64>,
 
-    /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised cross-validation),
-    /// or cv or cv:FOLDS (cross-validation)
+    /// How much to smooth: a number, reml (restricted maximum likelihood), gcv (generalised
+    /// cross-validation), or cv or cv:FOLDS (cross-validation)
     #[arg(long, value_name = "LAMBDA|reml|gcv|cv[:FOLDS]", allow_negative_numbers = true)]
     lambda: Option<Smoothing>,
 

@@ -135,8 +135,8 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The least value of the weighted squared residuals plus `lambda` times the energy. Accuracy: about 1e-15
-    /// of z'Wz.
+    /// The least value of the weighted squared residuals plus `lambda` times the energy. Accuracy: about
+    /// 1e-15 of z'Wz.
     pub(super) fn deviance(&self, factor: &Factor) -> f64 {
         let rest = factor.solve(&self.right);
         let explained: f64 = rest.iter().zip(&self.right).map(|(c, right)| c * right).sum();

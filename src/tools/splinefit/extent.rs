@@ -37,8 +37,8 @@ pub struct Excess {
 impl Extent {
     /// The extent of a spline; `None` if it has no domain.
     ///
-    /// Cost: an evaluation at each Greville site and knot. Accuracy: rounding errors for the places, and local
-    /// extremes there; a narrow peak between all sites may be higher.
+    /// Cost: an evaluation at each Greville site and knot. Accuracy: rounding errors for the places, and
+    /// local extremes there; a narrow peak between all sites may be higher.
     #[must_use]
     pub fn of(spline: &Spline) -> Option<Extent> {
         let basis = &spline.layout.basis;

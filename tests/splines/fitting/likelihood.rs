@@ -38,8 +38,9 @@ fn log_determinant(mut rows: Vec<Vec<f64>>) -> f64 {
 }
 
 /// Twice the negative logarithm of the restricted likelihood, except for a constant: of observations with the
-/// covariance V = W^-1 + A E^- A' / lambda and unknown linear functions T. E^- = (E + XX')^-1 is a generalised
-/// inverse, where X has the coefficients of linear functions; the parts of XX' are linear functions, too.
+/// covariance V = W^-1 + A E^- A' / lambda and unknown linear functions T. E^- = (E + XX')^-1 is a
+/// generalised inverse, where X has the coefficients of linear functions; the parts of XX' are linear
+/// functions, too.
 fn in_space_of_observations(
     all: &[Observation],
     rows: &[Vec<f64>],

@@ -82,7 +82,8 @@ struct Level {
     tiles: Vec<Extent>,
 }
 
-/// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data. Returns what `fill` does.
+/// Writes a file of the tiles that `fill` supplies; cells of missing tiles have no data. Returns what `fill`
+/// does.
 ///
 /// Memory: some tiles, and 16 bytes for each tile of the file.
 ///

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::tiles::{TilePlace, places};
 
-/// Products that are each made of a rectangle of tiles, in rows and columns as the tiles are: says when all tiles of a
-/// product have come, and when all products of a tile are made.
+/// Products that are each made of a rectangle of tiles, in rows and columns as the tiles are: says when all
+/// tiles of a product have come, and when all products of a tile are made.
 ///
 /// Memory: five bytes for each tile, four for each product.
 #[derive(Debug)]
@@ -22,8 +22,8 @@ pub(crate) struct Dependencies {
 }
 
 impl Dependencies {
-    /// No tile has come. `tiles` is the number of tiles along each axis; `needs` holds, along each axis, the tiles of each
-    /// product.
+    /// No tile has come. `tiles` is the number of tiles along each axis; `needs` holds, along each axis, the
+    /// tiles of each product.
     ///
     /// Domain: ranges that are not empty; along an axis, neither starts nor ends decrease.
     pub(crate) fn new(tiles: [usize; 2], needs: [Vec<Range<usize>>; 2]) -> Dependencies {

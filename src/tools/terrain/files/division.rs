@@ -15,7 +15,8 @@ pub enum SheetSize {
     Counts([u32; 2]),
 }
 
-/// How a raster is divided into sheets: each cell belongs to one of them, and may be in the margins of others.
+/// How a raster is divided into sheets: each cell belongs to one of them, and may be in the margins of
+/// others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Division {
     /// How large they are.
@@ -39,7 +40,8 @@ pub(super) struct Strip {
 }
 
 impl Division {
-    /// The columns and rows of sheets of a grid. The sheets of least x and least y are the first column and the last row.
+    /// The columns and rows of sheets of a grid. The sheets of least x and least y are the first column and
+    /// the last row.
     ///
     /// # Errors
     /// Usage, if sheets have no cells, or there are too many of them.

@@ -1,7 +1,8 @@
 //! Files of rasters: complete tiles in, one file or many out.
 //!
-//! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles, with `band` for
-//! rows of cells. `division` divides a raster into `sheets`, and `dependencies` says when all tiles of a sheet have come.
+//! `tiles` says how tiles are passed on, and a `tile_store` holds them. `part` writes a file from tiles, with
+//! `band` for rows of cells. `division` divides a raster into `sheets`, and `dependencies` says when all
+//! tiles of a sheet have come.
 
 mod band;
 mod dependencies;
@@ -32,8 +33,8 @@ pub enum Destination<'o, W> {
 }
 
 impl<W: Write + Seek> Destination<'_, W> {
-    /// Writes a raster of the tiles that `draw` supplies, which has the memory that is left to it. Returns what `draw`
-    /// does, and how many tiles and bytes were in temporary files beside it.
+    /// Writes a raster of the tiles that `draw` supplies, which has the memory that is left to it. Returns
+    /// what `draw` does, and how many tiles and bytes were in temporary files beside it.
     ///
     /// # Errors
     /// Those of `draw`; usage, if the raster cannot be divided; if writing fails.

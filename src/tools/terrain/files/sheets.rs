@@ -15,8 +15,8 @@ use spmesh_core::output::Output;
 use spmesh_core::places::Inputs;
 use spmesh_io::raster::{Grid, RasterFile, RasterFormat, TILE};
 
-/// A raster in many files, each of which gets its name when it is complete. Sheets without data are not written; a file
-/// that has the name of one is removed.
+/// A raster in many files, each of which gets its name when it is complete. Sheets without data are not
+/// written; a file that has the name of one is removed.
 #[derive(Debug)]
 pub struct Sheets {
     /// The name of the raster, to which those of sheets are added.
@@ -78,7 +78,8 @@ impl Sheets {
 
 /// Cuts tiles of a raster into sheets, and writes each as soon as all of its tiles have come.
 ///
-/// Memory: the budget, and some 10 bytes for each tile and each sheet. Tiles wait only while a sheet needs them.
+/// Memory: the budget, and some 10 bytes for each tile and each sheet. Tiles wait only while a sheet needs
+/// them.
 pub(super) struct Cutter<'s> {
     sheets: &'s mut Sheets,
     file: RasterFile<'s>,
@@ -105,7 +106,8 @@ impl<'s> Cutter<'s> {
         Ok(Cutter { sheets, file: *file, strips, tiles, dependencies, store })
     }
 
-    /// Writes the sheets that are left. Returns the number of tiles and the bytes that were in temporary files.
+    /// Writes the sheets that are left. Returns the number of tiles and the bytes that were in temporary
+    /// files.
     ///
     /// # Errors
     /// If a file cannot be written.

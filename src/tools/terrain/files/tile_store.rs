@@ -32,8 +32,8 @@ pub(crate) struct TileStore {
 }
 
 impl TileStore {
-    /// No tiles. Those in memory take `memory` bytes at most, or one tile if that is more; tiles have as many values for
-    /// each cell as there are `bands`.
+    /// No tiles. Those in memory take `memory` bytes at most, or one tile if that is more; tiles have as many
+    /// values for each cell as there are `bands`.
     pub(crate) fn new(bands: usize, memory: u64, temp_dir: Option<&Path>) -> TileStore {
         let tile_len = (bands * CELLS * size_of::<f32>()) as u64;
         TileStore {

@@ -12,7 +12,8 @@ pub(crate) type TilePlace = [usize; 2];
 
 /// Gives tiles back.
 pub(crate) trait TileSource {
-    /// Reads the values of a tile, band by band; NaN marks cells without data. Returns false if there is no such tile.
+    /// Reads the values of a tile, band by band; NaN marks cells without data. Returns false if there is no
+    /// such tile.
     ///
     /// # Errors
     /// If they cannot be read.

@@ -82,8 +82,8 @@ pub(super) fn world(fields: &Fields) -> std::result::Result<World, String> {
     Ok(World { coordinates: [0, 1, 2], frame, orientation: None })
 }
 
-/// The origin and the directions of the three axes in space, if these and no others have directions, and space
-/// has three dimensions.
+/// The origin and the directions of the three axes in space, if these and no others have directions, and
+/// space has three dimensions.
 fn in_space(
     fields: &Fields,
     coordinates: &[usize; 4],
