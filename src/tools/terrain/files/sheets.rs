@@ -98,9 +98,8 @@ impl<'s> Cutter<'s> {
         let tiles = tiles_of(&file.grid)?;
         let strips = sheets.division.strips(&file.grid)?;
         sheets.check_apart(&strips)?;
-        let tiles_in = |cells: &Range<u32>| cells.start as usize / TILE..(cells.end as usize).div_ceil(TILE);
         let needs =
-            strips.each_ref().map(|strips| strips.iter().map(|strip| tiles_in(&strip.cells)).collect());
+            strips.each_ref().map(|strips| strips.iter().map(|strip| tiles_of_cells(&strip.cells)).collect());
         let dependencies = Dependencies::new(tiles, needs);
         let store = TileStore::new(file.samples.bands(), memory, file.options.temp_dir.as_deref());
         Ok(Cutter { sheets, file: *file, strips, tiles, dependencies, store })
@@ -129,26 +128,43 @@ impl<'s> Cutter<'s> {
         Ok(())
     }
 
+    /// Writes a sheet, or removes the file that has its name if it has no data.
     fn write(&mut self, [column, row]: TilePlace) -> Result<()> {
         let [columns, rows] = [&self.strips[0][column], &self.strips[1][row]];
         let path = self.sheets.path_of([&columns.name, &rows.name]);
         let cells = [columns.cells.clone(), rows.cells.clone()];
+        // Most sheets without data have no tiles either, and a file takes much longer than this test.
+        let [columns, rows] = cells.each_ref().map(tiles_of_cells);
+        let has_tiles =
+            rows.into_iter().any(|row| columns.clone().any(|column| self.store.holds([column, row])));
+        if has_tiles && self.write_file(&path, cells)? {
+            return Ok(());
+        }
+        self.sheets.blank += 1;
+        remove(&path)
+    }
+
+    /// Writes the file of a sheet, if it has data; returns whether it has.
+    fn write_file(&mut self, path: &Path, cells: [Range<u32>; 2]) -> Result<bool> {
+        let of_path = |error: Error| error.of_input(path.display().to_string());
         let file = RasterFile { grid: window(&self.file.grid, &cells), is_staged: false, ..self.file };
         let mut part = Part::new(&mut self.store, cells, file.samples.bands());
-        let mut output = Output::create(&path, file.options.format == RasterFormat::GeoTiff)?;
-        write(&mut output, &file, &mut part).map_err(|e| e.of_input(path.display().to_string()))?;
+        let mut output = Output::create(path, file.options.format == RasterFormat::GeoTiff)?;
+        write(&mut output, &file, &mut part).map_err(of_path)?;
         if !part.has_data {
-            self.sheets.blank += 1;
-            return remove(&path);
+            return Ok(false);
         }
         // Not the bytes written, of which some replace others.
-        let end = output
-            .stream_position()
-            .map_err(|e| Error::io("writing", e).of_input(path.display().to_string()))?;
-        self.sheets.bytes += end;
+        self.sheets.bytes += output.stream_position().map_err(|e| of_path(Error::io("writing", e)))?;
         self.sheets.written += 1;
-        output.commit()
+        output.commit()?;
+        Ok(true)
     }
+}
+
+/// The tiles along an axis that hold these cells.
+fn tiles_of_cells(cells: &Range<u32>) -> Range<usize> {
+    cells.start as usize / TILE..(cells.end as usize).div_ceil(TILE)
 }
 
 impl TileSource for Cutter<'_> {

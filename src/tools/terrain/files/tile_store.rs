@@ -47,6 +47,11 @@ impl TileStore {
         }
     }
 
+    /// Whether there is a tile.
+    pub(crate) fn holds(&self, at: TilePlace) -> bool {
+        self.places.contains_key(&at)
+    }
+
     /// Forgets a tile.
     pub(crate) fn remove(&mut self, at: TilePlace) {
         match self.places.remove(&at) {
