@@ -12,6 +12,7 @@ mod axis;
 mod cell_mask;
 mod centers;
 mod coverage;
+mod covering;
 mod cut;
 mod derived;
 mod facet;
@@ -35,7 +36,8 @@ pub use options::{Interpolation, Method, Options, Quantity, Sample};
 
 use crate::files::{Destination, TilePlace, TileStore, TileTarget, tiles_of};
 use crate::surface::check_input;
-use coverage::Coverage;
+use coverage::{Coverage, Placement};
+use covering::Covering;
 use fill::Filler;
 use flush::Flush;
 use neighbours::Neighbours;
@@ -167,8 +169,8 @@ impl Run<'_> {
                 low.max(high)
             });
             let (grid, sample) = (*self.grid, options.sample);
-            let coverage = Coverage::new(sample, grid, coordinates, greatest, for_drawing, temp_dir);
-            rasterizer.coverage = Some(coverage);
+            let coverage = Coverage::new(sample, &grid, greatest, for_drawing, temp_dir);
+            rasterizer.covering = Some(Covering::start(coverage, Placement { grid, coordinates })?);
         }
         let neighbours = differences.map(|differences| -> Result<Neighbours> {
             let store = TileStore::new(1, memory - for_drawing, temp_dir);
@@ -185,8 +187,8 @@ impl Run<'_> {
         let sink: Option<&mut TileSink> = if is_written_early { Some(&mut complete) } else { None };
         let width = read(reader, self.column.as_ref(), &mut rasterizer, sink, progress)?;
         let mut covered = [0; 2];
-        if let Some(coverage) = rasterizer.coverage.take() {
-            covered = coverage.finish(&rasterizer.cache, &mut stages)?;
+        if let Some(covering) = rasterizer.covering.take() {
+            covered = covering.finish()?.finish(tiles_of(self.grid)?, &rasterizer.cache, &mut stages)?;
         }
         let mut flush = Flush::new(&mut rasterizer, filler, options, self.grid.step)?;
         flush.write_rest(&mut stages)?;
