@@ -174,7 +174,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     flags.check_systems(&ground, &input)?;
     let total = input.description().stated_points;
     let mut progress = Progress::new(&flags.common, "finding heights", total);
-    let points = HeightPoints::read(&ground, &input, temp_dir, |points| progress.set(points))?;
+    let points =
+        HeightPoints::read(&ground, &input, temp_dir, flags.threads(), |points| progress.set(points))?;
     drop(ground);
     let layers =
         Layers { points: &points, grid, bottom: &bottom, settings: &settings, triangles: Cell::default() };

@@ -101,7 +101,8 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that decompress, and as many that compress [default: one per core, at most 8]
+    /// Threads that decompress, as many that compress, and as many that find heights [default: one per core, at most
+    /// 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 

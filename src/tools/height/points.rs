@@ -1,6 +1,7 @@
 //! Points with heights instead of elevations, in a temporary file, from which layers are read.
 
 use std::io::Write;
+use std::num::NonZeroUsize;
 use std::path::Path;
 
 use super::ground::{Ground, Outside, Unit};
@@ -41,6 +42,7 @@ impl HeightPoints {
         ground: &Ground,
         input: &Input,
         temp_dir: Option<&Path>,
+        threads: NonZeroUsize,
         mut progress: impl FnMut(u64),
     ) -> Result<HeightPoints> {
         let found = input.description();
@@ -64,7 +66,7 @@ impl HeightPoints {
             ..found.clone()
         };
         let file = TemporaryFile::create(temp_dir)?;
-        let mut heights_above = ground.heights(Unit::Stored, Outside::NoData);
+        let mut heights_above = ground.heights(Unit::Stored, Outside::NoData, threads);
         let mut points = HeightPoints { file, description, points: 0, outside: 0, greatest: 0.0 };
         let (mut done, mut heights) = (0, Vec::new());
         let mut reader = input.read()?;
