@@ -207,9 +207,14 @@ impl Flags {
     /// The output of each input.
     fn outputs(&self, inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
         if let Some(output) = &self.output {
+            let name = output.display().to_string();
+            if name.to_ascii_lowercase().ends_with(".copc.laz") {
+                let what = "COPC files are not written: give a name that ends in .laz alone";
+                return Err(Error::usage(what).of_input(name));
+            }
             if self.format.is_none() && format_of(output).is_none() {
                 let what = "points are written to NAME.las or NAME.laz, or choose with --format";
-                return Err(Error::usage(what).of_input(output.display().to_string()));
+                return Err(Error::usage(what).of_input(name));
             }
             return Ok(vec![output.clone()]);
         }

@@ -91,6 +91,11 @@ pub struct Stats {
 /// Usage, if the header has no bounds.
 pub fn window(header: &Header) -> Result<Window> {
     let Some(bounds) = header.bounds else {
+        if header.points == Some(0) {
+            let what = "there are no points, so cells have no place: give --bounds for a raster without data, or \
+                        look whether the input has the points that its filters keep (such as --keep-class 2)";
+            return Err(Error::usage(what));
+        }
         return Err(Error::usage("the header does not say where the mesh is: give --bounds"));
     };
     let [min, max] = [bounds.min, bounds.max].map(|corner| facet::place(header.coordinates.to_world(corner)));
