@@ -129,7 +129,7 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "256M")]
     memory: u64,
 
-    /// Threads that decompress and triangulate [default: one per core, at most 8]
+    /// Threads that decompress, find heights and triangulate [default: one per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 

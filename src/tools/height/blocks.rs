@@ -90,8 +90,8 @@ struct Divided {
 }
 
 impl BlockWriter {
-    /// No triangles. The file is in `folder`, or in the system's folder for temporary files. `is_integer` says whether
-    /// coordinates are integers of 32 bits, which take half of the space.
+    /// No triangles. The file is in `folder`, or in the system's folder for temporary files. `is_integer`
+    /// says whether coordinates are integers of 32 bits, which take half of the space.
     ///
     /// # Errors
     /// If the file cannot be created, or the system refuses a thread.

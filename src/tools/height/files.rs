@@ -3,7 +3,7 @@
 use std::io::{Seek, Write};
 use std::num::NonZeroUsize;
 
-use super::ground::{Ground, Outside, Unit};
+use super::ground::{Ground, Outside, SEARCHES_MAX, Unit};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::las::{Changes, ExtraField, LasCopy, LasFile};
 use spmesh_io::source::Alignment;
@@ -37,7 +37,7 @@ pub struct FileOptions {
     pub is_compressed: Option<bool>,
     /// Memory for points under way. Units: bytes.
     pub memory: u64,
-    /// Threads that decompress, as many that compress, and as many that find heights.
+    /// Threads that decompress, as many that compress, and up to eight that find heights.
     pub threads: usize,
 }
 
@@ -86,7 +86,7 @@ pub fn write_heights<W: Write + Seek>(
         is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
     };
     let record_len = file.record_len();
-    let point_len = 2 * record_len as u64 + POINT_LEN + 8 * options.threads as u64;
+    let point_len = 2 * record_len as u64 + POINT_LEN + 8 * options.threads.min(SEARCHES_MAX) as u64;
     let batch_max = (options.memory / point_len).clamp(1, BATCH_MAX);
     let batch_len = batch_max as usize * record_len;
     let of_file = |e: Error| e.of_input(file.name());

@@ -18,6 +18,9 @@ use spmesh_stream::{Coordinates, Crs, Event, LiveVertices, StreamReader, check_s
 /// Fewest blocks for which a thread is worth starting.
 const BLOCKS_MIN: usize = 16;
 
+/// Most threads that find heights: each has a height for every point of a batch.
+pub(super) const SEARCHES_MAX: usize = 8;
+
 /// The unit of heights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unit {
@@ -39,8 +42,8 @@ pub enum Outside {
 
 /// The triangles of a mesh, in a temporary file.
 ///
-/// Memory: 48 bytes for each thousand triangles, and 40 MB while it is read. Disk: 36 bytes for each triangle,
-/// twice as much if its coordinates are floating-point numbers.
+/// Memory: 48 bytes for each thousand triangles, and 40 MB while it is read. Disk: 36 bytes for each
+/// triangle, twice as much if its coordinates are floating-point numbers.
 #[derive(Debug)]
 pub struct Ground {
     blocks: Blocks,
@@ -129,7 +132,8 @@ impl Ground {
 /// Cost of a batch: a few nanoseconds for each pair of a point and a triangle in neighbouring cells of a grid over
 /// the batch; blocks of triangles without a point nearby are not read.
 ///
-/// Memory: 40 bytes for each point of a batch, 8 more for each thread, and one block of triangles for each thread.
+/// Memory: 40 bytes for each point of a batch and 8 more for each thread; one block of triangles for each
+/// thread.
 #[derive(Debug)]
 pub struct Heights<'g> {
     ground: &'g Ground,
@@ -150,10 +154,10 @@ struct Search {
 }
 
 impl Ground {
-    /// Prepares to find heights on `threads` threads.
+    /// Prepares to find heights on `threads` threads, or on eight if these are more.
     #[must_use]
     pub fn heights(&self, unit: Unit, outside: Outside, threads: NonZeroUsize) -> Heights<'_> {
-        let searches = (0..threads.get()).map(|_| Search::default()).collect();
+        let searches = (0..threads.get().min(SEARCHES_MAX)).map(|_| Search::default()).collect();
         let (grid, nearest) = (PointGrid::default(), Nearest::new(&self.blocks));
         Heights { ground: self, unit, outside, grid, searches, nearest }
     }

@@ -77,9 +77,8 @@ impl<C: Pod> Accumulators<C> {
     /// If the temporary file fails.
     #[inline]
     pub(crate) fn cell(&mut self, at: TilePlace, cell: usize) -> Result<&mut C> {
-        let key = packed(at);
-        if self.last.0 != key {
-            self.last = (key, self.hold(at)?);
+        if self.last.0 != packed(at) {
+            self.hold(at)?;
         }
         Ok(&mut self.held[self.last.1].cells[cell])
     }
@@ -93,8 +92,6 @@ impl<C: Pod> Accumulators<C> {
             return Ok(None);
         }
         let index = self.hold(at)?;
-        // What was used last may have left for this one.
-        self.last = (NOWHERE, 0);
         Ok(Some(&self.held[index].cells))
     }
 
@@ -103,8 +100,14 @@ impl<C: Pod> Accumulators<C> {
         self.spill.file_len()
     }
 
-    /// Brings a tile into memory, and returns its index there.
+    /// Brings a tile into memory, and returns its index there. It is the one used last.
     fn hold(&mut self, at: TilePlace) -> Result<usize> {
+        let index = self.bring(at)?;
+        self.last = (packed(at), index);
+        Ok(index)
+    }
+
+    fn bring(&mut self, at: TilePlace) -> Result<usize> {
         self.clock += 1;
         let record = match self.places.get(&at) {
             Some(&Place::Held(index)) => {

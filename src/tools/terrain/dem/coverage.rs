@@ -15,7 +15,6 @@ use crate::files::{CELLS, places};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::raster::{Grid, TILE};
 use spmesh_model::bounds::Point;
-use spmesh_stream::Coordinates;
 use std::path::Path;
 
 /// Steps of the area of a cell.
@@ -41,30 +40,13 @@ struct Cover {
 
 const BLANK: Cover = Cover { sum: 0, area: 0, least: f32::INFINITY, greatest: f32::NEG_INFINITY };
 
-/// Where corners are among the cells of a raster.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Placement {
-    pub(super) grid: Grid,
-    pub(super) coordinates: Coordinates,
-}
-
-impl Placement {
-    /// A corner in the coordinates of cells, of one in stored coordinates with an elevation of the world.
-    #[inline]
-    pub(super) fn of(&self, corner: &Point) -> Point {
-        let Grid { left, top, step, .. } = self.grid;
-        let [x, y, _] = self.coordinates.to_world(*corner);
-        // Rows count downwards.
-        [(x - left) / step, (top - y) / step, corner[2]]
-    }
-}
-
 /// The cells of a raster, and the surface over them.
 ///
 /// Memory: the budget; 32 bytes for each cell of a tile.
 #[derive(Debug)]
 pub(super) struct Coverage {
     sample: Sample,
+    /// Columns and rows.
     size: [u32; 2],
     steps_per_unit: f64,
     cells: Accumulators<Cover>,
@@ -89,13 +71,11 @@ impl Coverage {
         Coverage { sample, size, steps_per_unit, cells, cutter: Cutter::new() }
     }
 
-    /// Adds a triangle with corners in the coordinates of cells, as of [`Placement`].
+    /// Adds a triangle with corners in the coordinates of cells.
     ///
     /// # Errors
-    /// If the temporary file fails; [`ErrorKind::Usage`](spmesh_core::error::ErrorKind::Usage), if values are
-    /// too great.
+    /// If the temporary file fails; usage, if values are too great.
     pub(super) fn add(&mut self, placed: [Point; 3]) -> Result<()> {
-        let [columns, rows] = self.size;
         let limits = placed.map(|corner| corner[2]);
         let [low, high] = [
             limits.into_iter().fold(f64::INFINITY, f64::min),
@@ -103,7 +83,7 @@ impl Coverage {
         ];
         let (cells, steps_per_unit) = (&mut self.cells, self.steps_per_unit);
         let is_mean = self.sample == Sample::Mean;
-        self.cutter.cells_of(placed, [columns, rows], |[column, row], part: &Polygon| {
+        self.cutter.cells_of(placed, self.size, |[column, row], part: &Polygon| {
             let (area, mean) = part.integral();
             let area = rounded(area.min(1.0) * AREA_STEPS) as u64;
             if area == 0 {
@@ -137,14 +117,9 @@ impl Coverage {
     ///
     /// # Errors
     /// Those of `stages`; if the temporary file fails.
-    pub(super) fn finish(
-        mut self,
-        tiles: [usize; 2],
-        cache: &TileCache,
-        stages: &mut Stages,
-    ) -> Result<[u64; 2]> {
+    pub(super) fn finish(mut self, cache: &TileCache, stages: &mut Stages) -> Result<[u64; 2]> {
         let mut values = vec![f32::NAN; CELLS];
-        for at in places(tiles) {
+        for at in places(cache.tiles()) {
             let Some(cells) = self.cells.read(at)? else { continue };
             for (value, cover) in values.iter_mut().zip(cells) {
                 *value = match self.sample {

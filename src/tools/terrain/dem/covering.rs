@@ -3,10 +3,12 @@
 use std::mem::{replace, take};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::coverage::{Coverage, Placement};
+use super::coverage::Coverage;
 use spmesh_core::error::Result;
 use spmesh_core::parallel::OrderedPool;
+use spmesh_io::raster::Grid;
 use spmesh_model::bounds::Point;
+use spmesh_stream::Coordinates;
 
 /// Triangles that go to the thread at once.
 const BATCH: usize = 1024;
@@ -19,7 +21,8 @@ type Batch = Vec<[Point; 3]>;
 /// Covers cells on a thread of its own, since that takes as long as all else. The order of triangles does not
 /// matter to the cells, so neither does the thread.
 pub(super) struct Covering {
-    placement: Placement,
+    grid: Grid,
+    coordinates: Coordinates,
     coverage: Arc<Mutex<Coverage>>,
     pool: OrderedPool<Batch, Result<Batch>>,
     /// The triangles to go next.
@@ -31,7 +34,7 @@ impl Covering {
     ///
     /// # Errors
     /// [`spmesh_core::error::ErrorKind::Io`] if the system refuses a thread.
-    pub(super) fn start(coverage: Coverage, placement: Placement) -> Result<Covering> {
+    pub(super) fn start(coverage: Coverage, grid: Grid, coordinates: Coordinates) -> Result<Covering> {
         let coverage = Arc::new(Mutex::new(coverage));
         let covered = Arc::clone(&coverage);
         let cover = move |mut batch: Batch| {
@@ -43,17 +46,18 @@ impl Covering {
             Ok(batch)
         };
         let pool = OrderedPool::start("covering", 1, BATCHES_MAX, cover)?;
-        Ok(Covering { placement, coverage, pool, next: Vec::with_capacity(BATCH) })
+        Ok(Covering { grid, coordinates, coverage, pool, next: Vec::with_capacity(BATCH) })
     }
 
-    /// Adds a triangle with corners in stored coordinates and elevations of the world. Its error may come with a
-    /// later triangle, or at the end.
+    /// Adds a triangle with corners in stored coordinates and elevations of the world. Its error may come
+    /// with a later triangle, or at the end.
     ///
     /// # Errors
     /// Those of [`Coverage::add`].
     #[inline]
     pub(super) fn add(&mut self, corners: [Point; 3]) -> Result<()> {
-        self.next.push(corners.each_ref().map(|corner| self.placement.of(corner)));
+        let placed = corners.map(|corner| self.placed(corner));
+        self.next.push(placed);
         if self.next.len() == BATCH { self.send() } else { Ok(()) }
     }
 
@@ -73,6 +77,16 @@ impl Covering {
         Ok(coverage.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// A corner in the coordinates of cells.
+    #[inline]
+    fn placed(&self, corner: Point) -> Point {
+        let Grid { left, top, step, .. } = self.grid;
+        let [x, y, _] = self.coordinates.to_world(corner);
+        // Rows count downwards.
+        [(x - left) / step, (top - y) / step, corner[2]]
+    }
+
+    /// Gives the waiting triangles to the thread.
     fn send(&mut self) -> Result<()> {
         let used = if self.pool.is_full() { self.pool.take().transpose()? } else { None };
         let empty = used.unwrap_or_else(|| Vec::with_capacity(BATCH));

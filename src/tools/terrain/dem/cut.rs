@@ -148,15 +148,15 @@ impl Strips {
         }
         let [mut rest, mut beyond] = self.rests.each_mut();
         let strip = &mut self.strip;
-        let mut number = first;
-        if low < 0.0 {
+        let next = if low < 0.0 {
             polygon.cut::<AXIS>(0.0, [strip, rest]);
+            first
         } else {
             polygon.cut::<AXIS>((first + 1) as f64, [strip, rest]);
             part(first, strip)?;
-            number += 1;
-        }
-        while number < end as usize {
+            first + 1
+        };
+        for number in next..end as usize {
             let side = (number + 1) as f64;
             if high <= side {
                 return part(number, rest);
@@ -164,7 +164,6 @@ impl Strips {
             rest.cut::<AXIS>(side, [strip, beyond]);
             part(number, strip)?;
             (rest, beyond) = (beyond, rest);
-            number += 1;
         }
         Ok(())
     }
