@@ -195,5 +195,7 @@ fn bare_ground_has_a_canopy_of_zero() {
         values(&std::fs::read(&out).unwrap())
     };
     assert_eq!(canopy(&low), vec![0.0; 81]);
+    let flags = ["--ground", &ground, &low, "--step", "1", "-o", &out];
+    assert_outcome("spcanopy", &flags, &[], 0, "100 of 100 points are below the ground");
     assert!(canopy(&none).iter().all(|value| value.is_nan()));
 }

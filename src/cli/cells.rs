@@ -168,7 +168,10 @@ pub(super) fn create(path: &Path, format: RasterFormat) -> Result<Output> {
 pub(super) fn summary(grid: &Grid, without_data: u64) -> String {
     let Grid { columns, rows, step, .. } = grid;
     let all = grid.cells();
-    let without =
-        if without_data > 0 { format!(", {without_data} of {all} without data") } else { String::new() };
+    let without = match without_data {
+        0 => String::new(),
+        _ if without_data == all => ", none of which has data".to_string(),
+        _ => format!(", {without_data} of {all} without data"),
+    };
     format!("{columns} by {rows} cells of size {step}{without}")
 }

@@ -16,7 +16,7 @@ use spmesh_terrain::files::{Destination, Division, SheetSize, Sheets};
 pub(super) struct SheetFlags {
     /// Write many rasters in one pass: squares with sides of SIZE in world units, or NX columns and NY rows
     /// of rasters. With -o NAME.tif, they are NAME_X_Y.tif, where X, Y is the lower left corner of a square,
-    /// or the column and the row, from 0 at the lower left
+    /// or the column and the row, from 0 at the lower left. Their folder is made if necessary
     #[arg(long, value_name = "SIZE|NX,NY", value_parser = parse_size, allow_hyphen_values = true)]
     tiles: Option<SheetSize>,
 

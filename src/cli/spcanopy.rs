@@ -22,7 +22,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::Budget;
-use spmesh_height::{Ground, HeightPoints};
+use spmesh_height::{Ground, HeightPoints, about_below};
 use spmesh_io::detect::SPCANOPY;
 use spmesh_io::raster::{Grid, RasterFormat, Window};
 use spmesh_io::source::{Filters, Input, SourceOptions};
@@ -189,6 +189,8 @@ pub fn run(flags: Flags) -> anyhow::Result<()> {
     if points.outside() > 0 {
         flags.notice(&format!("{} points outside of the ground were left out", points.outside()));
     }
+    let below = about_below(points.below(), points.points());
+    below.iter().for_each(|text| flags.notice(text));
     flags.notice(&cells::summary(&grid, grid.cells() - known));
     committed.notice().iter().for_each(|text| flags.notice(text));
     if let Some(format) = flags.stats {

@@ -14,7 +14,7 @@ use spmesh_core::error::{Error, ErrorKind, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_core::system;
-use spmesh_height::{Counts, FileOptions, Ground, HeightPlace, Outside, write_heights};
+use spmesh_height::{Counts, FileOptions, Ground, HeightPlace, Outside, about_below, write_heights};
 use spmesh_io::las::LasFile;
 
 const TOOL: &str = "spheight";
@@ -101,7 +101,7 @@ pub struct Flags {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, default_value = "160M")]
     memory: u64,
 
-    /// Threads that decompress, as many that compress, and up to eight that find heights [default: one
+    /// Threads that decompress, as many that compress, and as many that find heights [default: one
     /// per core, at most 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -262,7 +262,8 @@ impl Flags {
         let (written, counts) = write_heights(ground, file, created, &options, progress)?;
         let bytes = written.bytes_written();
         written.commit()?;
-        counts.notices.iter().for_each(|text| self.notice(&format!("{}: {text}", file.name())));
+        let notices = counts.notices.iter().cloned().chain(about_below(counts.below, counts.points));
+        notices.for_each(|text| self.notice(&format!("{}: {text}", file.name())));
         Ok((counts, bytes))
     }
 

@@ -43,9 +43,15 @@ impl<T: Copy> LiveVertices<T> {
             };
             self.local.push((id, value));
         }
-        self.live.extend(self.local[..patch.new.len()].iter().copied());
-        self.live_max = self.live_max.max(self.live.len());
-        for &local in &patch.finalized {
+        self.live_max = self.live_max.max(self.live.len() + patch.new.len());
+        // Most vertices are finalized by the patch that brings them: these never enter the map.
+        let mut finalized = patch.finalized.iter().peekable();
+        for (local, &(id, value)) in (0..).zip(&self.local[..patch.new.len()]) {
+            if finalized.next_if_eq(&&local).is_none() {
+                self.live.insert(id, value);
+            }
+        }
+        for &local in finalized {
             self.live.remove(&patch.id(local));
         }
         Ok(&self.local)

@@ -85,12 +85,12 @@ fn other_streams_are_refused() {
         (step, &flat, 2, "no elevation"),
         (step, &tetrahedra, 2, "tetrahedral mesh, expected a triangle mesh"),
         (step, &unbounded, 2, "does not say where the mesh is: give --bounds"),
-        (&["--step", "1", "--bounds", "0,0,9,9", "--format", "asc"], &line, 0, "81 of 81 without data"),
+        (&["--step", "1", "--bounds", "0,0,9,9", "--format", "asc"], &line, 0, "none of which has data"),
         (
             &["--step", "1", "--bounds", "-9,-9,-1,-1", "--format", "asc"],
             &unbounded,
             0,
-            "64 of 64 without data",
+            "none of which has data",
         ),
     ]);
 }

@@ -6,7 +6,7 @@ use std::io::Cursor;
 
 use super::tiles::{mesh_and_grid, tiff_values};
 use super::{is_same, options, raster, values};
-use crate::programs::{Folder, assert_outcome, outcome, run, sample};
+use crate::programs::{Folder, assert_outcome, mesh_of_cloud, outcome, run, sample};
 use spmesh_core::places::Inputs;
 use spmesh_io::raster::{Differences, Grid, RasterFormat, RasterOptions};
 use spmesh_stream::StreamReader;
@@ -165,4 +165,12 @@ fn wrong_divisions_are_refused() {
     assert!(output.status.success());
     let like = folder.path("all_0_0.tif");
     refused(&["--tiles", "1,1", "--like", &like], "would replace the input");
+}
+
+#[test]
+fn the_folder_of_sheets_is_made() {
+    let folder = Folder::new();
+    let (mesh, name) = (mesh_of_cloud(100), folder.path("new/folder/dem.asc"));
+    assert_outcome("spdem", &["--columns", "8", "--tiles", "2,2", "-o", &name], &mesh, 0, "4 rasters");
+    assert_eq!(folder.names("new/folder").len(), 4);
 }

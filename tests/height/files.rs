@@ -228,3 +228,19 @@ fn nothing_is_a_result_too() {
     let after = Parts::of(&heights_in(&folder, &no_mesh, &points, "out.las", &["--outside", "nearest"]));
     assert_eq!(after.heights(), vec![i32::MIN; 20]);
 }
+
+/// Heights that are taken for elevations are mostly below the ground.
+#[test]
+fn points_below_the_ground_are_noticed() {
+    let folder = Folder::new();
+    folder.file("ground.spm", mesh_of(&scattered(300, 1000, 4).bytes()));
+    for (shift, is_noticed) in [(-5000, true), (5000, false)] {
+        let mut points = scattered(500, 900, 5);
+        points.records.iter_mut().for_each(|record| record.position[2] += shift);
+        folder.file("points.las", points.bytes());
+        let [ground, points, out] = ["ground.spm", "points.las", "out.las"].map(|name| folder.path(name));
+        let found = run("spheight", &["--ground", &ground, &points, "-o", &out], &[]);
+        let message = outcome(&found);
+        assert_eq!(format!("{message:?}").contains("points are below the ground"), is_noticed, "{message:?}");
+    }
+}

@@ -3,7 +3,8 @@
 use std::io::{Seek, Write};
 use std::num::NonZeroUsize;
 
-use super::ground::{Ground, Outside, SEARCHES_MAX, Unit};
+use super::ground::Ground;
+use super::heights::{Heights, Outside, Unit};
 use spmesh_core::error::{Error, Result};
 use spmesh_io::las::{Changes, ExtraField, LasCopy, LasFile};
 use spmesh_io::source::Alignment;
@@ -12,7 +13,7 @@ use spmesh_stream::Coordinates;
 
 /// Most points of a batch.
 const BATCH_MAX: u64 = 1 << 20;
-/// Bytes of memory for each point of a batch, beside two records and a height for each thread.
+/// Bytes of memory for each point of a batch, beside two records.
 const POINT_LEN: u64 = 112;
 /// Records that are written at once.
 const PIECE_LEN: usize = 1 << 12;
@@ -37,7 +38,7 @@ pub struct FileOptions {
     pub is_compressed: Option<bool>,
     /// Memory for points under way. Units: bytes.
     pub memory: u64,
-    /// Threads that decompress, as many that compress, and up to eight that find heights.
+    /// Threads that decompress, as many that compress, and as many that find heights.
     pub threads: usize,
 }
 
@@ -48,6 +49,8 @@ pub struct Counts {
     pub points: u64,
     /// Those that are outside of the mesh.
     pub outside: u64,
+    /// Those with a height below zero.
+    pub below: u64,
     /// What of the file could not be kept.
     pub notices: Vec<String>,
 }
@@ -86,7 +89,7 @@ pub fn write_heights<W: Write + Seek>(
         is_compressed: options.is_compressed.unwrap_or(file.is_compressed()),
     };
     let record_len = file.record_len();
-    let point_len = 2 * record_len as u64 + POINT_LEN + 8 * options.threads.min(SEARCHES_MAX) as u64;
+    let point_len = 2 * record_len as u64 + POINT_LEN;
     let batch_max = (options.memory / point_len).clamp(1, BATCH_MAX);
     let batch_len = batch_max as usize * record_len;
     let of_file = |e: Error| e.of_input(file.name());
@@ -116,6 +119,7 @@ pub fn write_heights<W: Write + Seek>(
             for (record, &height) in records.chunks_exact(record_len).zip(heights) {
                 let index = counts.points;
                 counts.points += 1;
+                counts.below += u64::from(height < 0.0);
                 let stored = stored(height, &options.place).map_err(|e| e.at(format!("record {index}")))?;
                 match options.place {
                     HeightPlace::Field(_) => {
@@ -154,7 +158,7 @@ fn stored(height: f64, place: &HeightPlace) -> Result<i32> {
 
 /// Heights of the points of records, in steps of the file's z.
 struct Finder<'g> {
-    heights_above: super::ground::Heights<'g>,
+    heights_above: Heights<'g>,
     alignment: Alignment,
     /// Steps of the file's z for each stored unit of the ground's z, if heights come in these.
     steps_per_unit: Option<f64>,
@@ -172,7 +176,7 @@ impl<'g> Finder<'g> {
         };
         let (points, heights) = (Vec::new(), Vec::new());
         let threads = NonZeroUsize::new(options.threads).unwrap_or(NonZeroUsize::MIN);
-        let heights_above = ground.heights(unit, options.outside, threads);
+        let heights_above = Heights::new(ground, unit, options.outside, threads);
         Finder { heights_above, alignment, steps_per_unit, points, heights }
     }
 

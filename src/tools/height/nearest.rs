@@ -1,6 +1,6 @@
 //! The place of the mesh nearest to a point outside of it.
 
-use super::blocks::{Blocks, Triangle};
+use super::blocks::{Blocks, LoadedBlock, Triangle};
 use spmesh_core::error::Result;
 use spmesh_model::bounds::Point;
 
@@ -14,8 +14,7 @@ const KEPT_MAX: usize = 16;
 pub(super) struct Nearest<'b> {
     blocks: &'b Blocks,
     /// The blocks used last, the newest at the end.
-    kept: Vec<(usize, Vec<Triangle>)>,
-    bytes: Vec<u8>,
+    kept: Vec<(usize, LoadedBlock)>,
 }
 
 /// A place and its squared distance.
@@ -27,7 +26,7 @@ struct Place {
 
 impl<'b> Nearest<'b> {
     pub(super) fn new(blocks: &'b Blocks) -> Nearest<'b> {
-        Nearest { blocks, kept: Vec::new(), bytes: Vec::new() }
+        Nearest { blocks, kept: Vec::new() }
     }
 
     /// The elevation of the mesh at the place nearest to a point outside of it; `None` if it has no triangles.
@@ -55,31 +54,29 @@ impl<'b> Nearest<'b> {
     }
 
     /// The triangles of a block.
-    fn triangles(&mut self, block: usize) -> Result<&[Triangle]> {
+    fn triangles(&mut self, block: usize) -> Result<impl Iterator<Item = Triangle>> {
         let at = match self.kept.iter().position(|(kept, _)| *kept == block) {
             Some(at) => at,
             None => {
-                let mut triangles = Vec::new();
-                if self.kept.len() == KEPT_MAX {
-                    triangles = self.kept.remove(0).1;
-                }
-                self.blocks.read(block, &mut self.bytes, &mut triangles)?;
-                self.kept.push((block, triangles));
+                let is_full = self.kept.len() == KEPT_MAX;
+                let mut loaded = if is_full { self.kept.remove(0).1 } else { LoadedBlock::default() };
+                self.blocks.read(block, &mut loaded)?;
+                self.kept.push((block, loaded));
                 self.kept.len() - 1
             }
         };
         let last = self.kept.len() - 1;
         self.kept[at..].rotate_left(1);
-        Ok(&self.kept[last].1)
+        Ok(self.kept[last].1.triangles())
     }
 }
 
 /// The nearest place on the edges of triangles.
-fn nearest_of(triangles: &[Triangle], point: &Point) -> Place {
+fn nearest_of(triangles: impl Iterator<Item = Triangle>, point: &Point) -> Place {
     let none = Place { distance2: f64::INFINITY, elevation: f64::NAN };
-    let edges = triangles.iter().flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
+    let edges = triangles.flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)]);
     edges.fold(none, |best, (from, to)| {
-        let place = nearest_on(from, to, point);
+        let place = nearest_on(&from, &to, point);
         if place.distance2 < best.distance2 { place } else { best }
     })
 }
@@ -96,7 +93,7 @@ fn nearest_on(from: &Point, to: &Point, point: &Point) -> Place {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::blocks::BlockWriter;
+    use crate::block_writer::BlockWriter;
     use spmesh_core::random::Random;
 
     #[test]
@@ -120,14 +117,14 @@ mod tests {
             let triangle = [0, 1, 2]
                 .map(|_| [at[0] + 0.01 * random.unit(), at[1] + 0.01 * random.unit(), random.unit()]);
             all.push(triangle);
-            blocks.push(triangle).unwrap();
+            blocks.add(triangle.into_iter(), [[0, 1, 2]].into_iter()).unwrap();
         }
         let blocks = blocks.finish().unwrap();
         assert!(blocks.that(|_| true).count() > 5);
         let mut nearest = Nearest::new(&blocks);
         for _ in 0..200 {
             let point = [4.0 * random.unit() - 2.0, 4.0 * random.unit() - 2.0, 0.0];
-            let expected = nearest_of(&all, &point);
+            let expected = nearest_of(all.iter().copied(), &point);
             assert_eq!(nearest.elevation(&point).unwrap(), Some(expected.elevation));
         }
     }

@@ -4,7 +4,8 @@ use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use super::ground::{Ground, Outside, Unit};
+use super::ground::Ground;
+use super::heights::{Heights, Outside, Unit};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::temporary::TemporaryFile;
 use spmesh_io::source::{Alignment, Description, Input, PointReader};
@@ -21,7 +22,7 @@ const READ_LEN: usize = 1 << 14;
 
 /// Points whose third stored coordinate is the height above a ground. Heights below zero are zero.
 ///
-/// Memory: 62 bytes for each point of a batch of half a million and 8 for each thread, while points are read.
+/// Memory: 68 bytes for each point of a batch of half a million, while points are read.
 /// Disk: 24 bytes for each point.
 #[derive(Debug)]
 pub struct HeightPoints {
@@ -30,6 +31,7 @@ pub struct HeightPoints {
     /// Number of points, and of those that were left out because they are outside of the ground.
     points: u64,
     outside: u64,
+    below: u64,
     greatest: f64,
 }
 
@@ -68,8 +70,8 @@ impl HeightPoints {
             ..found.clone()
         };
         let file = TemporaryFile::create(temp_dir)?;
-        let mut heights_above = ground.heights(Unit::Stored, Outside::NoData, threads);
-        let mut points = HeightPoints { file, description, points: 0, outside: 0, greatest: 0.0 };
+        let mut heights_above = Heights::new(ground, Unit::Stored, Outside::NoData, threads);
+        let mut points = HeightPoints { file, description, points: 0, outside: 0, below: 0, greatest: 0.0 };
         let (mut done, mut heights) = (0, Vec::new());
         let mut reader = input.read()?;
         let (mut next, mut batch, mut placed) = (Vec::new(), Vec::new(), Vec::new());
@@ -95,6 +97,7 @@ impl HeightPoints {
     /// Writes points with heights in units of the ground.
     fn add(&mut self, batch: &[Point], heights: &[f64], per_unit: f64) -> Result<()> {
         let is_grid = matches!(self.description.coordinates, Coordinates::I32 { .. });
+        self.below += heights.iter().filter(|height| **height < 0.0).count() as u64;
         let known = batch.iter().zip(heights).filter(|(_, height)| !height.is_nan());
         let stored: Vec<Point> = known
             .map(|(&[x, y, _], height)| {
@@ -124,6 +127,12 @@ impl HeightPoints {
     #[must_use]
     pub fn outside(&self) -> u64 {
         self.outside
+    }
+
+    /// Number of points with heights below zero, which became zero.
+    #[must_use]
+    pub fn below(&self) -> u64 {
+        self.below
     }
 
     /// The greatest height, in the unit of the world.

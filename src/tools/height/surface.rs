@@ -7,6 +7,9 @@ use spmesh_model::bounds::Point;
 /// Rounding makes a determinant of two products wrong by less than this part of their sum.
 const ROUNDING: f64 = 1.0 / (1u64 << 50) as f64;
 
+/// Products of two differences up to this are integers below 2^52, which are exact, and so is their difference.
+pub(super) const PLAIN_MAX: f64 = (1u64 << 26) as f64;
+
 /// If a height in units is nearer than this to the middle between two integers, exact arithmetic rounds it.
 /// Heights in f64 are off by at most 2^-17: a few roundings of numbers below 2^34.
 const NEAR_TIE: f64 = 1.0 / (1u64 << 12) as f64;
@@ -23,6 +26,21 @@ pub(super) fn shares(corners: &[Point; 3], at: &Point) -> Option<[f64; 3]> {
     let at = place(at);
     let shares = [area(at, b, c), area(a, at, c), area(a, b, at)];
     shares.iter().all(|share| *share >= 0.0).then_some(shares)
+}
+
+/// [`shares`] without roundings.
+///
+/// Domain: coordinates are integers, and no difference of two of them is greater than [`PLAIN_MAX`].
+#[inline]
+pub(super) fn plain_shares([a, b, c]: &[Point; 3], at: &Point) -> Option<[f64; 3]> {
+    let shares = [left_of(at, b, c), left_of(at, c, a), left_of(at, a, b)];
+    (shares[0] >= 0.0 && shares[1] >= 0.0 && shares[2] >= 0.0).then_some(shares)
+}
+
+/// Twice the area of a place and an edge, positive if it is to the left.
+#[inline]
+fn left_of(at: &Point, from: &Point, to: &Point) -> f64 {
+    (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])
 }
 
 /// Whether a place is certainly to the right of the line from `from` to `to`.
@@ -65,6 +83,14 @@ pub(super) fn rounded(corners: &[Point; 3], point: &Point, height: f64, steps: f
     if (part - 0.5).abs() > NEAR_TIE {
         return units.round();
     }
+    rounded_exactly(corners, point, steps)
+}
+
+/// [`rounded`] in integers. Few points need this, so it must not make others wait: its conversions would be made for
+/// every triangle.
+#[cold]
+#[inline(never)]
+fn rounded_exactly(corners: &[Point; 3], point: &Point, steps: f64) -> f64 {
     let [a, b, c] = corners.map(|corner| corner.map(|value| value as i128));
     let p = point.map(|value| value as i128);
     let cross = |u: [i128; 3], v: [i128; 3]| (u[0] - a[0]) * (v[1] - a[1]) - (u[1] - a[1]) * (v[0] - a[0]);
@@ -88,6 +114,19 @@ mod tests {
         }
         for outside in [[-1.0, 0.0, 0.0], [4.0, 4.0 + 1e-15, 0.0], [9.0, 0.0, 0.0]] {
             assert!(shares(&CORNERS, &outside).is_none(), "{outside:?}");
+        }
+    }
+
+    #[test]
+    fn plain_shares_are_those_of_exact_areas() {
+        let mut random = spmesh_core::random::Random::new(9);
+        for size in [3, 1000, PLAIN_MAX as u64] {
+            let mut place = || [random.below(size) as f64, random.below(size) as f64, 0.0];
+            for _ in 0..1000 {
+                let (triangle, at) = ([place(), place(), place()], place());
+                let twice = shares(&triangle, &at).map(|shares| shares.map(|share| 2.0 * share));
+                assert_eq!(plain_shares(&triangle, &at), twice, "{triangle:?} {at:?}");
+            }
         }
     }
 

@@ -34,6 +34,7 @@ pub struct Sheets {
 
 impl Sheets {
     /// No sheets so far. `path` is the name of the raster: sheets of `dir/name.tif` are `dir/name_X_Y.tif`.
+    /// Their folder is made if necessary.
     ///
     /// # Errors
     /// If no files can be made there.
@@ -41,7 +42,11 @@ impl Sheets {
         if path == Path::new("-") || path.file_name().is_none() {
             return Err(Error::usage("--tiles writes many files: give their name, as in -o folder/name.tif"));
         }
-        // Fails now rather than after the work; it leaves nothing.
+        if let Some(folder) = path.parent() {
+            let name = folder.display().to_string();
+            fs::create_dir_all(folder).map_err(|e| Error::io("creating the folder", e).of_input(name))?;
+        }
+        // Fails now rather than after the work; it leaves no file.
         Output::create(path, format == RasterFormat::GeoTiff)?;
         Ok(Sheets { path: path.to_path_buf(), division, inputs, written: 0, blank: 0, bytes: 0 })
     }
