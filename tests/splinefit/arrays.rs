@@ -59,6 +59,9 @@ fn spline() -> Vec<u8> {
 /// Sites with coordinates that all types can hold; the last one is outside of the domain.
 const SITES: [[i16; 2]; 4] = [[3, 7], [40, 60], [99, 1], [120, 9]];
 
+/// Encodes a coordinate.
+type Encode<'a> = &'a dyn Fn(i16) -> Vec<u8>;
+
 fn table(sites: &[[i16; 2]]) -> String {
     sites.iter().map(|[x, y]| format!("{x} {y}\n")).collect()
 }
@@ -69,11 +72,11 @@ fn sites_of_all_types_and_orders_are_those_of_text() {
     let text = folder.write("sites.txt", table(&SITES));
     let expected = output(&["eval", "-", "--at", &text], &spline);
     let columns = [0, 1].map(|axis| SITES.map(|site| site[axis]));
-    let of = |encode: &dyn Fn(i16) -> Vec<u8>, is_by_columns: bool| -> Vec<u8> {
+    let of = |encode: Encode, is_by_columns: bool| -> Vec<u8> {
         let numbers = if is_by_columns { columns.concat() } else { SITES.concat() };
         numbers.into_iter().flat_map(encode).collect()
     };
-    let types: [(&str, &dyn Fn(i16) -> Vec<u8>); 8] = [
+    let types: [(&str, Encode); 8] = [
         ("'<f8'", &|x| f64::from(x).to_le_bytes().to_vec()),
         ("'>f8'", &|x| f64::from(x).to_be_bytes().to_vec()),
         ("'<f4'", &|x| f32::from(x).to_le_bytes().to_vec()),
