@@ -191,6 +191,7 @@ fn start_of(format: Format) -> Vec<u8> {
         Format::Off => b"OFF\n3 1 0\n",
         Format::VtkLegacy => b"# vtk DataFile Version 3.0\n",
         Format::VtkXml => b"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\">",
+        Format::Npy => b"\x93NUMPY\x01\0",
         Format::Pdb => b"HEADER    A MOLECULE\nATOM      1  N   LYS A   1\n",
         Format::Mmcif => b"data_1AKI\n#\nloop_\n",
         Format::Xyz => b"2\nhydrogen\nH 0 0 0\nH 0 0 1\n",

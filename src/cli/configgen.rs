@@ -72,7 +72,7 @@ const OUT_OF_MEMORY: &str = "configgen: not enough memory: take fewer knots or a
 
 /// Delaunay configurations of any degree, and their generalisation.
 ///
-/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK, point
+/// Reads points in the plane (text, csv, LAS, LAZ, COPC, SPA, SPB, NPY, vertices of PLY, OBJ and VTK, point
 /// streams) or a triangle mesh stream, and writes the configurations of all degrees up to --degree, which
 /// define bivariate splines. The result is exact, even if points are cocircular, collinear or coincident.
 #[derive(Debug, Parser)]

@@ -17,11 +17,17 @@ pub(super) const LINES: &[&str] = &["geojson", "json", "geojsonl", "ndjson"];
 pub(super) const PICTURE: &[&str] = &["svg", "png", "html", "htm"];
 /// Tables of text.
 pub(super) const TABLE: &[&str] = &["tsv", "csv", "txt", "xyz", "json"];
+/// Tables of numbers with blanks between them.
+pub(super) const NUMBERS: &[&str] = &["txt", "xyz", "dat"];
+/// Arrays of numpy.
+pub(super) const ARRAY: &[&str] = &["npy"];
+/// Sparse matrices.
+pub(super) const MATRIX: &[&str] = &["mtx", "npz"];
 /// Meshes of other programs.
 pub(super) const MESH: &[&str] = &["vtu", "mesh", "ply", "obj"];
 
 /// What endings stand for.
-const MEANINGS: [(&str, &[&str]); 13] = [
+const MEANINGS: [(&str, &[&str]); 16] = [
     ("a stream of spmesh", STREAM),
     ("a raster", RASTER),
     (
@@ -34,6 +40,9 @@ const MEANINGS: [(&str, &[&str]); 13] = [
     ("a document", &["pdf", "eps", "ps"]),
     ("a table", TABLE),
     ("a table of another program", &["xls", "xlsx", "ods"]),
+    ("an array of numpy", ARRAY),
+    ("a sparse matrix or several arrays", MATRIX),
+    ("arrays of another program", &["mat", "h5", "hdf5", "pkl", "pickle", "feather"]),
     ("points", &["las", "laz", "e57", "pcd", "pts", "ptx", "spa", "spb", "pdb", "cif"]),
     ("a mesh", MESH),
     ("a mesh of another program", &["sma", "smb", "off", "stl", "vtk", "vtp", "vts", "glb", "gltf", "msh"]),

@@ -19,7 +19,7 @@ use spmesh_core::places::check_apart;
 use spmesh_core::system;
 use spmesh_finalize::{Budget, CELL_POINTS, Leaves, Observer, Options, Order, Pass, Spooling, Stats};
 use spmesh_io::detect::SPFINALIZE;
-use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, RawType, SourceOptions};
+use spmesh_io::source::{AttributeChoice, DropReason, Dropped, Input, InvalidAdvice, RawType, SourceOptions};
 
 const TOOL: &str = "spfinalize";
 
@@ -60,12 +60,12 @@ const OUT_OF_MEMORY: &str = "spfinalize: not enough memory: give less --memory, 
 
 /// Finalize points: tag each cell of a quadtree or octree after the last point in it
 ///
-/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, the vertices of PLY, OBJ or VTK
-/// (VTU, VTP, VTS or legacy), or numbers without a header (--raw), all of them plain or compressed (.gz), and
-/// writes a stream of points. Its tags name cells in which no later point lies. The points of a cell are held
-/// back and written together (chunked), unless --preserve is given. The input is read at least twice, and
-/// again if headers do not state its bounding box or if cells are crowded. Input that cannot be read again is
-/// spooled, as are decoded points where that is cheaper (--spool).
+/// Reads LAS, LAZ, COPC, text, spmesh streams or their text twins, SPA, SPB, arrays of numpy (.npy), the
+/// vertices of PLY, OBJ or VTK (VTU, VTP, VTS or legacy), or numbers without a header (--raw), all of them
+/// plain or compressed (.gz), and writes a stream of points. Its tags name cells in which no later point
+/// lies. The points of a cell are held back and written together (chunked), unless --preserve is given. The
+/// input is read at least twice, and again if headers do not state its bounding box or if cells are crowded.
+/// Input that cannot be read again is spooled, as are decoded points where that is cheaper (--spool).
 #[derive(Debug, Parser)]
 #[command(name = TOOL, version, after_help = EXAMPLES)]
 pub struct Flags {
@@ -247,6 +247,7 @@ impl Flags {
             filters: self.points.filters(),
             bounds: self.points.bounds,
             skip_invalid: self.points.skip_invalid,
+            invalid_advice: InvalidAdvice::SkipInvalid,
             dims: if self.octree { 3 } else { 2 },
             grid: self.scale.map(|scale| (scale, self.offset.unwrap_or([0.0; 3]))),
             raw: self.raw,

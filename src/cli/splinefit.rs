@@ -1,6 +1,7 @@
 //! `splinefit`: subcommands.
 
 mod eval;
+mod eval_format;
 mod fit;
 mod info;
 mod mesh;

@@ -67,6 +67,9 @@ pub const BREAKLINE_VERTICES_MAX: usize = 1 << 20;
 /// Most files in a list of files: their names take about 100 MB.
 pub const LIST_FILES_MAX: usize = 1 << 20;
 
+/// Longest header of an array of numpy, in bytes; numpy has the same limit.
+pub const NPY_HEADER_MAX: u32 = 10_000;
+
 /// Longest tag of an XML file, in bytes.
 pub const XML_TAG_MAX: usize = 1 << 16;
 

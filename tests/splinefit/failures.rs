@@ -67,7 +67,7 @@ fn splines_that_cannot_be_evaluated_are_refused() {
     let spline = output(&["fit"], points(500, 1, plane).as_bytes());
     let cases: [(&[&str], &[u8], i32, &str); 8] = [
         (&["eval", "-"], &set, 2, "configurations without coefficients"),
-        (&["eval", "-", "--kind", "gradient", "--format", "tif"], &spline, 2, "take --format text"),
+        (&["eval", "-", "--kind", "gradient", "--format", "tif"], &spline, 2, "take .npy or --format text"),
         (&["eval", "-", "--cog"], &spline, 2, "--cog and --no-data are for rasters"),
         (&["eval", "-", "--step", "-1"], &spline, 2, "must be finite and above zero"),
         (&["eval", "-", "--step", "0"], &spline, 2, "must be finite and above zero"),

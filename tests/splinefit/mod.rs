@@ -1,12 +1,16 @@
 //! `splinefit`: splines fitted to points, and their values at sites and in cells, against known functions.
 
+mod arrays;
+mod collocation;
 mod failures;
 mod features;
 mod info;
+mod jumps;
 mod rasters;
 mod robust;
 mod safety;
 mod sources;
+mod tables;
 
 use serde_json::Value;
 
@@ -33,7 +37,7 @@ fn stats(arguments: &[&str], input: &[u8]) -> Value {
 fn rows(table: &[u8]) -> Vec<Vec<f64>> {
     let text = std::str::from_utf8(table).unwrap();
     let numbers = |line: &str| line.split(' ').map(|word| word.parse().unwrap()).collect();
-    text.lines().filter(|line| !line.starts_with('x')).map(numbers).collect()
+    text.lines().filter(|line| !line.starts_with('#')).map(numbers).collect()
 }
 
 /// Points in a box of 100 by 80 with the elevations of a function, as text.

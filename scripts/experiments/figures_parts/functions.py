@@ -67,7 +67,7 @@ def values(spline, places):
         stream.write_bytes(spline)
         sites.write_text("".join(f"{x!r} {y!r}\n" for x, y in places))
         lines = run("splinefit", "eval", "--quiet", stream, "--at", sites).decode().splitlines()
-    found = [float(line.split()[2]) for line in lines]
+    found = [float(line.split()[2]) for line in lines if not line.startswith("#")]
     return [value if value == value else 0.0 for value in found]
 
 

@@ -66,7 +66,7 @@ class Workplace:
     def values(self, sites):
         """The values of the spline at sites; NaN outside its domain."""
         lines = ours("splinefit", "eval", "--quiet", self.spline, "--at", self.table("at.xy", sites)).stdout
-        return np.array([float(line.split()[2]) for line in lines.splitlines()])
+        return np.array([float(line.split()[2]) for line in lines.splitlines() if not line.startswith("#")])
 
 
 def ours(name, *words):

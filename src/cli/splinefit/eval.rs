@@ -3,43 +3,71 @@
 use std::iter;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
+use super::eval_format::{Form, FormatFlag, KindFlag, format_of};
 use super::{Threads, check_stdin, say};
 use crate::cells::{self, CellFlags, RasterFlags};
-use crate::endings;
 use crate::{Common, progress::Progress};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPLINEFIT;
-use spmesh_io::raster::RasterFormat;
-use spmesh_io::source::{Input, SourceOptions};
-use spmesh_splinefit::{Attribute, Spline};
+use spmesh_io::raster::Grid;
+use spmesh_io::sink::MatrixFormat;
+use spmesh_io::source::{Input, InvalidAdvice, SourceOptions};
+use spmesh_splinefit::{Attribute, Layout, Spline};
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-Splines are not extrapolated: outside of the domain, sites get nan and cells no data (-9999). A cell has the value at its centre.
+Splines are not extrapolated: outside of the domain, sites get nan and cells no data (-9999). A cell has \
+the value at its centre.
 
 Slopes are angles in degrees. Aspects are directions of steepest descent, in degrees clockwise from north. \
-Curvatures are those of normal sections along the steepest descent (profile) and across it (tangential), in \
-one over the unit of coordinates; they are positive where the surface is convex upwards. Level places have \
-neither aspect nor curvature. Elevations and coordinates are taken to be in the same unit. Second \
-derivatives of splines of degree 2 jump.";
+Curvatures are those of normal sections along the steepest descent (profile) and across it (tangential), \
+in one over the unit of coordinates; they are positive where the surface is convex upwards. Level places \
+have neither aspect nor curvature. Elevations and coordinates are taken to be in the same unit. Second \
+derivatives of splines of degree 2 jump.
+
+Tables start with a line of # and the names of columns, which numpy.loadtxt and \
+numpy.genfromtxt(names=True) read. Arrays (.npy) have the numbers alone: shape (sites,) or, for gradients \
+and Hessians, (sites, numbers); of cells (rows, columns) or (rows, columns, numbers), with the top row \
+first. What is outside of the domain is nan.
+
+Functions of the basis are numbered from 0. The collocation matrix, or design matrix, has a row for each \
+site and a column for each function: times the coefficients, it is the values. Rows of sites outside of \
+the domain are empty. Its entries wait in temporary files, because both formats state their number first.";
+
+const EXAMPLES: &str = "\
+Examples:
+  Values at sites from numpy, to numpy:
+    splinefit eval terrain.spline.spm --at sites.npy -o values.npy
+  Second derivatives at sites, as a table:
+    splinefit eval terrain.spline.spm --at sites.txt --kind hessian -o hessians.txt
+  A raster as an array:
+    splinefit eval terrain.spline.spm --step 0.5 -o terrain.npy
+  The function of the basis with number 17, as a raster:
+    splinefit eval terrain.spline.spm --basis-function 17 --columns 500 -o function.tif
+  The collocation matrix, for scipy.sparse.load_npz or scipy.io.mmread:
+    splinefit eval terrain.spline.spm --at sites.npy --collocation -o matrix.npz
+    splinefit eval terrain.spline.spm --at sites.npy --collocation -o matrix.mtx
+";
 
 #[derive(Debug, Clone, Args)]
-#[command(after_help = NOTES)]
+#[command(after_help = format!("{EXAMPLES}\n{NOTES}"))]
 pub(super) struct Flags {
-    /// The spline; - is stdin
+    /// The spline; - is stdin. With --collocation and --basis-function also configurations
     #[arg(value_name = "SPLINE")]
     spline: PathBuf,
 
-    /// Output file; - is stdout. The extension selects the format: .tif or .asc, otherwise text
+    /// Output file; - is stdout. The extension selects the format: .tif, .asc or .npy, for --collocation .mtx
+    /// or .npz, otherwise text
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
 
-    /// Sites: the output has a line for each, in their order; - is stdin
-    #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like", "format"])]
+    /// Sites, such as text or .npy of shape (n, 2): the output has a line for each, in their order; - is
+    /// stdin
+    #[arg(long, value_name = "SITES", conflicts_with_all = ["step", "columns", "rows", "bounds", "like"])]
     at: Option<PathBuf>,
 
     #[command(flatten)]
@@ -52,31 +80,21 @@ pub(super) struct Flags {
     #[arg(long, value_enum, value_name = "KIND", default_value_t = KindFlag::Value)]
     kind: KindFlag,
 
-    /// GeoTIFF, ESRI ASCII grid, or lines of x, y and values
+    /// Evaluate this function of the basis instead of the spline; functions are numbered from 0
+    #[arg(long, value_name = "J")]
+    basis_function: Option<u32>,
+
+    /// Write the collocation matrix instead of values: the values of all functions of the basis at the sites
+    #[arg(long, requires = "at", conflicts_with_all = ["kind", "basis_function"])]
+    collocation: bool,
+
+    /// GeoTIFF, ESRI ASCII grid, an array of numpy, or lines of x, y and values; for --collocation
+    /// MatrixMarket or the arrays of scipy
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<FormatFlag>,
 
     #[command(flatten)]
     threads: Threads,
-}
-
-/// Values of `--kind`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum KindFlag {
-    Value,
-    Slope,
-    Aspect,
-    ProfileCurvature,
-    TangentialCurvature,
-    Gradient,
-}
-
-/// Values of `--format`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FormatFlag {
-    Tif,
-    Asc,
-    Text,
 }
 
 impl Flags {
@@ -85,28 +103,33 @@ impl Flags {
         check_stdin([("the spline", self.spline.as_path())].into_iter().chain(sites))?;
         let inputs = iter::once(&self.spline).chain(&self.at).chain(self.cells.like());
         check_apart(inputs.map(PathBuf::as_path), &[("--output", &self.output)])?;
-        if self.format.is_none() {
-            let of_cells = if self.at.is_none() { endings::RASTER } else { &[] };
-            endings::check(&self.output, &[of_cells, endings::TABLE])?;
-        }
-        match &self.at {
-            Some(sites) => self.sites(common, sites),
-            None => self.cells(common),
+        let form = format_of(&self.output, self.format, self.at.is_some(), self.collocation)?;
+        match (&self.at, form) {
+            (Some(sites), Form::Matrix(format)) => self.matrix(common, sites, format),
+            (Some(sites), form) => self.sites(common, sites, form == Form::Array),
+            (None, form) => self.cells(common, form),
         }
     }
 
-    fn sites(&self, common: &Common, sites: &Path) -> Result<()> {
+    fn spline(&self) -> Result<Spline> {
+        match self.basis_function {
+            Some(function) => Spline::open_function(&self.spline, function),
+            None => Spline::open(&self.spline),
+        }
+    }
+
+    fn sites(&self, common: &Common, sites: &Path, is_array: bool) -> Result<()> {
         self.raster.check_unused()?;
-        let mut output = Output::create(&self.output, false)?;
-        let spline = Spline::open(&self.spline)?;
-        let options = SourceOptions { reader: &SPLINEFIT, dims: 2, ..SourceOptions::default() };
-        let sites = Input::open(&[sites.to_path_buf()], &options)?;
+        let mut output = Output::create(&self.output, is_array)?;
+        let spline = self.spline()?;
+        let sites = open_sites(sites)?;
         let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
-        let counts =
-            spmesh_splinefit::write_values(&spline, self.kind.into(), &sites, &mut output, |count| {
-                progress.set(count);
-            });
-        let [count, outside] = counts?;
+        let (attribute, done) = (self.kind.into(), |count| progress.set(count));
+        let (temp_dir, into) = (self.raster.temp_dir(), &mut output);
+        let [count, outside] = match is_array {
+            true => spmesh_splinefit::write_value_array(&spline, attribute, &sites, temp_dir, into, done)?,
+            false => spmesh_splinefit::write_values(&spline, attribute, &sites, into, done)?,
+        };
         output.commit()?;
         drop(progress);
         sites.withheld_notice().iter().for_each(|text| say(common, text));
@@ -116,30 +139,54 @@ impl Flags {
         Ok(())
     }
 
-    fn cells(&self, common: &Common) -> Result<()> {
-        let (format, attribute) = (self.format(), self.kind.into());
-        let mut output = self.output(format, attribute)?;
-        let spline = Spline::open(&self.spline)?;
+    fn matrix(&self, common: &Common, sites: &Path, format: MatrixFormat) -> Result<()> {
+        self.raster.check_unused()?;
+        let mut output = Output::create(&self.output, format == MatrixFormat::Npz)?;
+        let (layout, _) = Layout::open(&self.spline)?;
+        let sites = open_sites(sites)?;
+        let mut progress = Progress::new(common, "evaluating", sites.description().stated_points);
+        let done = |count| progress.set(count);
+        let (temp_dir, into) = (self.raster.temp_dir(), &mut output);
+        let counts = spmesh_splinefit::write_collocation(&layout, &sites, format, temp_dir, into, done)?;
+        output.commit()?;
+        drop(progress);
+        sites.withheld_notice().iter().for_each(|text| say(common, text));
+        say(common, &format!("{} by {} matrix, {} entries", counts.sites, counts.functions, counts.entries));
+        if counts.outside > 0 {
+            let (outside, count) = (counts.outside, counts.sites);
+            say(
+                common,
+                &format!("{outside} of {count} sites are outside of the domain: their rows are empty"),
+            );
+        }
+        Ok(())
+    }
+
+    fn cells(&self, common: &Common, form: Form) -> Result<()> {
+        let attribute = self.kind.into();
+        let mut output = self.output(form, attribute)?;
+        let spline = self.spline()?;
         let grid = self.cells.grid(|| spline.window())?;
         let mut progress = Progress::counting("rows", common, "evaluating", Some(grid.rows.into()));
         let done = |row| progress.set(row);
         let threads = self.threads.get();
-        let (outside, notices) = match format {
-            None => spmesh_splinefit::write_table(&spline, attribute, &grid, &mut output, done)
-                .map(|outside| (outside, Vec::new())),
-            Some(format) => {
+        let (outside, notices) = match form {
+            Form::Raster(format) => {
                 let options = self.raster.options(format)?;
-                spmesh_splinefit::write_raster(
-                    &spline,
-                    attribute,
-                    &grid,
-                    &options,
-                    threads,
-                    &mut output,
-                    done,
-                )
+                let output = &mut output;
+                spmesh_splinefit::write_raster(&spline, attribute, &grid, &options, threads, output, done)?
             }
-        }?;
+            Form::Array => {
+                let output = &mut output;
+                let outside =
+                    spmesh_splinefit::write_cell_array(&spline, attribute, &grid, threads, output, done)?;
+                (outside, vec![place_of_cells(&grid)])
+            }
+            Form::Text | Form::Matrix(_) => {
+                let outside = spmesh_splinefit::write_table(&spline, attribute, &grid, &mut output, done)?;
+                (outside, Vec::new())
+            }
+        };
         output.commit()?;
         drop(progress);
         notices.iter().for_each(|text| say(common, text));
@@ -147,39 +194,33 @@ impl Flags {
         Ok(())
     }
 
-    /// The format of a raster; `None` for lines.
-    fn format(&self) -> Option<RasterFormat> {
-        match self.format {
-            Some(FormatFlag::Tif) => Some(RasterFormat::GeoTiff),
-            Some(FormatFlag::Asc) => Some(RasterFormat::Ascii),
-            Some(FormatFlag::Text) => None,
-            None => cells::format_of(&self.output),
-        }
-    }
-
-    fn output(&self, format: Option<RasterFormat>, attribute: Attribute) -> Result<Output> {
-        match format {
-            Some(_) if !attribute.is_single() => {
-                Err(Error::usage("a gradient is two numbers, and a cell has one: take --format text"))
-            }
-            Some(format) => cells::create(&self.output, format),
-            None => {
+    fn output(&self, form: Form, attribute: Attribute) -> Result<Output> {
+        match form {
+            Form::Raster(_) if !attribute.is_single() => Err(Error::usage(format!(
+                "{} numbers in each place, and a cell of a raster has one: take .npy or --format text",
+                attribute.columns().len()
+            ))),
+            Form::Raster(format) => cells::create(&self.output, format),
+            _ => {
                 self.raster.check_unused()?;
-                Output::create(&self.output, false)
+                Output::create(&self.output, form == Form::Array)
             }
         }
     }
 }
 
-impl From<KindFlag> for Attribute {
-    fn from(kind: KindFlag) -> Attribute {
-        match kind {
-            KindFlag::Value => Attribute::Value,
-            KindFlag::Slope => Attribute::Slope,
-            KindFlag::Aspect => Attribute::Aspect,
-            KindFlag::ProfileCurvature => Attribute::ProfileCurvature,
-            KindFlag::TangentialCurvature => Attribute::TangentialCurvature,
-            KindFlag::Gradient => Attribute::Gradient,
-        }
-    }
+fn open_sites(path: &Path) -> Result<Input> {
+    let options = SourceOptions {
+        reader: &SPLINEFIT,
+        dims: 2,
+        invalid_advice: InvalidAdvice::LeaveOut,
+        ..SourceOptions::default()
+    };
+    Input::open(&[path.to_path_buf()], &options)
+}
+
+/// Where the cells of an array are, which holds no coordinates.
+fn place_of_cells(grid: &Grid) -> String {
+    let ([x, y], step) = (grid.center(0, 0), grid.step);
+    format!("array[i, j] is at x = {x} + {step} * j, y = {y} - {step} * i")
 }

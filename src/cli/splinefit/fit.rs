@@ -18,7 +18,8 @@ use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
 use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::source::{
-    Filters, Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines, read_values,
+    Filters, InvalidAdvice, Opened, Polyline, SourceOptions, Values, name_of, open_knots, read_polylines,
+    read_values,
 };
 use spmesh_model::bounds::Bounds;
 use spmesh_splinefit::{Fitted, Options, Points, Smoothing};
@@ -50,8 +51,8 @@ estimated from the median of magnitudes. If lambda is chosen, it is chosen with 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
 pub(super) struct Flags {
-    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, vertices of PLY, OBJ and VTK,
-    /// point streams); - is stdin
+    /// Files of points, read as one input (text, csv, LAS, LAZ, COPC, SPA, SPB, NPY, vertices of PLY, OBJ and
+    /// VTK, point streams); - is stdin
     #[arg(value_name = "POINTS", default_value = "-")]
     inputs: Vec<PathBuf>,
 
@@ -126,6 +127,10 @@ pub(super) struct Flags {
     #[arg(long, value_name = "BOX", value_parser = parse_box, allow_hyphen_values = true)]
     bounds: Option<Bounds>,
 
+    /// Drop and count points with a coordinate that is not finite, instead of failing
+    #[arg(long)]
+    skip_invalid: bool,
+
     /// Seed of folds
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
@@ -154,6 +159,8 @@ impl Flags {
         self.check_stdin()?;
         self.check_apart()?;
         endings::check(&self.output, &[endings::STREAM])?;
+        let lists = [&self.residuals, &self.rejected].into_iter().flatten();
+        lists.into_iter().try_for_each(|path| endings::check(path, &[endings::NUMBERS]))?;
         // Fail before the work if an output cannot be created.
         let mut output = Output::create(&self.output, true)?;
         let residuals = self.residuals.as_ref().map(|path| Output::create(path, false)).transpose()?;
@@ -236,6 +243,8 @@ impl Flags {
                 ..Filters::default()
             },
             bounds: self.bounds,
+            skip_invalid: self.skip_invalid,
+            invalid_advice: InvalidAdvice::SkipInvalid,
             threads: Some(self.threads.get()),
             crs: self.crs.system()?,
             ..SourceOptions::default()

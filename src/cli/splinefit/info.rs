@@ -14,10 +14,11 @@ use crate::messages::{escaped, escaped_json};
 use spmesh_core::error::{Error, Result};
 use spmesh_core::output::Output;
 use spmesh_core::places::check_apart;
+use spmesh_io::detect::SPLINEFIT;
 use spmesh_io::raster::Window;
 use spmesh_io::source::SourceOptions;
 use spmesh_splinefit::{
-    Candidate, Condition, Excess, Extent, Layout, Points, Smoothness, Spline, Statistics, Summary,
+    Candidate, Condition, Excess, Extent, Jump, Layout, Points, Smoothness, Spline, Statistics, Summary,
 };
 
 /// Segments that the text output lists.
@@ -25,12 +26,14 @@ const LISTED: usize = 5;
 
 // Paragraphs are single lines: they are wrapped to the width of the terminal.
 const NOTES: &str = "\
-The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, a \
-lower estimate in the 1-norm. Splines of degree k have k - 1 continuous derivatives, except across segments \
-between knots that are repeated or collinear with others. For degree 2, the gradients of functions on both \
-sides of these segments are compared. Residuals are elevations less values. The least and greatest value \
-are searched near Greville sites and knots. With points, there is a warning if the spline leaves the range of \
-elevations by more than a quarter of it.";
+The condition is that of interpolation at Greville sites: in the 2-norm for up to 500 functions; for more, \
+a lower estimate in the 1-norm. Splines of degree k have k - 1 continuous derivatives, except across \
+segments between knots that are repeated or collinear with others. For degree 2, the gradients of \
+functions on both sides of these segments are compared. Jumps are those of the spline: its value and \
+gradient are continuous wherever knots do not allow a jump, which is exact; elsewhere both sides are \
+compared at a few places of each segment, up to rounding. Residuals are elevations less values. The least \
+and greatest value are searched near Greville sites and knots. With points, there is a warning if the \
+spline leaves the range of elevations by more than a quarter of it.";
 
 #[derive(Debug, Clone, Args)]
 #[command(after_help = NOTES)]
@@ -59,12 +62,12 @@ impl Flags {
         check_apart(inputs, &[("the report", Path::new("-"))])?;
         // Fail before the work if stdout is closed.
         let mut output = Output::create(Path::new("-"), false)?;
-        let (layout, extent, residuals) = self.compare()?;
+        let Compared { layout, coefficients, extent, residuals } = self.compare()?;
         if let Some(residuals) = residuals.as_ref().filter(|residuals| residuals.outside > 0) {
             say(common, &outside(residuals));
         }
         residuals.as_ref().and_then(excess).iter().for_each(|text| say(common, text));
-        let summary = Summary::of(&layout)?;
+        let summary = Summary::of(&layout, coefficients.as_deref())?;
         let report = Report { summary: &summary, layout: &layout, extent, residuals: residuals.as_ref() };
         let text = match self.json {
             true => escaped_json(&format!("{}\n", report.json())),
@@ -74,22 +77,33 @@ impl Flags {
         output.commit()
     }
 
-    /// The layout, with the extent of a spline, and with residuals if points are given.
-    fn compare(&self) -> Result<(Layout, Option<Extent>, Option<Statistics>)> {
+    fn compare(&self) -> Result<Compared> {
         if self.points.is_empty() {
             let (layout, coefficients) = Layout::open(&self.spline)?;
             if coefficients.len() != layout.basis.len() {
-                return Ok((layout, None, None));
+                return Ok(Compared { layout, coefficients: None, extent: None, residuals: None });
             }
             let spline = Spline { layout, coefficients };
             let extent = Extent::of(&spline);
-            return Ok((spline.layout, extent, None));
+            let Spline { layout, coefficients } = spline;
+            return Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals: None });
         }
         let spline = Spline::open(&self.spline)?;
-        let points = Points::open(&self.points, &SourceOptions::default(), None, false, |_| ())?;
-        let residuals = Statistics::of(&spline, &points, f64::INFINITY, self.threads.get(), &|_| ())?;
-        Ok((spline.layout, residuals.extent, Some(residuals)))
+        let options = SourceOptions { reader: &SPLINEFIT, ..SourceOptions::default() };
+        let points = Points::open(&self.points, &options, None, false, |_| ())?;
+        let found = Statistics::of(&spline, &points, f64::INFINITY, self.threads.get(), &|_| ())?;
+        let Spline { layout, coefficients } = spline;
+        let (extent, residuals) = (found.extent, Some(found));
+        Ok(Compared { layout, coefficients: Some(coefficients), extent, residuals })
     }
+}
+
+/// A layout, with coefficients and extent of a spline, and with residuals if points are given.
+struct Compared {
+    layout: Layout,
+    coefficients: Option<Vec<f64>>,
+    extent: Option<Extent>,
+    residuals: Option<Statistics>,
 }
 
 /// What is printed.
@@ -168,6 +182,10 @@ fn text(summary: &Summary, layout: &Layout) -> String {
     for (label, value) in smoothness_lines(&summary.smoothness, layout) {
         line(label, value);
     }
+    if let Some(jumps) = &summary.smoothness.jumps {
+        line("jumps", format!("of the value: {}", jump_text(&jumps.value)));
+        line("", format!("of the gradient: {}", jump_text(&jumps.gradient)));
+    }
     text
 }
 
@@ -176,7 +194,7 @@ fn box_text(Window { min, max }: Window) -> String {
 }
 
 fn smoothness_lines(smoothness: &Smoothness, layout: &Layout) -> Vec<(&'static str, String)> {
-    let Smoothness { order, candidates, folds } = smoothness;
+    let Smoothness { order, candidates, folds, .. } = smoothness;
     let (found, what) = match folds {
         Some(folds) => (folds, "gradients jump"),
         None => (candidates, "knots are repeated, or on a line with others"),
@@ -200,6 +218,21 @@ fn smoothness_lines(smoothness: &Smoothness, layout: &Layout) -> Vec<(&'static s
     lines
 }
 
+/// The greatest jump, or that there is none.
+fn jump_text(Jump { segments, greatest, at }: &Jump) -> String {
+    match (segments, at) {
+        (0, _) => "none (exact: knots exclude it)".into(),
+        (_, None) => format!("none found, across {segments} segments where knots allow it"),
+        (_, Some([x, y])) => {
+            format!("up to {greatest:e}, at {x} {y}, across {segments} segments where knots allow it")
+        }
+    }
+}
+
+fn jump_json(Jump { segments, greatest, at }: &Jump) -> Value {
+    json!({"exact": *segments == 0, "segments": segments, "greatest": greatest, "at": at})
+}
+
 fn json(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> Value {
     let area = |area: Option<Window>| area.map(|Window { min, max }| json!([min[0], min[1], max[0], max[1]]));
     let condition = match &summary.condition {
@@ -218,6 +251,9 @@ fn json(summary: &Summary, layout: &Layout, residuals: Option<&Statistics>) -> V
         "order": summary.smoothness.order,
         "candidates": segments(&summary.smoothness.candidates),
         "folds": summary.smoothness.folds.as_deref().map(segments),
+        "jumps": summary.smoothness.jumps.map(|jumps| {
+            json!({"value": jump_json(&jumps.value), "gradient": jump_json(&jumps.gradient)})
+        }),
     });
     json!({
         "degree": summary.degree,

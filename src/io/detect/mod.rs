@@ -49,6 +49,8 @@ pub enum Format {
     VtkLegacy,
     /// The XML formats of VTK.
     VtkXml,
+    /// An array of numpy.
+    Npy,
     /// PDB.
     Pdb,
     /// PDBx/mmCIF.
@@ -132,7 +134,7 @@ const TO_STREAM: &str = "convert it first with spconvert";
 const TO_PLY: &str = "convert it first with spconvert --to ply";
 
 /// All formats. The first row whose test passes is the format of an input.
-const ROWS: [Row; 34] = [
+const ROWS: [Row; 35] = [
     row(Format::Las, "a LAS, LAZ or COPC file", "LAS, LAZ, COPC", Test::Magic(&[b"LASF"]), ""),
     row(Format::Stream, "a spmesh stream", "spmesh streams", Test::Magic(&[b"\x89S"]), ""),
     row(
@@ -144,6 +146,13 @@ const ROWS: [Row; 34] = [
     ),
     row(Format::Nrrd, "an NRRD volume", "NRRD", Test::Magic(&[b"NRRD"]), "dd4 reads it"),
     row(Format::Nifti, "a NIfTI volume", "NIfTI", Test::Look(binary::is_nifti), "dd4 reads it"),
+    row(
+        Format::Npy,
+        "an array of numpy",
+        "NPY",
+        Test::Magic(&[b"\x93NUMPY"]),
+        "make a point stream of it with spfinalize",
+    ),
     row(
         Format::Gzip,
         "gzip data within gzip data",

@@ -32,6 +32,7 @@ const POINTS: &[Format] = &[
     Format::VertexLines,
     Format::VtkLegacy,
     Format::VtkXml,
+    Format::Npy,
 ];
 
 /// `spfinalize`.

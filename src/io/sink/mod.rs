@@ -1,9 +1,11 @@
 //! Writers of every format that a stream can be converted to. Their input is the events of a stream.
+//! Arrays and sparse matrices for numpy get their rows from their caller.
 
 mod elements;
 mod historical_cells;
 mod hull;
 mod medit;
+mod npy;
 mod obj;
 mod ply;
 mod ply_properties;
@@ -11,6 +13,7 @@ mod rows;
 mod sma;
 mod smb;
 mod spa;
+mod sparse_matrix;
 mod spb;
 mod spm;
 mod spool;
@@ -25,11 +28,13 @@ mod world;
 
 pub use hull::{HullSink, surface_header};
 pub use medit::MeditSink;
+pub use npy::{NPY_F64, NpyRows, npy_header};
 pub use obj::ObjSink;
 pub use ply::{PlyEncoding, PlySink};
 pub use sma::SmaSink;
 pub use smb::SmbSink;
 pub use spa::SpaSink;
+pub use sparse_matrix::{MatrixFormat, SparseRows};
 pub use spb::SpbSink;
 pub use spm::SpmSink;
 pub use twin::TwinSink;

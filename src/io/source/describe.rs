@@ -73,7 +73,7 @@ fn stated_bounds(files: &[File], coordinates: &Coordinates) -> Option<Bounds> {
             continue;
         }
         let bounds = file.stated.bounds?;
-        let mut placement = Placement::new(&file.stated.coordinates, coordinates, &[], false);
+        let mut placement = Placement::new(&file.stated.coordinates, coordinates, &SourceOptions::default());
         placement.put(bounds.min, &mut corners).ok()?;
         placement.put(bounds.max, &mut corners).ok()?;
     }

@@ -10,6 +10,7 @@ use super::describe::{File, describe};
 use super::filters::{DropReason, Dropped};
 use super::input_reader::InputReader;
 use super::las_header::LasHeader;
+use super::npy::{NpyArray, NpyPass};
 use super::options::SourceOptions;
 use super::origin::{Origin, name_of};
 use super::pass::{Pass, Stated};
@@ -47,6 +48,7 @@ enum Content {
     Obj,
     /// VTK, and raw numbers.
     Arrays(Arc<[PointArray]>),
+    Npy(NpyArray),
     Text(Columns),
 }
 
@@ -59,8 +61,8 @@ pub struct Input {
     /// How the rows of each file are made.
     plans: Arc<[RowPlan]>,
     notices: Vec<String>,
-    /// What the first whole pass dropped.
-    passed: Arc<OnceLock<Dropped>>,
+    /// What the first whole pass dropped: by filters, and not finite.
+    passed: Arc<OnceLock<(Dropped, u64)>>,
 }
 
 impl Input {
@@ -124,7 +126,7 @@ impl Input {
     /// How many points the filters dropped; none before the end of the first pass.
     #[must_use]
     pub fn dropped(&self) -> Dropped {
-        self.passed.get().copied().unwrap_or_default()
+        self.passed.get().copied().unwrap_or_default().0
     }
 
     /// After a pass: for each file that was cut off, what is left of it.
@@ -146,6 +148,15 @@ impl Input {
         })
     }
 
+    /// After a pass: a notice if points with a coordinate that is not finite were dropped.
+    #[must_use]
+    pub fn invalid_notice(&self) -> Option<String> {
+        let count = self.passed.get().map_or(0, |(_, invalid)| *invalid);
+        let points = if count == 1 { "point" } else { "points" };
+        let what = format!("{}: {count} {points} with a coordinate that is not finite dropped", self.name());
+        (count > 0).then_some(what)
+    }
+
     /// Whether decoding a file costs more than writing its points to disk and reading them back: compressed
     /// files and text.
     #[must_use]
@@ -156,7 +167,7 @@ impl Input {
                     Content::Las(header) => header.laz.is_some(),
                     Content::Twin | Content::Spa | Content::Ply | Content::Obj | Content::Text(_) => true,
                     Content::Arrays(arrays) => point_arrays::are_costly(arrays),
-                    Content::Stream | Content::Spb => false,
+                    Content::Stream | Content::Spb | Content::Npy(_) => false,
                 }
         })
     }
@@ -260,6 +271,7 @@ impl Source {
             Content::Ply => Box::new(stream::pass_of_ply(origin.plain()?, &self.name, plan)?),
             Content::Obj => Box::new(stream::pass_of_obj(origin.plain()?, &self.name)),
             Content::Arrays(arrays) => Box::new(ArrayPass::new(origin.view()?, Arc::clone(arrays), plan)),
+            Content::Npy(array) => Box::new(NpyPass::new(&origin.view()?, array.clone())),
             Content::Text(columns) => {
                 let (file, columns) = (origin.plain()?, columns.clone());
                 Box::new(text::TextPass::new(file, columns, plan, options.salvage))
@@ -294,7 +306,7 @@ fn find_format(
     let head = read_head(&mut plain).map_err(|e| Error::io("reading", e))?;
     let format = options.reader.detect(&head)?;
     let is_compressed = plain.is_compressed();
-    let is_read_in_order = !matches!(format, Format::Las | Format::VtkLegacy | Format::VtkXml);
+    let is_read_in_order = !matches!(format, Format::Las | Format::Npy | Format::VtkLegacy | Format::VtkXml);
     let origin = if is_compressed && !is_read_in_order { unpacked(origin, notices)? } else { origin };
     Ok(Found { origin, format: Some(format), is_compressed })
 }
@@ -333,6 +345,11 @@ impl Content {
             // Vertex lines of SMA are those of OBJ; its other lines are skipped.
             Format::Obj | Format::Sma | Format::VertexLines => {
                 (Content::Obj, stream::state_of_obj(origin.plain()?, name)?)
+            }
+            Format::Npy => {
+                let array = NpyArray::read(&origin.view()?)?;
+                let stated = array.state();
+                (Content::Npy(array), stated)
             }
             Format::VtkLegacy => Content::of_arrays(vec![vtk::read_legacy(&origin.view()?, name)?]),
             Format::VtkXml => Content::of_arrays(vtk::read_xml(&origin.view()?)?),

@@ -27,12 +27,12 @@ pub(super) struct InputReader {
     /// Points dropped in files before the current one: not finite, and by filters.
     invalid: u64,
     dropped: Dropped,
-    /// Gets the number of dropped points at the end.
-    passed: Arc<OnceLock<Dropped>>,
+    /// Gets the numbers of dropped points at the end: by filters, and not finite.
+    passed: Arc<OnceLock<(Dropped, u64)>>,
 }
 
 impl InputReader {
-    /// Opens the first file. `passed` gets the number of dropped points at the end.
+    /// Opens the first file. `passed` gets the numbers of dropped points at the end.
     ///
     /// # Errors
     /// If the file cannot be opened.
@@ -41,7 +41,7 @@ impl InputReader {
         plans: Arc<[RowPlan]>,
         options: SourceOptions,
         coordinates: Coordinates,
-        passed: Arc<OnceLock<Dropped>>,
+        passed: Arc<OnceLock<(Dropped, u64)>>,
     ) -> Result<InputReader> {
         let mut reader = InputReader {
             sources,
@@ -72,13 +72,11 @@ impl InputReader {
             let plan = self.plans[self.next].clone();
             let pass = source.pass(&self.options, plan).map_err(|e| e.of_input(&source.name))?;
             let Stated { coordinates, .. } = source.stated;
-            let (windows, skip_invalid) = (self.options.windows(), self.options.skip_invalid);
-            self.current =
-                Some((pass, Placement::new(&coordinates, &self.coordinates, &windows, skip_invalid)));
+            self.current = Some((pass, Placement::new(&coordinates, &self.coordinates, &self.options)));
             self.next += 1;
         } else {
             // Later passes drop the same points.
-            let _ = self.passed.set(self.dropped);
+            let _ = self.passed.set((self.dropped, self.invalid));
         }
         Ok(())
     }

@@ -1,5 +1,5 @@
 //! Point data of other programs, read as one input: LAS, LAZ, COPC, text, spmesh streams and their text
-//! twins, SPA and SPB, raw numbers, and the vertices of PLY, OBJ and VTK.
+//! twins, SPA and SPB, raw numbers, arrays of numpy, and the vertices of PLY, OBJ and VTK.
 
 mod base64;
 mod byte_order;
@@ -25,6 +25,8 @@ mod laz_table;
 mod lines;
 mod mask;
 mod mesh_events;
+mod npy;
+mod npy_header;
 mod numbers;
 mod obj;
 mod opened;
@@ -85,7 +87,7 @@ pub use lines::quote;
 pub use mask::{Mask, Polygon, read_mask};
 pub use obj::open_obj;
 pub use opened::{Opened, open_knots, open_planar};
-pub use options::SourceOptions;
+pub use options::{InvalidAdvice, SourceOptions};
 pub use origin::{name_of, open_file, open_stdin};
 pub use placement::Alignment;
 pub use ply::open_ply;

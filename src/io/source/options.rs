@@ -13,6 +13,29 @@ use spmesh_core::parallel::available_threads;
 use spmesh_model::bounds::Bounds;
 use spmesh_stream::Crs;
 
+/// What to do about a point with a coordinate that is not finite.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum InvalidAdvice {
+    /// The program has no flag for it, but reads the output of `spfinalize`.
+    #[default]
+    Spfinalize,
+    /// The program has the flag.
+    SkipInvalid,
+    /// Each point has its place in the output, so that the program skips none.
+    LeaveOut,
+}
+
+impl InvalidAdvice {
+    /// The advice, for messages.
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            InvalidAdvice::Spfinalize => "spfinalize --skip-invalid drops and counts such points",
+            InvalidAdvice::SkipInvalid => "--skip-invalid drops and counts such points",
+            InvalidAdvice::LeaveOut => "leave it out: the output has a line for each point",
+        }
+    }
+}
+
 /// What to read of the files, and how.
 #[derive(Debug, Clone, Default)]
 pub struct SourceOptions {
@@ -26,6 +49,8 @@ pub struct SourceOptions {
     pub bounds: Option<Bounds>,
     /// Drop and count points with a coordinate that is not finite, instead of failing.
     pub skip_invalid: bool,
+    /// What the error for such a point advises.
+    pub invalid_advice: InvalidAdvice,
     /// Take the whole points before the cut of LAS, LAZ, text and raw files that were cut off.
     pub salvage: bool,
     /// Dimensions of the geometry: 2 (z is an elevation) or 3.

@@ -1,6 +1,7 @@
 //! Moves points from the coordinates of their file to those of the whole input, and drops points by filters.
 
 use super::filters::{DropReason, Dropped};
+use super::options::{InvalidAdvice, SourceOptions};
 use spmesh_core::error::{Error, Result};
 use spmesh_model::bounds::{Bounds, Point};
 use spmesh_stream::Coordinates;
@@ -24,6 +25,7 @@ pub(super) struct Placement {
     /// Boxes that keep points, in the file's stored coordinates, and why they drop others.
     windows: Vec<(DropReason, Bounds)>,
     skip_invalid: bool,
+    advice: InvalidAdvice,
     /// Points that filters dropped so far.
     pub(super) dropped: Dropped,
     /// Points dropped so far because a coordinate is not finite.
@@ -49,12 +51,7 @@ enum Step {
 }
 
 impl Placement {
-    pub(super) fn new(
-        from: &Coordinates,
-        to: &Coordinates,
-        windows: &[(DropReason, Bounds)],
-        skip_invalid: bool,
-    ) -> Self {
+    pub(super) fn new(from: &Coordinates, to: &Coordinates, options: &SourceOptions) -> Self {
         let step = if from == to {
             Step::Same
         } else if *to == Coordinates::F64 {
@@ -65,8 +62,9 @@ impl Placement {
             Step::ToGrid { from: *from, to: *to }
         };
         let stored = |&(reason, bounds): &(_, Bounds)| (reason, stored_bounds(from, bounds));
-        let windows = windows.iter().map(stored).collect();
-        Placement { step, windows, skip_invalid, dropped: Dropped::default(), invalid: 0 }
+        let windows = options.windows().iter().map(stored).collect();
+        let (skip_invalid, advice) = (options.skip_invalid, options.invalid_advice);
+        Placement { step, windows, skip_invalid, advice, dropped: Dropped::default(), invalid: 0 }
     }
 
     /// Whether all points with integer coordinates stay unchanged. Integer coordinates are finite.
@@ -117,9 +115,7 @@ impl Placement {
             self.invalid += 1;
             return Ok(false);
         }
-        Err(Error::malformed(format!(
-            "coordinates {stored:?} are not finite (spfinalize --skip-invalid drops and counts such points)"
-        )))
+        Err(Error::malformed(format!("coordinates {stored:?} are not finite ({})", self.advice.text())))
     }
 }
 

@@ -23,8 +23,11 @@ pub enum Attribute {
     /// Curvature of the section across the steepest descent; flow diverges where it is positive. Units: 1
     /// over the unit of coordinates.
     TangentialCurvature,
-    /// Both derivatives, by x and by y.
+    /// Both derivatives, by x and by y. Units: those of elevations over those of coordinates.
     Gradient,
+    /// The second derivatives, by xx, xy and yy. Units: those of elevations over the square of those of
+    /// coordinates.
+    Hessian,
 }
 
 impl Attribute {
@@ -38,6 +41,7 @@ impl Attribute {
             Attribute::ProfileCurvature => &["profile_curvature"],
             Attribute::TangentialCurvature => &["tangential_curvature"],
             Attribute::Gradient => &["dx", "dy"],
+            Attribute::Hessian => &["dxx", "dxy", "dyy"],
         }
     }
 
@@ -47,7 +51,7 @@ impl Attribute {
         self.columns().len() == 1
     }
 
-    /// The attribute at a point, or its first number if it has two, from a jet in world coordinates.
+    /// The attribute at a point, or its first number if it has several, from a jet in world coordinates.
     #[must_use]
     pub fn of(self, jet: &Jet) -> f64 {
         let [p, q] = jet.gradient;
@@ -56,6 +60,7 @@ impl Attribute {
         match self {
             Attribute::Value => jet.value,
             Attribute::Gradient => p,
+            Attribute::Hessian => r,
             Attribute::Slope => slope(jet.gradient),
             Attribute::Aspect => aspect(jet.gradient),
             // NaN where the square is zero.
@@ -70,8 +75,20 @@ impl Attribute {
 
     /// All numbers of the attribute at a point, in the order of columns.
     pub fn all(self, jet: &Jet) -> impl Iterator<Item = f64> {
-        let second = (self == Attribute::Gradient).then_some(jet.gradient[1]);
-        [self.of(jet)].into_iter().chain(second)
+        let others = match self {
+            Attribute::Gradient => &jet.gradient[1..],
+            Attribute::Hessian => &jet.hessian[1..],
+            _ => &[],
+        };
+        [self.of(jet)].into_iter().chain(others.iter().copied())
+    }
+
+    /// Fills in all numbers of the attribute; NaN without a jet.
+    pub(super) fn fill(self, jet: Option<&Jet>, numbers: &mut [f64]) {
+        match jet {
+            Some(jet) => numbers.iter_mut().zip(self.all(jet)).for_each(|(into, number)| *into = number),
+            None => numbers.fill(f64::NAN),
+        }
     }
 }
 

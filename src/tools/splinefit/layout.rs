@@ -145,6 +145,25 @@ impl Spline {
         Ok(Spline { layout, coefficients })
     }
 
+    /// One function of the basis of a file ("-" is standard input), which may be configurations without
+    /// coefficients.
+    ///
+    /// # Errors
+    /// Usage, if there is no such function; those of [`Layout::open`].
+    pub fn open_function(path: &Path, function: u32) -> Result<Spline> {
+        let (layout, _) = Layout::open(path)?;
+        let count = layout.basis.len();
+        let mut coefficients = vec![0.0; count];
+        match coefficients.get_mut(function as usize) {
+            Some(coefficient) => *coefficient = 1.0,
+            None => {
+                let what = format!("there is no function {function}: {count} functions are numbered from 0");
+                return Err(Error::usage(what).of_input(name_of(path)));
+            }
+        }
+        Ok(Spline { layout, coefficients })
+    }
+
     /// Writes the spline as a stream, whose blocks may be compressed.
     ///
     /// # Errors

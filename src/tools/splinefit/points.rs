@@ -83,7 +83,8 @@ impl Points {
                     let message = format!("{} weights for {count} points: one each is needed", weights.len());
                     let error = Error::usage(message).of_input(self.name());
                     // The weights may be those of all points of the file.
-                    Err(self.input.withheld_notice().iter().fold(error, |error, notice| error.noting(notice)))
+                    let dropped = [self.input.withheld_notice(), self.input.invalid_notice()];
+                    Err(dropped.iter().flatten().fold(error, |error, notice| error.noting(notice)))
                 }
             }
             _ => Ok(()),
@@ -99,7 +100,8 @@ impl Points {
     /// Notices about the files for the user.
     #[must_use]
     pub fn notices(&self) -> Vec<String> {
-        self.input.notices().iter().cloned().chain(self.input.withheld_notice()).collect()
+        let dropped = self.input.withheld_notice().into_iter().chain(self.input.invalid_notice());
+        self.input.notices().iter().cloned().chain(dropped).collect()
     }
 
     /// The coordinate reference system.

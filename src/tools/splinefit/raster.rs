@@ -5,11 +5,13 @@ use std::num::NonZeroUsize;
 
 use super::attributes::Attribute;
 use super::layout::Spline;
-use super::values::{line, write_error};
+use super::table;
+use super::values::line;
 use spmesh_core::error::{Error, Result};
 use spmesh_core::parallel;
 use spmesh_geometry::predicates::Point2;
 use spmesh_io::raster::{self, Grid, RasterFile, RasterOptions, Reduction, Reference, Samples, Window};
+use spmesh_io::sink::{NPY_F64, npy_header};
 use spmesh_splines::bases::{Raster, Scratch};
 
 /// Rows that a thread evaluates at a time: enough to outweigh the start of a sweep, which looks at all
@@ -41,9 +43,11 @@ pub fn write_raster<W: Write + Seek>(
     mut done: impl FnMut(u64),
 ) -> Result<(u64, Vec<String>)> {
     if !attribute.is_single() {
-        return Err(Error::usage("a raster has one number in a cell: take --format text for gradients"));
+        return Err(Error::usage(
+            "a raster has one number in a cell: take .npy or --format text for several",
+        ));
     }
-    let mut bands = Bands { spline, attribute, grid, threads, first: 0, values: Vec::new() };
+    let mut bands = Bands::new(spline, attribute, grid, threads);
     let mut unknown = 0;
     let reduction = if attribute == Attribute::Aspect { Reduction::First } else { Reduction::Mean };
     let crs = &spline.layout.frame.crs;
@@ -72,7 +76,41 @@ pub fn write_raster<W: Write + Seek>(
     Ok((unknown, reference.notices))
 }
 
-/// Writes a line for each cell in the domain, row by row from the top: its centre and the attribute.
+/// Writes an array of numpy with the attribute in each cell; NaN without data. Returns the number of
+/// cells without data.
+///
+/// Shape: (rows, columns), or (rows, columns, numbers) for attributes of several numbers. The first row is
+/// the top one, as in rasters.
+///
+/// # Errors
+/// If writing fails.
+pub fn write_cell_array(
+    spline: &Spline,
+    attribute: Attribute,
+    grid: &Grid,
+    threads: NonZeroUsize,
+    output: &mut impl Write,
+    mut done: impl FnMut(u64),
+) -> Result<u64> {
+    let mut bands = Bands::new(spline, attribute, grid, threads);
+    let shape = [grid.rows.into(), grid.columns.into(), bands.width as u64];
+    let shape = if attribute.is_single() { &shape[..2] } else { &shape[..] };
+    output.write_all(&npy_header(NPY_F64, shape)).map_err(table::write_error)?;
+    let (mut bytes, mut unknown) = (Vec::new(), 0);
+    for row in 0..grid.rows {
+        let width = bands.width;
+        let values = bands.row(row as usize)?;
+        unknown += values.iter().step_by(width).filter(|value| value.is_nan()).count() as u64;
+        bytes.clear();
+        values.iter().for_each(|value| bytes.extend_from_slice(&value.to_le_bytes()));
+        output.write_all(&bytes).map_err(table::write_error)?;
+        done(u64::from(row) + 1);
+    }
+    Ok(unknown)
+}
+
+/// Writes a table with a line for each cell in the domain, row by row from the top: its centre and the
+/// attribute.
 ///
 /// # Errors
 /// If writing fails.
@@ -83,6 +121,7 @@ pub fn write_table(
     output: &mut impl Write,
     mut done: impl FnMut(u64),
 ) -> Result<u64> {
+    table::write_title(output, ["x", "y"].iter().chain(attribute.columns()))?;
     let (mut scratch, mut text, mut outside) = (Scratch::default(), Vec::new(), 0);
     for row in 0..grid.rows {
         text.clear();
@@ -93,7 +132,7 @@ pub fn write_table(
                 None => outside += 1,
             }
         }
-        output.write_all(&text).map_err(write_error)?;
+        output.write_all(&text).map_err(table::write_error)?;
         done(u64::from(row) + 1);
     }
     Ok(outside)
@@ -105,30 +144,42 @@ struct Bands<'a> {
     attribute: Attribute,
     grid: &'a Grid,
     threads: NonZeroUsize,
+    /// Numbers of a cell.
+    width: usize,
     /// The first row of the current band.
     first: usize,
     values: Vec<f64>,
 }
 
-impl Bands<'_> {
+impl<'a> Bands<'a> {
+    fn new(spline: &'a Spline, attribute: Attribute, grid: &'a Grid, threads: NonZeroUsize) -> Bands<'a> {
+        let width = attribute.columns().len();
+        Bands { spline, attribute, grid, threads, width, first: 0, values: Vec::new() }
+    }
+
+    /// Numbers of a row.
+    fn row_len(&self) -> usize {
+        self.grid.columns as usize * self.width
+    }
+
     /// A row; callers request rows in order.
     fn row(&mut self, row: usize) -> Result<&[f64]> {
-        let columns = self.grid.columns as usize;
-        if row * columns >= self.first * columns + self.values.len() {
+        let len = self.row_len();
+        if row * len >= self.first * len + self.values.len() {
             self.evaluate(row)?;
         }
-        Ok(&self.values[(row - self.first) * columns..][..columns])
+        Ok(&self.values[(row - self.first) * len..][..len])
     }
 
     fn evaluate(&mut self, first: usize) -> Result<()> {
-        let (columns, rows) = (self.grid.columns as usize, self.grid.rows as usize);
+        let (len, rows) = (self.row_len(), self.grid.rows as usize);
         let count = (rows - first).min(ROWS_PER_THREAD * self.threads.get());
         self.first = first;
         self.values.clear();
-        self.values.resize(count * columns, f64::NAN);
+        self.values.resize(count * len, f64::NAN);
         let mut all = std::mem::take(&mut self.values);
         let share = count.div_ceil(self.threads.get());
-        let parts = all.chunks_mut(share * columns).enumerate();
+        let parts = all.chunks_mut(share * len).enumerate();
         let outcome = parallel::map(self.threads, parts, |(number, part)| {
             self.evaluate_part(first + number * share, part)
         });
@@ -138,17 +189,15 @@ impl Bands<'_> {
 
     /// Evaluates the rows from `first` on.
     fn evaluate_part(&self, first: usize, values: &mut [f64]) -> Result<()> {
-        let columns = self.grid.columns as usize;
-        let rows = first..first + values.len() / columns;
+        let rows = first..first + values.len() / self.row_len();
         match self.attribute {
             Attribute::Value => self.sweep(rows.start, values),
             attribute => {
                 let mut scratch = Scratch::default();
-                for (row, values) in rows.zip(values.chunks_exact_mut(columns)) {
-                    for (column, value) in (0..).zip(values) {
+                for (row, values) in rows.zip(values.chunks_exact_mut(self.row_len())) {
+                    for (column, cell) in (0..).zip(values.chunks_exact_mut(self.width)) {
                         let at = self.grid.center(column, row as u32);
-                        let jet = self.spline.jet(at, attribute, &mut scratch);
-                        *value = jet.map_or(f64::NAN, |jet| attribute.of(&jet));
+                        attribute.fill(self.spline.jet(at, attribute, &mut scratch).as_ref(), cell);
                     }
                 }
                 Ok(())

@@ -1,15 +1,16 @@
-//! Lists of points with residuals: lines of x, y, elevation and residual.
+//! Lists of points with residuals: tables of x, y, elevation and residual.
 
 use std::io::Write;
 use std::num::NonZeroUsize;
 
 use super::layout::Spline;
 use super::points::{Cursor, Points};
-use spmesh_core::error::{Error, Result};
+use super::table;
+use spmesh_core::error::Result;
 use spmesh_splines::fitting::{self, Residual, RobustFit};
 
-/// The first line of a list.
-const TITLE: &str = "x y z residual\n";
+/// The columns of a list.
+const COLUMNS: [&str; 4] = ["x", "y", "z", "residual"];
 
 /// Writes all points in the domain with their residuals. Returns their number.
 ///
@@ -54,14 +55,14 @@ struct List<'a> {
 
 impl<'a> List<'a> {
     fn new(points: &'a Points, output: &'a mut dyn Write) -> Result<List<'a>> {
-        output.write_all(TITLE.as_bytes()).map_err(write_error)?;
+        table::write_title(output, &COLUMNS)?;
         Ok(List { cursor: Cursor::new(points)?, output, written: Ok(0) })
     }
 
     fn push(&mut self, found: &Residual) {
         let Ok(count) = self.written else { return };
         let line = self.cursor.at(found.index).and_then(|([x, y], z)| {
-            writeln!(self.output, "{x} {y} {z} {}", found.residual).map_err(write_error)
+            writeln!(self.output, "{x} {y} {z} {}", found.residual).map_err(table::write_error)
         });
         self.written = line.map(|()| count + 1);
     }
@@ -69,8 +70,4 @@ impl<'a> List<'a> {
     fn finish(self) -> Result<u64> {
         self.written
     }
-}
-
-fn write_error(error: std::io::Error) -> Error {
-    Error::io("writing the list", error)
 }

@@ -8,6 +8,7 @@
 //!
 //! Source: Micchelli 1979; thesis 6.1.
 
+use super::jumps::Jumps;
 use super::layout::Layout;
 use spmesh_core::error::Result;
 use spmesh_geometry::configurations::{self, Rule};
@@ -16,7 +17,7 @@ use spmesh_splines::bases::{Jet, Scratch};
 
 /// Parts of a segment at which derivatives are compared. They are not simple fractions, at which other lines
 /// may cross.
-const PARTS: [f64; 3] = [0.216_541, 0.487_312, 0.809_733];
+pub(super) const PARTS: [f64; 3] = [0.216_541, 0.487_312, 0.809_733];
 /// Distance of the places of comparison from the segment, relative to its length.
 const BESIDE: f64 = 1e-5;
 /// Smaller changes of a derivative, relative to the magnitude of functions there, are rounding errors.
@@ -40,28 +41,34 @@ pub struct Smoothness {
     pub candidates: Vec<Candidate>,
     /// For degree 2, the candidates across which the value or gradient of some function jumps.
     pub folds: Option<Vec<Candidate>>,
+    /// The jumps of the spline; `None` without coefficients.
+    pub jumps: Option<Jumps>,
 }
 
 impl Smoothness {
-    /// Examines all functions inside their domain.
+    /// Examines all functions inside their domain, and the spline if there are coefficients.
     ///
     /// # Errors
     /// As [`configurations::link_triangulate`].
-    pub fn of(layout: &Layout) -> Result<Smoothness> {
+    pub fn of(layout: &Layout, coefficients: Option<&[f64]>) -> Result<Smoothness> {
         let degree = layout.basis.degree();
-        let mut candidates = candidates(layout)?;
+        // Gradients of splines of degree 1 jump across all lines through two knots.
+        let mut candidates = candidates(layout, if degree == 1 { 2 } else { 3 })?;
+        let jumps = coefficients.map(|coefficients| Jumps::of(layout, coefficients, &candidates));
+        candidates.retain(|candidate| candidate.order < degree as i32 - 1);
         candidates.retain(|candidate| is_inside(layout, candidate));
         let folds = (degree == 2).then(|| {
             let mut scratch = Scratch::default();
             let mut is_fold = |candidate: &&Candidate| folds_at(layout, candidate, &mut scratch);
             candidates.iter().filter(&mut is_fold).copied().collect()
         });
-        Ok(Smoothness { order: degree as i32 - 1, candidates, folds })
+        Ok(Smoothness { order: degree as i32 - 1, candidates, folds, jumps })
     }
 }
 
-/// Segments between knots on lines through more than two knots, each with its least order.
-fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
+/// Segments between knots on lines through at least `least` knots of a simplex spline, each with its least
+/// order.
+fn candidates(layout: &Layout, least: usize) -> Result<Vec<Candidate>> {
     let knots = &layout.knots;
     let next = configurations::link_triangulate(knots, &layout.configurations, &Rule::Delaunay)?;
     let (mut found, mut predicates) = (Vec::new(), FiniteFloatPredicates::default());
@@ -72,7 +79,7 @@ fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
             continue;
         }
         let all: Vec<Point2> = boundary.iter().chain(interior).map(|&id| knots.at(id)).collect();
-        lines(&all, &mut predicates, &mut found);
+        lines(&all, least, &mut predicates, &mut found);
     }
     found.sort_by(|p: &Candidate, q| {
         let ends = |at: usize| lexicographic(p.ends[at], q.ends[at]);
@@ -82,16 +89,16 @@ fn candidates(layout: &Layout) -> Result<Vec<Candidate>> {
     Ok(found)
 }
 
-/// The lines through more than two of some knots of one simplex spline.
-fn lines(all: &[Point2], predicates: &mut impl Predicates2, found: &mut Vec<Candidate>) {
+/// The lines through at least `least` of the knots of one simplex spline.
+fn lines(all: &[Point2], least: usize, predicates: &mut impl Predicates2, found: &mut Vec<Candidate>) {
     for (place, &p) in all.iter().enumerate() {
         for &q in all[place + 1..].iter().filter(|&&q| q != p) {
             let on: Vec<Point2> =
                 all.iter().copied().filter(|&r| predicates.orient2d(p, q, r) == Sign::Zero).collect();
-            if on.len() > 2 {
-                let least = |a: Point2, b: Point2| if lexicographic(a, b).is_le() { a } else { b };
-                let greatest = |a: Point2, b: Point2| if lexicographic(a, b).is_gt() { a } else { b };
-                let ends = [on.iter().copied().fold(p, least), on.iter().copied().fold(p, greatest)];
+            if on.len() >= least {
+                let first = |a: Point2, b: Point2| if lexicographic(a, b).is_le() { a } else { b };
+                let last = |a: Point2, b: Point2| if lexicographic(a, b).is_gt() { a } else { b };
+                let ends = [on.iter().copied().fold(p, first), on.iter().copied().fold(p, last)];
                 found.push(Candidate { ends, order: all.len() as i32 - 2 - on.len() as i32 });
             }
         }
@@ -99,7 +106,7 @@ fn lines(all: &[Point2], predicates: &mut impl Predicates2, found: &mut Vec<Cand
 }
 
 /// The place at a part of a segment, moved to its left by `beside` times its length.
-fn places([p, q]: [Point2; 2], part: f64, beside: f64) -> Point2 {
+pub(super) fn places([p, q]: [Point2; 2], part: f64, beside: f64) -> Point2 {
     let along = [q[0] - p[0], q[1] - p[1]];
     [p[0] + part * along[0] - beside * along[1], p[1] + part * along[1] + beside * along[0]]
 }
@@ -108,6 +115,16 @@ fn places([p, q]: [Point2; 2], part: f64, beside: f64) -> Point2 {
 fn is_inside(layout: &Layout, candidate: &Candidate) -> bool {
     let is_in = |part: f64, beside: f64| layout.basis.is_in_domain(places(candidate.ends, part, beside));
     PARTS.iter().any(|&part| is_in(part, 2.0 * BESIDE) && is_in(part, -2.0 * BESIDE))
+}
+
+/// Whether a segment lies on the border of the domain, a convex polygon with these corners in
+/// counterclockwise order, or outside of it. This is exact for the given corners.
+pub(super) fn is_certainly_outside(candidate: &Candidate, corners: &[Point2]) -> bool {
+    let mut predicates = FiniteFloatPredicates::default();
+    (0..corners.len()).any(|from| {
+        let (a, b) = (corners[from], corners[(from + 1) % corners.len()]);
+        a != b && candidate.ends.iter().all(|&end| predicates.orient2d(a, b, end) != Sign::Positive)
+    })
 }
 
 /// Whether the value or the gradient of a function changes across a segment.

@@ -42,11 +42,11 @@ pub enum Condition {
 }
 
 impl Summary {
-    /// Summarises a layout.
+    /// Summarises a layout, and the smoothness of the spline if there are coefficients.
     ///
     /// # Errors
     /// As [`Smoothness::of`].
-    pub fn of(layout: &Layout) -> Result<Summary> {
+    pub fn of(layout: &Layout, coefficients: Option<&[f64]>) -> Result<Summary> {
         let points = layout.knots.points().iter().map(|&stored| layout.frame.to_decimal(stored));
         let bounds = points.fold(None, |bounds: Option<Window>, point| {
             let Window { min, max } = bounds.unwrap_or(Window { min: point, max: point });
@@ -62,7 +62,7 @@ impl Summary {
             bounds,
             domain: layout.domain_window().ok(),
             condition: Condition::of(layout),
-            smoothness: Smoothness::of(layout)?,
+            smoothness: Smoothness::of(layout, coefficients)?,
         })
     }
 }

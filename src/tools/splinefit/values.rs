@@ -1,16 +1,20 @@
-//! Splines at sites: lines of x, y and an attribute.
+//! Splines at sites: a table of x, y and an attribute, or an array of the attribute.
 
 use std::io::Write;
+use std::path::Path;
 
 use super::attributes::Attribute;
 use super::layout::Spline;
-use spmesh_core::error::{Error, Result};
+use super::sites::for_each_site;
+use super::table;
+use spmesh_core::error::Result;
 use spmesh_geometry::predicates::Point2;
+use spmesh_io::sink::NpyRows;
 use spmesh_io::source::Input;
 use spmesh_splines::bases::{Jet, Scratch};
 
-/// Writes a line for each site, in their order. Outside of the domain, where a spline is not extrapolated,
-/// the attribute is `nan`. Returns the number of sites, and the number of sites outside.
+/// Writes a table with a line for each site, in their order. Outside of the domain, where a spline is not
+/// extrapolated, the attribute is `nan`. Returns the number of sites, and the number of sites outside.
 ///
 /// # Errors
 /// If sites cannot be read, or lines cannot be written.
@@ -19,29 +23,45 @@ pub fn write_values(
     attribute: Attribute,
     sites: &Input,
     output: &mut impl Write,
-    mut done: impl FnMut(u64),
+    done: impl FnMut(u64),
 ) -> Result<[u64; 2]> {
-    let (mut count, mut outside) = (0, 0);
-    let (mut reader, mut batch) = (sites.read()?, Vec::new());
+    table::write_title(output, ["x", "y"].iter().chain(attribute.columns()))?;
     let (mut scratch, mut text) = (Scratch::default(), Vec::new());
-    let coordinates = sites.description().coordinates;
-    loop {
-        reader.next_batch(&mut batch)?;
-        if batch.is_empty() {
-            return Ok([count, outside]);
-        }
+    for_each_site(sites, done, |site| {
+        let jet = spline.jet(site.world, attribute, &mut scratch);
         text.clear();
-        for &stored in &batch {
-            let [x, y, _] = coordinates.to_world(stored);
-            let jet = spline.jet([x, y], attribute, &mut scratch);
-            outside += u64::from(jet.is_none());
-            let [x, y, _] = coordinates.to_decimal(stored);
-            line(&mut text, [x, y], attribute, jet.as_ref());
-        }
-        count += batch.len() as u64;
-        output.write_all(&text).map_err(write_error)?;
-        done(count);
-    }
+        line(&mut text, site.decimal, attribute, jet.as_ref());
+        output.write_all(&text).map_err(table::write_error)?;
+        Ok(jet.is_some())
+    })
+}
+
+/// Writes an array of numpy: as [`write_values`], without x and y.
+///
+/// Shape: (sites,), or (sites, numbers) for attributes of several numbers. The numbers wait in a temporary
+/// file in `temp_dir`, or in the system's folder.
+///
+/// # Errors
+/// As [`write_values`].
+pub fn write_value_array(
+    spline: &Spline,
+    attribute: Attribute,
+    sites: &Input,
+    temp_dir: Option<&Path>,
+    output: &mut impl Write,
+    done: impl FnMut(u64),
+) -> Result<[u64; 2]> {
+    let mut scratch = Scratch::default();
+    let mut row = vec![f64::NAN; attribute.columns().len()];
+    let mut array = NpyRows::new(row.len(), temp_dir)?;
+    let counts = for_each_site(sites, done, |site| {
+        let jet = spline.jet(site.world, attribute, &mut scratch);
+        attribute.fill(jet.as_ref(), &mut row);
+        array.push(&row)?;
+        Ok(jet.is_some())
+    })?;
+    array.finish(output)?;
+    Ok(counts)
 }
 
 /// Appends a line of a table.
@@ -74,12 +94,10 @@ impl Spline {
         }
         Some(match attribute {
             Attribute::Value => Jet::constant(basis.value(&self.coefficients, at, scratch)),
-            Attribute::Gradient => frame.jet_to_world(basis.jet(&self.coefficients, at, scratch)),
+            Attribute::Gradient | Attribute::Hessian => {
+                frame.jet_to_world(basis.jet(&self.coefficients, at, scratch))
+            }
             _ => frame.jet_in_one_unit(basis.jet(&self.coefficients, at, scratch)),
         })
     }
-}
-
-pub(super) fn write_error(error: std::io::Error) -> Error {
-    Error::io("writing values", error)
 }
