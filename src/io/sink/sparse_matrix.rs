@@ -3,16 +3,12 @@
 use std::io::Write;
 use std::path::Path;
 
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipWriter};
+use rawzip::{ZipArchiveWriter, ZipDataWriter};
 
 use super::npy::{NPY_F64, npy_header};
 use super::spool::Spool;
 use super::write_error;
 use spmesh_core::error::{Error, Result};
-
-/// Files of this length and more need the extension of zip for large files.
-const ZIP_LARGE: u64 = u32::MAX as u64;
 
 /// Formats of sparse matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -105,54 +101,50 @@ impl SparseRows {
         // Both arrays of indices must have one type.
         let is_narrow = [rows, columns, entries].iter().all(|&count| count <= i32::MAX as u64);
         let index = if is_narrow { "<i4" } else { "<i8" };
-        let index_len = if is_narrow { 4 } else { 8 };
-        let mut archive = Archive(ZipWriter::new_stream(output));
-        archive.array("indices", index, &[entries], index_len * entries)?;
-        let mut places = self.places.records()?;
-        for _ in 0..entries {
-            archive.index(u32::from_le_bytes(places.next()?).into(), is_narrow)?;
-        }
-        archive.array("indptr", index, &[rows + 1], index_len * (rows + 1))?;
-        archive.index(0, is_narrow)?;
-        let mut ends = self.ends.records()?;
-        for _ in 0..rows {
-            archive.index(u64::from_le_bytes(ends.next()?), is_narrow)?;
-        }
-        archive.array("format", "|S3", &[], 3)?;
-        archive.bytes(b"csr")?;
-        archive.array("shape", "<i8", &[2], 16)?;
-        archive.index(rows, false)?;
-        archive.index(columns, false)?;
-        archive.array("data", NPY_F64, &[entries], 8 * entries)?;
-        self.values.copy_to(&mut archive.0)?;
-        archive.0.finish().map_err(zip_error)?.into_inner().flush().map_err(write_error)
+        let mut archive = ZipArchiveWriter::new(output);
+        let (mut places, mut ends) = (self.places.records()?, self.ends.records()?);
+        array(&mut archive, "indices", index, &[entries], |numbers| {
+            (0..entries).try_for_each(|_| put(numbers, u32::from_le_bytes(places.next()?).into(), is_narrow))
+        })?;
+        array(&mut archive, "indptr", index, &[rows + 1], |numbers| {
+            put(numbers, 0, is_narrow)?;
+            (0..rows).try_for_each(|_| put(numbers, u64::from_le_bytes(ends.next()?), is_narrow))
+        })?;
+        array(&mut archive, "format", "|S3", &[], |text| text.write_all(b"csr").map_err(write_error))?;
+        array(&mut archive, "shape", "<i8", &[2], |numbers| {
+            put(numbers, rows, false)?;
+            put(numbers, columns, false)
+        })?;
+        array(&mut archive, "data", NPY_F64, &[entries], |mut numbers| self.values.copy_to(&mut numbers))?;
+        archive.finish().map_err(zip_error)?.flush().map_err(write_error)
     }
 }
 
-/// A zip archive of arrays.
-struct Archive<W: Write>(ZipWriter<zip::write::StreamWriter<W>>);
-
-impl<W: Write> Archive<W> {
-    /// Starts an array with `len` bytes of numbers.
-    fn array(&mut self, name: &str, dtype: &str, shape: &[u64], len: u64) -> Result<()> {
-        let header = npy_header(dtype, shape);
-        let options = SimpleFileOptions::default()
-            .compression_method(CompressionMethod::Stored)
-            .large_file(len + header.len() as u64 >= ZIP_LARGE);
-        self.0.start_file(format!("{name}.npy"), options).map_err(zip_error)?;
-        self.bytes(&header)
-    }
-
-    fn index(&mut self, index: u64, is_narrow: bool) -> Result<()> {
-        let bytes = index.to_le_bytes();
-        self.bytes(if is_narrow { &bytes[..4] } else { &bytes })
-    }
-
-    fn bytes(&mut self, bytes: &[u8]) -> Result<()> {
-        self.0.write_all(bytes).map_err(write_error)
-    }
+/// Adds an array, whose numbers `write` writes, to an archive.
+fn array<W: Write>(
+    archive: &mut ZipArchiveWriter<W>,
+    name: &str,
+    dtype: &str,
+    shape: &[u64],
+    write: impl FnOnce(&mut dyn Write) -> Result<()>,
+) -> Result<()> {
+    let (mut entry, config) = archive.new_file(&format!("{name}.npy")).start().map_err(zip_error)?;
+    let mut data: ZipDataWriter<_> = config.wrap(&mut entry);
+    data.write_all(&npy_header(dtype, shape)).map_err(write_error)?;
+    write(&mut data)?;
+    let (_, descriptor) = data.finish().map_err(zip_error)?;
+    entry.finish(descriptor).map_err(zip_error).map(drop)
 }
 
-fn zip_error(error: zip::result::ZipError) -> Error {
-    write_error(error.into())
+/// Writes an index.
+fn put(numbers: &mut dyn Write, index: u64, is_narrow: bool) -> Result<()> {
+    let bytes = index.to_le_bytes();
+    numbers.write_all(if is_narrow { &bytes[..4] } else { &bytes }).map_err(write_error)
+}
+
+fn zip_error(error: rawzip::Error) -> Error {
+    write_error(match error.into_kind() {
+        rawzip::ErrorKind::IO(error) => error,
+        other => std::io::Error::other(rawzip::Error::from(other)),
+    })
 }
