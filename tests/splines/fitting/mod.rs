@@ -2,6 +2,7 @@
 
 mod bases;
 mod choices;
+mod clamped;
 mod elevations;
 mod energies;
 mod failures;
