@@ -32,9 +32,9 @@ Each round adds knots where residuals exceed --tol [default: 0.25 % of the range
 point predicts terrain best and takes the most time. Points as knots are for splines of degree 2 over their \
 convex hull: the border is pulled apart.
 
-Without --lambda, given knots get the coefficients of least squares if the points determine them all. \
-Otherwise the default lambda halves waves as short as two distances of points, which bridges gaps and \
-predicts terrain best. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
+Without --lambda, given knots get the coefficients of least squares. Those that points do not determine \
+make the surface as smooth as possible. Other knots get the default lambda, which halves waves as short as \
+two distances of points: it bridges gaps and predicts terrain best. LAMBDA multiplies the thin-plate energy (plus a thousandth of the bending of the \
 control mesh), which is added to the sum of squares of residuals.
 
 --features has sharp corners, creases (sharp up to their ends, or smooth there) and polylines along which \

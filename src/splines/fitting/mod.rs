@@ -10,6 +10,7 @@
 //! |---|---|
 //! | `observations`, `blocks` | the data, and parallel passes over them |
 //! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
+//! | `least_energy` | functions that observations leave undetermined |
 //! | `trend` | the linear part of a fit, which is solved on its own |
 //! | `energy`, `overlaps`, `polygon`, `control_energy` | energies for smoothing: thin plate, control mesh |
 //! | `cross_validation` | the choice of the smoothing parameter |
@@ -26,6 +27,7 @@ mod energy;
 mod goal;
 mod interpolation;
 mod knot_placement;
+mod least_energy;
 mod mesh;
 mod normal_equations;
 mod observations;

@@ -2,6 +2,7 @@
 
 use super::cholesky::{Elimination, Factor};
 use super::control_energy::bending;
+use super::least_energy;
 use super::normal_equations::NormalEquations;
 use super::observations::Observations;
 use super::symmetric::Symmetric;
@@ -74,15 +75,20 @@ impl<'a> Equations<'a> {
         self.normal
     }
 
-    /// The coefficients for a `lambda`.
+    /// The coefficients for a `lambda`. If it is zero and there is an energy, they are those of least squares;
+    /// if observations do not determine all of them, those with the least energy.
     ///
     /// # Errors
     /// Functions that are not determined, with their number and the place of the first one; a `lambda` that
     /// is negative or not finite, or above zero without an energy.
     pub fn solve(&self, lambda: f64) -> Result<Vec<f64>> {
-        self.with_factor(lambda, |factor| {
+        // Least energy: so much of it as makes equations regular.
+        let is_least = lambda == 0.0 && self.energy.is_some();
+        let factored = if is_least { least_energy::SHARE * self.unit() } else { lambda };
+        self.with_factor(factored, |factor| {
             self.check(factor, lambda)?;
-            let coefficients = self.coefficients(factor);
+            let coefficients =
+                if is_least { self.of_least_energy(factor) } else { self.coefficients(factor) };
             if coefficients.iter().all(|c| c.is_finite()) {
                 return Ok(coefficients);
             }
@@ -131,7 +137,15 @@ impl<'a> Equations<'a> {
 
     /// The coefficients from the factored equations.
     pub(super) fn coefficients(&self, factor: &Factor) -> Vec<f64> {
-        let rest = factor.solve(&self.right);
+        self.with_trend(factor.solve(&self.right))
+    }
+
+    fn of_least_energy(&self, factor: &Factor) -> Vec<f64> {
+        let normal = self.normal;
+        self.with_trend(least_energy::solve(&normal.matrix, factor, &self.right, &normal.right))
+    }
+
+    fn with_trend(&self, rest: Vec<f64>) -> Vec<f64> {
         self.trend.iter().zip(rest).map(|(trend, rest)| trend + rest).collect()
     }
 

@@ -33,8 +33,8 @@ impl Problem {
     }
 }
 
-/// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are smoothed only if
-/// points do not determine all functions, other knots always.
+/// Sets up the equations of points, and chooses `lambda`. Without an option, given knots are not smoothed: if
+/// points do not determine all functions, the energy counts only for the others. Other knots are smoothed.
 ///
 /// In stored coordinates, second derivatives are those of the world times the step squared, and areas are
 /// those of the world divided by the step squared. So the energy is that of the world times the step squared,
@@ -68,6 +68,8 @@ pub(super) fn choose_smoothing(
             let equations = Equations::new(basis, &normal, energy.as_ref())?;
             choice.insert(fitting::generalised_cross_validation(&equations, options.seed)?).best.lambda
         }
+        // Least squares, with the least energy where points determine nothing.
+        (_, None) if are_given => 0.0,
         (_, None) => normal.default_lambda(basis),
     };
     if let Some(choice) = &mut choice {

@@ -12,3 +12,4 @@ mod normal_equations;
 mod refinement;
 mod robustness;
 mod smoothing;
+mod undetermined;
