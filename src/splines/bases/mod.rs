@@ -29,6 +29,7 @@ mod raster;
 mod simplex;
 mod tree;
 
+pub(crate) use basis::Bend;
 pub use basis::{Basis, Scratch};
 pub use directional_limit::DirectionalLimit;
 pub use jet::Jet;

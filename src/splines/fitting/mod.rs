@@ -12,7 +12,8 @@
 //! | `normal_equations`, `rows`, `symmetric`, `cholesky`, `solve` | equations, matrices and their solution |
 //! | `least_energy` | functions that observations leave undetermined |
 //! | `trend` | the linear part of a fit, which is solved on its own |
-//! | `energy`, `overlaps`, `polygon`, `control_energy` | energies for smoothing: thin plate, control mesh |
+//! | `energy`, `cells`, `overlaps`, `polygon` | the thin-plate energy for smoothing |
+//! | `control_energy` | the energy of control meshes |
 //! | `cross_validation` | the choice of the smoothing parameter |
 //! | `residuals`, `quantile_sketch`, `robust` | residuals, their quantiles, and robust weights |
 //! | `interpolation` | interpolation at Greville sites |
@@ -20,6 +21,7 @@
 //! | `goal`, `knot_placement`, `triangle_residuals`, `refine` | the search for knots |
 
 mod blocks;
+mod cells;
 mod cholesky;
 mod control_energy;
 mod cross_validation;

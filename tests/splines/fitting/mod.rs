@@ -9,6 +9,7 @@ mod failures;
 mod figure;
 mod interpolation;
 mod normal_equations;
+mod random_knots;
 mod refinement;
 mod robustness;
 mod smoothing;
